@@ -1,0 +1,35 @@
+# SPDX-FileCopyrightText: 2026 The ovimap authors
+# SPDX-License-Identifier: Apache-2.0
+# Compile options and sanitizers, carried by the interface target ovimap_options.
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif()
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin")
+
+find_program(OVIMAP_CCACHE ccache)
+if(OVIMAP_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${OVIMAP_CCACHE}")
+endif()
+find_program(OVIMAP_MOLD mold)
+
+add_library(ovimap_options INTERFACE)
+target_compile_options(ovimap_options INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor
+  $<$<BOOL:${OVIMAP_WERROR}>:-Werror>)
+# Results must not depend on how the compiler fuses or reorders floating-point operations.
+target_compile_options(ovimap_options INTERFACE -ffp-contract=off)
+if(OVIMAP_MOLD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND NOT OVIMAP_SANITIZE)
+  target_link_options(ovimap_options INTERFACE -fuse-ld=mold)
+endif()
+if(OVIMAP_SANITIZE)
+  target_compile_options(ovimap_options INTERFACE
+    -fsanitize=${OVIMAP_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(ovimap_options INTERFACE -fsanitize=${OVIMAP_SANITIZE})
+endif()
+if(OVIMAP_SANITIZE OR CMAKE_BUILD_TYPE STREQUAL "Debug")
+  target_compile_definitions(ovimap_options INTERFACE OVIMAP_CHECKS=1)
+endif()

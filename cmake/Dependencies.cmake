@@ -1,0 +1,45 @@
+# SPDX-FileCopyrightText: 2026 The ovimap authors
+# SPDX-License-Identifier: Apache-2.0
+# Every dependency is found here and nowhere else. System packages first (tools/debian-packages.txt);
+# ONNX Runtime may also live in .deps/onnxruntime, where tools/setup.sh puts it.
+find_package(PkgConfig REQUIRED)
+find_package(Threads REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(TBB REQUIRED)
+find_package(tsl-robin-map REQUIRED)
+find_package(yaml-cpp REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(SQLiteCpp REQUIRED)
+pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)
+pkg_check_modules(SPNG REQUIRED IMPORTED_TARGET spng)
+pkg_check_modules(SQLITE3 REQUIRED IMPORTED_TARGET sqlite3)
+pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd)
+pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
+
+find_path(ONNXRUNTIME_INCLUDE_DIR onnxruntime_cxx_api.h
+  HINTS "${PROJECT_SOURCE_DIR}/.deps/onnxruntime/include"
+  PATH_SUFFIXES onnxruntime onnxruntime/core/session)
+find_library(ONNXRUNTIME_LIBRARY onnxruntime HINTS "${PROJECT_SOURCE_DIR}/.deps/onnxruntime/lib")
+if(NOT ONNXRUNTIME_INCLUDE_DIR OR NOT ONNXRUNTIME_LIBRARY)
+  message(FATAL_ERROR "ONNX Runtime was not found. Run tools/setup.sh, or set "
+    "ONNXRUNTIME_INCLUDE_DIR and ONNXRUNTIME_LIBRARY.")
+endif()
+add_library(onnxruntime_imported UNKNOWN IMPORTED GLOBAL)
+set_target_properties(onnxruntime_imported PROPERTIES
+  IMPORTED_LOCATION "${ONNXRUNTIME_LIBRARY}"
+  INTERFACE_INCLUDE_DIRECTORIES "${ONNXRUNTIME_INCLUDE_DIR}")
+
+if(OVIMAP_SYNTH)
+  find_package(embree 3 REQUIRED)
+  find_package(assimp REQUIRED)
+endif()
+if(OVIMAP_APPS)
+  find_package(CLI11 REQUIRED)
+endif()
+if(OVIMAP_TESTS)
+  find_package(GTest REQUIRED)
+  include(GoogleTest)
+endif()
+if(OVIMAP_BENCH)
+  find_package(benchmark REQUIRED)
+endif()

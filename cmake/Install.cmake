@@ -1,0 +1,16 @@
+# SPDX-FileCopyrightText: 2026 The ovimap authors
+# SPDX-License-Identifier: Apache-2.0
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+get_property(modules GLOBAL PROPERTY OVIMAP_MODULES)
+install(TARGETS ${modules} EXPORT ovimapTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/src/ovimap" DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+  FILES_MATCHING PATTERN "*.h")
+install(EXPORT ovimapTargets NAMESPACE ovimap:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/ovimap)
+configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/ovimapConfig.cmake.in"
+  "${PROJECT_BINARY_DIR}/ovimapConfig.cmake" INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/ovimap)
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/ovimapConfigVersion.cmake"
+  COMPATIBILITY SameMinorVersion)
+install(FILES "${PROJECT_BINARY_DIR}/ovimapConfig.cmake" "${PROJECT_BINARY_DIR}/ovimapConfigVersion.cmake"
+  DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/ovimap)

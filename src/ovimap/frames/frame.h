@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "ovimap/geometry/camera.h"
+#include "ovimap/geometry/pose.h"
+#include "ovimap/image/image.h"
+
+namespace ovimap {
+
+/// One posed RGB-D observation. Colour and depth may come from two cameras that were never registered.
+struct Frame {
+  std::int64_t index = 0;   ///< position in its source
+  std::string name;         ///< file stem of the colour image; names 2D mask files (`--masks DIR`)
+  double timestamp_s = 0;
+  RgbImage color;           ///< native colour image, color_camera's size
+  PinholeCamera color_camera;
+  DepthImage depth;         ///< metres; every invalid value (0, NaN, inf, out of range) stored as 0
+  PinholeCamera depth_camera;
+  Pose color_from_depth = Pose::Identity();   ///< x_in_color = color_from_depth * x_in_depth
+  Pose world_from_camera = Pose::Identity();  ///< of the depth camera
+
+  /// Colour and depth share camera and pose: pixel (u, v) is the same ray in both.
+  bool registered() const {
+    return color_camera == depth_camera && color_from_depth.matrix().isIdentity(1e-9);
+  }
+};
+
+}  // namespace ovimap

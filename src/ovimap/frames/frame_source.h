@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ovimap/frames/frame.h"
+
+namespace ovimap {
+
+class ConfigFields;
+
+struct FrameSourceConfig {
+  float min_depth_m = 0.1f;  ///< nearer depth is invalid
+  float max_depth_m = 10.f;  ///< farther depth is invalid
+};
+void list_fields(FrameSourceConfig& config, ConfigFields& fields);
+
+/// A frame, or why there is none. Exactly one of the two is set.
+struct FrameRead {
+  std::optional<Frame> frame;
+  std::string fault;  ///< "pose is not finite", "depth image is 320x240, expected 640x480", ...
+};
+
+/// A recorded sequence of frames. Reading is thread-safe and never throws for a bad frame.
+class FrameSource {
+ public:
+  virtual ~FrameSource() = default;
+
+  /// The layout: "replica", "7scenes", "tum", "folder".
+  virtual std::string kind() const = 0;
+  virtual std::int64_t size() const = 0;
+
+  /// The frame at `position` in [0, size()); its Frame::index is `position`.
+  [[nodiscard]] virtual FrameRead read(std::int64_t position) const = 0;
+
+  /// True instance ids at `position` in the colour camera (nullopt: this source has none).
+  [[nodiscard]] virtual std::optional<IdImage> truth_ids(std::int64_t position) const {
+    (void)position;
+    return std::nullopt;
+  }
+};
+
+/// Opens what `path` contains: the layout is recognised by its files, and a `calibration.yaml` beside
+/// them overrides the cameras. Throws Error when the path is missing, no layout fits (the message lists
+/// what was looked for) or the layout's own description is broken.
+std::unique_ptr<FrameSource> open_frame_source(const std::filesystem::path& path,
+                                               const FrameSourceConfig& config = {});
+
+/// Positions first, first+step, ... below last.
+struct FrameRange {
+  std::int64_t first = 0;
+  std::int64_t last = -1;  ///< -1: to the end
+  std::int64_t step = 1;
+};
+
+/// Reads "A:B:STEP" with each part optional. Throws Error when it is not that.
+FrameRange parse_frame_range(const std::string& text);
+std::vector<std::int64_t> positions(const FrameRange& range, std::int64_t size);
+
+}  // namespace ovimap

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "ovimap/image/image.h"
+
+namespace ovimap {
+
+using Bytes = std::vector<std::uint8_t>;
+
+/// Reads a PNG or JPEG (told by its content) as RGB; grey becomes three equal channels, alpha is dropped.
+/// Throws Error naming the file and the fault (missing, unknown format, truncated).
+RgbImage read_rgb(const std::filesystem::path& path);
+RgbImage decode_rgb(std::span<const std::uint8_t> bytes);
+
+/// A single-channel PNG with its values as stored, 8 or 16 bits.
+struct GrayPng {
+  Image<std::uint16_t> values;
+  int bits = 16;
+};
+
+/// Reads a grey PNG without scaling its values (depth, ids). Throws Error naming the file and the
+/// fault; a colour or palette PNG is a fault.
+GrayPng read_gray(const std::filesystem::path& path);
+GrayPng decode_gray(std::span<const std::uint8_t> bytes);
+
+Bytes encode_png(const RgbImage& image);
+Bytes encode_png(const Image<std::uint16_t>& image);  ///< 16-bit grey
+Bytes encode_jpeg(const RgbImage& image, int quality);
+
+/// Whole file in memory, and back. Writing replaces the file only when complete: a full disk leaves the
+/// old one. Both throw Error naming the path and the system's reason.
+Bytes read_file(const std::filesystem::path& path);
+void write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
+
+}  // namespace ovimap
