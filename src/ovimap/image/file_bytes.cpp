@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include <atomic>
+#include <cerrno>
+#include <system_error>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "ovimap/image/codec.h"
+
+namespace ovimap {
+
+namespace {
+
+std::string reason(int error) { return std::generic_category().message(error); }
+
+class Descriptor {
+ public:
+  Descriptor(const std::filesystem::path& path, int flags) : fd_(::open(path.c_str(), flags | O_CLOEXEC, 0666)) {}
+  ~Descriptor() { (void)close(); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+
+  int get() const { return fd_; }
+  /// Some file systems report a full disk only here.
+  bool close() {
+    const int fd = fd_;
+    fd_ = -1;
+    return fd < 0 || ::close(fd) == 0;
+  }
+
+ private:
+  int fd_;
+};
+
+/// Beside `path`, so that renaming stays within one file system; unique among threads and processes.
+std::filesystem::path temporary_beside(const std::filesystem::path& path) {
+  static std::atomic<unsigned> counter{0};
+  std::filesystem::path temporary = path;
+  temporary += concat(".", ::getpid(), "-", counter.fetch_add(1), ".part");
+  return temporary;
+}
+
+bool write_all(int fd, std::span<const std::uint8_t> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(fd, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return false;
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+  return true;
+}
+
+}  // namespace
+
+Bytes read_file(const std::filesystem::path& path) {
+  const Descriptor file(path, O_RDONLY);
+  if (file.get() < 0) throw Error(concat("cannot open ", path.string(), ": ", reason(errno)));
+  struct stat status {};
+  if (::fstat(file.get(), &status) != 0)
+    throw Error(concat("cannot read ", path.string(), ": ", reason(errno)));
+  if (S_ISDIR(status.st_mode)) throw Error(concat(path.string(), " is a folder, expected a file"));
+
+  // One byte more than the size told, so that the end is met without growing; pipes tell 0 and grow.
+  Bytes bytes(static_cast<std::size_t>(status.st_size) + 1);
+  std::size_t length = 0;
+  while (true) {
+    const ssize_t got = ::read(file.get(), bytes.data() + length, bytes.size() - length);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) throw Error(concat("cannot read ", path.string(), ": ", reason(errno)));
+    if (got == 0) break;
+    length += static_cast<std::size_t>(got);
+    if (length == bytes.size()) bytes.resize(2 * bytes.size());
+  }
+  bytes.resize(length);
+  return bytes;
+}
+
+void write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
+  std::error_code ignored;
+  const auto kind = std::filesystem::status(path, ignored).type();
+  if (kind == std::filesystem::file_type::directory)
+    throw Error(concat("cannot write ", path.string(), ": it is a folder, give a file name"));
+  const std::filesystem::path temporary = temporary_beside(path);
+  Descriptor file(temporary, O_WRONLY | O_CREAT | O_EXCL);
+  if (file.get() < 0) throw Error(concat("cannot write ", path.string(), ": ", reason(errno)));
+  const bool complete = write_all(file.get(), bytes) && file.close();
+  if (!complete || ::rename(temporary.c_str(), path.c_str()) != 0) {
+    const std::string why = reason(errno);
+    ::unlink(temporary.c_str());
+    throw Error(concat("cannot write ", path.string(), ": ", why));
+  }
+}
+
+}  // namespace ovimap

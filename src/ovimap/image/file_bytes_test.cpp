@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include <csignal>
+#include <iterator>
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+
+#include "ovimap/image/codec.h"
+
+namespace ovimap {
+namespace {
+
+class FileBytes : public testing::Test {
+ protected:
+  FileBytes()
+      : folder_(std::filesystem::temp_directory_path() / concat("ovimap-file-bytes-", ::getpid())) {
+    std::filesystem::create_directories(folder_);
+  }
+  ~FileBytes() override { std::filesystem::remove_all(folder_); }
+
+  std::ptrdiff_t files() const {
+    return std::distance(std::filesystem::directory_iterator(folder_), std::filesystem::directory_iterator());
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(FileBytes, WholeFileComesBack) {
+  Bytes bytes(100003);
+  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>(i * 31);
+  write_file(folder_ / "a", bytes);
+  EXPECT_EQ(read_file(folder_ / "a"), bytes);
+  write_file(folder_ / "a", {});
+  EXPECT_TRUE(read_file(folder_ / "a").empty());
+  EXPECT_EQ(files(), 1);
+}
+
+TEST_F(FileBytes, MissingFileAndFolderAreNamed) {
+  try {
+    read_file(folder_ / "none");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find((folder_ / "none").string()), std::string::npos);
+  }
+  try {
+    read_file(folder_);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("is a folder"), std::string::npos);
+  }
+  EXPECT_THROW(write_file(folder_, {}), Error);
+  EXPECT_THROW(write_file(folder_ / "no-such-folder" / "a", {}), Error);
+  EXPECT_EQ(files(), 0);
+}
+
+TEST_F(FileBytes, FailedWriteLeavesTheOldFile) {
+  const Bytes old = {1, 2, 3};
+  write_file(folder_ / "a", old);
+  // A limit on the size of files stands in for a full disk: the write stops half-way.
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{1000, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  EXPECT_THROW(write_file(folder_ / "a", Bytes(5000, 9)), Error);
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_EQ(read_file(folder_ / "a"), old);
+  EXPECT_EQ(files(), 1);
+}
+
+}  // namespace
+}  // namespace ovimap
