@@ -25,7 +25,7 @@ void list_fields(FrameSourceConfig& config, ConfigFields& fields);
 /// A frame, or why there is none. Exactly one of the two is set.
 struct FrameRead {
   std::optional<Frame> frame;
-  std::string fault;  ///< "pose is not finite", "depth image is 320x240, expected 640x480", ...
+  std::string fault;  ///< "FILE: PHRASE", as "frame-000005.depth.png: is 320x240, expected 640x480"
 };
 
 /// A recorded sequence of frames. Reading is thread-safe and never throws for a bad frame.
@@ -40,7 +40,8 @@ class FrameSource {
   /// The frame at `position` in [0, size()); its Frame::index is `position`.
   [[nodiscard]] virtual FrameRead read(std::int64_t position) const = 0;
 
-  /// True instance ids at `position` in the colour camera (nullopt: this source has none).
+  /// True instance ids at `position` in the colour camera (nullopt: this source has none). Throws Error
+  /// when the file of the ids is broken or of another size than the colour images.
   [[nodiscard]] virtual std::optional<IdImage> truth_ids(std::int64_t position) const {
     (void)position;
     return std::nullopt;

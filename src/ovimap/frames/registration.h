@@ -17,7 +17,8 @@ class Registration {
   /// `occlusion_margin_m`: how much nearer another surface must be, in the colour camera, to hide a point.
   explicit Registration(const Frame& frame, float occlusion_margin_m = 0.05f);
 
-  /// Colour at each depth pixel (nearest pixel), black where there is none.
+  /// Colour at each depth pixel (nearest pixel), black where there is none. Like `ids_at_depth`, takes
+  /// an image of the colour camera's size.
   RgbImage color_at_depth(const RgbImage& color) const;
   /// Ids of the colour image at each depth pixel (nearest pixel, never interpolated), 0 where none.
   IdImage ids_at_depth(const IdImage& ids) const;
@@ -25,6 +26,7 @@ class Registration {
   const Image<std::int32_t>& color_index() const { return color_index_; }
 
  private:
+  int color_width_, color_height_;
   Image<std::int32_t> color_index_;
 };
 

@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "ovimap/frames/recording.h"
+
+namespace ovimap {
+
+/// One data set layout: how to tell it, and how to list its frames. One small file implements each.
+struct Reader {
+  const char* kind;
+  const char* looks_for;  ///< for the message when nothing fits
+  bool (*recognises)(const std::filesystem::path& folder);
+  /// Throws Error when the layout's own description is broken.
+  Recording (*list_frames)(const std::filesystem::path& folder);
+};
+
+extern const Reader kSevenScenesReader;
+
+}  // namespace ovimap

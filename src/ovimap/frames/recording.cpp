@@ -1,0 +1,189 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/frames/recording.h"
+
+#include <array>
+
+#include "ovimap/frames/number_text.h"
+#include "ovimap/image/codec.h"
+
+namespace ovimap {
+
+namespace {
+
+constexpr std::size_t kDepthValues = 65536;
+
+/// Why a frame cannot be used: "FILE: PHRASE". Caught within this file.
+struct FrameFault {
+  std::string text;
+};
+
+[[noreturn]] void fail(const std::string& thing, const std::string& phrase) {
+  throw FrameFault{thing + ": " + phrase};
+}
+
+/// Runs `decode` on the file's bytes; whatever is wrong becomes a fault that names the file.
+template <class Decode>
+auto load(const std::filesystem::path& file, Decode&& decode) {
+  const std::string name = file.filename().string();
+  std::error_code unreadable;
+  if (!std::filesystem::exists(file, unreadable)) fail(name, "is missing");
+  Bytes bytes;
+  try {
+    bytes = read_file(file);
+  } catch (const Error&) {
+    fail(name, "cannot be read");
+  }
+  try {
+    return decode(bytes);
+  } catch (const Error& fault) {
+    fail(name, fault.what());
+  }
+}
+
+template <class Pixel>
+void check_size(const std::filesystem::path& file, const Image<Pixel>& image, const PinholeCamera& camera) {
+  if (image.width() != camera.width || image.height() != camera.height)
+    fail(file.filename().string(), concat("is ", image.width(), "x", image.height(), ", expected ",
+                                          camera.width, "x", camera.height));
+}
+
+class RecordingSource : public FrameSource {
+ public:
+  RecordingSource(Recording recording, const FrameSourceConfig& config)
+      : recording_(std::move(recording)), config_(config), depth_m_(kDepthValues) {
+    const CameraRig& rig = recording_.rig;
+    for (std::size_t stored = 0; stored < kDepthValues; ++stored) {
+      const auto metres = static_cast<float>(static_cast<double>(stored) / rig.depth_units_per_m);
+      const bool valid = stored > 0 && metres >= config.min_depth_m && metres <= config.max_depth_m;
+      depth_m_[stored] = valid ? metres : 0.f;
+    }
+    for (const std::uint16_t stored : rig.invalid_depth) depth_m_[stored] = 0;
+  }
+
+  std::string kind() const override { return recording_.kind; }
+  std::int64_t size() const override { return static_cast<std::int64_t>(recording_.frames.size()); }
+
+  FrameRead read(std::int64_t position) const override {
+    const RecordedFrame& record = at(position);
+    FrameRead read;
+    try {
+      read.frame = load_frame(record, position);
+    } catch (const FrameFault& fault) {
+      read.fault = fault.text;
+    }
+    return read;
+  }
+
+  std::optional<IdImage> truth_ids(std::int64_t position) const override {
+    const RecordedFrame& record = at(position);
+    if (record.truth.empty()) return std::nullopt;
+    IdImage ids = read_gray(record.truth).values;
+    const PinholeCamera& camera = recording_.rig.color_camera;
+    if (ids.width() != camera.width || ids.height() != camera.height)
+      throw Error(concat(record.truth.string(), " is ", ids.width(), "x", ids.height(), ", expected ",
+                         camera.width, "x", camera.height, " like the colour images"));
+    return ids;
+  }
+
+ private:
+  const RecordedFrame& at(std::int64_t position) const {
+    OVIMAP_ASSERT(position >= 0 && position < size());
+    return recording_.frames[static_cast<std::size_t>(position)];
+  }
+
+  Frame load_frame(const RecordedFrame& record, std::int64_t position) const {
+    Frame frame;
+    frame.index = position;
+    frame.name = record.name;
+    frame.timestamp_s = record.timestamp_s;
+    frame.color_camera = recording_.rig.color_camera;
+    frame.depth_camera = recording_.rig.depth_camera;
+    frame.color_from_depth = recording_.rig.color_from_depth;
+    frame.world_from_camera = recording_.rig.world_from_depth_camera(stored_pose(record));
+    frame.depth = load_depth(record.depth);
+    frame.color = load(record.color, [](const Bytes& bytes) { return decode_rgb(bytes); });
+    check_size(record.color, frame.color, frame.color_camera);
+    return frame;
+  }
+
+  static Eigen::Matrix4d stored_pose(const RecordedFrame& record) {
+    std::string origin = record.pose_origin;
+    std::optional<Eigen::Matrix4d> pose = record.pose;
+    if (!record.pose_file.empty()) {
+      origin = record.pose_file.filename().string();
+      pose = load(record.pose_file, [](const Bytes& bytes) {
+        const auto numbers = parse_numbers({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+        if (!numbers || numbers->size() != 16) throw Error("does not hold a 4x4 matrix");
+        return matrix_from_rows(*numbers);
+      });
+    }
+    if (!pose) fail(record.name, "has no pose");
+    const std::string fault = pose_fault(*pose);
+    if (!fault.empty()) fail(origin, "has a bad pose (" + fault + ")");
+    return *pose;
+  }
+
+  DepthImage load_depth(const std::filesystem::path& file) const {
+    const GrayPng png = load(file, [](const Bytes& bytes) { return decode_gray(bytes); });
+    const std::string name = file.filename().string();
+    if (png.bits != 16) fail(name, concat("depth has ", png.bits, " bits, expected 16"));
+    check_size(file, png.values, recording_.rig.depth_camera);
+    DepthImage depth(png.values.width(), png.values.height());
+    bool any_valid = false;
+    for (std::size_t i = 0; i < depth.size(); ++i) {
+      depth[i] = depth_m_[png.values[i]];
+      any_valid |= depth[i] > 0;
+    }
+    if (!any_valid)
+      fail(name, concat("has no depth from ", config_.min_depth_m, " to ", config_.max_depth_m, " m"));
+    return depth;
+  }
+
+  Recording recording_;
+  FrameSourceConfig config_;
+  std::vector<float> depth_m_;  ///< metres for each stored value, 0 where invalid
+};
+
+void check_cameras(const Recording& recording) {
+  const CameraRig& rig = recording.rig;
+  using Named = std::pair<const char*, const PinholeCamera*>;
+  for (const auto& [name, camera] : {Named{"depth", &rig.depth_camera}, Named{"colour", &rig.color_camera}})
+    if (!camera->valid())
+      throw Error(concat(recording.folder.string(), ": the ", name, " camera is ", camera->width, "x",
+                         camera->height, " with fx ", camera->fx, ", fy ", camera->fy,
+                         "; all must be above 0: complete calibration.yaml"));
+}
+
+std::string missing_part(const RecordedFrame& frame) {
+  std::error_code unreadable;
+  const auto absent = [&](const std::filesystem::path& file) {
+    return !std::filesystem::exists(file, unreadable);
+  };
+  for (const auto& file : {frame.color, frame.depth})
+    if (absent(file)) return file.filename().string() + " is missing";
+  if (!frame.pose && frame.pose_file.empty()) return frame.name + " has no pose";
+  if (!frame.pose && absent(frame.pose_file)) return frame.pose_file.filename().string() + " is missing";
+  return {};
+}
+
+void check_any_complete(const Recording& recording) {
+  std::string first_fault = "there are no frames";
+  for (const RecordedFrame& frame : recording.frames) {
+    const std::string missing = missing_part(frame);
+    if (missing.empty()) return;
+    if (&frame == &recording.frames.front()) first_fault = missing;
+  }
+  throw Error(concat(recording.folder.string(), ": none of ", recording.frames.size(),
+                     " frames has colour, depth and pose (", first_fault, ")"));
+}
+
+}  // namespace
+
+std::unique_ptr<FrameSource> open_recording(Recording recording, const FrameSourceConfig& config) {
+  check_cameras(recording);
+  check_any_complete(recording);
+  return std::make_unique<RecordingSource>(std::move(recording), config);
+}
+
+}  // namespace ovimap

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "ovimap/frames/camera_rig.h"
+#include "ovimap/frames/frame_source.h"
+
+namespace ovimap {
+
+/// The files of one frame. A path may name a file that does not exist: that is a fault of this frame.
+struct RecordedFrame {
+  std::string name;                      ///< stem of the colour image
+  double timestamp_s = 0;
+  std::filesystem::path color, depth;
+  std::filesystem::path pose_file;       ///< 4x4 text read with the frame; empty: `pose` holds it
+  std::optional<Eigen::Matrix4d> pose;   ///< as stored, unchecked
+  std::string pose_origin;               ///< "traj.txt line 7"; names the pose in a fault
+  std::filesystem::path truth;           ///< true instance ids, 16-bit PNG; empty: none
+};
+
+/// What a reader finds out about a data set: all frames in order, and how to read their files.
+struct Recording {
+  std::string kind;
+  std::filesystem::path folder;
+  CameraRig rig;
+  std::vector<RecordedFrame> frames;
+};
+
+/// The source that reads a recording's frames, with every check of a single frame. Throws Error when no
+/// frame has all its files, or the cameras are impossible.
+std::unique_ptr<FrameSource> open_recording(Recording recording, const FrameSourceConfig& config);
+
+}  // namespace ovimap
