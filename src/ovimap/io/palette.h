@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "ovimap/image/image.h"
+
+namespace ovimap {
+
+/// The colour of an instance, everywhere: pictures, PLY files, the viewer. It depends on the id
+/// alone, so it stays when other instances come and go. Id 0 (no instance) is grey; other ids walk
+/// in even steps, irrational to each other, through hue, lightness and chroma of OKLCH, where equal
+/// distances look equally different. The first 40 are pairwise at least 0.055 apart in OKLab.
+Rgb8 instance_color(std::uint32_t id);
+
+/// The colours of many vertices at once.
+std::vector<std::array<std::uint8_t, 3>> instance_colors(std::span<const std::uint32_t> ids);
+
+/// OKLab coordinates (lightness in [0, 1], a, b) of an sRGB colour, after B. Ottosson, "A
+/// perceptual color space for image processing" (2020).
+Eigen::Vector3d oklab_of(Rgb8 color);
+
+}  // namespace ovimap

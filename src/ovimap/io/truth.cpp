@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/io/truth.h"
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <system_error>
+
+#include <nlohmann/json.hpp>
+
+#include "ovimap/base/error.h"
+#include "ovimap/image/codec.h"
+#include "ovimap/io/ply.h"
+
+namespace ovimap {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Whole numbers separated by white space; also those that were written as 1.2e+01.
+std::vector<std::int32_t> read_labels(const fs::path& path) {
+  const Bytes bytes = read_file(path);
+  const char* at = reinterpret_cast<const char*>(bytes.data());
+  const char* const end = at + bytes.size();
+  std::vector<std::int32_t> labels;
+  for (;;) {
+    while (at != end && (*at == ' ' || (*at >= '\t' && *at <= '\r'))) ++at;
+    if (at == end) return labels;
+    double value = 0;
+    const auto result = std::from_chars(at, end, value);
+    const auto label = static_cast<std::int32_t>(
+        std::abs(value) <= std::numeric_limits<std::int32_t>::max() ? value : 0.5);
+    if (result.ec != std::errc() || label != value)
+      throw Error(concat("label file '", path.string(), "': entry ", labels.size() + 1,
+                         " is no whole number; one label per vertex of the mesh is expected"));
+    labels.push_back(label);
+    at = result.ptr;
+  }
+}
+
+std::vector<std::int32_t> read_labels_for(const Mesh& mesh, const fs::path& path) {
+  std::vector<std::int32_t> labels = read_labels(path);
+  if (labels.size() != mesh.vertices.size())
+    throw Error(concat("label file '", path.string(), "' has ", labels.size(),
+                       " labels, but its mesh has ", mesh.vertices.size(),
+                       " vertices: the two are not of the same scene"));
+  return labels;
+}
+
+std::map<std::int32_t, std::string> names_in(const nlohmann::json& document, const char* key) {
+  std::map<std::int32_t, std::string> names;
+  if (!document.contains(key)) return names;
+  for (const auto& [id, name] : document.at(key).items())
+    names[std::stoi(id)] = name.get<std::string>();
+  return names;
+}
+
+void read_names(const fs::path& path, Truth& truth) {
+  const Bytes bytes = read_file(path);
+  try {
+    const nlohmann::json document = nlohmann::json::parse(bytes.begin(), bytes.end());
+    if (!document.is_object()) throw std::invalid_argument("not an object");
+    truth.instance_names = names_in(document, "instances");
+    truth.class_names = names_in(document, "classes");
+  } catch (const std::exception&) {
+    throw Error(concat("'", path.string(),
+                       "' is not of the form {\"instances\": {\"12\": \"sofa\"}, ",
+                       "\"classes\": {\"1\": \"sofa\"}}"));
+  }
+}
+
+/// "ROOT/SCENE", also when it was given as "ROOT/SCENE/" or ".".
+fs::path scene_folder(const fs::path& source) {
+  std::error_code fault;
+  const fs::path folder = fs::canonical(source, fault);
+  if (fault || !fs::is_directory(folder))
+    throw Error(concat("there is no folder '", source.string(),
+                       "' to take the truth from; give the scene's folder ROOT/SCENE"));
+  return folder;
+}
+
+fs::path existing(const fs::path& path, const fs::path& source) {
+  if (!fs::exists(path))
+    throw Error(concat("the truth of '", source.string(), "' lacks the file '", path.string(),
+                       "'; it should lie beside the scene's folder (Replica layout)"));
+  return path;
+}
+
+}  // namespace
+
+Truth load_truth(const fs::path& source) {
+  const fs::path folder = scene_folder(source), root = folder.parent_path();
+  const std::string scene = folder.filename().string();
+  const fs::path mesh_path = existing(root / (scene + "_mesh.ply"), source);
+  const fs::path instance_path = existing(root / ("instance_labels_" + scene + ".txt"), source);
+  const fs::path class_path = root / ("semantic_labels_" + scene + ".txt");
+  Truth truth;
+  truth.mesh = read_ply(mesh_path);
+  if (truth.mesh.vertices.empty())
+    throw Error(concat("the truth mesh '", mesh_path.string(), "' has no vertices"));
+  truth.instances = read_labels_for(truth.mesh, instance_path);
+  if (fs::exists(class_path)) truth.classes = read_labels_for(truth.mesh, class_path);
+  for (const fs::path& names : {folder / "labels.json", root / "labels.json"}) {
+    if (!fs::exists(names)) continue;
+    read_names(names, truth);
+    break;
+  }
+  return truth;
+}
+
+}  // namespace ovimap
