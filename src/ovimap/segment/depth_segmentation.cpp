@@ -165,7 +165,11 @@ SegmentDepthConfig reference_segment_depth_config() {
 
 DepthRegions segment_depth(const DepthImage& depth, const PinholeCamera& camera,
                            const SegmentDepthConfig& config) {
-  const DepthSurface surface = fit_depth_surface(depth, camera, config.surface);
+  return segment_depth(fit_depth_surface(depth, camera, config.surface), camera, config);
+}
+
+DepthRegions segment_depth(const DepthSurface& surface, const PinholeCamera& camera,
+                           const SegmentDepthConfig& config) {
   const Image<std::uint8_t> concave = find_concave_edges(surface, camera, config);
   Image<std::uint32_t> labels = connected_regions(find_interior(surface, concave));
   Regrowth regrowth(surface, camera, config, labels);

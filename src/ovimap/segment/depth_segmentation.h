@@ -42,4 +42,8 @@ struct DepthRegions {
 DepthRegions segment_depth(const DepthImage& depth, const PinholeCamera& camera,
                            const SegmentDepthConfig& config);
 
+/// The same for a surface already fitted with `config.surface`.
+DepthRegions segment_depth(const DepthSurface& surface, const PinholeCamera& camera,
+                           const SegmentDepthConfig& config);
+
 }  // namespace ovimap

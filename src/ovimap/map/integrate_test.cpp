@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/map/integrate.h"
+
+#include <gtest/gtest.h>
+
+#include "ovimap/base/parallel.h"
+#include "ovimap/map/label_slots.h"
+#include "ovimap/map/sphere_fixture.h"
+
+namespace ovimap {
+namespace {
+
+TEST(Integrate, DistancesMatchTheSphereAlongTheView) {
+  const SphereScene scene;
+  VoxelMap map;
+  scene.integrate_views(map, 1, 7);
+  int checked = 0;
+  for (std::uint32_t slot = 0; slot < map.block_count(); ++slot) {
+    const VoxelBlock& block = map.block(slot);
+    for (int v = 0; v < kBlockVoxels; ++v) {
+      if (block.weight[static_cast<std::size_t>(v)] <= 0.f) continue;
+      const Eigen::Vector3i offset(v & 7, v >> 3 & 7, v >> 6);
+      const Eigen::Vector3f center = ((block.index * 8 + offset).cast<float>().array() + 0.5f) * 0.01f;
+      if (center.head<2>().norm() > 0.05f) continue;  // near the axis the ray is the normal
+      EXPECT_NEAR(map.distance_m(block, v), center.norm() - SphereScene::kRadius, 0.004f);
+      ++checked;
+    }
+  }
+  EXPECT_GT(checked, 500);
+}
+
+TEST(Integrate, SurfaceVoxelsTakeColourAndLabel) {
+  const SphereScene scene;
+  VoxelMap map;
+  const Label label = map.labels().create();
+  scene.integrate_views(map, 4, label);
+  int labelled = 0;
+  for (std::uint32_t slot = 0; slot < map.block_count(); ++slot) {
+    const VoxelBlock& block = map.block(slot);
+    for (int v = 0; v < kBlockVoxels; ++v) {
+      if (voxel_label(block, v, map.labels()) == kNoLabel) continue;
+      ++labelled;
+      EXPECT_EQ(block.color[0][static_cast<std::size_t>(v)] >> 8, 200);
+      EXPECT_LE(voxel_labels(block, v, map.labels())[0].support, 4u) << "one vote a frame";
+    }
+  }
+  EXPECT_GT(labelled, 1000);
+}
+
+TEST(Integrate, GivesTheSameBitsForEveryThreadCount) {
+  const SphereScene scene;
+  const auto hash = [&](int threads) {
+    ThreadLimit limit(threads);
+    VoxelMap map;
+    scene.integrate_views(map, 5, map.labels().create());
+    return map.content_hash();
+  };
+  EXPECT_EQ(hash(1), hash(2));
+}
+
+TEST(Integrate, IgnoresInvalidDepth) {
+  VoxelMap map;
+  const PinholeCamera camera{8, 8, 8.f, 8.f, 3.5f, 3.5f};
+  const Pose pose = Pose::Identity();
+  EXPECT_TRUE(integrate(map, {.depth = DepthImage(8, 8), .camera = camera, .world_from_camera = pose}).empty());
+  EXPECT_EQ(map.block_count(), 0u);
+}
+
+TEST(AllocateBlocks, CoversTheBandOfEveryPixel) {
+  const SphereScene scene;
+  VoxelMap map;
+  const DepthImage depth = scene.depth();
+  const Pose pose = scene.pose(0.3);
+  allocate_blocks(map, depth, scene.camera, pose);
+  int points = 0, covered = 0;
+  for (int y = 0; y < depth.height(); ++y)
+    for (int x = 0; x < depth.width(); ++x) {
+      if (depth.at(x, y) <= 0.f) continue;
+      const Eigen::Vector3f point =
+          pose.cast<float>() * scene.camera.unproject(static_cast<float>(x), static_cast<float>(y), depth.at(x, y));
+      ++points;
+      covered += map.find(block_at(point, 1.f / map.config().block_size_m())) != nullptr;
+    }
+  EXPECT_GT(covered, points * 995 / 1000) << "only corners cut by less than the sampling pitch may be missing";
+}
+
+}  // namespace
+}  // namespace ovimap

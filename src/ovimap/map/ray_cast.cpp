@@ -1,0 +1,161 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/map/ray_cast.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "ovimap/base/parallel.h"
+#include "ovimap/map/label_slots.h"
+#include "ovimap/map/surface_lookup.h"
+
+namespace ovimap {
+
+namespace {
+
+constexpr std::size_t kRowsPerTask = 8;
+constexpr int kRegionBlocks = 8;
+
+/// Marches one ray after another; one per thread.
+class RayMarcher {
+ public:
+  RayMarcher(const VoxelMap& map, const Eigen::Vector3f& origin)
+      : map_(map), finder_(map), origin_(origin), voxel_(map.config().voxel_size_m),
+        block_(map.config().block_size_m()) {}
+
+  struct Hit {
+    float range_m;
+    VoxelRef voxel;
+  };
+
+  /// First crossing from positive to negative distance along the unit `direction`; range 0 when none.
+  Hit march(const Eigen::Vector3f& direction, float max_range_m) {
+    const Eigen::Vector3f inverse = direction.cwiseInverse();
+    float last_distance = 0.f, last_range = 0.f;  // last_distance > 0: in front of a surface
+    for (float range = 0.f; range < max_range_m;) {
+      const Eigen::Vector3f point = origin_ + direction * range;
+      const VoxelRef ref = finder_.find(point);
+      if (!ref) {
+        last_distance = 0.f;
+        range += leap(point, inverse);
+        continue;
+      }
+      const VoxelBlock& block = map_.block(ref.block());
+      if (block.weight[static_cast<std::size_t>(ref.voxel())] <= 0.f) {
+        last_distance = 0.f;
+        range += voxel_;
+        continue;
+      }
+      const float distance = map_.distance_m(block, ref.voxel());
+      if (distance <= 0.f && last_distance > 0.f) {
+        return refine(direction, last_range, last_distance, range, distance, ref);
+      }
+      last_distance = distance, last_range = range;
+      range += std::max(kStepShare * std::fabs(distance), 0.5f * voxel_);
+    }
+    return {0.f, {}};
+  }
+
+ private:
+  /// Narrows a crossing between two ranges by interpolated distances (false position).
+  Hit refine(const Eigen::Vector3f& direction, float front, float front_distance, float back, float back_distance,
+             VoxelRef fallback) {
+    float crossing = front;
+    for (int step = 0; step < kRefinements; ++step) {
+      crossing = front + (back - front) * front_distance / (front_distance - back_distance);
+      const std::optional<float> distance = interpolate(origin_ + direction * crossing);
+      if (!distance) break;
+      if (*distance > 0.f)
+        front = crossing, front_distance = *distance;
+      else
+        back = crossing, back_distance = std::min(*distance, -1e-6f);
+    }
+    const VoxelRef at = finder_.find(origin_ + direction * crossing);
+    return {crossing, at ? at : fallback};
+  }
+
+  /// Trilinear distance, metres; nullopt when one of the eight voxels was never observed.
+  std::optional<float> interpolate(const Eigen::Vector3f& point) {
+    const Eigen::Vector3f grid = point.array() / voxel_ - 0.5f;
+    const Eigen::Vector3f low = grid.array().floor();
+    const Eigen::Vector3f share = grid - low;
+    float sum = 0.f;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Eigen::Vector3i offset(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
+      const VoxelRef ref = finder_.find_voxel(low.cast<int>() + offset);
+      if (!ref) return std::nullopt;
+      const VoxelBlock& block = map_.block(ref.block());
+      if (block.weight[static_cast<std::size_t>(ref.voxel())] <= 0.f) return std::nullopt;
+      float part = map_.distance_m(block, ref.voxel());
+      for (int axis = 0; axis < 3; ++axis) part *= offset[axis] ? share[axis] : 1.f - share[axis];
+      sum += part;
+    }
+    return sum;
+  }
+
+  /// Distance along the ray to the far side of the empty block, or of the empty cube of blocks, at `point`.
+  float leap(const Eigen::Vector3f& point, const Eigen::Vector3f& inverse_direction) const {
+    const BlockIndex index = block_at(point, 1.f / block_);
+    const bool empty_region = !map_.region_occupied(index);
+    const float side = empty_region ? block_ * kRegionBlocks : block_;
+    float exit = std::numeric_limits<float>::max();
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!std::isfinite(inverse_direction[axis])) continue;
+      const int cell = empty_region ? index[axis] >> 3 : index[axis];
+      const float wall = static_cast<float>(cell + (inverse_direction[axis] > 0.f ? 1 : 0)) * side;
+      exit = std::min(exit, (wall - point[axis]) * inverse_direction[axis]);
+    }
+    return std::max(exit, 0.f) + 0.01f * voxel_;  // a hair beyond the wall
+  }
+
+  static constexpr int kRefinements = 3;
+  static constexpr float kStepShare = 0.8f;  // projective distances overestimate, so not all of it is taken
+  const VoxelMap& map_;
+  VoxelFinder finder_;
+  Eigen::Vector3f origin_;
+  float voxel_, block_;
+};
+
+/// Fills `result` by rows; `known` may give a pixel's answer and spare the march.
+template <class Known>
+Projection cast(const VoxelMap& map, const PinholeCamera& camera, const Pose& world_from_camera, float max_range_m,
+                const Known& known) {
+  Projection result{DepthImage(camera.width, camera.height), Image<Label>(camera.width, camera.height)};
+  const Eigen::Matrix3f rotation = world_from_camera.linear().cast<float>();
+  const Eigen::Vector3f origin = world_from_camera.translation().cast<float>();
+  parallel_for_ranges(static_cast<std::size_t>(camera.height), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
+    RayMarcher marcher(map, origin);
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      for (int x = 0; x < camera.width; ++x) {
+        if (known(x, y, result)) continue;
+        const Eigen::Vector3f ray = camera.unproject(static_cast<float>(x), static_cast<float>(y), 1.f);
+        const float stretch = ray.norm();
+        const RayMarcher::Hit hit = marcher.march(rotation * ray / stretch, max_range_m);
+        result.depth.at(x, y) = hit.range_m / stretch;
+        result.labels.at(x, y) = map.label(hit.voxel);
+      }
+    }
+  });
+  return result;
+}
+
+}  // namespace
+
+Projection cast_rays(const VoxelMap& map, const PinholeCamera& camera, const Pose& world_from_camera, float max_range_m) {
+  return cast(map, camera, world_from_camera, max_range_m, [](int, int, Projection&) { return false; });
+}
+
+Projection cast_rays_with_depth(const VoxelMap& map, const DepthImage& sensor_depth, const Image<VoxelRef>& surface,
+                                const PinholeCamera& camera, const Pose& world_from_camera, float max_range_m) {
+  return cast(map, camera, world_from_camera, max_range_m, [&](int x, int y, Projection& result) {
+    const VoxelRef ref = surface.at(x, y);
+    if (!ref) return false;
+    result.depth.at(x, y) = sensor_depth.at(x, y);
+    result.labels.at(x, y) = map.label(ref);
+    return true;
+  });
+}
+
+}  // namespace ovimap

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace ovimap {
+
+using Label = std::uint32_t;  ///< super-point label; 0 = none
+inline constexpr Label kNoLabel = 0;
+
+inline constexpr int kBlockSide = 8;
+inline constexpr int kBlockVoxels = kBlockSide * kBlockSide * kBlockSide;
+inline constexpr int kLabelSlots = 4;
+
+/// Block coordinates: a block covers [index * 8, index * 8 + 8) voxels along each axis.
+using BlockIndex = Eigen::Vector3i;
+
+/// Block coordinates in one word, 21 bits an axis (+-84 km at blocks of 8 cm); packed words order as (z, y, x).
+inline std::uint64_t pack_index(const BlockIndex& index) {
+  constexpr int kBias = 1 << 20;
+  const auto bits = [](int value) { return static_cast<std::uint64_t>(value + kBias) & 0x1fffff; };
+  return bits(index.x()) | bits(index.y()) << 21 | bits(index.z()) << 42;
+}
+inline BlockIndex unpack_index(std::uint64_t packed) {
+  constexpr int kBias = 1 << 20;
+  const auto axis = [packed](int shift) { return static_cast<int>(packed >> shift & 0x1fffff) - kBias; };
+  return {axis(0), axis(21), axis(42)};
+}
+
+/// Voxel within its block: x fastest.
+inline int voxel_offset(int x, int y, int z) { return x + kBlockSide * (y + kBlockSide * z); }
+
+/// 8 x 8 x 8 voxels, one array per attribute: a stage touches only the cache lines it needs.
+/// 24 bytes a voxel, and a palette of the labels that occur in the block.
+struct VoxelBlock {
+  using Tsdf = std::int16_t;
+  static constexpr float kTsdfScale = 32767.f;  ///< stored distance 32767 = one truncation distance
+
+  explicit VoxelBlock(const BlockIndex& block_index) : index(block_index) {
+    tsdf.fill(0);
+    weight.fill(0.f);
+    for (auto& channel : color) channel.fill(0);
+    for (auto& slot : label) slot.fill(0);
+    for (auto& slot : support) slot.fill(0);
+  }
+
+  BlockIndex index;
+  std::uint32_t forest_epoch = 0;   ///< merges up to this epoch are already written into the palette
+  std::vector<Label> palette{kNoLabel};  ///< labels of the block; slots hold positions in it
+
+  std::array<Tsdf, kBlockVoxels> tsdf;       ///< signed distance in truncations, positive in front
+  std::array<float, kBlockVoxels> weight;    ///< 0 = never observed
+  std::array<std::array<std::uint16_t, kBlockVoxels>, 3> color;  ///< RGB, 8.8 fixed point; all 0 = none yet
+  /// Label slots, strongest first: palette position and support (number of frames).
+  std::array<std::array<std::uint8_t, kBlockVoxels>, kLabelSlots> label;
+  std::array<std::array<std::uint16_t, kBlockVoxels>, kLabelSlots> support;
+};
+
+}  // namespace ovimap

@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/map/voxel_map.h"
+
+#include <algorithm>
+
+#include <xxhash.h>
+
+#include "ovimap/base/config.h"
+#include "ovimap/base/parallel.h"
+#include "ovimap/map/label_slots.h"
+
+namespace ovimap {
+
+namespace {
+
+BlockIndex region_of(const BlockIndex& index) {
+  return {index.x() >> 3, index.y() >> 3, index.z() >> 3};  // floor division by 8 for either sign
+}
+
+/// Hash of what a block says, independent of how its palette happens to be numbered.
+std::uint64_t block_hash(const VoxelBlock& block, const LabelForest& forest) {
+  XXH64_hash_t hash = XXH64(block.index.data(), sizeof(int) * 3, 0);
+  hash = XXH64(block.tsdf.data(), sizeof(block.tsdf), hash);
+  hash = XXH64(block.weight.data(), sizeof(block.weight), hash);
+  hash = XXH64(block.color.data(), sizeof(block.color), hash);
+  std::vector<LabelSupport> labels;
+  labels.reserve(kBlockVoxels * kLabelSlots);
+  for (int v = 0; v < kBlockVoxels; ++v)
+    for (const LabelSupport& held : voxel_labels(block, v, forest)) labels.push_back(held);
+  return XXH64(labels.data(), labels.size() * sizeof(LabelSupport), hash);
+}
+
+}  // namespace
+
+void list_fields(VoxelMapConfig& config, ConfigFields& fields) {
+  fields.add("voxel_size_m", config.voxel_size_m, 0.001f, 1.f, "edge of a voxel, metres");
+  fields.add("truncation_voxels", config.truncation_voxels, 2, 20, "half width of the TSDF band, voxels");
+  fields.add("max_weight", config.max_weight, 0.01f, 1e6f, "cap of a voxel's weight");
+  fields.add("min_mesh_weight", config.min_mesh_weight, 0.f, 1e6f, "lighter voxels make no surface");
+  fields.add("label_band_voxels", config.label_band_voxels, 0.5f, 20.f, "distance from the surface within which voxels take labels, voxels");
+}
+
+VoxelMap::VoxelMap(const VoxelMapConfig& config)
+    : config_(config), metres_per_unit_(config.truncation_m() / VoxelBlock::kTsdfScale) {}
+
+std::size_t VoxelMap::KeyHash::operator()(std::uint64_t key) const {
+  key *= 0x9e3779b97f4a7c15ull;
+  return static_cast<std::size_t>(key ^ key >> 32);
+}
+
+const VoxelBlock* VoxelMap::find(const BlockIndex& index) const {
+  const std::uint32_t slot = find_slot(index);
+  return slot == kNoBlock ? nullptr : blocks_[slot].get();
+}
+
+std::uint32_t VoxelMap::find_slot(const BlockIndex& index) const {
+  const auto found = slots_.find(pack_index(index));
+  return found == slots_.end() ? kNoBlock : found->second;
+}
+
+bool VoxelMap::region_occupied(const BlockIndex& index) const { return regions_.contains(pack_index(region_of(index))); }
+
+std::uint32_t VoxelMap::find_or_create(const BlockIndex& index) {
+  const auto [found, created] = slots_.try_emplace(pack_index(index), static_cast<std::uint32_t>(blocks_.size()));
+  if (created) {
+    blocks_.push_back(std::make_unique<VoxelBlock>(index));
+    blocks_.back()->forest_epoch = labels_.epoch();
+    ++regions_[pack_index(region_of(index))];
+  }
+  return found->second;
+}
+
+std::vector<std::uint32_t> VoxelMap::ordered_slots() const {
+  std::vector<std::uint32_t> slots(blocks_.size());
+  for (std::uint32_t slot = 0; slot < slots.size(); ++slot) slots[slot] = slot;
+  std::sort(slots.begin(), slots.end(), [this](std::uint32_t a, std::uint32_t b) {
+    return pack_index(blocks_[a]->index) < pack_index(blocks_[b]->index);
+  });
+  return slots;
+}
+
+Label VoxelMap::label(VoxelRef ref) const {
+  return ref ? voxel_label(*blocks_[ref.block()], ref.voxel(), labels_) : kNoLabel;
+}
+
+std::size_t VoxelMap::bytes() const {
+  std::size_t palettes = 0;
+  for (const auto& block : blocks_) palettes += block->palette.capacity() * sizeof(Label);
+  return blocks_.size() * (sizeof(VoxelBlock) + sizeof(blocks_[0])) + palettes +
+         slots_.bucket_count() * sizeof(std::pair<std::uint64_t, std::uint32_t>);
+}
+
+std::uint64_t VoxelMap::content_hash() const {
+  const std::vector<std::uint32_t> slots = ordered_slots();
+  std::vector<std::uint64_t> hashes(slots.size());
+  parallel_for(slots.size(), 64, [&](std::size_t i) { hashes[i] = block_hash(*blocks_[slots[i]], labels_); });
+  return XXH64(hashes.data(), hashes.size() * sizeof(std::uint64_t), 0);
+}
+
+}  // namespace ovimap

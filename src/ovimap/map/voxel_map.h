@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <Eigen/Core>
+#include <tsl/robin_map.h>
+
+#include "ovimap/map/label_forest.h"
+#include "ovimap/map/voxel_block.h"
+
+namespace ovimap {
+
+class ConfigFields;
+
+struct VoxelMapConfig {
+  float voxel_size_m = 0.01f;
+  int truncation_voxels = 5;        ///< the band around the surface is this wide to either side
+  float max_weight = 1000.f;        ///< weights are capped here, so that the map follows change
+  float min_mesh_weight = 1e-4f;    ///< lighter voxels make no surface
+  float label_band_voxels = 1.f;    ///< voxels this near to the observed surface take the segment's label
+
+  float truncation_m() const { return voxel_size_m * static_cast<float>(truncation_voxels); }
+  float block_size_m() const { return voxel_size_m * kBlockSide; }
+};
+void list_fields(VoxelMapConfig& config, ConfigFields& fields);
+
+/// Position of a voxel in memory: slot of its block and offset in it. Valid as long as the map lives.
+struct VoxelRef {
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  std::uint32_t value = kNone;
+  explicit operator bool() const { return value != kNone; }
+  std::uint32_t block() const { return value / kBlockVoxels; }
+  int voxel() const { return static_cast<int>(value % kBlockVoxels); }
+  static VoxelRef of(std::uint32_t block, int voxel) { return {block * kBlockVoxels + static_cast<std::uint32_t>(voxel)}; }
+};
+
+/// The sparse TSDF of the scene with per-voxel label support. World frame, metres. Blocks are created by
+/// `integrate` alone and never move in memory.
+class VoxelMap {
+ public:
+  explicit VoxelMap(const VoxelMapConfig& config = {});
+  VoxelMap(VoxelMap&&) = default;
+  VoxelMap& operator=(VoxelMap&&) = default;
+
+  const VoxelMapConfig& config() const { return config_; }
+  std::size_t block_count() const { return blocks_.size(); }
+  std::size_t bytes() const;
+
+  /// The block at `index`, or nullptr when that space was never near an observed surface.
+  const VoxelBlock* find(const BlockIndex& index) const;
+  static constexpr std::uint32_t kNoBlock = ~std::uint32_t{0};
+  std::uint32_t find_slot(const BlockIndex& index) const;
+  /// False when no block of the cube of 8^3 blocks around `index` exists: empty space to leap over.
+  bool region_occupied(const BlockIndex& index) const;
+
+  const VoxelBlock& block(std::uint32_t slot) const { return *blocks_[slot]; }
+  VoxelBlock& block(std::uint32_t slot) { return *blocks_[slot]; }
+
+  /// Slot of the block at `index`, created when absent.
+  std::uint32_t find_or_create(const BlockIndex& index);
+
+  /// Slots in the order of their block indices (z, y, x): the same for every way the map was built.
+  std::vector<std::uint32_t> ordered_slots() const;
+
+  LabelForest& labels() { return labels_; }
+  const LabelForest& labels() const { return labels_; }
+  Label label(VoxelRef ref) const;
+
+  /// Signed distance in metres, clamped to the truncation.
+  float distance_m(const VoxelBlock& block, int voxel) const {
+    return static_cast<float>(block.tsdf[static_cast<std::size_t>(voxel)]) * metres_per_unit_;
+  }
+
+  /// Hash of every block's content and label resolution; equal maps hash equal whatever the order in
+  /// which blocks were created.
+  std::uint64_t content_hash() const;
+
+ private:
+  struct KeyHash {  // robin_map takes the low bits, so the high ones are mixed in
+    std::size_t operator()(std::uint64_t key) const;
+  };
+  using Slots = tsl::robin_map<std::uint64_t, std::uint32_t, KeyHash>;
+
+  VoxelMapConfig config_;
+  float metres_per_unit_;
+  std::vector<std::unique_ptr<VoxelBlock>> blocks_;
+  Slots slots_;
+  Slots regions_;  ///< number of blocks per cube of 8^3 blocks
+  LabelForest labels_;
+};
+
+/// Block that holds the point.
+inline BlockIndex block_at(const Eigen::Vector3f& point_in_world, float inverse_block_size) {
+  return (point_in_world * inverse_block_size).array().floor().cast<int>();
+}
+
+}  // namespace ovimap

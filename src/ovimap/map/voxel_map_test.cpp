@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/map/voxel_map.h"
+
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace ovimap {
+namespace {
+
+TEST(PackIndex, RoundTripsAndOrdersByZThenYThenX) {
+  std::mt19937 random(2);
+  std::uniform_int_distribution<int> axis(-100000, 100000);
+  for (int i = 0; i < 1000; ++i) {
+    const BlockIndex index(axis(random), axis(random), axis(random));
+    EXPECT_EQ(unpack_index(pack_index(index)), index);
+  }
+  EXPECT_LT(pack_index({5, 5, -1}), pack_index({-5, -5, 0}));
+  EXPECT_LT(pack_index({5, -1, 0}), pack_index({-5, 0, 0}));
+}
+
+TEST(VoxelMap, FindsWhatWasCreated) {
+  VoxelMap map;
+  EXPECT_EQ(map.find({1, -2, 3}), nullptr);
+  const std::uint32_t slot = map.find_or_create({1, -2, 3});
+  EXPECT_EQ(map.find_or_create({1, -2, 3}), slot);
+  EXPECT_EQ(map.find({1, -2, 3})->index, BlockIndex(1, -2, 3));
+  EXPECT_TRUE(map.region_occupied({7, -8, 0}));
+  EXPECT_FALSE(map.region_occupied({8, -2, 3}));
+}
+
+TEST(VoxelMap, ContentHashIgnoresCreationOrderAndSeesEveryVoxel) {
+  VoxelMap a, b;
+  a.find_or_create({0, 0, 0});
+  a.find_or_create({1, 0, 0});
+  b.find_or_create({1, 0, 0});
+  b.find_or_create({0, 0, 0});
+  EXPECT_EQ(a.content_hash(), b.content_hash());
+  b.block(0).tsdf[511] = 1;
+  EXPECT_NE(a.content_hash(), b.content_hash());
+}
+
+TEST(VoxelBlock, TakesTwentyFourBytesAVoxel) {
+  EXPECT_LE(sizeof(VoxelBlock), 24u * kBlockVoxels + 64u);
+}
+
+}  // namespace
+}  // namespace ovimap
