@@ -42,14 +42,16 @@ class Section {
   /// Leaves `value` as it is when the key is absent.
   template <class Number>
   void read(const std::string& key, Number& value, double min, double max) const {
-    if (has(key)) value = static_cast<Number>(number(key, node_[key], min, max, std::is_integral_v<Number>));
+    if (has(key))
+      value = static_cast<Number>(number(key, node_[key], min, max, std::is_integral_v<Number>));
   }
 
   /// Three finite numbers, or `absent`.
   Eigen::Vector3d read_vector(const std::string& key, const Eigen::Vector3d& absent) const {
     if (!has(key)) return absent;
     const YAML::Node list = node_[key];
-    if (!list.IsSequence() || list.size() != 3) fail(dotted(key), text_of(list), "a list of three numbers");
+    if (!list.IsSequence() || list.size() != 3)
+      fail(dotted(key), text_of(list), "a list of three numbers");
     Eigen::Vector3d vector;
     for (int i = 0; i < 3; ++i) vector[i] = number(key, list[i], -kLargest, kLargest, false);
     return vector;
@@ -58,14 +60,16 @@ class Section {
   void read_list(const std::string& key, std::vector<std::uint16_t>& values) const {
     if (!has(key)) return;
     const YAML::Node list = node_[key];
-    if (!list.IsSequence()) fail(dotted(key), text_of(list), "a list of whole numbers from 0 to 65535");
+    if (!list.IsSequence())
+      fail(dotted(key), text_of(list), "a list of whole numbers from 0 to 65535");
     values.clear();
     for (const YAML::Node& item : list)
       values.push_back(static_cast<std::uint16_t>(number(key, item, 0, 65535, true)));
   }
 
   template <class Choice>
-  void read_choice(const std::string& key, Choice& value, const std::string& first, const std::string& second) const {
+  void read_choice(const std::string& key, Choice& value, const std::string& first,
+                   const std::string& second) const {
     if (!has(key)) return;
     const std::string text = text_of(node_[key]);
     if (text != first && text != second) fail(dotted(key), text, first + " or " + second);
@@ -73,7 +77,9 @@ class Section {
   }
 
  private:
-  std::string dotted(const std::string& key) const { return name_.empty() ? key : name_ + "." + key; }
+  std::string dotted(const std::string& key) const {
+    return name_.empty() ? key : name_ + "." + key;
+  }
 
   static std::string text_of(const YAML::Node& node) {
     std::ostringstream text;
@@ -81,19 +87,22 @@ class Section {
     return text.str();
   }
 
-  [[noreturn]] void fail(const std::string& key, const std::string& value, const std::string& accepted) const {
-    throw Error(concat(file_, ": ", key.empty() ? "content" : key, " is '", value, "'; accepted is ", accepted));
+  [[noreturn]] void fail(const std::string& key, const std::string& value,
+                         const std::string& accepted) const {
+    throw Error(concat(file_, ": ", key.empty() ? "content" : key, " is '", value,
+                       "'; accepted is ", accepted));
   }
 
-  double number(const std::string& key, const YAML::Node& node, double min, double max, bool whole) const {
+  double number(const std::string& key, const YAML::Node& node, double min, double max,
+                bool whole) const {
     double value = std::nan("");
     const bool readable = node.IsScalar() && YAML::convert<double>::decode(node, value);
     if (!readable || !(value >= min && value <= max) || (whole && value != std::floor(value)))
       fail(dotted(key), text_of(node),
-           concat(whole ? "a whole number" : "a number",
-                  max < kLargest ? concat(" from ", min, " to ", max)
-                  : min > 0      ? std::string(" above 0")
-                                 : std::string()));
+           concat(whole ? "a whole number" : "a number", max < kLargest
+                                                             ? concat(" from ", min, " to ", max)
+                                                         : min > 0 ? std::string(" above 0")
+                                                                   : std::string()));
     return value;
   }
 
@@ -207,18 +216,21 @@ void apply_calibration(const std::filesystem::path& file, CameraRig& rig) {
 std::string calibration_text(const CameraRig& rig) {
   std::ostringstream text;
   text << std::setprecision(std::numeric_limits<double>::max_digits10);
-  text << "depth_camera: {" << camera_text(rig.depth_camera) << ", depth_scale: " << rig.depth_units_per_m
-       << ", invalid: [";
+  text << "depth_camera: {" << camera_text(rig.depth_camera)
+       << ", depth_scale: " << rig.depth_units_per_m << ", invalid: [";
   for (std::size_t i = 0; i < rig.invalid_depth.size(); ++i)
     text << (i == 0 ? "" : ", ") << rig.invalid_depth[i];
   text << "]}\ncolor_camera: {" << camera_text(rig.color_camera) << "}\n"
-       << "# x_in_color = R * x_in_depth + t; rotation as a rotation vector (radians), translation in metres\n"
-       << "color_from_depth: {rotation_vector: " << vector_text(rotation_vector(rig.color_from_depth))
+       << "# x_in_color = R * x_in_depth + t; rotation as a rotation vector (radians), translation "
+          "in metres\n"
+       << "color_from_depth: {rotation_vector: "
+       << vector_text(rotation_vector(rig.color_from_depth))
        << ", translation: " << vector_text(rig.color_from_depth.translation()) << "}\n";
   const bool inverted = rig.poses.direction == PoseConvention::Direction::kCameraFromWorld;
   text << "poses: {direction: " << (inverted ? "camera_from_world" : "world_from_camera")
        << ", axes: " << (rig.poses.axes == PoseConvention::Axes::kOpenGl ? "opengl" : "opencv")
-       << ", camera: " << (rig.poses.camera == PoseConvention::Camera::kColor ? "color" : "depth") << "}\n";
+       << ", camera: " << (rig.poses.camera == PoseConvention::Camera::kColor ? "color" : "depth")
+       << "}\n";
   return text.str();
 }
 

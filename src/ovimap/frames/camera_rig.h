@@ -15,7 +15,10 @@ namespace ovimap {
 /// How a recording writes down its poses.
 struct PoseConvention {
   enum class Direction { kWorldFromCamera, kCameraFromWorld };
-  enum class Axes { kOpenCv, kOpenGl };  ///< camera axes: y down and z forward, or y up and z backward
+  enum class Axes {
+    kOpenCv,
+    kOpenGl
+  };  ///< camera axes: y down and z forward, or y up and z backward
   enum class Camera { kDepth, kColor };  ///< whose pose it is
   Direction direction = Direction::kWorldFromCamera;
   Axes axes = Axes::kOpenCv;
@@ -25,8 +28,8 @@ struct PoseConvention {
 /// The two cameras of a recording and how to read their files.
 struct CameraRig {
   PinholeCamera color_camera, depth_camera;
-  Pose color_from_depth = Pose::Identity();  ///< x_in_color = color_from_depth * x_in_depth
-  double depth_units_per_m = 1000;           ///< stored depth values per metre
+  Pose color_from_depth = Pose::Identity();        ///< x_in_color = color_from_depth * x_in_depth
+  double depth_units_per_m = 1000;                 ///< stored depth values per metre
   std::vector<std::uint16_t> invalid_depth = {0};  ///< stored values that mean "no depth"
   PoseConvention poses;
 
@@ -34,13 +37,14 @@ struct CameraRig {
   Pose world_from_depth_camera(const Eigen::Matrix4d& stored) const;
 };
 
-/// Overrides what the YAML file gives (every key optional; rotation vectors in radians, lengths in metres):
+/// Overrides what the YAML file gives (every key optional; rotation vectors in radians, lengths in
+/// metres):
 ///
-///     camera: {width: 640, height: 480, fx: 525, fy: 525, cx: 319.5, cy: 239.5}   # both cameras at once
-///     depth_camera: {width, height, fx, fy, cx, cy, depth_scale: 1000, invalid: [0, 65535]}
-///     color_camera: {width, height, fx, fy, cx, cy}
-///     color_from_depth: {rotation_vector: [0, 0, 0], translation: [0, 0, 0]}
-///     poses: {direction: world_from_camera | camera_from_world, axes: opencv | opengl, camera: depth | color}
+///     camera: {width: 640, height: 480, fx: 525, fy: 525, cx: 319.5, cy: 239.5}   # both cameras
+///     at once depth_camera: {width, height, fx, fy, cx, cy, depth_scale: 1000, invalid: [0,
+///     65535]} color_camera: {width, height, fx, fy, cx, cy} color_from_depth: {rotation_vector:
+///     [0, 0, 0], translation: [0, 0, 0]} poses: {direction: world_from_camera | camera_from_world,
+///     axes: opencv | opengl, camera: depth | color}
 ///
 /// Throws Error naming file, key, value and what is accepted.
 void apply_calibration(const std::filesystem::path& file, CameraRig& rig);

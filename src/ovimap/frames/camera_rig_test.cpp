@@ -58,7 +58,8 @@ TEST(CameraRig, TextReadsBackAsTheSameRig) {
   CameraRig rig;
   rig.depth_camera = {640, 480, 585.1f, 585.f, 320.25f, 240.f};
   rig.color_camera = {1296, 968, 1170.19f, 1170.2f, 647.75f, 483.75f};
-  rig.color_from_depth.linear() = Eigen::AngleAxisd(0.3, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
+  rig.color_from_depth.linear() =
+      Eigen::AngleAxisd(0.3, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
   rig.color_from_depth.translation() = Eigen::Vector3d(-0.024, 0.0034, 0.1 / 3);
   rig.depth_units_per_m = 6553.5;
   rig.invalid_depth = {0, 7, 65535};
@@ -90,14 +91,20 @@ TEST(CameraRig, StoredPosesAreTakenToTheDepthCamera) {
 }
 
 TEST(CameraRig, FaultsNameKeyValueAndRemedy) {
-  EXPECT_NE(fault_of("depth_camera: {fx: abc}").find("depth_camera.fx is 'abc'; accepted is a number above 0"),
+  EXPECT_NE(fault_of("depth_camera: {fx: abc}")
+                .find("depth_camera.fx is 'abc'; accepted is a number above 0"),
             std::string::npos);
   EXPECT_NE(fault_of("depth_camera: {fx: -5}").find("'-5'"), std::string::npos);
-  EXPECT_NE(fault_of("color_camera: {width: 64.5}").find("a whole number from 1 to 32767"), std::string::npos);
-  EXPECT_NE(fault_of("depth_camera: {focal: 3}").find("no key 'depth_camera.focal'"), std::string::npos);
-  EXPECT_NE(fault_of("colour_camera: {fx: 3}").find("did you mean 'color_camera'"), std::string::npos);
-  EXPECT_NE(fault_of("color_from_depth: {translation: [1, 2]}").find("a list of three numbers"), std::string::npos);
-  EXPECT_NE(fault_of("color_from_depth: {translation: [1, 2, .nan]}").find("color_from_depth.translation"),
+  EXPECT_NE(fault_of("color_camera: {width: 64.5}").find("a whole number from 1 to 32767"),
+            std::string::npos);
+  EXPECT_NE(fault_of("depth_camera: {focal: 3}").find("no key 'depth_camera.focal'"),
+            std::string::npos);
+  EXPECT_NE(fault_of("colour_camera: {fx: 3}").find("did you mean 'color_camera'"),
+            std::string::npos);
+  EXPECT_NE(fault_of("color_from_depth: {translation: [1, 2]}").find("a list of three numbers"),
+            std::string::npos);
+  EXPECT_NE(fault_of("color_from_depth: {translation: [1, 2, .nan]}")
+                .find("color_from_depth.translation"),
             std::string::npos);
   EXPECT_NE(fault_of("depth_camera: {invalid: [70000]}").find("'70000'"), std::string::npos);
   EXPECT_NE(fault_of("depth_camera: 5").find("a mapping"), std::string::npos);

@@ -12,7 +12,8 @@ namespace ovimap {
 namespace {
 
 /// The number in `text`, or `absent` when it is empty; nullopt when it is no whole number >= `min`.
-std::optional<std::int64_t> parse_part(std::string_view text, std::int64_t absent, std::int64_t min) {
+std::optional<std::int64_t> parse_part(std::string_view text, std::int64_t absent,
+                                       std::int64_t min) {
   if (text.empty()) return absent;
   std::int64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -25,6 +26,8 @@ std::optional<std::int64_t> parse_part(std::string_view text, std::int64_t absen
 void list_fields(FrameSourceConfig& config, ConfigFields& fields) {
   fields.add("min_depth_m", config.min_depth_m, 0.f, 1000.f, "nearer depth is invalid, metres");
   fields.add("max_depth_m", config.max_depth_m, 0.f, 1e6f, "farther depth is invalid, metres");
+  fields.add("max_time_gap_s", config.max_time_gap_s, 0.f, 10.f,
+             "colour, depth and pose farther apart in time do not belong together, seconds");
 }
 
 FrameRange parse_frame_range(const std::string& text) {
@@ -40,9 +43,10 @@ FrameRange parse_frame_range(const std::string& text) {
     const auto step = parse_part(stepped ? all.substr(second_colon + 1) : "", whole.step, 1);
     if (first && last && step) return {*first, *last, *step};
   }
-  throw Error(concat("frame range is '", text,
-                     "'; accepted is FIRST:LAST:STEP with whole numbers, each of which may be left out "
-                     "(0:500:5, 100:, ::10)"));
+  throw Error(
+      concat("frame range is '", text,
+             "'; accepted is FIRST:LAST:STEP with whole numbers, each of which may be left out "
+             "(0:500:5, 100:, ::10)"));
 }
 
 std::vector<std::int64_t> positions(const FrameRange& range, std::int64_t size) {

@@ -19,6 +19,7 @@ class ConfigFields;
 struct FrameSourceConfig {
   float min_depth_m = 0.1f;  ///< nearer depth is invalid
   float max_depth_m = 10.f;  ///< farther depth is invalid
+  float max_time_gap_s = 0.02f;  ///< colour, depth and pose farther apart do not belong together
 };
 void list_fields(FrameSourceConfig& config, ConfigFields& fields);
 
@@ -48,9 +49,10 @@ class FrameSource {
   }
 };
 
-/// Opens what `path` contains: the layout is recognised by its files, and a `calibration.yaml` beside
-/// them overrides the cameras. Throws Error when the path is missing, no layout fits (the message lists
-/// what was looked for) or the layout's own description is broken.
+/// Opens what `path` contains: the layout is recognised by its files; `camera.yaml` and then
+/// `calibration.yaml` beside them override the cameras (camera_rig.h has the format). Throws Error
+/// when the path is missing, no layout fits (the message lists what was looked for), the layout's own
+/// description is broken, or no frame has colour, depth and pose.
 std::unique_ptr<FrameSource> open_frame_source(const std::filesystem::path& path,
                                                const FrameSourceConfig& config = {});
 

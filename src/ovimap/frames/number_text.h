@@ -20,8 +20,8 @@ struct TextLine {
 /// Throws Error when the file cannot be read.
 std::vector<TextLine> read_lines(const std::filesystem::path& file);
 
-/// Numbers separated by blanks, commas or semicolons ("nan" and "inf" count); nullopt when something
-/// else stands between them.
+/// Numbers separated by blanks, commas or semicolons ("nan" and "inf" count); nullopt when
+/// something else stands between them.
 std::optional<std::vector<double>> parse_numbers(std::string_view text);
 
 /// All numbers of a file. Throws Error when it cannot be read; nullopt when it holds other text.
@@ -30,7 +30,8 @@ std::optional<std::vector<double>> read_numbers(const std::filesystem::path& fil
 /// The matrix of 16 numbers row by row, or of 12 (the last row is 0 0 0 1).
 Eigen::Matrix4d matrix_from_rows(const std::vector<double>& numbers);
 
-/// The matrix of TUM's "tx ty tz qx qy qz qw"; a quaternion far from unit length gives a pose_fault.
+/// The matrix of TUM's "tx ty tz qx qy qz qw"; a quaternion far from unit length gives a
+/// pose_fault.
 Eigen::Matrix4d matrix_from_tum(const double* seven);
 
 }  // namespace ovimap

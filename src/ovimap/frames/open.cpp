@@ -8,13 +8,15 @@ namespace ovimap {
 namespace {
 
 /// Most particular layout first.
-const Reader* const kReaders[] = {&kSevenScenesReader};
+const Reader* const kReaders[] = {&kReplicaReader, &kSevenScenesReader, &kTumReader,
+                                  &kFolderReader};
 
 const Reader& find_reader(const std::filesystem::path& folder) {
   for (const Reader* reader : kReaders)
     if (reader->recognises(folder)) return *reader;
   std::string looked_for;
-  for (const Reader* reader : kReaders) looked_for += concat(looked_for.empty() ? "" : "; ", reader->looks_for);
+  for (const Reader* reader : kReaders)
+    looked_for += concat(looked_for.empty() ? "" : "; ", reader->looks_for);
   throw Error(concat(folder.string(), " holds no known layout; looked for: ", looked_for));
 }
 
@@ -24,16 +26,17 @@ std::unique_ptr<FrameSource> open_frame_source(const std::filesystem::path& path
                                                const FrameSourceConfig& config) {
   std::error_code unreadable;
   const auto status = std::filesystem::status(path, unreadable);
-  if (!std::filesystem::exists(status)) throw Error(concat(path.string(), " does not exist; give a folder of frames"));
+  if (!std::filesystem::exists(status))
+    throw Error(concat(path.string(), " does not exist; give a folder of frames"));
   if (!std::filesystem::is_directory(status))
     throw Error(concat(path.string(), " is a file; give the folder that holds the frames"));
   if (!(config.min_depth_m < config.max_depth_m))
-    throw Error(concat("min_depth_m is ", config.min_depth_m, " and max_depth_m ", config.max_depth_m,
-                       "; the first must be smaller"));
+    throw Error(concat("min_depth_m is ", config.min_depth_m, " and max_depth_m ",
+                       config.max_depth_m, "; the first must be smaller"));
   try {
-    Recording recording = find_reader(path).list_frames(path);
-    const auto calibration = path / "calibration.yaml";
-    if (std::filesystem::exists(calibration)) apply_calibration(calibration, recording.rig);
+    Recording recording = find_reader(path).list_frames(path, config);
+    for (const char* name : {"camera.yaml", "calibration.yaml"})
+      if (std::filesystem::exists(path / name)) apply_calibration(path / name, recording.rig);
     return open_recording(std::move(recording), config);
   } catch (const std::filesystem::filesystem_error& fault) {
     throw Error(concat(path.string(), " cannot be listed: ", fault.code().message()));

@@ -15,9 +15,12 @@ struct Reader {
   const char* looks_for;  ///< for the message when nothing fits
   bool (*recognises)(const std::filesystem::path& folder);
   /// Throws Error when the layout's own description is broken.
-  Recording (*list_frames)(const std::filesystem::path& folder);
+  Recording (*list_frames)(const std::filesystem::path& folder, const FrameSourceConfig& config);
 };
 
+extern const Reader kReplicaReader;
 extern const Reader kSevenScenesReader;
+extern const Reader kTumReader;
+extern const Reader kFolderReader;
 
 }  // namespace ovimap

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/frames/recording.h"
 
-#include <array>
-
 #include "ovimap/frames/number_text.h"
+#include "ovimap/frames/rig_completion.h"
 #include "ovimap/image/codec.h"
 
 namespace ovimap {
@@ -42,7 +41,8 @@ auto load(const std::filesystem::path& file, Decode&& decode) {
 }
 
 template <class Pixel>
-void check_size(const std::filesystem::path& file, const Image<Pixel>& image, const PinholeCamera& camera) {
+void check_size(const std::filesystem::path& file, const Image<Pixel>& image,
+                const PinholeCamera& camera) {
   if (image.width() != camera.width || image.height() != camera.height)
     fail(file.filename().string(), concat("is ", image.width(), "x", image.height(), ", expected ",
                                           camera.width, "x", camera.height));
@@ -81,8 +81,9 @@ class RecordingSource : public FrameSource {
     IdImage ids = read_gray(record.truth).values;
     const PinholeCamera& camera = recording_.rig.color_camera;
     if (ids.width() != camera.width || ids.height() != camera.height)
-      throw Error(concat(record.truth.string(), " is ", ids.width(), "x", ids.height(), ", expected ",
-                         camera.width, "x", camera.height, " like the colour images"));
+      throw Error(concat(record.truth.string(), " is ", ids.width(), "x", ids.height(),
+                         ", expected ", camera.width, "x", camera.height,
+                         " like the colour images"));
     return ids;
   }
 
@@ -113,11 +114,13 @@ class RecordingSource : public FrameSource {
     if (!record.pose_file.empty()) {
       origin = record.pose_file.filename().string();
       pose = load(record.pose_file, [](const Bytes& bytes) {
-        const auto numbers = parse_numbers({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+        const auto numbers =
+            parse_numbers({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
         if (!numbers || numbers->size() != 16) throw Error("does not hold a 4x4 matrix");
         return matrix_from_rows(*numbers);
       });
     }
+    if (!pose && !origin.empty()) fail(origin, "holds no pose");
     if (!pose) fail(record.name, "has no pose");
     const std::string fault = pose_fault(*pose);
     if (!fault.empty()) fail(origin, "has a bad pose (" + fault + ")");
@@ -136,7 +139,8 @@ class RecordingSource : public FrameSource {
       any_valid |= depth[i] > 0;
     }
     if (!any_valid)
-      fail(name, concat("has no depth from ", config_.min_depth_m, " to ", config_.max_depth_m, " m"));
+      fail(name,
+           concat("has no depth from ", config_.min_depth_m, " to ", config_.max_depth_m, " m"));
     return depth;
   }
 
@@ -145,16 +149,6 @@ class RecordingSource : public FrameSource {
   std::vector<float> depth_m_;  ///< metres for each stored value, 0 where invalid
 };
 
-void check_cameras(const Recording& recording) {
-  const CameraRig& rig = recording.rig;
-  using Named = std::pair<const char*, const PinholeCamera*>;
-  for (const auto& [name, camera] : {Named{"depth", &rig.depth_camera}, Named{"colour", &rig.color_camera}})
-    if (!camera->valid())
-      throw Error(concat(recording.folder.string(), ": the ", name, " camera is ", camera->width, "x",
-                         camera->height, " with fx ", camera->fx, ", fy ", camera->fy,
-                         "; all must be above 0: complete calibration.yaml"));
-}
-
 std::string missing_part(const RecordedFrame& frame) {
   std::error_code unreadable;
   const auto absent = [&](const std::filesystem::path& file) {
@@ -162,8 +156,9 @@ std::string missing_part(const RecordedFrame& frame) {
   };
   for (const auto& file : {frame.color, frame.depth})
     if (absent(file)) return file.filename().string() + " is missing";
-  if (!frame.pose && frame.pose_file.empty()) return frame.name + " has no pose";
-  if (!frame.pose && absent(frame.pose_file)) return frame.pose_file.filename().string() + " is missing";
+  if (frame.pose) return {};
+  if (frame.pose_file.empty()) return frame.name + " has no pose";
+  if (absent(frame.pose_file)) return frame.pose_file.filename().string() + " is missing";
   return {};
 }
 
@@ -181,8 +176,8 @@ void check_any_complete(const Recording& recording) {
 }  // namespace
 
 std::unique_ptr<FrameSource> open_recording(Recording recording, const FrameSourceConfig& config) {
-  check_cameras(recording);
   check_any_complete(recording);
+  complete_cameras(recording);
   return std::make_unique<RecordingSource>(std::move(recording), config);
 }
 

@@ -15,16 +15,20 @@
 
 namespace ovimap {
 
-/// The files of one frame. A path may name a file that does not exist: that is a fault of this frame.
+/// The files of one frame. A path may name a file that does not exist: that is a fault of this
+/// frame.
 struct RecordedFrame {
-  std::string name;                      ///< stem of the colour image
+  std::string name;  ///< stem of the colour image
   double timestamp_s = 0;
   std::filesystem::path color, depth;
-  std::filesystem::path pose_file;       ///< 4x4 text read with the frame; empty: `pose` holds it
-  std::optional<Eigen::Matrix4d> pose;   ///< as stored, unchecked
-  std::string pose_origin;               ///< "traj.txt line 7"; names the pose in a fault
-  std::filesystem::path truth;           ///< true instance ids, 16-bit PNG; empty: none
+  std::filesystem::path pose_file;      ///< 4x4 text read with the frame; empty: `pose` holds it
+  std::optional<Eigen::Matrix4d> pose;  ///< as stored, unchecked
+  std::string pose_origin;              ///< "traj.txt line 7"; names the pose in a fault
+  std::filesystem::path truth;          ///< true instance ids, 16-bit PNG; empty: none
 };
+
+/// Where a layout gives no times, frames are taken to be this far apart; times only inform.
+inline constexpr double kAssumedFramesPerSecond = 30;
 
 /// What a reader finds out about a data set: all frames in order, and how to read their files.
 struct Recording {
@@ -34,8 +38,8 @@ struct Recording {
   std::vector<RecordedFrame> frames;
 };
 
-/// The source that reads a recording's frames, with every check of a single frame. Throws Error when no
-/// frame has all its files, or the cameras are impossible.
+/// The source that reads a recording's frames, with every check of a single frame. Throws Error
+/// when no frame has all its parts, or a camera is not known (see complete_cameras).
 std::unique_ptr<FrameSource> open_recording(Recording recording, const FrameSourceConfig& config);
 
 }  // namespace ovimap

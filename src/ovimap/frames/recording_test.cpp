@@ -129,7 +129,8 @@ TEST_F(RecordingTest, NoCompleteFrameIsAnErrorThatNamesWhatIsMissing) {
     open_frame_source(folder_.path());
     FAIL();
   } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("frame-000000.pose.txt is missing"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("frame-000000.pose.txt is missing"), std::string::npos)
+        << error.what();
   }
 }
 

@@ -32,7 +32,8 @@ std::int32_t nearest_pixel(float coordinate, float size) {
   return static_cast<std::int32_t>(std::min(std::max(coordinate, -1.f), size) + 1.5f) - 1;
 }
 
-/// x_in_color = depth * (column_part + row_part) + t, with the rotated rays of columns and rows known.
+/// x_in_color = depth * (column_part + row_part) + t, with the rotated rays of columns and rows
+/// known.
 class DepthProjection {
  public:
   explicit DepthProjection(const Frame& frame)
@@ -43,15 +44,18 @@ class DepthProjection {
     const PinholeCamera& camera = frame.depth_camera;
     const std::size_t width = static_cast<std::size_t>(frame.depth.width());
     for (std::size_t u = 0; u < width; ++u) {
-      const Eigen::Vector3f part = rotation_.col(0) * ((static_cast<float>(u) - camera.cx) / camera.fx);
-      for (std::size_t axis = 0; axis < 3; ++axis) columns_[axis * width + u] = part[static_cast<int>(axis)];
+      const Eigen::Vector3f part =
+          rotation_.col(0) * ((static_cast<float>(u) - camera.cx) / camera.fx);
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        columns_[axis * width + u] = part[static_cast<int>(axis)];
     }
   }
 
   void project_row(int v, std::int32_t* pixel, float* z_m) const {
     const PinholeCamera depth_camera = frame_.depth_camera, color = frame_.color_camera;
     const Eigen::Vector3f row =
-        rotation_.col(1) * ((static_cast<float>(v) - depth_camera.cy) / depth_camera.fy) + rotation_.col(2);
+        rotation_.col(1) * ((static_cast<float>(v) - depth_camera.cy) / depth_camera.fy) +
+        rotation_.col(2);
     const float row_x = row.x(), row_y = row.y(), row_z = row.z();
     const float tx = translation_.x(), ty = translation_.y(), tz = translation_.z();
     const float width = static_cast<float>(color.width), height = static_cast<float>(color.height);
@@ -91,8 +95,8 @@ Projected project(const Frame& frame) {
   return seen;
 }
 
-/// Nearest distance by cell of the colour image. Where colour is finer than depth, single pixels would
-/// leave holes between the points of one surface, so a cell spans at least one depth pixel.
+/// Nearest distance by cell of the colour image. Where colour is finer than depth, single pixels
+/// would leave holes between the points of one surface, so a cell spans at least one depth pixel.
 class NearestSurface {
  public:
   NearestSurface(const Frame& frame, const Projected& seen) : shift_(cell_shift(frame)) {

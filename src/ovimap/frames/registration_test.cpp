@@ -22,16 +22,19 @@ Frame flat_frame(float depth_m) {
   return frame;
 }
 
-/// The definition, pixel by pixel in double precision; occlusion by comparing all pairs that share a pixel.
+/// The definition, pixel by pixel in double precision; occlusion by comparing all pairs that share
+/// a pixel.
 Image<std::int32_t> naive_index(const Frame& frame, double margin_m) {
   const int width = frame.depth.width(), height = frame.depth.height();
   Image<std::int32_t> index(width, height, Registration::kNoColor);
-  Image<double> z(width, height), nearest(frame.color_camera.width, frame.color_camera.height, 1e30);
+  Image<double> z(width, height),
+      nearest(frame.color_camera.width, frame.color_camera.height, 1e30);
   for (int v = 0; v < height; ++v)
     for (int u = 0; u < width; ++u) {
       if (!(frame.depth.at(u, v) > 0)) continue;
       const Eigen::Vector3d point =
-          frame.color_from_depth * frame.depth_camera.unproject(float(u), float(v), frame.depth.at(u, v)).cast<double>();
+          frame.color_from_depth *
+          frame.depth_camera.unproject(float(u), float(v), frame.depth.at(u, v)).cast<double>();
       if (point.z() <= 0) continue;
       const PinholeCamera& color = frame.color_camera;
       const int x = static_cast<int>(std::floor(color.fx * point.x() / point.z() + color.cx + 0.5));
@@ -52,7 +55,8 @@ TEST(Registration, RegisteredFrameIsTheIdentityWhereDepthIsValid) {
   frame.depth.at(5, 7) = 0;
   const Registration registration(frame);
   for (std::size_t i = 0; i < frame.depth.size(); ++i)
-    EXPECT_EQ(registration.color_index()[i], i == 7u * 64u + 5u ? Registration::kNoColor : std::int32_t(i));
+    EXPECT_EQ(registration.color_index()[i],
+              i == 7u * 64u + 5u ? Registration::kNoColor : std::int32_t(i));
 }
 
 TEST(Registration, SidewaysOffsetMovesByFocalTimesBaselineOverDepth) {
@@ -61,12 +65,14 @@ TEST(Registration, SidewaysOffsetMovesByFocalTimesBaselineOverDepth) {
   const Registration registration(frame);
   for (int v = 0; v < 48; ++v)
     for (int u = 0; u < 64; ++u)
-      ASSERT_EQ(registration.color_index().at(u, v), u + 3 < 64 ? v * 64 + u + 3 : Registration::kNoColor);
+      ASSERT_EQ(registration.color_index().at(u, v),
+                u + 3 < 64 ? v * 64 + u + 3 : Registration::kNoColor);
 }
 
 TEST(Registration, NearerSurfaceHidesWhatLiesBehindIt) {
-  // A wall at 3 m, and columns 30..39 at 1 m. With f*b = 3 they move by 1 and by 3 pixels, so the wall's
-  // columns 40 and 41 fall on colour columns 41 and 42, where the near columns 38 and 39 fall as well.
+  // A wall at 3 m, and columns 30..39 at 1 m. With f*b = 3 they move by 1 and by 3 pixels, so the
+  // wall's columns 40 and 41 fall on colour columns 41 and 42, where the near columns 38 and 39
+  // fall as well.
   Frame frame = flat_frame(3.f);
   for (int v = 0; v < 48; ++v)
     for (int u = 30; u < 40; ++u) frame.depth.at(u, v) = 1.f;
@@ -84,7 +90,8 @@ TEST(Registration, NearerSurfaceHidesWhatLiesBehindIt) {
 }
 
 TEST(Registration, FinerColourCameraStillSeesOcclusion) {
-  // Colour of four times the resolution: the points of the near surface do not touch each other there.
+  // Colour of four times the resolution: the points of the near surface do not touch each other
+  // there.
   Frame frame = flat_frame(3.f);
   frame.color_camera = kDepthCamera.scaled_to(256, 192);
   frame.color = RgbImage(256, 192);

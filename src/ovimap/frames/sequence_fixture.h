@@ -28,7 +28,8 @@ class TemporaryFolder {
  public:
   TemporaryFolder() {
     static std::atomic<int> counter{0};
-    path_ = fs::temp_directory_path() / concat("ovimap-frames-", ::getpid(), "-", counter.fetch_add(1));
+    path_ =
+        fs::temp_directory_path() / concat("ovimap-frames-", ::getpid(), "-", counter.fetch_add(1));
     fs::create_directories(path_);
   }
   ~TemporaryFolder() {
@@ -87,7 +88,8 @@ inline Pose room_pose(int index) {
   Pose pose = Pose::Identity();
   pose.linear() = (Eigen::AngleAxisd(0.5 - 0.9 * t, Eigen::Vector3d::UnitY()) *
                    Eigen::AngleAxisd(0.2 + 0.3 * t, Eigen::Vector3d::UnitX()) *
-                   Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitZ())).toRotationMatrix();
+                   Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitZ()))
+                      .toRotationMatrix();
   pose.translation() = Eigen::Vector3d(-0.9 + t, -0.5 + 0.2 * t, -0.6 + 0.3 * t);
   return pose;
 }
@@ -100,7 +102,9 @@ struct Sequence {
   double depth_units_per_m = 1000;
   int frames = 12;
   /// What is written as the pose of a frame; the images always show the true one.
-  std::function<Eigen::Matrix4d(const Pose&)> stored_pose = [](const Pose& pose) { return pose.matrix(); };
+  std::function<Eigen::Matrix4d(const Pose&)> stored_pose = [](const Pose& pose) {
+    return pose.matrix();
+  };
 
   DepthImage depth(int index) const {
     const Pose world_from_camera = room_pose(index);
@@ -108,7 +112,8 @@ struct Sequence {
     for (int v = 0; v < image.height(); ++v)
       for (int u = 0; u < image.width(); ++u) {
         const Eigen::Vector3d ray = depth_camera.unproject(float(u), float(v), 1.f).cast<double>();
-        const Hit hit = trace_room(world_from_camera.translation(), world_from_camera.linear() * ray);
+        const Hit hit =
+            trace_room(world_from_camera.translation(), world_from_camera.linear() * ray);
         image.at(u, v) = static_cast<float>(hit.distance);  // rays have z = 1, so this is the depth
       }
     return image;
@@ -141,7 +146,8 @@ struct Sequence {
     const DepthImage metres = depth(index);
     Image<std::uint16_t> stored(metres.width(), metres.height());
     for (std::size_t i = 0; i < stored.size(); ++i)
-      stored[i] = static_cast<std::uint16_t>(std::min(65534.0, std::round(metres[i] * depth_units_per_m)));
+      stored[i] =
+          static_cast<std::uint16_t>(std::min(65534.0, std::round(metres[i] * depth_units_per_m)));
     return stored;
   }
 
@@ -154,7 +160,8 @@ inline std::string matrix_text(const Eigen::Matrix4d& matrix, char separator = '
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column < 4; ++column) {
       char number[40];
-      std::snprintf(number, sizeof(number), "%.17g%c", matrix(row, column), column < 3 ? ' ' : separator);
+      std::snprintf(number, sizeof(number), "%.17g%c", matrix(row, column),
+                    column < 3 ? ' ' : separator);
       text += number;
     }
   if (separator == ' ') text.back() = '\n';
@@ -162,8 +169,8 @@ inline std::string matrix_text(const Eigen::Matrix4d& matrix, char separator = '
 }
 
 inline std::string camera_yaml(const PinholeCamera& camera) {
-  return concat("width: ", camera.width, ", height: ", camera.height, ", fx: ", camera.fx, ", fy: ",
-                camera.fy, ", cx: ", camera.cx, ", cy: ", camera.cy);
+  return concat("width: ", camera.width, ", height: ", camera.height, ", fx: ", camera.fx,
+                ", fy: ", camera.fy, ", cx: ", camera.cx, ", cy: ", camera.cy);
 }
 
 /// The calibration.yaml that describes a sequence.
@@ -171,10 +178,11 @@ inline std::string calibration_yaml(const Sequence& sequence) {
   const Eigen::AngleAxisd rotation(sequence.color_from_depth.linear());
   const Eigen::Vector3d vector = rotation.angle() * rotation.axis();
   const Eigen::Vector3d offset = sequence.color_from_depth.translation();
-  return concat("depth_camera: {", camera_yaml(sequence.depth_camera), ", depth_scale: ",
-                sequence.depth_units_per_m, "}\ncolor_camera: {", camera_yaml(sequence.color_camera),
-                "}\ncolor_from_depth: {rotation_vector: [", vector.x(), ", ", vector.y(), ", ", vector.z(),
-                "], translation: [", offset.x(), ", ", offset.y(), ", ", offset.z(), "]}\n");
+  return concat("depth_camera: {", camera_yaml(sequence.depth_camera),
+                ", depth_scale: ", sequence.depth_units_per_m, "}\ncolor_camera: {",
+                camera_yaml(sequence.color_camera), "}\ncolor_from_depth: {rotation_vector: [",
+                vector.x(), ", ", vector.y(), ", ", vector.z(), "], translation: [", offset.x(),
+                ", ", offset.y(), ", ", offset.z(), "]}\n");
 }
 
 /// frame-NNNNNN.{color.png,depth.png,pose.txt} and calibration.yaml.
@@ -186,6 +194,66 @@ inline void write_seven_scenes(const fs::path& folder, const Sequence& sequence)
     write_text(folder / (stem + ".pose.txt"), matrix_text(sequence.pose(i)));
   }
   write_text(folder / "calibration.yaml", calibration_yaml(sequence));
+}
+
+/// ROOT/cam_params.json and ROOT/scene/{results/..., traj.txt}; returns ROOT/scene.
+inline fs::path write_replica(const fs::path& root, const Sequence& sequence) {
+  const PinholeCamera& camera = sequence.depth_camera;
+  write_text(root / "cam_params.json",
+             concat("{\"camera\": {\"w\": ", camera.width, ", \"h\": ", camera.height,
+                    ", \"fx\": ", camera.fx, ", \"fy\": ", camera.fy, ", \"cx\": ", camera.cx,
+                    ", \"cy\": ", camera.cy, ", \"scale\": ", sequence.depth_units_per_m, "}}"));
+  fs::create_directories(root / "scene" / "results");
+  std::string trajectory;
+  for (int i = 0; i < sequence.frames; ++i) {
+    const fs::path results = root / "scene" / "results";
+    write_file(results / ("frame" + padded(i, 6) + ".jpg"), encode_jpeg(sequence.color(i), 95));
+    write_file(results / ("depth" + padded(i, 6) + ".png"), encode_png(sequence.stored_depth(i)));
+    write_file(results / ("instance" + padded(i, 6) + ".png"), encode_png(sequence.ids(i)));
+    trajectory += matrix_text(sequence.pose(i), ' ');
+  }
+  write_text(root / "scene" / "traj.txt", trajectory);
+  return root / "scene";
+}
+
+/// "tx ty tz qx qy qz qw" of a pose.
+inline std::string tum_text(const Eigen::Matrix4d& matrix) {
+  const Eigen::Quaterniond q(Eigen::Matrix3d(matrix.topLeftCorner<3, 3>()));
+  char text[256];
+  std::snprintf(text, sizeof(text), "%.9f %.9f %.9f %.9f %.9f %.9f %.9f", matrix(0, 3),
+                matrix(1, 3), matrix(2, 3), q.x(), q.y(), q.z(), q.w());
+  return text;
+}
+
+/// rgb/, depth/, rgb.txt, depth.txt (10 ms later), groundtruth.txt (5 ms after depth),
+/// calibration.yaml.
+inline void write_tum(const fs::path& folder, const Sequence& sequence) {
+  fs::create_directories(folder / "rgb");
+  fs::create_directories(folder / "depth");
+  std::string rgb = "# color images\n", depth = "# depth maps\n", poses = "# ground truth\n";
+  for (int i = 0; i < sequence.frames; ++i) {
+    const std::string time = concat("1305031102.", padded(100 + 33 * i, 3));
+    write_file(folder / "rgb" / (time + ".png"), encode_png(sequence.color(i)));
+    write_file(folder / "depth" / (time + "1.png"), encode_png(sequence.stored_depth(i)));
+    rgb += concat(time, " rgb/", time, ".png\n");
+    depth += concat("1305031102.", padded(110 + 33 * i, 3), " depth/", time, "1.png\n");
+    poses += concat("1305031102.", padded(115 + 33 * i, 3), " ", tum_text(sequence.pose(i)), "\n");
+  }
+  write_text(folder / "rgb.txt", rgb);
+  write_text(folder / "depth.txt", depth);
+  write_text(folder / "groundtruth.txt", poses);
+  write_text(folder / "calibration.yaml", calibration_yaml(sequence));
+}
+
+/// color/N.png and depth/N.png, and camera.yaml; poses are left to the test.
+inline void write_folder(const fs::path& folder, const Sequence& sequence) {
+  fs::create_directories(folder / "color");
+  fs::create_directories(folder / "depth");
+  for (int i = 0; i < sequence.frames; ++i) {
+    write_file(folder / "color" / concat(i, ".png"), encode_png(sequence.color(i)));
+    write_file(folder / "depth" / concat(i, ".png"), encode_png(sequence.stored_depth(i)));
+  }
+  write_text(folder / "camera.yaml", calibration_yaml(sequence));
 }
 
 }  // namespace ovimap::fixture

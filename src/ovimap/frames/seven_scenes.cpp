@@ -9,7 +9,6 @@ namespace ovimap {
 
 namespace {
 
-constexpr double kFramesPerSecond = 30;
 constexpr std::string_view kPrefix = "frame-";
 
 /// The NNNNNN of "frame-NNNNNN.color.jpg" and its kin; nullopt for any other file.
@@ -32,18 +31,18 @@ bool recognises(const std::filesystem::path& folder) {
   return false;
 }
 
-RecordedFrame record(const std::filesystem::path& folder, const std::string& stem, std::int64_t number,
-                     bool color_is_png) {
+RecordedFrame record(const std::filesystem::path& folder, const std::string& stem,
+                     std::int64_t number, bool color_is_png) {
   RecordedFrame frame;
   frame.name = stem + ".color";
-  frame.timestamp_s = static_cast<double>(number) / kFramesPerSecond;
+  frame.timestamp_s = static_cast<double>(number) / kAssumedFramesPerSecond;
   frame.color = folder / (frame.name + (color_is_png ? ".png" : ".jpg"));
   frame.depth = folder / (stem + ".depth.png");
   frame.pose_file = folder / (stem + ".pose.txt");
   return frame;
 }
 
-Recording list_frames(const std::filesystem::path& folder) {
+Recording list_frames(const std::filesystem::path& folder, const FrameSourceConfig&) {
   Recording recording;
   recording.kind = kSevenScenesReader.kind;
   recording.folder = folder;

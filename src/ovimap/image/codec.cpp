@@ -69,7 +69,8 @@ RgbImage decode_png_rgb(std::span<const std::uint8_t> bytes) {
   spng_ihdr header{};
   const PngContext context = open_png(bytes, header);
   RgbImage image(static_cast<int>(header.width), static_cast<int>(header.height));
-  check_png(spng_decode_image(context.get(), image.data(), image.size() * sizeof(Rgb8), SPNG_FMT_RGB8, 0));
+  check_png(spng_decode_image(context.get(), image.data(), image.size() * sizeof(Rgb8),
+                              SPNG_FMT_RGB8, 0));
   return image;
 }
 
@@ -78,7 +79,8 @@ RgbImage decode_jpeg(std::span<const std::uint8_t> bytes) {
   if (!handle) throw std::bad_alloc();
   const auto size = static_cast<unsigned long>(bytes.size());
   int width = 0, height = 0, sampling = 0, colorspace = 0;
-  if (tjDecompressHeader3(handle.get(), bytes.data(), size, &width, &height, &sampling, &colorspace) != 0)
+  if (tjDecompressHeader3(handle.get(), bytes.data(), size, &width, &height, &sampling,
+                          &colorspace) != 0)
     throw Error(concat("is a damaged JPEG (", tjGetErrorStr2(handle.get()), ")"));
   check_size(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height));
   RgbImage image(width, height);
@@ -113,7 +115,8 @@ Bytes encode_png(const void* pixels, std::size_t size_bytes, int width, int heig
   std::unique_ptr<void, decltype(&std::free)> buffer(
       code == 0 ? spng_get_png_buffer(context.get(), &length, &code) : nullptr, &std::free);
   if (!buffer)
-    throw Error(concat("cannot write a PNG of ", width, "x", height, " (", spng_strerror(code), ")"));
+    throw Error(
+        concat("cannot write a PNG of ", width, "x", height, " (", spng_strerror(code), ")"));
   const auto* bytes = static_cast<const std::uint8_t*>(buffer.get());
   return Bytes(bytes, bytes + length);
 }
@@ -147,10 +150,12 @@ GrayPng decode_gray(std::span<const std::uint8_t> bytes) {
     throw Error(concat("is a ", int(header.bit_depth), "-bit PNG, accepted are 8 and 16 bits"));
   GrayPng gray;
   gray.bits = header.bit_depth;
-  gray.values = Image<std::uint16_t>(static_cast<int>(header.width), static_cast<int>(header.height));
+  gray.values =
+      Image<std::uint16_t>(static_cast<int>(header.width), static_cast<int>(header.height));
   // SPNG_FMT_PNG delivers 16-bit values in the machine's byte order.
   if (gray.bits == 16) {
-    check_png(spng_decode_image(context.get(), gray.values.data(), gray.values.size() * 2, SPNG_FMT_PNG, 0));
+    check_png(spng_decode_image(context.get(), gray.values.data(), gray.values.size() * 2,
+                                SPNG_FMT_PNG, 0));
   } else {
     Bytes narrow(gray.values.size());
     check_png(spng_decode_image(context.get(), narrow.data(), narrow.size(), SPNG_FMT_PNG, 0));
@@ -173,8 +178,8 @@ Bytes encode_png(const RgbImage& image) {
 }
 
 Bytes encode_png(const Image<std::uint16_t>& image) {
-  return encode_png(image.data(), image.size() * sizeof(std::uint16_t), image.width(), image.height(),
-                    SPNG_COLOR_TYPE_GRAYSCALE, 16);
+  return encode_png(image.data(), image.size() * sizeof(std::uint16_t), image.width(),
+                    image.height(), SPNG_COLOR_TYPE_GRAYSCALE, 16);
 }
 
 Bytes encode_jpeg(const RgbImage& image, int quality) {

@@ -41,7 +41,8 @@ std::uint32_t crc_of(const Bytes& bytes, std::size_t begin) {
 }
 
 void put_u32(Bytes& bytes, std::uint32_t value) {
-  for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(static_cast<std::uint8_t>(value >> shift));
+  for (int shift = 24; shift >= 0; shift -= 8)
+    bytes.push_back(static_cast<std::uint8_t>(value >> shift));
 }
 
 void put_chunk(Bytes& png, const char* type, const Bytes& content) {
@@ -113,8 +114,10 @@ TEST(Png, GrayReadAsRgbHasThreeEqualChannels) {
 }
 
 TEST(Png, NarrowGrayAndColourAreRefusedAsValues) {
-  EXPECT_NE(fault_of([] { decode_gray(tiny_gray_png(4, {0x12})); }).find("4-bit"), std::string::npos);
-  EXPECT_NE(fault_of([] { decode_gray(encode_png(random_rgb(4, 4))); }).find("in colour"), std::string::npos);
+  EXPECT_NE(fault_of([] { decode_gray(tiny_gray_png(4, {0x12})); }).find("4-bit"),
+            std::string::npos);
+  EXPECT_NE(fault_of([] { decode_gray(encode_png(random_rgb(4, 4))); }).find("in colour"),
+            std::string::npos);
   EXPECT_NE(fault_of([] { decode_gray(encode_jpeg(random_rgb(16, 16), 90)); }).find("not a PNG"),
             std::string::npos);
 }
@@ -124,7 +127,8 @@ TEST(Png, EveryTruncationIsAFault) {
   // The last 12 bytes are the end mark, after all pixels.
   for (std::size_t length = 0; length + 12 < whole.size(); length += 13)
     EXPECT_THROW(decode_gray(std::span(whole).first(length)), Error) << length;
-  EXPECT_EQ(fault_of([&] { decode_gray(std::span(whole).first(whole.size() / 2)); }), "is a truncated PNG");
+  EXPECT_EQ(fault_of([&] { decode_gray(std::span(whole).first(whole.size() / 2)); }),
+            "is a truncated PNG");
 }
 
 TEST(Png, FlippedBitIsAFault) {
@@ -157,9 +161,11 @@ TEST(Jpeg, SmoothImageComesBackNearly) {
 
 TEST(Jpeg, TruncationIsAFault) {
   const Bytes whole = encode_jpeg(random_rgb(64, 48), 90);
-  for (const std::size_t length : {std::size_t{3}, std::size_t{40}, whole.size() / 2, whole.size() - 40})
+  for (const std::size_t length :
+       {std::size_t{3}, std::size_t{40}, whole.size() / 2, whole.size() - 40})
     EXPECT_THROW(decode_rgb(std::span(whole).first(length)), Error) << length;
-  EXPECT_EQ(fault_of([&] { decode_rgb(std::span(whole).first(whole.size() / 2)); }), "is a truncated JPEG");
+  EXPECT_EQ(fault_of([&] { decode_rgb(std::span(whole).first(whole.size() / 2)); }),
+            "is a truncated JPEG");
 }
 
 TEST(Jpeg, QualityOutOfRangeIsRefused) {
@@ -175,7 +181,8 @@ TEST(Decode, UnknownContentIsNamed) {
 }
 
 TEST(Decode, FaultOfAFileNamesTheFile) {
-  const auto path = std::filesystem::temp_directory_path() / concat("ovimap-codec-", ::getpid(), ".jpg");
+  const auto path =
+      std::filesystem::temp_directory_path() / concat("ovimap-codec-", ::getpid(), ".jpg");
   write_file(path, {});
   EXPECT_EQ(fault_of([&] { read_rgb(path); }), path.string() + " is empty");
   EXPECT_EQ(fault_of([&] { read_gray(path); }), path.string() + " is empty");

@@ -18,7 +18,8 @@ std::string reason(int error) { return std::generic_category().message(error); }
 
 class Descriptor {
  public:
-  Descriptor(const std::filesystem::path& path, int flags) : fd_(::open(path.c_str(), flags | O_CLOEXEC, 0666)) {}
+  Descriptor(const std::filesystem::path& path, int flags)
+      : fd_(::open(path.c_str(), flags | O_CLOEXEC, 0666)) {}
   ~Descriptor() { (void)close(); }
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
@@ -35,7 +36,8 @@ class Descriptor {
   int fd_;
 };
 
-/// Beside `path`, so that renaming stays within one file system; unique among threads and processes.
+/// Beside `path`, so that renaming stays within one file system; unique among threads and
+/// processes.
 std::filesystem::path temporary_beside(const std::filesystem::path& path) {
   static std::atomic<unsigned> counter{0};
   std::filesystem::path temporary = path;
@@ -63,7 +65,8 @@ Bytes read_file(const std::filesystem::path& path) {
     throw Error(concat("cannot read ", path.string(), ": ", reason(errno)));
   if (S_ISDIR(status.st_mode)) throw Error(concat(path.string(), " is a folder, expected a file"));
 
-  // One byte more than the size told, so that the end is met without growing; pipes tell 0 and grow.
+  // One byte more than the size told, so that the end is met without growing; pipes tell 0 and
+  // grow.
   Bytes bytes(static_cast<std::size_t>(status.st_size) + 1);
   std::size_t length = 0;
   while (true) {

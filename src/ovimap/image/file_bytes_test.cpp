@@ -22,7 +22,8 @@ class FileBytes : public testing::Test {
   ~FileBytes() override { std::filesystem::remove_all(folder_); }
 
   std::ptrdiff_t files() const {
-    return std::distance(std::filesystem::directory_iterator(folder_), std::filesystem::directory_iterator());
+    return std::distance(std::filesystem::directory_iterator(folder_),
+                         std::filesystem::directory_iterator());
   }
 
   std::filesystem::path folder_;

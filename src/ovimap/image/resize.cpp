@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::size_t kRowsPerTask = 16;
 
-/// For each output position the first input position it draws from, and its weights (their sum is 1).
+/// For each output position the first input position it draws from, and its weights (their sum is
+/// 1).
 struct FilterTaps {
   std::vector<int> first;
   std::vector<float> weights;  ///< `width` for each output position, zero beyond the triangle
@@ -38,7 +39,8 @@ FilterTaps triangle_taps(int from, int to) {
       sum += weight;
     }
     taps.first[static_cast<std::size_t>(out)] = first;
-    float* weights = &taps.weights[static_cast<std::size_t>(out) * static_cast<std::size_t>(taps.width)];
+    float* weights =
+        &taps.weights[static_cast<std::size_t>(out) * static_cast<std::size_t>(taps.width)];
     for (int k = 0; k < taps.width; ++k)
       weights[k] = static_cast<float>(raw[static_cast<std::size_t>(k)] / sum);
   }
@@ -79,7 +81,8 @@ void blend_rows(const std::vector<float>& rows, std::size_t values, const Filter
 
 void check_target(int width, int height) {
   if (width <= 0 || height <= 0)
-    throw Error(concat("cannot resize an image to ", width, "x", height, "; both must be at least 1"));
+    throw Error(
+        concat("cannot resize an image to ", width, "x", height, "; both must be at least 1"));
 }
 
 }  // namespace
@@ -95,13 +98,13 @@ RgbImage resize_bilinear(const RgbImage& image, int width, int height) {
     resize_row(image.row(static_cast<int>(y)), across, &rows[y * values]);
   });
   RgbImage result(width, height);
-  parallel_for_ranges(static_cast<std::size_t>(height), kRowsPerTask,
-                      [&](std::size_t begin, std::size_t end) {
-                        std::vector<float> sum(values);
-                        for (std::size_t y = begin; y < end; ++y)
-                          blend_rows(rows, values, down, y, sum,
-                                     reinterpret_cast<std::uint8_t*>(result.row(static_cast<int>(y))));
-                      });
+  parallel_for_ranges(
+      static_cast<std::size_t>(height), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
+        std::vector<float> sum(values);
+        for (std::size_t y = begin; y < end; ++y)
+          blend_rows(rows, values, down, y, sum,
+                     reinterpret_cast<std::uint8_t*>(result.row(static_cast<int>(y))));
+      });
   return result;
 }
 
@@ -110,10 +113,12 @@ IdImage resize_nearest(const IdImage& image, int width, int height) {
   if (image.empty()) throw Error("cannot resize an image without pixels");
   // The input pixel that contains the centre of the output pixel, in whole numbers.
   const auto source = [](int out, int from, int to) {
-    return static_cast<int>((2 * static_cast<std::int64_t>(out) + 1) * from / (2 * static_cast<std::int64_t>(to)));
+    return static_cast<int>((2 * static_cast<std::int64_t>(out) + 1) * from /
+                            (2 * static_cast<std::int64_t>(to)));
   };
   std::vector<int> columns(static_cast<std::size_t>(width));
-  for (int x = 0; x < width; ++x) columns[static_cast<std::size_t>(x)] = source(x, image.width(), width);
+  for (int x = 0; x < width; ++x)
+    columns[static_cast<std::size_t>(x)] = source(x, image.width(), width);
   IdImage result(width, height);
   for (int y = 0; y < height; ++y) {
     const std::uint16_t* from = image.row(source(y, image.height(), height));

@@ -31,7 +31,8 @@ double naive_red(const RgbImage& image, int width, int height, int x, int y) {
   double sum = 0, weights = 0;
   for (int v = 0; v < image.height(); ++v)
     for (int u = 0; u < image.width(); ++u) {
-      const double weight = triangle((u - cx) / std::max(sx, 1.0)) * triangle((v - cy) / std::max(sy, 1.0));
+      const double weight =
+          triangle((u - cx) / std::max(sx, 1.0)) * triangle((v - cy) / std::max(sy, 1.0));
       sum += weight * image.at(u, v).r;
       weights += weight;
     }
@@ -40,7 +41,8 @@ double naive_red(const RgbImage& image, int width, int height, int x, int y) {
 
 TEST(ResizeBilinear, AgreesWithTheDefinition) {
   const RgbImage image = random_rgb(41, 23);
-  for (const auto& [width, height] : {std::pair{13, 9}, {80, 47}, {41, 7}, {3, 40}, {1, 1}, {41, 23}}) {
+  for (const auto& [width, height] :
+       {std::pair{13, 9}, {80, 47}, {41, 7}, {3, 40}, {1, 1}, {41, 23}}) {
     const RgbImage result = resize_bilinear(image, width, height);
     ASSERT_EQ(result.width(), width);
     ASSERT_EQ(result.height(), height);
@@ -52,7 +54,8 @@ TEST(ResizeBilinear, AgreesWithTheDefinition) {
 }
 
 TEST(ResizeBilinear, HandComputedHalving) {
-  // Output 0 of a 4-wide row at half size: centre 0.5, triangle radius 2, weights .75 .75 .25 (sum 1.75).
+  // Output 0 of a 4-wide row at half size: centre 0.5, triangle radius 2, weights .75 .75 .25
+  // (sum 1.75).
   RgbImage image(4, 1);
   image.at(0, 0) = {0, 70, 255};
   image.at(1, 0) = {70, 70, 255};
