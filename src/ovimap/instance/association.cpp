@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/instance/association.h"
+
+#include <algorithm>
+#include <map>
+#include <queue>
+#include <set>
+#include <tuple>
+
+#include "ovimap/base/config.h"
+#include "ovimap/base/parallel.h"
+#include "ovimap/map/label_slots.h"
+
+namespace ovimap {
+
+namespace {
+
+constexpr std::size_t kPixelsPerTask = 16 * 640;
+
+using Votes = std::map<Label, int>;
+
+/// (segment, label) in one word, segment in the high half.
+std::uint64_t ballot(std::uint16_t segment, Label label) { return std::uint64_t{segment} << 32 | label; }
+
+/// Votes of every segment for the labels of its surface voxels; runs of equal ballots are counted as one.
+std::vector<Votes> count_votes(const Segments& segments, const Image<VoxelRef>& surface, const VoxelMap& map) {
+  const std::size_t tasks = (surface.size() + kPixelsPerTask - 1) / kPixelsPerTask;
+  std::vector<std::vector<std::pair<std::uint64_t, int>>> runs(tasks);
+  parallel_for(tasks, 1, [&](std::size_t task) {
+    const std::size_t end = std::min((task + 1) * kPixelsPerTask, surface.size());
+    for (std::size_t i = task * kPixelsPerTask; i < end; ++i) {
+      const std::uint16_t segment = segments.ids[i];
+      if (segment == 0 || !surface[i]) continue;
+      const Label label = map.label(surface[i]);
+      if (label == kNoLabel) continue;
+      const std::uint64_t key = ballot(segment, label);
+      if (!runs[task].empty() && runs[task].back().first == key)
+        ++runs[task].back().second;
+      else
+        runs[task].emplace_back(key, 1);
+    }
+  });
+  std::vector<Votes> votes(segments.segments.size());
+  for (const auto& part : runs)
+    for (const auto& [key, count] : part)
+      votes[(key >> 32) - 1][static_cast<Label>(key)] += count;
+  return votes;
+}
+
+/// Most votes; the lower (older) label on a tie.
+std::pair<Label, int> winner(const Votes& votes) {
+  std::pair<Label, int> best{kNoLabel, 0};
+  for (const auto& [label, count] : votes)
+    if (count > best.second) best = {label, count};
+  return best;
+}
+
+/// Greedy one-to-one assignment: the pair with most votes first; a segment whose label is taken votes
+/// again, every point for the best label of its voxel that is still free (reference code, 2.5).
+class OneToOne {
+ public:
+  OneToOne(const Segments& segments, const Image<VoxelRef>& surface, const VoxelMap& map, const AssociationConfig& config)
+      : surface_(surface), map_(map), config_(config), pixels_(segments.segments.size()) {
+    for (std::uint32_t i = 0; i < surface.size(); ++i)
+      if (segments.ids[i] != 0 && surface[i]) pixels_[segments.ids[i] - 1u].push_back(i);
+  }
+
+  void assign(const std::vector<Votes>& votes, std::vector<SegmentAssociation>& result) {
+    for (std::size_t segment = 0; segment < votes.size(); ++segment) enqueue(segment, votes[segment]);
+    while (!queue_.empty()) {
+      const auto [count, order, label] = queue_.top();
+      queue_.pop();
+      const std::size_t segment = pixels_.size() - 1 - order;
+      if (taken_.insert(label).second)
+        result[segment].label = label;
+      else
+        enqueue(segment, vote_again(segment));
+    }
+  }
+
+ private:
+  void enqueue(std::size_t segment, const Votes& votes) {
+    const auto [label, count] = winner(votes);
+    // Among equals the lower segment goes first: the queue serves the largest tuple.
+    if (count > config_.assoc_min_votes) queue_.emplace(count, pixels_.size() - 1 - segment, label);
+  }
+
+  Votes vote_again(std::size_t segment) const {
+    Votes votes;
+    for (std::uint32_t pixel : pixels_[segment]) {
+      const VoxelRef ref = surface_[pixel];
+      for (const LabelSupport& held : voxel_labels(map_.block(ref.block()), ref.voxel(), map_.labels())) {
+        if (held.label == kNoLabel) break;
+        if (taken_.contains(held.label)) continue;
+        ++votes[held.label];
+        break;
+      }
+    }
+    return votes;
+  }
+
+  const Image<VoxelRef>& surface_;
+  const VoxelMap& map_;
+  const AssociationConfig& config_;
+  std::vector<std::vector<std::uint32_t>> pixels_;
+  std::set<Label> taken_;
+  std::priority_queue<std::tuple<int, std::size_t, Label>> queue_;
+};
+
+/// Labels that one segment shows to belong together: inputs of Spa (paper, supplement; method section 6).
+std::vector<Label> overlapped_labels(const Votes& votes, int area_px, const AssociationConfig& config) {
+  std::vector<Label> labels;
+  if (area_px <= config.merge_min_points) return labels;
+  for (const auto& [label, count] : votes)
+    if (static_cast<float>(count) > config.merge_min_share * static_cast<float>(area_px)) labels.push_back(label);
+  if (labels.size() < 2) labels.clear();
+  return labels;
+}
+
+}  // namespace
+
+void list_fields(AssociationConfig& config, ConfigFields& fields) {
+  fields.add_choice<AssociationRule>("association", config.association,
+                                     {{"one_to_one", AssociationRule::kOneToOne}, {"argmax", AssociationRule::kArgmax}},
+                                     "how segments take super-points");
+  fields.add("assoc_min_votes", config.assoc_min_votes, 0, 1000000, "a super-point needs more votes than this, points");
+  fields.add("merge_min_points", config.merge_min_points, 0, 100000000, "segments with more points tell what to merge");
+  fields.add("merge_min_share", config.merge_min_share, 0.f, 1.f, "share of a segment's points a super-point must hold");
+}
+
+std::vector<SegmentAssociation> associate(const Segments& segments, const Image<VoxelRef>& surface, VoxelMap& map,
+                                          const AssociationConfig& config) {
+  const std::vector<Votes> votes = count_votes(segments, surface, map);
+  std::vector<SegmentAssociation> result(segments.segments.size());
+  if (config.association == AssociationRule::kOneToOne) {
+    OneToOne(segments, surface, map, config).assign(votes, result);
+  } else {
+    for (std::size_t i = 0; i < votes.size(); ++i) {
+      const auto [label, count] = winner(votes[i]);
+      if (count > config.assoc_min_votes) result[i].label = label;
+    }
+  }
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    result[i].overlapped = overlapped_labels(votes[i], segments.segments[i].area_px, config);
+    if (result[i].label != kNoLabel) continue;
+    result[i].label = map.labels().create();
+    result[i].founded = true;
+  }
+  return result;
+}
+
+}  // namespace ovimap

@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <span>
+#include <vector>
+
+#include "ovimap/instance/association.h"
+#include "ovimap/instance/super_point_merging.h"
+
+namespace ovimap {
+
+using InstanceId = std::uint32_t;  ///< 0 = none
+
+enum class InstanceReading {
+  kSuperPoints,  ///< an instance is a super-point (the paper's text)
+  kEntityVotes,  ///< super-points vote for instances keyed by 2D entities (released code, printed numbers)
+};
+
+struct InstanceConfig {
+  InstanceReading instances = InstanceReading::kEntityVotes;
+  float min_vote_share = 0.1f;  ///< votes needed per frame in which the super-point was seen without voting so
+  MergeConfig merging;
+};
+void list_fields(InstanceConfig& config, ConfigFields& fields);
+
+/// What is known of a super-point.
+struct SuperPoint {
+  int frames_seen = 0;  ///< frames with 2D entities in which it was seen
+  std::map<InstanceId, int> votes;
+};
+
+/// What is known of an instance besides its geometry.
+struct InstanceRecord {
+  int views = 0;             ///< frames in which it was seen
+  std::int64_t first_frame = 0;
+  std::int64_t last_frame = 0;
+};
+
+/// Which super-points are which object, over time (method sections 6 and 7). Ids, once given, stay: when
+/// two instances turn out to be one, the older id survives and the other becomes its alias.
+class InstanceRegistry {
+ public:
+  explicit InstanceRegistry(const InstanceConfig& config = {}) : config_(config), merging_(config.merging) {}
+
+  /// Adds one frame: merges super-points in `forest`, counts entity votes, updates instances.
+  /// `has_entities`: the frame had 2D masks (else every super-point is an instance of its own kind of evidence).
+  void observe(const Segments& segments, std::span<const SegmentAssociation> associations, std::int64_t frame_index,
+               bool has_entities, LabelForest& forest);
+
+  /// The instance of a super-point root; 0 when it is none (background, too little evidence).
+  InstanceId instance_of(Label root) const;
+
+  /// Instance by label, index 0 .. forest.last_label(): for translating images and meshes in one pass.
+  std::vector<InstanceId> instance_table(const LabelForest& forest) const;
+
+  /// The id that an id once given goes by now.
+  InstanceId resolve(InstanceId id) const;
+
+  const std::map<Label, SuperPoint>& super_points() const { return super_points_; }
+  const std::map<InstanceId, InstanceRecord>& records() const { return records_; }
+  const std::map<InstanceId, InstanceId>& aliases() const { return aliases_; }
+  const SuperPointMerging& merging() const { return merging_; }
+  const InstanceConfig& config() const { return config_; }
+
+  /// Everything needed to go on where another registry stopped.
+  struct State {
+    std::map<Label, SuperPoint> super_points;
+    std::map<InstanceId, InstanceRecord> records;
+    std::map<InstanceId, InstanceId> aliases;
+    SuperPointMerging::PairCounts pair_counts;
+    InstanceId last_id = 0;
+  };
+  State state() const { return {super_points_, records_, aliases_, merging_.counts(), last_id_}; }
+  void restore(State state);
+
+ private:
+  void vote(const Segments& segments, std::span<const SegmentAssociation> associations, const LabelForest& forest);
+  void merge(Label keep, Label drop);
+  void unify(InstanceId a, InstanceId b);
+  bool owns_super_point(InstanceId id) const;
+  void count_views(std::span<const SegmentAssociation> associations, std::int64_t frame_index, const LabelForest& forest);
+
+  InstanceConfig config_;
+  SuperPointMerging merging_;
+  std::map<Label, SuperPoint> super_points_;  ///< by root
+  std::map<InstanceId, InstanceRecord> records_;
+  std::map<InstanceId, InstanceId> aliases_;
+  InstanceId last_id_ = 0;
+};
+
+}  // namespace ovimap

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/instance/instance_summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "ovimap/base/config.h"
+#include "ovimap/base/parallel.h"
+#include "ovimap/map/label_slots.h"
+
+namespace ovimap {
+
+namespace {
+
+struct Extent {
+  std::size_t points = 0;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::AlignedBox3f box;
+};
+
+/// Surface voxels of one block by label.
+std::map<Label, Extent> block_extents(const VoxelMap& map, const VoxelBlock& block) {
+  std::map<Label, Extent> extents;
+  const float voxel_size = map.config().voxel_size_m;
+  for (int v = 0; v < kBlockVoxels; ++v) {
+    if (block.weight[static_cast<std::size_t>(v)] <= 0.f || std::fabs(map.distance_m(block, v)) >= voxel_size) continue;
+    const Label label = voxel_label(block, v, map.labels());
+    if (label == kNoLabel) continue;
+    const Eigen::Vector3i offset(v & 7, v >> 3 & 7, v >> 6);
+    const Eigen::Vector3f center = ((block.index * kBlockSide + offset).cast<float>().array() + 0.5f) * voxel_size;
+    Extent& extent = extents[label];
+    ++extent.points;
+    extent.sum += center.cast<double>();
+    extent.box.extend(center);
+  }
+  return extents;
+}
+
+}  // namespace
+
+void list_fields(InstanceSummaryConfig& config, ConfigFields& fields) {
+  fields.add("min_instance_voxels", config.min_instance_voxels, 0, 100000000, "instances with fewer surface voxels are left out");
+  fields.add("min_instance_views", config.min_instance_views, 0, 1000000, "instances seen in fewer frames are left out");
+}
+
+std::vector<InstanceSummary> summarize_instances(const VoxelMap& map, const InstanceRegistry& registry,
+                                                 const InstanceSummaryConfig& config) {
+  const std::vector<std::uint32_t> slots = map.ordered_slots();
+  std::vector<std::map<Label, Extent>> extents(slots.size());
+  parallel_for(slots.size(), 64, [&](std::size_t i) { extents[i] = block_extents(map, map.block(slots[i])); });
+  const std::vector<InstanceId> instance_of = registry.instance_table(map.labels());
+  std::map<InstanceId, InstanceSummary> summaries;
+  std::map<InstanceId, Eigen::Vector3d> sums;
+  for (const auto& block : extents) {
+    for (const auto& [label, extent] : block) {
+      const InstanceId id = label < instance_of.size() ? instance_of[label] : 0;
+      if (id == 0) continue;
+      InstanceSummary& summary = summaries[id];
+      summary.points += extent.points;
+      summary.box.extend(extent.box);
+      sums.try_emplace(id, Eigen::Vector3d::Zero()).first->second += extent.sum;
+      summary.super_points.push_back(label);
+    }
+  }
+  std::vector<InstanceSummary> result;
+  for (auto& [id, summary] : summaries) {
+    const auto record = registry.records().find(id);
+    summary.views = record == registry.records().end() ? 0 : record->second.views;
+    if (summary.points < static_cast<std::size_t>(config.min_instance_voxels) || summary.views < config.min_instance_views) continue;
+    summary.id = id;
+    summary.centroid = (sums.at(id) / static_cast<double>(summary.points)).cast<float>();
+    std::sort(summary.super_points.begin(), summary.super_points.end());
+    summary.super_points.erase(std::unique(summary.super_points.begin(), summary.super_points.end()), summary.super_points.end());
+    result.push_back(std::move(summary));
+  }
+  return result;
+}
+
+}  // namespace ovimap

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "ovimap/instance/instance_registry.h"
+#include "ovimap/map/voxel_map.h"
+
+namespace ovimap {
+
+struct InstanceSummaryConfig {
+  int min_instance_voxels = 50;  ///< instances with fewer surface voxels are left out
+  int min_instance_views = 2;    ///< instances seen in fewer frames are left out
+};
+void list_fields(InstanceSummaryConfig& config, ConfigFields& fields);
+
+/// One object of the map. World frame, metres.
+struct InstanceSummary {
+  InstanceId id = 0;
+  Eigen::AlignedBox3f box;
+  Eigen::Vector3f centroid = Eigen::Vector3f::Zero();
+  std::size_t points = 0;  ///< surface voxels
+  int views = 0;           ///< frames in which it was seen
+  std::vector<Label> super_points;  ///< roots, ascending
+};
+
+/// Gathers every instance's geometry by one pass over the map. Ordered by id.
+std::vector<InstanceSummary> summarize_instances(const VoxelMap& map, const InstanceRegistry& registry,
+                                                 const InstanceSummaryConfig& config);
+
+}  // namespace ovimap

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "ovimap/base/stage_timers.h"
+#include "ovimap/frames/frame.h"
+#include "ovimap/inference/mask_source.h"
+#include "ovimap/instance/instance_registry.h"
+#include "ovimap/map/ray_cast.h"
+#include "ovimap/map/voxel_map.h"
+#include "ovimap/pipeline/mapper_config.h"
+
+namespace ovimap {
+
+/// What became of one frame.
+struct FrameReport {
+  int regions = 0;         ///< geometric regions
+  int entities = 0;        ///< 2D entities; 0 when the frame had no masks
+  int segments = 0;        ///< pieces lifted to 3D
+  int founded = 0;         ///< new super-points
+  bool labelled = false;   ///< the frame voted for labels (else it added geometry and colour alone)
+};
+
+/// The map of instances as one camera sees it.
+struct InstanceView {
+  DepthImage depth;             ///< metres, 0 = no surface
+  Image<InstanceId> instances;  ///< 0 = none
+};
+
+/// The class-agnostic instance map, built frame by frame in the paper's order (sections 3.1 and
+/// supplement). Synchronous: the same frames give the same map, bit for bit, on every run and thread count.
+class Mapper {
+ public:
+  /// `masks` may be null: then every geometric region is an entity of its own (depth alone).
+  explicit Mapper(const MapperConfig& config, std::shared_ptr<MaskSource> masks = nullptr);
+
+  /// Fuses one frame. Throws what the mask source throws; the map is then as it was before the frame.
+  FrameReport process(const Frame& frame);
+
+  /// The map seen from a frame's depth camera, guided by its depth (method section 8).
+  InstanceView project(const Frame& frame);
+
+  const MapperConfig& config() const { return config_; }
+  const VoxelMap& map() const { return map_; }
+  const InstanceRegistry& registry() const { return registry_; }
+  const StageTimers& timers() const { return timers_; }
+  StageTimers& timers() { return timers_; }
+  int frames() const { return frames_; }
+  int mask_frames() const { return mask_frames_; }
+
+ private:
+  Segments cut_segments(const Frame& frame, const DepthRegions& regions, const class Registration& registration,
+                        FrameReport& report);
+
+  MapperConfig config_;
+  std::shared_ptr<MaskSource> masks_;
+  VoxelMap map_;
+  InstanceRegistry registry_;
+  StageTimers timers_;
+  int frames_ = 0, mask_frames_ = 0;
+};
+
+}  // namespace ovimap

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "ovimap/base/config.h"
+#include "ovimap/instance/association.h"
+#include "ovimap/instance/instance_registry.h"
+#include "ovimap/instance/instance_summary.h"
+#include "ovimap/map/voxel_map.h"
+#include "ovimap/segment/depth_segmentation.h"
+#include "ovimap/segment/mask_fusion.h"
+
+namespace ovimap {
+
+/// Every parameter of the mapper, each defined beside its component.
+struct MapperConfig {
+  SegmentDepthConfig segment;
+  MaskFusionConfig mask_fusion;
+  AssociationConfig association;
+  InstanceConfig instance;
+  InstanceSummaryConfig summary;
+  VoxelMapConfig map;
+  int mask_interval = 1;      ///< 2D masks are asked for every n-th frame; the frames between add geometry and colour
+  float max_range_m = 10.f;   ///< how far the map is projected back
+};
+void list_fields(MapperConfig& config, ConfigFields& fields);
+
+/// Sets the fields that a YAML file names, as nested maps or dotted keys. Throws Error for a missing or
+/// unreadable file, an unknown key (with the nearest known one) or a value out of range.
+void load_config(const std::filesystem::path& path, ConfigFields& fields);
+
+}  // namespace ovimap
