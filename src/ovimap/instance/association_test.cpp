@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/instance/association.h"
+
+#include <gtest/gtest.h>
+
+#include "ovimap/map/label_slots.h"
+
+namespace ovimap {
+namespace {
+
+/// A map of one row of voxels, and an image whose pixel x looks at voxel x: associations by hand.
+class AssociateTest : public ::testing::Test {
+ protected:
+  static constexpr int kWidth = 400;
+
+  AssociateTest() : surface_(kWidth, 1) {
+    config_.merge_min_points = 100;
+    for (int i = 0; i < 5; ++i) map_.labels().create();
+    for (int x = 0; x < kWidth; ++x) surface_.at(x, 0) = VoxelRef::of(map_.find_or_create({x / 8, 0, 0}), x % 8);
+  }
+
+  void hold(int begin, int end, Label label, int support = 1) {
+    for (int x = begin; x < end; ++x) {
+      VoxelBlock& block = map_.block(surface_.at(x, 0).block());
+      for (int i = 0; i < support; ++i) add_support(block, surface_.at(x, 0).voxel(), palette_position(block, label));
+    }
+  }
+
+  static Segments cut(std::initializer_list<std::pair<int, int>> spans) {
+    Segments segments{IdImage(kWidth, 1), {}};
+    for (const auto& [begin, end] : spans) {
+      segments.segments.push_back({0, end - begin});
+      for (int x = begin; x < end; ++x) segments.ids.at(x, 0) = static_cast<std::uint16_t>(segments.segments.size());
+    }
+    return segments;
+  }
+
+  VoxelMap map_;
+  Image<VoxelRef> surface_;
+  AssociationConfig config_;
+};
+
+TEST_F(AssociateTest, TakesTheLabelWithMostVotes) {
+  hold(0, 60, 3);
+  hold(60, 100, 4);
+  const auto result = associate(cut({{0, 100}}), surface_, map_, config_);
+  EXPECT_EQ(result[0].label, 3u);
+  EXPECT_FALSE(result[0].founded);
+}
+
+TEST_F(AssociateTest, FoundsALabelWithoutEnoughVotes) {
+  hold(0, 20, 3);  // 20 votes are not more than 20
+  const auto result = associate(cut({{0, 100}, {100, 200}}), surface_, map_, config_);
+  EXPECT_EQ(result[0].label, 6u);
+  EXPECT_EQ(result[1].label, 7u);
+  EXPECT_TRUE(result[0].founded);
+}
+
+TEST_F(AssociateTest, OneToOneGivesTheLoserItsNextLabel) {
+  hold(0, 200, 2, 3);
+  hold(150, 200, 5, 1);  // second choice of the right part
+  const auto result = associate(cut({{0, 150}, {150, 200}}), surface_, map_, config_);
+  EXPECT_EQ(result[0].label, 2u);
+  EXPECT_EQ(result[1].label, 5u);
+}
+
+TEST_F(AssociateTest, ArgmaxMayShareALabel) {
+  config_.association = AssociationRule::kArgmax;
+  hold(0, 200, 2);
+  const auto result = associate(cut({{0, 150}, {150, 200}}), surface_, map_, config_);
+  EXPECT_EQ(result[0].label, 2u);
+  EXPECT_EQ(result[1].label, 2u);
+}
+
+TEST_F(AssociateTest, ReportsLabelsThatALargeSegmentSpans) {
+  hold(0, 100, 1);
+  hold(100, 160, 2);
+  hold(160, 170, 3);
+  const auto result = associate(cut({{0, 200}, {200, 260}}), surface_, map_, config_);
+  EXPECT_EQ(result[0].overlapped, (std::vector<Label>{1, 2})) << "label 3 holds only 5 %";
+  EXPECT_TRUE(result[1].overlapped.empty());
+}
+
+TEST_F(AssociateTest, VotesCountForMergedLabels) {
+  hold(0, 30, 4);
+  hold(30, 60, 5);
+  hold(60, 100, 2);
+  map_.labels().merge(4, 5);
+  EXPECT_EQ(associate(cut({{0, 100}}), surface_, map_, config_)[0].label, 4u);
+}
+
+}  // namespace
+}  // namespace ovimap
