@@ -10,31 +10,32 @@
 #include "ovimap/base/parallel.h"
 #include "ovimap/map/label_slots.h"
 #include "ovimap/map/surface_lookup.h"
+#include "ovimap/map/tile_ranges.h"
 
 namespace ovimap {
 
 namespace {
 
 constexpr std::size_t kRowsPerTask = 8;
-constexpr int kRegionBlocks = 8;
 
 /// Marches one ray after another; one per thread.
 class RayMarcher {
  public:
   RayMarcher(const VoxelMap& map, const Eigen::Vector3f& origin)
       : map_(map), finder_(map), origin_(origin), voxel_(map.config().voxel_size_m),
-        block_(map.config().block_size_m()) {}
+        block_(map.config().block_size_m()), inverse_block_(1.f / map.config().block_size_m()) {}
 
   struct Hit {
     float range_m;
     VoxelRef voxel;
   };
 
-  /// First crossing from positive to negative distance along the unit `direction`; range 0 when none.
-  Hit march(const Eigen::Vector3f& direction, float max_range_m) {
+  /// First crossing from positive to negative distance along the unit `direction`, between two ranges;
+  /// range 0 when there is none.
+  Hit march(const Eigen::Vector3f& direction, float min_range_m, float max_range_m) {
     const Eigen::Vector3f inverse = direction.cwiseInverse();
     float last_distance = 0.f, last_range = 0.f;  // last_distance > 0: in front of a surface
-    for (float range = 0.f; range < max_range_m;) {
+    for (float range = min_range_m; range < max_range_m;) {
       const Eigen::Vector3f point = origin_ + direction * range;
       const VoxelRef ref = finder_.find(point);
       if (!ref) {
@@ -96,9 +97,14 @@ class RayMarcher {
   }
 
   /// Distance along the ray to the far side of the empty block, or of the empty cube of blocks, at `point`.
-  float leap(const Eigen::Vector3f& point, const Eigen::Vector3f& inverse_direction) const {
-    const BlockIndex index = block_at(point, 1.f / block_);
-    const bool empty_region = !map_.region_occupied(index);
+  float leap(const Eigen::Vector3f& point, const Eigen::Vector3f& inverse_direction) {
+    const BlockIndex index = block_at(point, inverse_block_);
+    const BlockIndex region(index.x() >> 3, index.y() >> 3, index.z() >> 3);
+    if (region != last_region_) {
+      last_region_ = region;
+      last_region_empty_ = !map_.region_occupied(index);
+    }
+    const bool empty_region = last_region_empty_;
     const float side = empty_region ? block_ * kRegionBlocks : block_;
     float exit = std::numeric_limits<float>::max();
     for (int axis = 0; axis < 3; ++axis) {
@@ -115,7 +121,9 @@ class RayMarcher {
   const VoxelMap& map_;
   VoxelFinder finder_;
   Eigen::Vector3f origin_;
-  float voxel_, block_;
+  float voxel_, block_, inverse_block_;
+  BlockIndex last_region_ = BlockIndex::Constant(1 << 20);  // outside every map
+  bool last_region_empty_ = true;
 };
 
 /// Fills `result` by rows; `known` may give a pixel's answer and spare the march.
@@ -125,14 +133,17 @@ Projection cast(const VoxelMap& map, const PinholeCamera& camera, const Pose& wo
   Projection result{DepthImage(camera.width, camera.height), Image<Label>(camera.width, camera.height)};
   const Eigen::Matrix3f rotation = world_from_camera.linear().cast<float>();
   const Eigen::Vector3f origin = world_from_camera.translation().cast<float>();
+  const TileRanges ranges(map, camera, world_from_camera, max_range_m);
   parallel_for_ranges(static_cast<std::size_t>(camera.height), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
     RayMarcher marcher(map, origin);
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       for (int x = 0; x < camera.width; ++x) {
-        if (known(x, y, result)) continue;
+        const TileRanges::Range& range = ranges.at_pixel(x, y);
+        if (range.near_m > range.far_m || known(x, y, result)) continue;
         const Eigen::Vector3f ray = camera.unproject(static_cast<float>(x), static_cast<float>(y), 1.f);
         const float stretch = ray.norm();
-        const RayMarcher::Hit hit = marcher.march(rotation * ray / stretch, max_range_m);
+        const RayMarcher::Hit hit = marcher.march(rotation * ray / stretch, range.near_m * stretch,
+                                                    std::min(range.far_m * stretch, max_range_m));
         result.depth.at(x, y) = hit.range_m / stretch;
         result.labels.at(x, y) = map.label(hit.voxel);
       }

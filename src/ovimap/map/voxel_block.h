@@ -17,6 +17,7 @@ inline constexpr Label kNoLabel = 0;
 inline constexpr int kBlockSide = 8;
 inline constexpr int kBlockVoxels = kBlockSide * kBlockSide * kBlockSide;
 inline constexpr int kLabelSlots = 4;
+inline constexpr int kRegionBlocks = 8;  ///< a region is a cube of 8^3 blocks, for leaping over empty space
 
 /// Block coordinates: a block covers [index * 8, index * 8 + 8) voxels along each axis.
 using BlockIndex = Eigen::Vector3i;

@@ -66,7 +66,7 @@ std::uint32_t VoxelMap::find_or_create(const BlockIndex& index) {
   if (created) {
     blocks_.push_back(std::make_unique<VoxelBlock>(index));
     blocks_.back()->forest_epoch = labels_.epoch();
-    ++regions_[pack_index(region_of(index))];
+    regions_[pack_index(region_of(index))].push_back(found->second);
   }
   return found->second;
 }

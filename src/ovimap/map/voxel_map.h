@@ -54,8 +54,15 @@ class VoxelMap {
   const VoxelBlock* find(const BlockIndex& index) const;
   static constexpr std::uint32_t kNoBlock = ~std::uint32_t{0};
   std::uint32_t find_slot(const BlockIndex& index) const;
-  /// False when no block of the cube of 8^3 blocks around `index` exists: empty space to leap over.
+  /// False when no block of the region (cube of 8^3 blocks) around block `index` exists: empty space to
+  /// leap over.
   bool region_occupied(const BlockIndex& index) const;
+
+  /// Calls `visit(region_index, slots)` for every region, in no particular order.
+  template <class Visit>
+  void for_each_region(Visit&& visit) const {
+    for (const auto& [key, slots] : regions_) visit(unpack_index(key), slots);
+  }
 
   const VoxelBlock& block(std::uint32_t slot) const { return *blocks_[slot]; }
   VoxelBlock& block(std::uint32_t slot) { return *blocks_[slot]; }
@@ -84,12 +91,13 @@ class VoxelMap {
     std::size_t operator()(std::uint64_t key) const;
   };
   using Slots = tsl::robin_map<std::uint64_t, std::uint32_t, KeyHash>;
+  using Regions = tsl::robin_map<std::uint64_t, std::vector<std::uint32_t>, KeyHash>;
 
   VoxelMapConfig config_;
   float metres_per_unit_;
   std::vector<std::unique_ptr<VoxelBlock>> blocks_;
   Slots slots_;
-  Slots regions_;  ///< number of blocks per cube of 8^3 blocks
+  Regions regions_;  ///< slots of the blocks in each region
   LabelForest labels_;
 };
 
