@@ -1,0 +1,127 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/io/scene_axes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "ovimap/base/config.h"
+
+namespace ovimap {
+
+namespace {
+
+/// Normal times twice the area of each triangle.
+std::vector<Eigen::Vector3f> area_normals(const Mesh& mesh) {
+  std::vector<Eigen::Vector3f> normals;
+  normals.reserve(mesh.triangles.size());
+  for (const auto& [a, b, c] : mesh.triangles)
+    normals.push_back(
+        (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]));
+  return normals;
+}
+
+float cosine_of_degrees(float degrees) {
+  return std::cos(degrees * std::numbers::pi_v<float> / 180);
+}
+
+std::pair<Eigen::Vector3f, Eigen::Vector3f> axes_across(const Eigen::Vector3f& direction) {
+  const Eigen::Vector3f first = direction.unitOrthogonal();
+  return {first, direction.cross(first)};
+}
+
+/// A map of directions around one of them: its plane, cut into square cells that collect area.
+class DirectionHistogram {
+ public:
+  DirectionHistogram(const Eigen::Vector3f& center, float window_deg)
+      : center_(center), axes_(axes_across(center)) {
+    cells_ =
+        std::max(1, static_cast<int>(2 / std::sin(window_deg * std::numbers::pi_v<float> / 180)));
+    sums_.resize(static_cast<std::size_t>(cells_ * cells_), Eigen::Vector3d::Zero());
+  }
+
+  void add(const Eigen::Vector3f& area_normal) {
+    const Eigen::Vector3f direction = area_normal.normalized();
+    const auto cell = [this](float coordinate) {
+      return std::clamp(static_cast<int>((coordinate + 1) / 2 * static_cast<float>(cells_)), 0,
+                        cells_ - 1);
+    };
+    sums_[static_cast<std::size_t>(cell(direction.dot(axes_.second)) * cells_ +
+                                   cell(direction.dot(axes_.first)))] += area_normal.cast<double>();
+  }
+
+  /// The mean direction of the fullest cell; the center when all are empty.
+  Eigen::Vector3f fullest() const {
+    const auto best = std::max_element(
+        sums_.begin(), sums_.end(),
+        [](const auto& a, const auto& b) { return a.squaredNorm() < b.squaredNorm(); });
+    return best->squaredNorm() > 0 ? Eigen::Vector3f(best->normalized().cast<float>()) : center_;
+  }
+
+ private:
+  Eigen::Vector3f center_;
+  std::pair<Eigen::Vector3f, Eigen::Vector3f> axes_;
+  int cells_ = 0;
+  std::vector<Eigen::Vector3d> sums_;
+};
+
+Eigen::Vector3f mean_camera_up(std::span<const Pose> world_from_camera) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Pose& pose : world_from_camera) sum -= pose.linear().col(1);
+  if (sum.norm() < 1e-6 * static_cast<double>(world_from_camera.size()) ||
+      world_from_camera.empty())
+    return Eigen::Vector3f::UnitZ();
+  return sum.normalized().cast<float>();
+}
+
+}  // namespace
+
+void list_fields(SceneAxesConfig& config, ConfigFields& fields) {
+  fields.add("cone_deg", config.cone_deg, 1.f, 89.f,
+             "how far the floor's normal may be from the cameras' mean up, in degrees");
+  fields.add("window_deg", config.window_deg, 1.f, 45.f,
+             "normals within this angle count as one direction, in degrees");
+}
+
+Eigen::Vector3f guess_up(const Mesh& mesh, std::span<const Pose> world_from_camera,
+                         const SceneAxesConfig& config) {
+  const Eigen::Vector3f camera_up = mean_camera_up(world_from_camera);
+  if (world_from_camera.empty()) return camera_up;
+  const std::vector<Eigen::Vector3f> normals = area_normals(mesh);
+  const float in_cone = cosine_of_degrees(config.cone_deg),
+              in_window = cosine_of_degrees(config.window_deg);
+  DirectionHistogram histogram(camera_up, config.window_deg);
+  for (const Eigen::Vector3f& normal : normals)
+    if (normal.dot(camera_up) > in_cone * normal.norm()) histogram.add(normal);
+  Eigen::Vector3f up = histogram.fullest();
+  // A cell may cut the peak in two; the mean of the window around it, taken again, finds its
+  // middle.
+  constexpr int kRefinements = 5;
+  for (int i = 0; i < kRefinements; ++i) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (const Eigen::Vector3f& normal : normals)
+      if (normal.dot(up) > in_window * normal.norm()) sum += normal.cast<double>();
+    if (sum.squaredNorm() > 0) up = sum.normalized().cast<float>();
+  }
+  return up;
+}
+
+Eigen::Vector3f guess_wall_direction(const Mesh& mesh, const Eigen::Vector3f& up) {
+  constexpr float kUprightCosine = 0.3f;
+  const auto [right, forward] = axes_across(up);
+  std::complex<double> sum = 0;
+  for (const Eigen::Vector3f& normal : area_normals(mesh)) {
+    const double area = normal.norm();
+    if (std::abs(normal.dot(up)) >= kUprightCosine * area) continue;
+    const double angle = std::atan2(normal.dot(forward), normal.dot(right));
+    sum += std::polar(area, 4 * angle);  // four times the angle: the same for all walls of a box
+  }
+  const auto angle = static_cast<float>(std::arg(sum) / 4);
+  return std::cos(angle) * right + std::sin(angle) * forward;
+}
+
+}  // namespace ovimap

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include <Eigen/Core>
+
+#include "ovimap/geometry/mesh.h"
+#include "ovimap/geometry/pose.h"
+
+namespace ovimap {
+
+class ConfigFields;
+
+struct SceneAxesConfig {
+  float cone_deg = 50.f;   ///< the floor's normal is at most this far from the cameras' mean up
+  float window_deg = 8.f;  ///< normals this near to each other belong to one direction
+};
+void list_fields(SceneAxesConfig& config, ConfigFields& fields);
+
+/// Which way is up in a world that may have any axis up: the direction, near the cameras' mean up
+/// (their -y), in which most surface faces - floors and table tops. The cameras' mean up itself
+/// where no surface faces that way, and +z without cameras. Unit length, world frame.
+Eigen::Vector3f guess_up(const Mesh& mesh, std::span<const Pose> world_from_camera,
+                         const SceneAxesConfig& config = {});
+
+/// A horizontal direction along most walls: the area-weighted mean of the normals of upright
+/// surface, taken modulo 90 degrees. Some horizontal direction where there are no walls. Unit
+/// length.
+Eigen::Vector3f guess_wall_direction(const Mesh& mesh, const Eigen::Vector3f& up);
+
+}  // namespace ovimap
