@@ -3,8 +3,8 @@
 #include "ovimap/io/scene_axes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <complex>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -78,6 +78,34 @@ Eigen::Vector3f mean_camera_up(std::span<const Pose> world_from_camera) {
   return sum.normalized().cast<float>();
 }
 
+constexpr float kUprightCosine = 0.3f;  // walls may lean that much
+constexpr float kQuarterTurn = std::numbers::pi_v<float> / 2;
+constexpr int kQuarterBins = 90;  // one degree each
+
+/// The area that faces one degree of a quarter turn, and its area-weighted angle in degrees.
+struct QuarterBin {
+  double area = 0, moment = 0;
+};
+
+/// Where a cyclic histogram is fullest, in degrees: the mean of the best window around a bin.
+double peak_of(const std::array<QuarterBin, kQuarterBins>& bins) {
+  constexpr int kHalfWindow = 4;
+  double best_area = 0, peak = 0;
+  for (int center = 0; center < kQuarterBins; ++center) {
+    QuarterBin sum;
+    for (int at = center - kHalfWindow; at <= center + kHalfWindow; ++at) {
+      const int wrapped = (at + kQuarterBins) % kQuarterBins;
+      const QuarterBin& bin = bins[static_cast<std::size_t>(wrapped)];
+      sum.area += bin.area;
+      sum.moment += bin.moment + bin.area * (at - wrapped);
+    }
+    if (sum.area <= best_area) continue;
+    best_area = sum.area;
+    peak = sum.moment / sum.area;
+  }
+  return peak;
+}
+
 }  // namespace
 
 void list_fields(SceneAxesConfig& config, ConfigFields& fields) {
@@ -111,16 +139,18 @@ Eigen::Vector3f guess_up(const Mesh& mesh, std::span<const Pose> world_from_came
 }
 
 Eigen::Vector3f guess_wall_direction(const Mesh& mesh, const Eigen::Vector3f& up) {
-  constexpr float kUprightCosine = 0.3f;
   const auto [right, forward] = axes_across(up);
-  std::complex<double> sum = 0;
+  std::array<QuarterBin, kQuarterBins> bins{};
   for (const Eigen::Vector3f& normal : area_normals(mesh)) {
-    const double area = normal.norm();
+    const float area = normal.norm();
     if (std::abs(normal.dot(up)) >= kUprightCosine * area) continue;
-    const double angle = std::atan2(normal.dot(forward), normal.dot(right));
-    sum += std::polar(area, 4 * angle);  // four times the angle: the same for all walls of a box
+    const float quarters = std::atan2(normal.dot(forward), normal.dot(right)) / kQuarterTurn;
+    const float degrees = (quarters - std::floor(quarters)) * kQuarterBins;
+    QuarterBin& bin = bins[static_cast<std::size_t>(degrees) % kQuarterBins];
+    bin.area += area;
+    bin.moment += static_cast<double>(area) * degrees;
   }
-  const auto angle = static_cast<float>(std::arg(sum) / 4);
+  const float angle = static_cast<float>(peak_of(bins)) * kQuarterTurn / kQuarterBins;
   return std::cos(angle) * right + std::sin(angle) * forward;
 }
 

@@ -25,9 +25,9 @@ void list_fields(SceneAxesConfig& config, ConfigFields& fields);
 Eigen::Vector3f guess_up(const Mesh& mesh, std::span<const Pose> world_from_camera,
                          const SceneAxesConfig& config = {});
 
-/// A horizontal direction along most walls: the area-weighted mean of the normals of upright
-/// surface, taken modulo 90 degrees. Some horizontal direction where there are no walls. Unit
-/// length.
+/// A horizontal direction along most walls: the commonest normal of upright
+/// surface, by area and modulo 90 degrees. Some horizontal direction where there are no walls.
+/// Unit length.
 Eigen::Vector3f guess_wall_direction(const Mesh& mesh, const Eigen::Vector3f& up);
 
 }  // namespace ovimap
