@@ -19,6 +19,10 @@ namespace {
 constexpr double kLargest = std::numeric_limits<float>::max();
 constexpr double kLargestSide_px = 32767;
 
+const std::vector<std::string> kDirections = {"world_from_camera", "camera_from_world"};
+const std::vector<std::string> kAxes = {"opencv", "opengl", "ros"};
+const std::vector<std::string> kCameras = {"depth", "color"};
+
 /// One mapping of a calibration file, with its dotted name for messages.
 class Section {
  public:
@@ -67,13 +71,17 @@ class Section {
       values.push_back(static_cast<std::uint16_t>(number(key, item, 0, 65535, true)));
   }
 
+  /// One of `words`, which stand in the order of the enumeration.
   template <class Choice>
-  void read_choice(const std::string& key, Choice& value, const std::string& first,
-                   const std::string& second) const {
+  void read_choice(const std::string& key, Choice& value,
+                   const std::vector<std::string>& words) const {
     if (!has(key)) return;
     const std::string text = text_of(node_[key]);
-    if (text != first && text != second) fail(dotted(key), text, first + " or " + second);
-    value = text == first ? Choice(0) : Choice(1);
+    const auto found = std::find(words.begin(), words.end(), text);
+    std::string accepted;
+    for (const std::string& word : words) accepted += (accepted.empty() ? "" : " or ") + word;
+    if (found == words.end()) fail(dotted(key), text, accepted);
+    value = static_cast<Choice>(found - words.begin());
   }
 
  private:
@@ -170,9 +178,9 @@ void apply(const Section& root, CameraRig& rig) {
   if (root.has("poses")) {
     const Section poses = root.section("poses");
     poses.check_keys({"direction", "axes", "camera"});
-    poses.read_choice("direction", rig.poses.direction, "world_from_camera", "camera_from_world");
-    poses.read_choice("axes", rig.poses.axes, "opencv", "opengl");
-    poses.read_choice("camera", rig.poses.camera, "depth", "color");
+    poses.read_choice("direction", rig.poses.direction, kDirections);
+    poses.read_choice("axes", rig.poses.axes, kAxes);
+    poses.read_choice("camera", rig.poses.camera, kCameras);
   }
 }
 
@@ -193,11 +201,20 @@ std::string vector_text(const Eigen::Vector3d& vector) {
 
 }  // namespace
 
+Pose pose_by_convention(const PoseConvention& convention, const Pose& stored) {
+  const bool inverted = convention.direction == PoseConvention::Direction::kCameraFromWorld;
+  Pose pose = inverted ? stored.inverse() : stored;
+  Eigen::Matrix3d stored_from_ours = Eigen::Matrix3d::Identity();
+  if (convention.axes == PoseConvention::Axes::kOpenGl)
+    stored_from_ours << 1, 0, 0, 0, -1, 0, 0, 0, -1;
+  if (convention.axes == PoseConvention::Axes::kRos)
+    stored_from_ours << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  pose.linear() = pose.linear() * stored_from_ours;
+  return pose;
+}
+
 Pose CameraRig::world_from_depth_camera(const Eigen::Matrix4d& stored) const {
-  Pose pose = rigid_pose(stored);
-  if (poses.direction == PoseConvention::Direction::kCameraFromWorld) pose = pose.inverse();
-  if (poses.axes == PoseConvention::Axes::kOpenGl)
-    pose.linear() = pose.linear() * Eigen::Vector3d(1, -1, -1).asDiagonal();
+  const Pose pose = pose_by_convention(poses, rigid_pose(stored));
   return poses.camera == PoseConvention::Camera::kColor ? pose * color_from_depth : pose;
 }
 
@@ -209,7 +226,7 @@ void apply_calibration(const std::filesystem::path& file, CameraRig& rig) {
     apply(Section(file.string(), "", root), rig);
   } catch (const YAML::Exception& fault) {
     throw Error(concat(file.string(), ": line ", fault.mark.line + 1, " is not YAML (", fault.msg,
-                       "); see docs/guide.md for the format"));
+                       "); expected is as: depth_camera: {fx: 585, fy: 585, cx: 320, cy: 240}"));
   }
 }
 
@@ -226,11 +243,9 @@ std::string calibration_text(const CameraRig& rig) {
        << "color_from_depth: {rotation_vector: "
        << vector_text(rotation_vector(rig.color_from_depth))
        << ", translation: " << vector_text(rig.color_from_depth.translation()) << "}\n";
-  const bool inverted = rig.poses.direction == PoseConvention::Direction::kCameraFromWorld;
-  text << "poses: {direction: " << (inverted ? "camera_from_world" : "world_from_camera")
-       << ", axes: " << (rig.poses.axes == PoseConvention::Axes::kOpenGl ? "opengl" : "opencv")
-       << ", camera: " << (rig.poses.camera == PoseConvention::Camera::kColor ? "color" : "depth")
-       << "}\n";
+  text << "poses: {direction: " << kDirections[static_cast<std::size_t>(rig.poses.direction)]
+       << ", axes: " << kAxes[static_cast<std::size_t>(rig.poses.axes)]
+       << ", camera: " << kCameras[static_cast<std::size_t>(rig.poses.camera)] << "}\n";
   return text.str();
 }
 

@@ -15,15 +15,17 @@ namespace ovimap {
 /// How a recording writes down its poses.
 struct PoseConvention {
   enum class Direction { kWorldFromCamera, kCameraFromWorld };
-  enum class Axes {
-    kOpenCv,
-    kOpenGl
-  };  ///< camera axes: y down and z forward, or y up and z backward
+  /// The camera's axes: x right, y down, z forward; x right, y up, z backward; x forward, y left, z
+  /// up.
+  enum class Axes { kOpenCv, kOpenGl, kRos };
   enum class Camera { kDepth, kColor };  ///< whose pose it is
   Direction direction = Direction::kWorldFromCamera;
   Axes axes = Axes::kOpenCv;
   Camera camera = Camera::kDepth;
 };
+
+/// world_from_camera with our axes (OpenCV's) of the camera whose pose is stored by the convention.
+Pose pose_by_convention(const PoseConvention& convention, const Pose& stored);
 
 /// The two cameras of a recording and how to read their files.
 struct CameraRig {
@@ -37,16 +39,17 @@ struct CameraRig {
   Pose world_from_depth_camera(const Eigen::Matrix4d& stored) const;
 };
 
-/// Overrides what the YAML file gives (every key optional; rotation vectors in radians, lengths in
-/// metres):
+/// Overrides what the YAML file gives. Every key is optional; rotation vectors are in radians,
+/// lengths in metres; `camera` sets both cameras at once.
 ///
-///     camera: {width: 640, height: 480, fx: 525, fy: 525, cx: 319.5, cy: 239.5}   # both cameras
-///     at once depth_camera: {width, height, fx, fy, cx, cy, depth_scale: 1000, invalid: [0,
-///     65535]} color_camera: {width, height, fx, fy, cx, cy} color_from_depth: {rotation_vector:
-///     [0, 0, 0], translation: [0, 0, 0]} poses: {direction: world_from_camera | camera_from_world,
-///     axes: opencv | opengl, camera: depth | color}
+///     camera: {width: 640, height: 480, fx: 525, fy: 525, cx: 319.5, cy: 239.5, depth_scale: 1000}
+///     depth_camera: {width, height, fx, fy, cx, cy, depth_scale: 1000, invalid: [0, 65535]}
+///     color_camera: {width, height, fx, fy, cx, cy}
+///     color_from_depth: {rotation_vector: [0, 0, 0], translation: [0, 0, 0]}
+///     poses: {direction: world_from_camera, axes: opencv, camera: depth}
 ///
-/// Throws Error naming file, key, value and what is accepted.
+/// Pose directions are world_from_camera and camera_from_world; axes opencv, opengl and ros;
+/// cameras depth and color. Throws Error naming file, key, value and what is accepted.
 void apply_calibration(const std::filesystem::path& file, CameraRig& rig);
 
 /// The same file's text for a rig, so that reading it back gives the rig.

@@ -84,6 +84,11 @@ TEST(CameraRig, StoredPosesAreTakenToTheDepthCamera) {
   rig.poses.axes = PoseConvention::Axes::kOpenGl;
   const Eigen::Matrix4d flipped = pose.matrix() * Eigen::Vector4d(1, -1, -1, 1).asDiagonal();
   EXPECT_TRUE(rig.world_from_depth_camera(flipped).isApprox(pose, 1e-12));
+  rig.poses.axes = PoseConvention::Axes::kRos;
+  // One metre ahead of the camera is the body's x axis, right of it is -y, below it is -z.
+  const Pose body = Pose::Identity();
+  const Pose ours = rig.world_from_depth_camera(body.matrix());
+  EXPECT_TRUE((ours * Eigen::Vector3d(2, 3, 4)).isApprox(Eigen::Vector3d(4, -2, -3)));
   rig.poses = {};
   rig.poses.camera = PoseConvention::Camera::kColor;
   const Pose world_from_color = pose * rig.color_from_depth.inverse();
@@ -108,7 +113,7 @@ TEST(CameraRig, FaultsNameKeyValueAndRemedy) {
             std::string::npos);
   EXPECT_NE(fault_of("depth_camera: {invalid: [70000]}").find("'70000'"), std::string::npos);
   EXPECT_NE(fault_of("depth_camera: 5").find("a mapping"), std::string::npos);
-  EXPECT_NE(fault_of("poses: {axes: blender}").find("opencv or opengl"), std::string::npos);
+  EXPECT_NE(fault_of("poses: {axes: blender}").find("opencv or opengl or ros"), std::string::npos);
   EXPECT_NE(fault_of("a: [1, 2\nb: }").find("is not YAML"), std::string::npos);
   EXPECT_NE(fault_of("just text").find("calibration.yaml"), std::string::npos);
 }

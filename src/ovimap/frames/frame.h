@@ -11,7 +11,8 @@
 
 namespace ovimap {
 
-/// One posed RGB-D observation. Colour and depth may come from two cameras that were never registered.
+/// One posed RGB-D observation. Colour and depth may come from two cameras that were never
+/// registered.
 struct Frame {
   std::int64_t index = 0;   ///< position in its source
   std::string name;         ///< file stem of the colour image; names 2D mask files (`--masks DIR`)

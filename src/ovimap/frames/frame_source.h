@@ -41,8 +41,8 @@ class FrameSource {
   /// The frame at `position` in [0, size()); its Frame::index is `position`.
   [[nodiscard]] virtual FrameRead read(std::int64_t position) const = 0;
 
-  /// True instance ids at `position` in the colour camera (nullopt: this source has none). Throws Error
-  /// when the file of the ids is broken or of another size than the colour images.
+  /// True instance ids at `position` in the colour camera (nullopt: this source has none). Throws
+  /// Error when the file of the ids is broken or of another size than the colour images.
   [[nodiscard]] virtual std::optional<IdImage> truth_ids(std::int64_t position) const {
     (void)position;
     return std::nullopt;
@@ -51,8 +51,8 @@ class FrameSource {
 
 /// Opens what `path` contains: the layout is recognised by its files; `camera.yaml` and then
 /// `calibration.yaml` beside them override the cameras (camera_rig.h has the format). Throws Error
-/// when the path is missing, no layout fits (the message lists what was looked for), the layout's own
-/// description is broken, or no frame has colour, depth and pose.
+/// when the path is missing, no layout fits (the message lists what was looked for), the layout's
+/// own description is broken, or no frame has colour, depth and pose.
 std::unique_ptr<FrameSource> open_frame_source(const std::filesystem::path& path,
                                                const FrameSourceConfig& config = {});
 

@@ -14,11 +14,12 @@ class Registration {
  public:
   static constexpr std::int32_t kNoColor = -1;
 
-  /// `occlusion_margin_m`: how much nearer another surface must be, in the colour camera, to hide a point.
+  /// `occlusion_margin_m`: how much nearer another surface must be, in the colour camera, to hide a
+  /// point.
   explicit Registration(const Frame& frame, float occlusion_margin_m = 0.05f);
 
-  /// Colour at each depth pixel (nearest pixel), black where there is none. Like `ids_at_depth`, takes
-  /// an image of the colour camera's size.
+  /// Colour at each depth pixel (nearest pixel), black where there is none. Like `ids_at_depth`,
+  /// takes an image of the colour camera's size.
   RgbImage color_at_depth(const RgbImage& color) const;
   /// Ids of the colour image at each depth pixel (nearest pixel, never interpolated), 0 where none.
   IdImage ids_at_depth(const IdImage& ids) const;

@@ -13,8 +13,8 @@ namespace ovimap {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Reads a PNG or JPEG (told by its content) as RGB; grey becomes three equal channels, alpha is dropped.
-/// Throws Error naming the file and the fault (missing, unknown format, truncated).
+/// Reads a PNG or JPEG (told by its content) as RGB; grey becomes three equal channels, alpha is
+/// dropped. Throws Error naming the file and the fault (missing, unknown format, truncated).
 RgbImage read_rgb(const std::filesystem::path& path);
 RgbImage decode_rgb(std::span<const std::uint8_t> bytes);
 
@@ -33,8 +33,8 @@ Bytes encode_png(const RgbImage& image);
 Bytes encode_png(const Image<std::uint16_t>& image);  ///< 16-bit grey
 Bytes encode_jpeg(const RgbImage& image, int quality);
 
-/// Whole file in memory, and back. Writing replaces the file only when complete: a full disk leaves the
-/// old one. Both throw Error naming the path and the system's reason.
+/// Whole file in memory, and back. Writing replaces the file only when complete: a full disk leaves
+/// the old one. Both throw Error naming the path and the system's reason.
 Bytes read_file(const std::filesystem::path& path);
 void write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 

@@ -6,7 +6,8 @@
 
 namespace ovimap {
 
-/// Bilinear with antialiasing when shrinking (a triangle filter as wide as the scale), edges clamped.
+/// Bilinear with antialiasing when shrinking (a triangle filter as wide as the scale), edges
+/// clamped.
 RgbImage resize_bilinear(const RgbImage& image, int width, int height);
 
 /// Nearest neighbour, for ids and masks: never invents a value.
