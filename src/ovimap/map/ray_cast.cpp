@@ -22,7 +22,8 @@ constexpr std::size_t kRowsPerTask = 8;
 class RayMarcher {
  public:
   RayMarcher(const VoxelMap& map, const Eigen::Vector3f& origin)
-      : map_(map), finder_(map), origin_(origin), voxel_(map.config().voxel_size_m),
+      : map_(map), finder_(map), origin_(origin),
+        unobserved_step_(map.config().voxel_size_m * static_cast<float>(std::max(1, map.config().truncation_voxels - 2))), voxel_(map.config().voxel_size_m), inverse_voxel_(1.f / map.config().voxel_size_m),
         block_(map.config().block_size_m()), inverse_block_(1.f / map.config().block_size_m()) {}
 
   struct Hit {
@@ -46,7 +47,7 @@ class RayMarcher {
       const VoxelBlock& block = map_.block(ref.block());
       if (block.weight[static_cast<std::size_t>(ref.voxel())] <= 0.f) {
         last_distance = 0.f;
-        range += voxel_;
+        range += unobserved_step_;
         continue;
       }
       const float distance = map_.distance_m(block, ref.voxel());
@@ -54,7 +55,7 @@ class RayMarcher {
         return refine(direction, last_range, last_distance, range, distance, ref);
       }
       last_distance = distance, last_range = range;
-      range += std::max(kStepShare * std::fabs(distance), 0.5f * voxel_);
+      range += std::max(std::fabs(distance), 0.5f * voxel_);
     }
     return {0.f, {}};
   }
@@ -67,33 +68,42 @@ class RayMarcher {
     for (int step = 0; step < kRefinements; ++step) {
       crossing = front + (back - front) * front_distance / (front_distance - back_distance);
       const std::optional<float> distance = interpolate(origin_ + direction * crossing);
-      if (!distance) break;
+      if (!distance || std::fabs(*distance) < kCloseEnough * voxel_) break;
       if (*distance > 0.f)
         front = crossing, front_distance = *distance;
       else
-        back = crossing, back_distance = std::min(*distance, -1e-6f);
+        back = crossing, back_distance = *distance;
     }
     const VoxelRef at = finder_.find(origin_ + direction * crossing);
     return {crossing, at ? at : fallback};
   }
 
-  /// Trilinear distance, metres; nullopt when one of the eight voxels was never observed.
+  /// Trilinear distance, metres; that of the nearest voxel when one of the eight was never observed;
+  /// nullopt when that is so itself.
   std::optional<float> interpolate(const Eigen::Vector3f& point) {
-    const Eigen::Vector3f grid = point.array() / voxel_ - 0.5f;
-    const Eigen::Vector3f low = grid.array().floor();
-    const Eigen::Vector3f share = grid - low;
-    float sum = 0.f;
+    const Eigen::Vector3f grid = point.array() * inverse_voxel_ - 0.5f;
+    const Eigen::Vector3i low = floor_to_int(grid);
+    const Eigen::Vector3f share = grid - low.cast<float>();
+    const VoxelRef first = finder_.find_voxel(low);
+    const bool one_block = first && (low.x() & 7) < 7 && (low.y() & 7) < 7 && (low.z() & 7) < 7;
+    float distances[8];
     for (int corner = 0; corner < 8; ++corner) {
       const Eigen::Vector3i offset(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
-      const VoxelRef ref = finder_.find_voxel(low.cast<int>() + offset);
-      if (!ref) return std::nullopt;
+      const VoxelRef ref = one_block ? VoxelRef{first.value + static_cast<std::uint32_t>(voxel_offset(offset.x(), offset.y(), offset.z()))}
+                                     : finder_.find_voxel(low + offset);
+      if (!ref || map_.block(ref.block()).weight[static_cast<std::size_t>(ref.voxel())] <= 0.f) return nearest(point);
       const VoxelBlock& block = map_.block(ref.block());
-      if (block.weight[static_cast<std::size_t>(ref.voxel())] <= 0.f) return std::nullopt;
-      float part = map_.distance_m(block, ref.voxel());
-      for (int axis = 0; axis < 3; ++axis) part *= offset[axis] ? share[axis] : 1.f - share[axis];
-      sum += part;
+      distances[corner] = map_.distance_m(block, ref.voxel());
     }
-    return sum;
+    for (int axis = 0, width = 1; axis < 3; ++axis, width *= 2)
+      for (int i = 0; i < 8; i += 2 * width) distances[i] += share[axis] * (distances[i + width] - distances[i]);
+    return distances[0];
+  }
+
+  std::optional<float> nearest(const Eigen::Vector3f& point) {
+    const VoxelRef ref = finder_.find(point);
+    if (!ref || map_.block(ref.block()).weight[static_cast<std::size_t>(ref.voxel())] <= 0.f) return std::nullopt;
+    return map_.distance_m(map_.block(ref.block()), ref.voxel());
   }
 
   /// Distance along the ray to the far side of the empty block, or of the empty cube of blocks, at `point`.
@@ -117,11 +127,12 @@ class RayMarcher {
   }
 
   static constexpr int kRefinements = 3;
-  static constexpr float kStepShare = 0.8f;  // projective distances overestimate, so not all of it is taken
+  static constexpr float kCloseEnough = 0.05f;  // voxels
   const VoxelMap& map_;
   VoxelFinder finder_;
   Eigen::Vector3f origin_;
-  float voxel_, block_, inverse_block_;
+  float unobserved_step_;  ///< shorter than the band in front of a surface, so none is stepped over
+  float voxel_, inverse_voxel_, block_, inverse_block_;
   BlockIndex last_region_ = BlockIndex::Constant(1 << 20);  // outside every map
   bool last_region_empty_ = true;
 };

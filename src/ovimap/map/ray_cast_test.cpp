@@ -24,7 +24,7 @@ TEST_F(RayCastTest, SeesTheSphereFromANewView) {
   int hits = 0, inner = 0, labelled = 0;
   for (int y = 30; y < 90; ++y)
     for (int x = 50; x < 110; ++x) {
-      if (expected.at(x, y) <= 0.f || Eigen::Vector2f(x - 79.5f, y - 59.5f).norm() > 25.f) continue;
+      if (expected.at(x, y) <= 0.f || Eigen::Vector2f(x - 79.5f, y - 59.5f).norm() > 22.f) continue;
       ++inner;
       if (seen.depth.at(x, y) <= 0.f) continue;
       ++hits;

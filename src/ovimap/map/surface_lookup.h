@@ -24,8 +24,7 @@ class VoxelFinder {
 
   /// The voxel that holds the point, none where the map has no block.
   VoxelRef find(const Eigen::Vector3f& point_in_world) {
-    const Eigen::Vector3i voxel = (point_in_world * inverse_voxel_size_).array().floor().cast<int>();
-    return find_voxel(voxel);
+    return find_voxel(floor_to_int(point_in_world * inverse_voxel_size_));
   }
 
   /// The voxel at global voxel coordinates.

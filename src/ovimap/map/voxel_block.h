@@ -22,6 +22,16 @@ inline constexpr int kRegionBlocks = 8;  ///< a region is a cube of 8^3 blocks, 
 /// Block coordinates: a block covers [index * 8, index * 8 + 8) voxels along each axis.
 using BlockIndex = Eigen::Vector3i;
 
+/// Largest integers not above the coordinates. Truncation and a correction: std::floor is a function call
+/// on processors without SSE4.1, which the baseline build must assume.
+inline Eigen::Vector3i floor_to_int(const Eigen::Vector3f& point) {
+  const auto floor_of = [](float value) {
+    const int truncated = static_cast<int>(value);
+    return truncated - (static_cast<float>(truncated) > value);
+  };
+  return {floor_of(point.x()), floor_of(point.y()), floor_of(point.z())};
+}
+
 /// Block coordinates in one word, 21 bits an axis (+-84 km at blocks of 8 cm); packed words order as (z, y, x).
 inline std::uint64_t pack_index(const BlockIndex& index) {
   constexpr int kBias = 1 << 20;

@@ -103,7 +103,7 @@ class VoxelMap {
 
 /// Block that holds the point.
 inline BlockIndex block_at(const Eigen::Vector3f& point_in_world, float inverse_block_size) {
-  return (point_in_world * inverse_block_size).array().floor().cast<int>();
+  return floor_to_int(point_in_world * inverse_block_size);
 }
 
 }  // namespace ovimap

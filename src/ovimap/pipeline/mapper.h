@@ -44,6 +44,7 @@ class Mapper {
 
   const MapperConfig& config() const { return config_; }
   const VoxelMap& map() const { return map_; }
+  VoxelMap take_map() && { return std::move(map_); }
   const InstanceRegistry& registry() const { return registry_; }
   const StageTimers& timers() const { return timers_; }
   StageTimers& timers() { return timers_; }

@@ -33,6 +33,17 @@ void list_fields(MapperConfig& config, ConfigFields& fields) {
   fields.add("max_range_m", config.max_range_m, 0.1f, 1000.f, "how far the map is projected back, metres");
 }
 
+MapperConfig mapper_preset(const std::string& name) {
+  MapperConfig config;
+  if (name == "default") return config;
+  if (name != "reference") throw Error(concat("there is no preset '", name, "'; accepted is default or reference"));
+  config.segment = reference_segment_depth_config();
+  config.instance.merging.merge_max_dissent = 1e6f;  // the paper counts no dissent
+  config.map.max_weight = 1e4f;
+  config.map.label_band_voxels = static_cast<float>(config.map.truncation_voxels);
+  return config;
+}
+
 void load_config(const std::filesystem::path& path, ConfigFields& fields) {
   try {
     set_fields(YAML::LoadFile(path.string()), "", fields);

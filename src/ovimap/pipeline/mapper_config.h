@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "ovimap/base/config.h"
 #include "ovimap/instance/association.h"
@@ -26,6 +27,10 @@ struct MapperConfig {
   float max_range_m = 10.f;   ///< how far the map is projected back
 };
 void list_fields(MapperConfig& config, ConfigFields& fields);
+
+/// "default", or "reference": thresholds and rules as the paper's released code has them. Throws Error for
+/// another name.
+MapperConfig mapper_preset(const std::string& name);
 
 /// Sets the fields that a YAML file names, as nested maps or dotted keys. Throws Error for a missing or
 /// unreadable file, an unknown key (with the nearest known one) or a value out of range.

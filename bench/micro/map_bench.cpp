@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include <benchmark/benchmark.h>
+
+#include "ovimap/instance/association.h"
+#include "ovimap/map/integrate.h"
+#include "ovimap/map/mesh_extraction.h"
+#include "ovimap/map/ray_cast.h"
+#include "ovimap/map/surface_lookup.h"
+#include "room_scene.h"
+
+namespace ovimap::bench {
+namespace {
+
+/// A mapped room and one more view of it.
+struct MappedRoom {
+  VoxelMap map;
+  RoomScene scene{3};
+  DepthSurface surface = fit_depth_surface(scene.depth, scene.camera, {});
+  Segments segments = segments_of_regions(segment_depth(surface, scene.camera, {}));
+  std::vector<Label> labels;
+
+  MappedRoom() {
+    for (std::size_t i = 0; i < segments.segments.size(); ++i) labels.push_back(map.labels().create());
+    for (int view = 0; view < 6; ++view) add(RoomScene(view));
+  }
+  void add(const RoomScene& view) {
+    integrate(map, {.depth = view.depth, .camera = view.camera, .world_from_camera = view.pose, .normals = &surface.normals,
+                    .segment_ids = &segments.ids, .segment_labels = labels});
+  }
+};
+
+void integrate_frame(benchmark::State& state) {
+  MappedRoom room;
+  for (auto _ : state) room.add(room.scene);
+}
+BENCHMARK(integrate_frame)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void look_up_surface(benchmark::State& state) {
+  const MappedRoom room;
+  for (auto _ : state) benchmark::DoNotOptimize(surface_voxels(room.map, room.scene.depth, room.scene.camera, room.scene.pose));
+}
+BENCHMARK(look_up_surface)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void count_votes(benchmark::State& state) {
+  MappedRoom room;
+  const auto surface = surface_voxels(room.map, room.scene.depth, room.scene.camera, room.scene.pose);
+  for (auto _ : state) benchmark::DoNotOptimize(associate(room.segments, surface, room.map, {}));
+}
+BENCHMARK(count_votes)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void cast_all_rays(benchmark::State& state) {
+  const MappedRoom room;
+  for (auto _ : state) benchmark::DoNotOptimize(cast_rays(room.map, room.scene.camera, room.scene.pose, 10.f));
+}
+BENCHMARK(cast_all_rays)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void extract_whole_mesh(benchmark::State& state) {
+  const MappedRoom room;
+  for (auto _ : state) benchmark::DoNotOptimize(extract_mesh(room.map));
+}
+BENCHMARK(extract_whole_mesh)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+}  // namespace
+}  // namespace ovimap::bench

@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "ovimap/frames/frame_source.h"
+#include "ovimap/io/map_document.h"
+#include "ovimap/io/pictures.h"
+
+namespace ovimap {
+
+/// The map from above, its objects in their palette colours (or the surface in its own).
+RgbImage top_down_picture(const MapDocument& document, MeshColoring coloring);
+
+/// Frames of the recording, evenly spread over those in the map, each beside the map's instances as its
+/// camera sees them.
+RgbImage contact_sheet_picture(const MapDocument& document, const FrameSource& source, int frames);
+
+/// Writes top_view.png, top_view_color.png and contact_sheet.png into `folder`, which is created.
+void write_map_pictures(const std::filesystem::path& folder, const MapDocument& document, const FrameSource& source);
+
+}  // namespace ovimap
