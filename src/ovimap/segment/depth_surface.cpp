@@ -112,8 +112,10 @@ OVIMAP_VECTORIZE void add_row(const std::uint8_t* left, const std::uint8_t* righ
   float *n = moments.n.data(), *u = moments.u.data(), *uu = moments.uu.data(), *vs = moments.v.data();
   float *vv = moments.vv.data(), *uv = moments.uv.data(), *q = moments.q.data();
   float *qu = moments.qu.data(), *qv = moments.qv.data();
+#pragma GCC ivdep  // the arrays never overlap
   for (int x = 0; x < width; ++x) {
-    const float l = left[x], r = right[x], on = active[x];
+    const float on = active[x];
+    const float l = static_cast<float>(static_cast<int>(left[x])), r = static_cast<float>(static_cast<int>(right[x]));
     const float row_n = on * (l + r + 1.f);
     const float row_u = on * 0.5f * (r * (r + 1.f) - l * (l + 1.f));
     n[x] += row_n;
@@ -130,15 +132,17 @@ OVIMAP_VECTORIZE void add_row(const std::uint8_t* left, const std::uint8_t* righ
 
 /// Least squares q = a u + b v + c from the moments; writes the normal and the smoothed depth.
 OVIMAP_VECTORIZE void solve_planes(const Moments& m, const float* center_q, const PinholeCamera& camera,
-                                   int y, int width, Eigen::Vector3f* normals, float* smooth_depth) {
+                                   int y, int width, float* __restrict normals, float* __restrict smooth_depth) {
   constexpr float kFlat = 1e-3f;  // windows thinner than this (pixels^4) hold no plane
   const float fx = camera.fx, fy = camera.fy, cx = camera.cx, dv = camera.cy - static_cast<float>(y);
+  const float *__restrict ns = m.n.data(), *__restrict us = m.u.data(), *__restrict uus = m.uu.data();
+  const float *__restrict vs = m.v.data(), *__restrict vvs = m.vv.data(), *__restrict uvs = m.uv.data();
+  const float *__restrict qs = m.q.data(), *__restrict qus = m.qu.data(), *__restrict qvs = m.qv.data();
   for (int x = 0; x < width; ++x) {
-    const float n = std::max(m.n[static_cast<std::size_t>(x)], 1.f), inv = 1.f / n, q0 = center_q[x];
-    const auto i = static_cast<std::size_t>(x);
-    const float mu = m.u[i] * inv, mv = m.v[i] * inv, mq = m.q[i] * inv - q0;
-    const float cuu = m.uu[i] * inv - mu * mu, cvv = m.vv[i] * inv - mv * mv, cuv = m.uv[i] * inv - mu * mv;
-    const float cuq = (m.qu[i] - q0 * m.u[i]) * inv - mu * mq, cvq = (m.qv[i] - q0 * m.v[i]) * inv - mv * mq;
+    const float inv = 1.f / std::max(ns[x], 1.f), q0 = center_q[x];
+    const float mu = us[x] * inv, mv = vs[x] * inv, mq = qs[x] * inv - q0;
+    const float cuu = uus[x] * inv - mu * mu, cvv = vvs[x] * inv - mv * mv, cuv = uvs[x] * inv - mu * mv;
+    const float cuq = (qus[x] - q0 * us[x]) * inv - mu * mq, cvq = (qvs[x] - q0 * vs[x]) * inv - mv * mq;
     const float det = cuu * cvv - cuv * cuv;
     const float inv_det = det > kFlat ? 1.f / det : 0.f;
     const float a = (cuq * cvv - cvq * cuv) * inv_det, b = (cvq * cuu - cuq * cuv) * inv_det;
@@ -148,7 +152,7 @@ OVIMAP_VECTORIZE void solve_planes(const Moments& m, const float* center_q, cons
     const float norm = std::sqrt(nx * nx + ny * ny + nz * nz);
     const bool valid = (q0 > 0.f) & (det > kFlat) & (norm > 0.f) & (c > 0.f);
     const float scale = valid ? -1.f / norm : 0.f;
-    normals[x] = Eigen::Vector3f(nx * scale, ny * scale, nz * scale);
+    normals[3 * x] = nx * scale, normals[3 * x + 1] = ny * scale, normals[3 * x + 2] = nz * scale;
     smooth_depth[x] = q0 > 0.f ? 1.f / (valid ? c : q0) : 0.f;
   }
 }
@@ -177,7 +181,7 @@ void fit_row(const InverseDepth& inverse, const RowSums& sums, const PinholeCame
     cut_columns(surface.breaks.row(row - 1), width, moments.active);
     add(row);
   }
-  solve_planes(moments, inverse.row(y), camera, y, width, surface.normals.row(y),
+  solve_planes(moments, inverse.row(y), camera, y, width, surface.normals.row(y)->data(),
                surface.smooth_depth_m.row(y));
 }
 
