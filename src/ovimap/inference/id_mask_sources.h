@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <map>
+
+#include "ovimap/inference/mask_source.h"
+
+namespace ovimap {
+
+class FrameSource;
+
+/// Entities from the frames' true instance images: the upper bound of the ablation.
+class GtMaskSource : public MaskSource {
+ public:
+  /// `frames` must outlive the source. Throws Error when it has no true instance images.
+  explicit GtMaskSource(const FrameSource& frames);
+  std::string kind() const override { return "gt"; }
+  Entities entities(const Frame& frame, std::span<const MaskPrompt> prompts) override;
+
+ private:
+  const FrameSource& frames_;
+};
+
+/// Entities from a folder of grey PNGs with 8 or 16 bits, one a frame, 0 = no entity, written by
+/// any tool. A frame's file has the frame's name (`frame-000012.color` or `frame-000012`), or ends
+/// in its index with any number of leading zeros (`12.png`, `mask_0012.png`). A frame without a
+/// file has no entities.
+class DirMaskSource : public MaskSource {
+ public:
+  /// Throws Error when the folder holds no PNG, or when `frames` is given and no file matches any
+  /// frame.
+  explicit DirMaskSource(const std::filesystem::path& folder, const FrameSource* frames = nullptr);
+  std::string kind() const override { return "dir"; }
+  /// Throws Error when the frame's mask is not a grey PNG of the colour image's size.
+  Entities entities(const Frame& frame, std::span<const MaskPrompt> prompts) override;
+
+ private:
+  const std::filesystem::path* file_of(const std::string& name, std::int64_t index) const;
+  void require_match(const FrameSource& frames) const;
+
+  std::filesystem::path folder_;
+  std::map<std::string, std::filesystem::path> by_stem_;
+  std::map<std::int64_t, std::filesystem::path> by_index_;
+};
+
+}  // namespace ovimap

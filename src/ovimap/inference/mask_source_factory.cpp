@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/inference/mask_source_factory.h"
+
+#include "ovimap/base/config.h"
+#include "ovimap/base/error.h"
+#include "ovimap/inference/entity_mask_source.h"
+#include "ovimap/inference/id_mask_sources.h"
+#include "ovimap/inference/model_folder.h"
+#include "ovimap/inference/sam_mask_source.h"
+
+namespace ovimap {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::unique_ptr<MaskSource> open_model(const fs::path& folder, const MaskSourceConfig& config) {
+  const ModelFolder model = read_model_folder(folder);
+  if (model.kind == "sam")
+    return std::make_unique<SamMaskSource>(model, config.sam, config.runtime);
+  if (model.kind == "entity")
+    return std::make_unique<EntityMaskSource>(model, config.entity, config.runtime);
+  throw Error(concat("model ", folder.string(), " is of kind '", model.kind,
+                     "'; as a source of masks sam and entity are accepted"));
+}
+
+}  // namespace
+
+void list_fields(MaskSourceConfig& config, ConfigFields& fields) {
+  fields.group("runtime", [&](ConfigFields& group) { list_fields(config.runtime, group); });
+  fields.group("sam", [&](ConfigFields& group) { list_fields(config.sam, group); });
+  fields.group("entity", [&](ConfigFields& group) { list_fields(config.entity, group); });
+}
+
+std::unique_ptr<MaskSource> make_mask_source(const std::string& spec,
+                                             const MaskSourceConfig& config,
+                                             const MaskSourceContext& context) {
+  if (spec.empty() || spec == "none") return nullptr;
+  if (spec == "gt") {
+    if (!context.frames) throw Error("masks 'gt' need a recorded source of frames; name one");
+    return std::make_unique<GtMaskSource>(*context.frames);
+  }
+  const fs::path path(spec);
+  if (fs::is_regular_file(path / "model.yaml")) return open_model(path, config);
+  if (fs::is_directory(path)) return std::make_unique<DirMaskSource>(path, context.frames);
+  const std::string name = spec == "sam" ? kDefaultSamModel : spec;
+  return open_model(find_model(name, model_search_path(context.model_dirs)), config);
+}
+
+}  // namespace ovimap

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace ovimap {
+
+/// How an image becomes the network's square input.
+enum class ResizeRule {
+  kLongSide,  ///< the long side fills it, the rest is zero at the right and bottom
+  kStretch    ///< both sides fill it, the aspect ratio changes
+};
+
+/// The image input: value = (pixel - mean) / std with pixels from 0 to 255, channels R, G, B.
+struct ImageInputSpec {
+  int size_px = 0;  ///< side of the square input; 0: this model takes no image
+  ResizeRule resize = ResizeRule::kLongSide;
+  std::array<float, 3> mean = {0, 0, 0};
+  std::array<float, 3> std = {255, 255, 255};
+};
+
+/// One ONNX file: what its tensors are for (the role ovimap knows) and what the file calls them.
+struct NetworkSpec {
+  std::string file;                            ///< relative to the model folder
+  std::map<std::string, std::string> inputs;   ///< role -> tensor name
+  std::map<std::string, std::string> outputs;  ///< role -> tensor name
+};
+
+/// A model folder's model.yaml.
+struct ModelFolder {
+  std::filesystem::path folder;
+  std::string kind;  ///< "sam", "entity", "dual_encoder"
+  std::string name, license, source;
+  ImageInputSpec input;
+  std::map<std::string, NetworkSpec> networks;
+  std::map<std::string, std::string> sha256;  ///< file -> 64 hexadecimal digits
+  std::map<std::string, std::string>
+      extras;  ///< every other scalar key, for the model's kind to read
+
+  /// Throws Error when model.yaml describes no network of that name.
+  const NetworkSpec& network(const std::string& network_name) const;
+  /// The tensor that plays `role`. Throws Error when model.yaml does not say.
+  const std::string& input_of(const std::string& network_name, const std::string& role) const;
+  const std::string& output_of(const std::string& network_name, const std::string& role) const;
+};
+
+/// Reads `folder`/model.yaml. Throws Error naming the file and what is missing or wrong in it.
+ModelFolder read_model_folder(const std::filesystem::path& folder);
+
+/// Checks that every file the model names exists and has the SHA-256 digest model.yaml gives.
+/// Throws Error naming the first file that does not, with both digests.
+void verify_model_files(const ModelFolder& model);
+
+/// Where models are looked for, in this order: `model_dirs`, the folders of $OVIMAP_MODELS
+/// (separated by colons), `.models` in the working folder and in each folder above the program, and
+/// the user's data folder (~/.local/share/ovimap/models). Only folders that exist, each once.
+std::vector<std::filesystem::path> model_search_path(
+    const std::vector<std::filesystem::path>& model_dirs = {});
+
+/// A folder on the search path that holds a model.yaml.
+struct ModelListing {
+  std::filesystem::path folder;
+  std::string name;   ///< the folder's name: what `--masks NAME` takes
+  std::string kind;   ///< empty when model.yaml cannot be read
+  std::string fault;  ///< why model.yaml cannot be read; empty when it can
+};
+
+/// All models on the search path, the first of each name only, sorted by name within a folder.
+std::vector<ModelListing> list_models(const std::vector<std::filesystem::path>& search_path);
+
+/// The folder of the model called `name`. Throws Error with the folders searched when there is
+/// none.
+std::filesystem::path find_model(const std::string& name,
+                                 const std::vector<std::filesystem::path>& search_path);
+
+}  // namespace ovimap

@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace ovimap {
+
+class ConfigFields;
+
+enum class ExecutionProvider { kCpu, kCuda, kTensorRt, kOpenVino, kCoreMl };
+
+/// How networks are executed.
+struct RuntimeConfig {
+  int threads = 0;  ///< threads of one network run (0: all cores); the mapper runs beside it
+  ExecutionProvider execution_provider = ExecutionProvider::kCpu;
+  bool spin = false;  ///< idle threads wait actively: a little faster alone, slower beside others
+};
+void list_fields(RuntimeConfig& config, ConfigFields& fields);
+
+/// Dimensions of a tensor; kAnySize where the network leaves one open.
+using TensorShape = std::vector<std::int64_t>;
+inline constexpr std::int64_t kAnySize = -1;
+
+enum class TensorType { kFloat, kInt64, kInt32, kOther };
+
+/// An input or output as the network file declares it.
+struct TensorInfo {
+  std::string name;
+  TensorShape shape;
+  TensorType type = TensorType::kFloat;
+};
+
+/// A named input; the values are only borrowed for the call.
+struct TensorInput {
+  std::string name;
+  TensorShape shape;
+  std::variant<std::span<const float>, std::span<const std::int64_t>, std::span<const std::int32_t>>
+      values;
+};
+
+struct FloatTensor {
+  TensorShape shape;
+  std::vector<float> values;
+};
+
+/// One ONNX file ready to run. Running is thread-safe.
+class OnnxSession {
+ public:
+  /// Throws Error when the file is missing or not an ONNX network, or when the configured execution
+  /// provider is not in this ONNX Runtime (the message lists those that are).
+  OnnxSession(const std::filesystem::path& file, const RuntimeConfig& config);
+  ~OnnxSession();
+  OnnxSession(OnnxSession&&) noexcept;
+  OnnxSession& operator=(OnnxSession&&) noexcept;
+
+  const std::vector<TensorInfo>& inputs() const { return inputs_; }
+  const std::vector<TensorInfo>& outputs() const { return outputs_; }
+
+  /// The declared input or output of that name. Throws Error naming the file, the missing name and
+  /// the names there are.
+  const TensorInfo& input(const std::string& name) const;
+  const TensorInfo& output(const std::string& name) const;
+
+  /// The wanted float outputs, in the order of `output_names`. Throws Error with the runtime's
+  /// reason when the network cannot be run on these inputs.
+  std::vector<FloatTensor> run(std::span<const TensorInput> inputs,
+                               std::span<const std::string> output_names) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+  std::filesystem::path file_;
+  std::vector<TensorInfo> inputs_, outputs_;
+};
+
+/// "[1,3,any,any]", for messages.
+std::string to_text(const TensorShape& shape);
+
+}  // namespace ovimap

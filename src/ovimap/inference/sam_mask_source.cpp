@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/inference/sam_mask_source.h"
+
+#include <algorithm>
+
+#include "ovimap/inference/mask_pool.h"
+#include "ovimap/inference/prompt_planner.h"
+
+namespace ovimap {
+
+SamMaskSource::SamMaskSource(const ModelFolder& model, const SamConfig& config,
+                             const RuntimeConfig& runtime)
+    : network_(model, runtime), config_(config) {}
+
+Entities SamMaskSource::entities(const Frame& frame, std::span<const MaskPrompt> prompts) {
+  const ImageFeatures features = network_.encode(frame.color);
+  const LogitGrid grid = logit_grid(features.frame, network_.input_size_px(), network_.grid_size(),
+                                    frame.color.width(), frame.color.height());
+  MaskPool pool(config_, grid);
+  PromptPlanner planner(config_, grid, prompts);
+  for (int budget = config_.max_decoder_prompts; budget > 0;) {
+    const std::vector<PlannedPrompt> batch =
+        planner.next(pool, std::min(budget, config_.decoder_batch));
+    if (batch.empty()) break;
+    budget -= static_cast<int>(batch.size());
+    std::vector<PromptPoints> points;
+    for (const PlannedPrompt& prompt : batch) points.push_back(prompt.points);
+    const std::vector<MaskProposals> answers = network_.decode(features, points);
+    for (std::size_t i = 0; i < batch.size(); ++i)
+      if (!pool.offer(answers[i], planner.region_of(batch[i]), batch[i].boxed))
+        planner.failed(batch[i]);
+  }
+  return pool.entities();
+}
+
+}  // namespace ovimap

