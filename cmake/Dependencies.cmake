@@ -32,6 +32,7 @@ set_target_properties(onnxruntime_imported PROPERTIES
 if(OVIMAP_SYNTH)
   find_package(embree 3 REQUIRED)
   find_package(assimp REQUIRED)
+  pkg_check_modules(MINIZIP REQUIRED IMPORTED_TARGET minizip)
 endif()
 if(OVIMAP_APPS)
   find_package(CLI11 REQUIRED)

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "ovimap/synth/oriented_box.h"
+#include "ovimap/synth/texture.h"
+
+namespace ovimap {
+
+/// One instance of a room: a piece of furniture, a wall, the floor, a picture.
+struct RoomObject {
+  std::uint16_t id = 0;    ///< 1, 2, ... in the room's order
+  std::string name;        ///< "Coffee mug", "north wall"
+  std::string class_name;  ///< "mug", "wall"
+  std::string source;      ///< who made the model and its licence; empty for our own surfaces
+  TexturedMesh mesh;       ///< in the world frame: metres, z up, floor at z = 0
+  Eigen::AlignedBox3f box; ///< of the mesh
+  std::optional<OrientedBox> footprint;  ///< the space it takes; floor, walls and ceiling have none
+};
+
+/// A rectangle that shines to one side.
+struct AreaLight {
+  Eigen::Vector3f center_m, half_width_m, half_height_m;
+  Eigen::Vector3f normal;     ///< unit length, the side that shines
+  Eigen::Vector3f intensity;  ///< linear RGB along the normal: what falls on a surface 1 m away, facing it
+};
+
+/// A furnished room. The floor is z = 0; the room spans [0, width] x [0, depth] x [0, height].
+struct SynthRoom {
+  std::string name;
+  std::uint64_t seed = 0;
+  Eigen::Vector3f size_m = Eigen::Vector3f::Zero();
+  std::vector<RoomObject> objects;  ///< objects[i].id == i + 1
+  std::vector<AreaLight> lights;
+  Eigen::Vector3f ambient = Eigen::Vector3f::Constant(0.5f);  ///< light from everywhere, linear RGB
+};
+
+}  // namespace ovimap

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "ovimap/geometry/camera.h"
+#include "ovimap/image/image.h"
+
+namespace ovimap {
+
+/// Where a piece of furniture goes.
+enum class Placement {
+  kInWall,       ///< flat on a wall, kept clear in front: doors, windows
+  kAgainstWall,  ///< back to a wall, front facing inwards
+  kInCorner,
+  kInMiddle,
+  kAround,       ///< at the sides of pieces of the named classes, facing them: chairs at a table
+  kOnTop,        ///< on pieces of the named classes
+  kOnFloor,      ///< anywhere free, near the walls
+  kOnWall,       ///< hung on a wall: pictures
+  kOnCeiling,
+  kRug,          ///< flat on the floor; furniture may stand on it
+};
+
+struct FurnitureRequest {
+  std::string class_name;  ///< one of the palette's classes
+  Placement placement = Placement::kAgainstWall;
+  int count = 1;
+  std::vector<std::string> at;  ///< for kAround and kOnTop: the classes of the supporting pieces
+  std::string model;            ///< a catalogue id; empty: any model of the class
+};
+
+/// What a room is made from. The same spec gives the same room.
+struct RoomSpec {
+  std::string name;
+  std::uint64_t seed = 1;
+  Eigen::Vector3f size_m = {4, 4, 2.5f};  ///< width (x), depth (y), height
+  std::string floor_style = "oak";
+  std::string wall_style = "plaster";
+  std::string accent_style = "stripes";  ///< of one wall
+  Rgb8 wall_color = {226, 220, 206};
+  Rgb8 accent_color = {196, 206, 212};
+  std::vector<FurnitureRequest> furniture;  ///< in the order of placing: large before small
+  int frames = 200;
+  PinholeCamera camera;
+};
+
+/// The rooms that can be made by name: "tiny" (3.6 x 3.1 m, 40 frames of 320x240) and "bare" (the same
+/// without furniture, which needs no furniture package). Throws Error for another name.
+RoomSpec room_spec(const std::string& name, std::uint64_t seed = 1);
+std::vector<std::string> room_names();
+
+}  // namespace ovimap

@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/synth/sequence.h"
+
+#include <cstdio>
+#include <set>
+
+#include "ovimap/base/config.h"
+#include "ovimap/synth/furniture_palette.h"
+#include "ovimap/synth/random.h"
+
+namespace ovimap {
+namespace {
+
+constexpr double kFramesPerSecond = 30;
+constexpr std::uint64_t kFrameStream = 9001;
+
+std::string frame_name(std::int64_t position) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "frame%06lld", static_cast<long long>(position));
+  return text.data();
+}
+
+}  // namespace
+
+void list_fields(SynthSequenceConfig& config, ConfigFields& fields) {
+  fields.add("noise", config.noise, "whether frames look as a depth camera gives them, or exact");
+  fields.group("render", [&](ConfigFields& group) { list_fields(config.render, group); });
+  fields.group("trajectory", [&](ConfigFields& group) { list_fields(config.trajectory, group); });
+  fields.group("sensor", [&](ConfigFields& group) { list_fields(config.sensor, group); });
+  fields.group("truth", [&](ConfigFields& group) { list_fields(config.truth, group); });
+}
+
+struct SynthSequence::State {
+  State(SynthRoom made_room, const PinholeCamera& made_camera, int frames,
+        const SynthSequenceConfig& sequence_config)
+      : room(std::move(made_room)),
+        camera(made_camera),
+        config(sequence_config),
+        renderer(room, config.render),
+        poses(plan_trajectory(room, renderer.scene(), camera, frames, config.trajectory)) {}
+
+  SynthRoom room;
+  PinholeCamera camera;
+  SynthSequenceConfig config;
+  Renderer renderer;
+  std::vector<Pose> poses;
+};
+
+SynthSequence::SynthSequence(SynthRoom room, const PinholeCamera& camera, int frames,
+                             const SynthSequenceConfig& config)
+    : state_(std::make_unique<State>(std::move(room), camera, frames, config)) {}
+SynthSequence::~SynthSequence() = default;
+SynthSequence::SynthSequence(SynthSequence&&) noexcept = default;
+SynthSequence& SynthSequence::operator=(SynthSequence&&) noexcept = default;
+
+std::int64_t SynthSequence::size() const { return static_cast<std::int64_t>(state_->poses.size()); }
+const SynthRoom& SynthSequence::room() const { return state_->room; }
+const PinholeCamera& SynthSequence::camera() const { return state_->camera; }
+const std::vector<Pose>& SynthSequence::true_poses() const { return state_->poses; }
+
+FrameRead SynthSequence::read(std::int64_t position) const {
+  if (position < 0 || position >= size())
+    return {std::nullopt, concat("frame ", position, ": the sequence has ", size(), " frames")};
+  const Pose& pose = state_->poses[static_cast<std::size_t>(position)];
+  RenderedView view = state_->renderer.render(state_->camera, pose);
+  Frame frame;
+  frame.index = position;
+  frame.name = frame_name(position);
+  frame.timestamp_s = static_cast<double>(position) / kFramesPerSecond;
+  frame.color_camera = frame.depth_camera = state_->camera;
+  if (state_->config.noise) {
+    const SensorNoiseConfig& sensor = state_->config.sensor;
+    const std::uint64_t seed =
+        Random(state_->room.seed, kFrameStream + static_cast<std::uint64_t>(position)).bits();
+    frame.depth = noisy_depth(view, sensor, seed);
+    frame.color = noisy_color(view.color, sensor, seed);
+    frame.world_from_camera = noisy_pose(pose, sensor, seed);
+  } else {
+    frame.depth = std::move(view.depth);
+    frame.color = std::move(view.color);
+    frame.world_from_camera = pose;
+  }
+  return {std::move(frame), {}};
+}
+
+std::optional<IdImage> SynthSequence::truth_ids(std::int64_t position) const {
+  if (position < 0 || position >= size()) return std::nullopt;
+  const Pose& pose = state_->poses[static_cast<std::size_t>(position)];
+  return state_->renderer.render(state_->camera, pose, false).ids;
+}
+
+std::vector<TruthInstance> SynthSequence::instances() const {
+  std::vector<TruthInstance> instances;
+  for (const RoomObject& object : state_->room.objects)
+    instances.push_back({object.id, object.name, room_class_id(object.class_name), object.class_name});
+  return instances;
+}
+
+Mesh SynthSequence::truth_mesh() const {
+  return seen_part(surface_mesh(state_->room, state_->config.truth), state_->renderer.scene(),
+                   state_->camera, state_->poses, state_->config.truth);
+}
+
+std::string SynthSequence::notice() const {
+  std::set<std::string> sources;
+  for (const RoomObject& object : state_->room.objects)
+    if (!object.source.empty()) sources.insert(object.source);
+  std::string text = concat("# Notice\n\nThe room \"", state_->room.name, "\" (seed ", state_->room.seed,
+                            ") was drawn by ovimap.\n");
+  if (sources.empty()) return text;
+  text +=
+      "It shows these models of the Sweet Home 3D furniture libraries (https://www.sweethome3d.com), "
+      "scaled, turned and placed:\n\n";
+  for (const std::string& source : sources) text += "- " + source + "\n";
+  return text;
+}
+
+}  // namespace ovimap
