@@ -12,31 +12,61 @@ namespace {
 /// Stored units that get mixed up: millimetres and metres, TUM's 5000 and Replica's 6553.5 a metre.
 constexpr double kDepthFactors[] = {1, 10, 0.1, 5, 0.2, 6.5535, 1 / 6.5535, 1000, 0.001};
 
+/// Takes a pixel and its depth as read in one frame to pixel and depth in another:
+/// (x, y, z) = depth * (column * u + row * v + corner) + offset, in units of the other's pixels.
+struct PixelTransfer {
+  Eigen::Vector3f column, row, corner, offset;
+
+  PixelTransfer(const ThinFrame& from, const ThinFrame& to, const Reinterpretation& reading) {
+    const Pose to_from_from =
+        reading.pose(to.world_from_camera).inverse() * reading.pose(from.world_from_camera);
+    const Eigen::Matrix3d into = intrinsics(to.camera);
+    const Eigen::Matrix3d rays =
+        into * to_from_from.linear() * intrinsics(from.camera).inverse() * reading.depth_factor;
+    column = rays.col(0).cast<float>();
+    row = rays.col(1).cast<float>();
+    corner = rays.col(2).cast<float>();
+    offset = (into * to_from_from.translation()).cast<float>();
+  }
+
+  static Eigen::Matrix3d intrinsics(const PinholeCamera& camera) {
+    Eigen::Matrix3d matrix;
+    matrix << camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1;
+    return matrix;
+  }
+};
+
+/// Plain numbers per pixel: this runs for every reading of every pair.
+void add_row(const float* depth_m, int width, const PixelTransfer& transfer,
+             const Eigen::Vector3f& row_start, const DepthImage& to, float factor, float tolerance,
+             Agreement& sum) {
+  const float cx = transfer.column.x(), cy = transfer.column.y(), cz = transfer.column.z();
+  const float rx = row_start.x(), ry = row_start.y(), rz = row_start.z();
+  const float tx = transfer.offset.x(), ty = transfer.offset.y(), tz = transfer.offset.z();
+  const auto to_width = static_cast<float>(to.width()), to_height = static_cast<float>(to.height());
+  for (int column = 0; column < width; ++column) {
+    const float d = depth_m[column], u = static_cast<float>(column);
+    if (!(d > 0)) continue;
+    ++sum.points;
+    const float z = d * (cz * u + rz) + tz;
+    if (!(z > 0)) continue;
+    const float x = (d * (cx * u + rx) + tx) / z + 0.5f, y = (d * (cy * u + ry) + ty) / z + 0.5f;
+    if (!(x >= 0 && y >= 0 && x < to_width && y < to_height)) continue;
+    const float seen_m = to.row(static_cast<int>(y))[static_cast<int>(x)] * factor;
+    if (!(seen_m > 0)) continue;
+    ++sum.compared;
+    sum.agreeing += std::abs(z - seen_m) <= tolerance * seen_m ? 1 : 0;
+  }
+}
+
 void add_projection(const ThinFrame& from, const ThinFrame& to, const Reinterpretation& reading,
                     double tolerance, Agreement& sum) {
-  const Eigen::Isometry3f to_from_from =
-      (reading.pose(to.world_from_camera).inverse() * reading.pose(from.world_from_camera))
-          .cast<float>();
-  const auto factor = static_cast<float>(reading.depth_factor);
-  for (int v = 0; v < from.depth.height(); ++v)
-    for (int u = 0; u < from.depth.width(); ++u) {
-      const float depth_m = from.depth.at(u, v);
-      if (!(depth_m > 0)) continue;
-      ++sum.points;
-      const Eigen::Vector3f point =
-          to_from_from *
-          from.camera.unproject(static_cast<float>(u), static_cast<float>(v), depth_m * factor);
-      if (!(point.z() > 0)) continue;
-      const Eigen::Vector2f pixel = to.camera.project(point);
-      const float x = std::floor(pixel.x() + 0.5f), y = std::floor(pixel.y() + 0.5f);
-      const bool inside = x >= 0 && y >= 0 && x < static_cast<float>(to.depth.width()) &&
-                          y < static_cast<float>(to.depth.height());
-      if (!inside) continue;
-      const float seen_m = to.depth.at(static_cast<int>(x), static_cast<int>(y)) * factor;
-      if (!(seen_m > 0)) continue;
-      ++sum.compared;
-      sum.agreeing += std::abs(point.z() - seen_m) <= tolerance * seen_m ? 1 : 0;
-    }
+  const PixelTransfer transfer(from, to, reading);
+  for (int v = 0; v < from.depth.height(); ++v) {
+    const Eigen::Vector3f row_start = transfer.row * static_cast<float>(v) + transfer.corner;
+    add_row(from.depth.row(v), from.depth.width(), transfer, row_start, to.depth,
+            static_cast<float>(reading.depth_factor), static_cast<float>(tolerance), sum);
+  }
 }
 
 }  // namespace

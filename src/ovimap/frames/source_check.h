@@ -19,7 +19,7 @@ struct SourceCheckConfig {
   float max_median_depth_m = 8.f;   ///< a farther median depth is suspicious
   int pair_gap = 10;  ///< frames between two neighbours, fewer when the camera turns fast
   float max_pair_rotation_deg = 15;  ///< two neighbours differ by at most this rotation
-  int compared_width_px = 160;       ///< depth images are thinned to this width before comparing
+  int compared_width_px = 80;        ///< depth images are thinned to this width before comparing
   float depth_tolerance = 0.02f;     ///< depths agree within this share of the distance
   float min_overlap = 0.1f;          ///< less overlap between neighbours cannot be judged
   float min_agreement = 0.5f;        ///< less depth agreement is a fault
