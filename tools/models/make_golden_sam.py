@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
-"""Writes small promptable models, one of each signature in use: tests of kind `sam` need no download.
+"""Writes small promptable models, one of each signature in use, for tests without a download.
 
 All of them segment by colour: the encoder averages the image in cells of 4x4 pixels; the decoder
 takes the colour at the prompt's first point and gives, as its three masks, the cells whose colour

