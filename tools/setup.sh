@@ -146,7 +146,8 @@ private_apt() {
   local state="$SCRATCH/apt"
   mkdir -p "$state/lists/partial" "$state/cache/archives/partial" "$state/parts"
   apt-get -q -o Dir::State="$state" -o Dir::State::lists="$state/lists" \
-    -o Dir::Cache="$state/cache" -o Dir::State::status=/var/lib/dpkg/status -o Dir::Etc::sourcelist="$SCRATCH/sources.list" \
+    -o Dir::Cache="$state/cache" -o Dir::State::status=/var/lib/dpkg/status \
+    -o Dir::Etc::sourcelist="$SCRATCH/sources.list" \
     -o Dir::Etc::sourceparts="$state/parts" -o APT::Sandbox::User="$(id -un)" \
     -o Acquire::Languages=none "$@"
 }

@@ -9,7 +9,7 @@ class ConfigFields;
 /// Settings of prompting a SAM-type network (method section 2).
 struct SamConfig {
   int max_decoder_prompts = 30;  ///< prompts a frame at most: decoding is most of the time
-  int decoder_batch = 4;         ///< prompts decoded at once; between batches they are planned anew
+  int decoder_batch = 2;         ///< prompts decoded at once; between batches they are planned anew
 
   // Which proposals are masks at all.
   float min_predicted_iou = 0.82f;  ///< the network's own estimate
