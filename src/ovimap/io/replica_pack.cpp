@@ -25,7 +25,8 @@ void write_text(const fs::path& path, const std::string& text) {
   write_file(path, Bytes(text.begin(), text.end()));
 }
 
-fs::path numbered(const fs::path& folder, const char* stem, std::int64_t number, const char* ending) {
+fs::path numbered(const fs::path& folder, const char* stem, std::int64_t number,
+                  const char* ending) {
   std::array<char, 32> digits{};
   std::snprintf(digits.data(), digits.size(), "%06lld", static_cast<long long>(number));
   return folder / concat(stem, digits.data(), ending);
@@ -80,8 +81,9 @@ std::string text_of(const fs::path& file) {
 void write_once(const fs::path& file, const std::string& text, const char* what) {
   if (!fs::exists(file)) return write_text(file, text);
   if (text_of(file) != text)
-    throw Error(concat(file.string(), ": describes ", what,
-                       " than what is to be written; remove it with its frames, or write to another folder"));
+    throw Error(concat(
+        file.string(), ": describes ", what,
+        " than what is to be written; remove it with its frames, or write to another folder"));
 }
 
 Frame checked_frame(const FrameSource& source, std::int64_t position) {
@@ -127,11 +129,12 @@ class FrameWriter {
   void write(std::int64_t position) {
     const FrameFiles files(root_ / pack_.scene / "results", position);
     const auto line = static_cast<std::size_t>(position);
-    if (line < lines_.size() && fs::exists(files.color) && fs::exists(files.depth) && has_ids(files, position))
+    if (line < lines_.size() && fs::exists(files.color) && fs::exists(files.depth) &&
+        has_ids(files, position))
       return;
     const Frame frame = checked_frame(*pack_.frames, position);
-    write_once(root_ / "cam_params.json", camera_json(frame.depth_camera, config_.depth_units_per_m),
-               "another camera");
+    write_once(root_ / "cam_params.json",
+               camera_json(frame.depth_camera, config_.depth_units_per_m), "another camera");
     write_file(files.depth, encode_png(depth_units(frame.depth, config_.depth_units_per_m)));
     if (const auto ids = pack_.frames->truth_ids(position)) write_file(files.ids, encode_png(*ids));
     write_file(files.color, encode_jpeg(frame.color, config_.jpeg_quality));
@@ -166,8 +169,8 @@ void list_fields(ReplicaPackConfig& config, ConfigFields& fields) {
              "steps a metre of the depth images");
 }
 
-void write_replica_pack(const fs::path& root, const ReplicaPack& pack, const ReplicaPackConfig& config,
-                        const PackProgress& progress) {
+void write_replica_pack(const fs::path& root, const ReplicaPack& pack,
+                        const ReplicaPackConfig& config, const PackProgress& progress) {
   const fs::path scene = root / pack.scene;
   std::error_code fault;
   fs::create_directories(scene / "results", fault);

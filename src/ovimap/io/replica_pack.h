@@ -29,24 +29,25 @@ struct PackInstance {
 
 /// A recording and its truth, as they go to disk.
 struct ReplicaPack {
-  std::string scene;           ///< the folder's name
-  const FrameSource* frames = nullptr;  ///< registered, one camera for all; with true ids or without
-  Mesh truth;                  ///< labels are instance ids; may be empty
+  std::string scene;  ///< the folder's name
+  const FrameSource* frames =
+      nullptr;  ///< registered, one camera for all; with true ids or without
+  Mesh truth;   ///< labels are instance ids; may be empty
   std::vector<PackInstance> instances;
-  std::string notice;          ///< who made what is shown (Markdown); empty: no NOTICE.md
-  std::string settings;        ///< how it was made (YAML); empty: no settings.yaml
+  std::string notice;    ///< who made what is shown (Markdown); empty: no NOTICE.md
+  std::string settings;  ///< how it was made (YAML); empty: no settings.yaml
 };
 
 /// `done` of `total` frames are on disk.
 using PackProgress = std::function<void(std::int64_t done, std::int64_t total)>;
 
-/// Writes a scene in the layout of NICE-SLAM's Replica pack, so that open_frame_source and load_truth
-/// read it: ROOT/cam_params.json; ROOT/SCENE/traj.txt, labels.json, NOTICE.md and settings.yaml;
-/// ROOT/SCENE/results/{frame%06d.jpg, depth%06d.png, instance%06d.png}; ROOT/SCENE_mesh.ply;
-/// ROOT/{instance,semantic}_labels_SCENE.txt. Frames that are there already are left alone, so a
-/// broken-off run goes on where it stopped; every file appears only when complete.
-/// Throws Error when a frame cannot be read or is not registered, when what is there already has another
-/// camera or was made with other settings, or when a file cannot be written.
+/// Writes a scene in the layout of NICE-SLAM's Replica pack, so that open_frame_source and
+/// load_truth read it: ROOT/cam_params.json; ROOT/SCENE/traj.txt, labels.json, NOTICE.md and
+/// settings.yaml; ROOT/SCENE/results/{frame%06d.jpg, depth%06d.png, instance%06d.png};
+/// ROOT/SCENE_mesh.ply; ROOT/{instance,semantic}_labels_SCENE.txt. Frames that are there already
+/// are left alone, so a broken-off run goes on where it stopped; every file appears only when
+/// complete. Throws Error when a frame cannot be read or is not registered, when what is there
+/// already has another camera or was made with other settings, or when a file cannot be written.
 void write_replica_pack(const std::filesystem::path& root, const ReplicaPack& pack,
                         const ReplicaPackConfig& config = {}, const PackProgress& progress = {});
 

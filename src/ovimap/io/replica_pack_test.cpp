@@ -16,7 +16,8 @@ namespace fs = std::filesystem;
 /// A ramp of depth under a moving camera; counts how often it is asked.
 class RampSource final : public FrameSource {
  public:
-  explicit RampSource(std::int64_t size, bool registered = true) : size_(size), registered_(registered) {}
+  explicit RampSource(std::int64_t size, bool registered = true)
+      : size_(size), registered_(registered) {}
   std::string kind() const override { return "ramp"; }
   std::int64_t size() const override { return size_; }
   FrameRead read(std::int64_t position) const override {
@@ -28,7 +29,8 @@ class RampSource final : public FrameSource {
     frame.color = RgbImage(32, 24, {90, 120, static_cast<std::uint8_t>(10 * position)});
     frame.depth = DepthImage(32, 24);
     for (int x = 1; x < 32; ++x) frame.depth.at(x, 5) = 0.3f * static_cast<float>(x);
-    frame.world_from_camera.translation() = Eigen::Vector3d(0.1 * static_cast<double>(position), 1.0 / 3, 2);
+    frame.world_from_camera.translation() =
+        Eigen::Vector3d(0.1 * static_cast<double>(position), 1.0 / 3, 2);
     return {frame, {}};
   }
   std::optional<IdImage> truth_ids(std::int64_t position) const override {
@@ -109,7 +111,9 @@ TEST_F(ReplicaPackTest, ABrokenOffRunGoesOnWhereItStopped) {
   EXPECT_EQ(all.reads, 4);
   const auto read = open_frame_source(folder_.path() / "den");
   for (std::int64_t i = 0; i < 4; ++i)
-    EXPECT_TRUE(read->read(i).frame->world_from_camera.isApprox(all.read(i).frame->world_from_camera)) << i;
+    EXPECT_TRUE(
+        read->read(i).frame->world_from_camera.isApprox(all.read(i).frame->world_from_camera))
+        << i;
 }
 
 TEST_F(ReplicaPackTest, MixingRecordingsIsRefused) {

@@ -28,7 +28,8 @@ inline void append(std::string& bytes, std::uint32_t value, int count) {
 }
 
 /// A zip file whose entries are stored uncompressed.
-inline void write_zip(const std::filesystem::path& path, const std::map<std::string, std::string>& entries) {
+inline void write_zip(const std::filesystem::path& path,
+                      const std::map<std::string, std::string>& entries) {
   std::string file, directory;
   for (const auto& [name, content] : entries) {
     const auto offset = static_cast<std::uint32_t>(file.size());
@@ -42,7 +43,8 @@ inline void write_zip(const std::filesystem::path& path, const std::map<std::str
     file += shared + name + content;
     append(directory, 0x02014b50, 4), append(directory, 20, 2);
     directory += shared;
-    append(directory, 0, 2), append(directory, 0, 2), append(directory, 0, 2), append(directory, 0, 4);
+    append(directory, 0, 2), append(directory, 0, 2), append(directory, 0, 2),
+        append(directory, 0, 4);
     append(directory, offset, 4);
     directory += name;
   }
@@ -51,12 +53,13 @@ inline void write_zip(const std::filesystem::path& path, const std::map<std::str
   append(file, 0x06054b50, 4), append(file, 0, 4);
   append(file, static_cast<std::uint32_t>(entries.size()), 2);
   append(file, static_cast<std::uint32_t>(entries.size()), 2);
-  append(file, static_cast<std::uint32_t>(directory.size()), 4), append(file, start, 4), append(file, 0, 2);
+  append(file, static_cast<std::uint32_t>(directory.size()), 4), append(file, start, 4),
+      append(file, 0, 2);
   write_file(path, Bytes(file.begin(), file.end()));
 }
 
-/// A library of one model: a wedge 2 wide, 4 high, 1 deep (units of the file) whose high side is at the
-/// back (-z), with a face of two corners, a pane of glass far above it and one texture missing.
+/// A library of one model: a wedge 2 wide, 4 high, 1 deep (units of the file) whose high side is at
+/// the back (-z), with a face of two corners, a pane of glass far above it and one texture missing.
 inline void write_wedge_library(const std::filesystem::path& folder) {
   RgbImage image(4, 4, {200, 0, 0});
   const Bytes png = encode_png(image);
@@ -64,7 +67,8 @@ inline void write_wedge_library(const std::filesystem::path& folder) {
       folder / "Test.sh3f",
       {{"PluginFurnitureCatalog.properties",
         "# comment\nid=Test\nlicense=CC0\n\nname#1=W\\u00e9dge\ncategory#1=Shapes\n"
-        "model#1=/models/wedge/wedge.obj\nwidth#1=100\ndepth#1=60.0\nheight#1=80\ncreator#1=Caf\xe9\n"
+        "model#1=/models/wedge/"
+        "wedge.obj\nwidth#1=100\ndepth#1=60.0\nheight#1=80\ncreator#1=Caf\xe9\n"
         "modelRotation#1=1 0 0 0 1 0 0 0 1\nname#2=No model\nwidth#2=1\ndepth#2=1\nheight#2=1\n"},
        {"models/wedge/wedge.obj",
         "mtllib wedge.mtl\nv -1 0 1\nv 1 0 1\nv 1 0 0\nv -1 0 0\nv -1 2 0\nv 1 2 0\nv 0 4 0\n"

@@ -148,8 +148,9 @@ FurnitureCatalog::FurnitureCatalog(const std::filesystem::path& folder) {
 }
 
 const FurnitureEntry& FurnitureCatalog::find(const std::string& id) const {
-  const auto found = std::lower_bound(entries_.begin(), entries_.end(), id,
-                                      [](const auto& entry, const auto& key) { return entry.id < key; });
+  const auto found =
+      std::lower_bound(entries_.begin(), entries_.end(), id,
+                       [](const auto& entry, const auto& key) { return entry.id < key; });
   if (found != entries_.end() && found->id == id) return *found;
   std::vector<std::string> ids;
   for (const auto& entry : entries_) ids.push_back(entry.id);

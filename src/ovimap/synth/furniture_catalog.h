@@ -16,10 +16,10 @@ struct FurnitureEntry {
   std::string name;      ///< "Coffee cup"
   std::string category;  ///< "Kitchen"
   std::string creator;
-  std::string license;   ///< of its library
+  std::string license;  ///< of its library
   std::filesystem::path archive;
-  std::string model;     ///< the OBJ file in the archive
-  Eigen::Vector3f size_m = Eigen::Vector3f::Zero();  ///< width, depth, height
+  std::string model;                                             ///< the OBJ file in the archive
+  Eigen::Vector3f size_m = Eigen::Vector3f::Zero();              ///< width, depth, height
   Eigen::Matrix3f model_rotation = Eigen::Matrix3f::Identity();  ///< in the model's own axes, y up
 };
 
@@ -29,8 +29,8 @@ std::filesystem::path default_furniture_folder();
 /// The models of all furniture libraries (*.sh3f) of a folder.
 class FurnitureCatalog {
  public:
-  /// Throws Error naming the Debian package to install when the folder is missing or holds no library,
-  /// or naming the library whose catalogue cannot be read.
+  /// Throws Error naming the Debian package to install when the folder is missing or holds no
+  /// library, or naming the library whose catalogue cannot be read.
   explicit FurnitureCatalog(const std::filesystem::path& folder = default_furniture_folder());
 
   /// In the order of their ids.
@@ -43,8 +43,8 @@ class FurnitureCatalog {
   std::vector<FurnitureEntry> entries_;
 };
 
-/// The entries described by a PluginFurnitureCatalog.properties text (ISO 8859-1 with \uXXXX escapes);
-/// entries without a model or a size are left out. Strings come back as UTF-8.
+/// The entries described by a PluginFurnitureCatalog.properties text (ISO 8859-1 with \uXXXX
+/// escapes); entries without a model or a size are left out. Strings come back as UTF-8.
 std::vector<FurnitureEntry> parse_furniture_properties(const std::string& text,
                                                        const std::filesystem::path& archive);
 

@@ -22,9 +22,9 @@
 namespace ovimap {
 namespace {
 
-constexpr float kClearOpacity = 0.55f;      // below: glass
-constexpr float kSmoothingAngle_deg = 45;   // models without normals: sharper edges stay edges
-constexpr float kBlackAlbedo = 0.004f;      // a black colour under a texture that is missing
+constexpr float kClearOpacity = 0.55f;     // below: glass
+constexpr float kSmoothingAngle_deg = 45;  // models without normals: sharper edges stay edges
+constexpr float kBlackAlbedo = 0.004f;     // a black colour under a texture that is missing
 constexpr float kUnknownAlbedo = 0.35f;
 
 /// A file in memory, as assimp reads it.
@@ -122,7 +122,8 @@ void append_part(const aiMesh& part, std::uint32_t material, TexturedMesh& mesh)
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
   for (unsigned i = 0; i < part.mNumVertices; ++i) {
     mesh.vertices.push_back(vector_of(part.mVertices[i]));
-    mesh.normals.push_back(part.HasNormals() ? vector_of(part.mNormals[i]) : Eigen::Vector3f::UnitY());
+    mesh.normals.push_back(part.HasNormals() ? vector_of(part.mNormals[i])
+                                             : Eigen::Vector3f::UnitY());
     const bool has_uv = part.HasTextureCoords(0);
     mesh.uvs.push_back(has_uv ? Eigen::Vector2f(vector_of(part.mTextureCoords[0][i]).head<2>())
                               : Eigen::Vector2f::Zero());
@@ -136,8 +137,8 @@ void append_part(const aiMesh& part, std::uint32_t material, TexturedMesh& mesh)
   }
 }
 
-/// From the model's axes (y up, front +z) to ours (z up, front -y), at the catalogue's size. The box
-/// that is scaled to that size is the one of all parts, clear ones included.
+/// From the model's axes (y up, front +z) to ours (z up, front -y), at the catalogue's size. The
+/// box that is scaled to that size is the one of all parts, clear ones included.
 void normalise(const FurnitureEntry& entry, const Eigen::AlignedBox3f& box, TexturedMesh& mesh) {
   const Eigen::Vector3f wanted(entry.size_m.x(), entry.size_m.z(), entry.size_m.y());
   Eigen::Vector3f scale = Eigen::Vector3f::Ones();
@@ -161,7 +162,8 @@ TexturedMesh mesh_of(const aiScene& scene, const FurnitureEntry& entry, const Zi
   std::vector<bool> clear;
   for (unsigned i = 0; i < scene.mNumMaterials; ++i) {
     clear.push_back(is_clear(*scene.mMaterials[i]));
-    mesh.materials.push_back(clear.back() ? SurfaceMaterial{} : materials.load(*scene.mMaterials[i]));
+    mesh.materials.push_back(clear.back() ? SurfaceMaterial{}
+                                          : materials.load(*scene.mMaterials[i]));
   }
   Eigen::AlignedBox3f box;
   for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
@@ -180,12 +182,13 @@ TexturedMesh load_furniture_model(const FurnitureEntry& entry) {
   const ZipArchive archive(entry.archive);
   Assimp::Importer importer;
   importer.SetIOHandler(new ArchiveFiles(archive));  // the importer takes ownership
-  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
+                              aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kSmoothingAngle_deg);
   const std::string name = entry.model.substr(entry.model.find_first_not_of('/'));
-  const aiScene* scene = importer.ReadFile(
-      name, aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_GenSmoothNormals |
-                aiProcess_PreTransformVertices);
+  const aiScene* scene =
+      importer.ReadFile(name, aiProcess_Triangulate | aiProcess_SortByPType |
+                                  aiProcess_GenSmoothNormals | aiProcess_PreTransformVertices);
   if (scene == nullptr)
     throw Error(concat(entry.archive.string(), ": model ", entry.model, " cannot be read (",
                        importer.GetErrorString(), "); reinstall sweethome3d-furniture"));

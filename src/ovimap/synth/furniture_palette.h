@@ -8,8 +8,8 @@
 
 namespace ovimap {
 
-/// The class names of everything a room may hold, walls and floor included. The position in the list
-/// plus one is the class id in every written scene, so the list only ever grows at its end.
+/// The class names of everything a room may hold, walls and floor included. The position in the
+/// list plus one is the class id in every written scene, so the list only ever grows at its end.
 const std::vector<std::string>& room_classes();
 
 /// 1, 2, ... Throws Error with the nearest known name when there is no such class.

@@ -34,7 +34,9 @@ TEST_F(Furniture, CatalogueListsModelsWithTheirSizesAndMakers) {
   const FurnitureCatalog catalog(folder_.path());
   ASSERT_EQ(catalog.entries().size(), 1u);  // the other entry has no model
   const FurnitureEntry& entry = catalog.find("Test/wedge");
-  EXPECT_EQ(entry.name, "W\xc3\xa9" "dge");
+  EXPECT_EQ(entry.name,
+            "W\xc3\xa9"
+            "dge");
   EXPECT_EQ(entry.creator, "Caf\xc3\xa9");
   EXPECT_EQ(entry.category, "Shapes");
   EXPECT_EQ(entry.license, "CC0");
@@ -45,10 +47,13 @@ TEST_F(Furniture, MissingPackageAndWrongNamesAreSaid) {
   const auto nowhere = error_of([&] { FurnitureCatalog(folder_.path() / "nowhere"); });
   EXPECT_NE(nowhere.find("install the Debian package sweethome3d-furniture"), std::string::npos);
   const FurnitureCatalog catalog(folder_.path());
-  EXPECT_NE(error_of([&] { catalog.find("Test/wedgie"); }).find("did you mean 'Test/wedge'"), std::string::npos);
-  EXPECT_NE(error_of([&] { room_class_id("sofaa"); }).find("did you mean 'sofa'"), std::string::npos);
+  EXPECT_NE(error_of([&] { catalog.find("Test/wedgie"); }).find("did you mean 'Test/wedge'"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] { room_class_id("sofaa"); }).find("did you mean 'sofa'"),
+            std::string::npos);
   fixture::write_text(folder_.path() / "Broken.sh3f", "no zip");
-  EXPECT_NE(error_of([&] { FurnitureCatalog(folder_.path()); }).find("Broken.sh3f"), std::string::npos);
+  EXPECT_NE(error_of([&] { FurnitureCatalog(folder_.path()); }).find("Broken.sh3f"),
+            std::string::npos);
 }
 
 TEST_F(Furniture, ModelStandsUprightAtItsSizeWithItsTexture) {
@@ -57,7 +62,8 @@ TEST_F(Furniture, ModelStandsUprightAtItsSizeWithItsTexture) {
   // The glass tip takes the upper half of the catalogue's height, and is left out itself.
   const Eigen::AlignedBox3f box = bounds(mesh);
   EXPECT_TRUE(box.min().isApprox(Eigen::Vector3f(-0.5f, -0.3f, 0), 1e-5f)) << box.min().transpose();
-  EXPECT_TRUE(box.max().isApprox(Eigen::Vector3f(0.5f, 0.3f, 0.4f), 1e-5f)) << box.max().transpose();
+  EXPECT_TRUE(box.max().isApprox(Eigen::Vector3f(0.5f, 0.3f, 0.4f), 1e-5f))
+      << box.max().transpose();
   EXPECT_EQ(mesh.triangles.size(), 6u);  // three quads; the face of two corners is dropped
   for (const Eigen::Vector3f& vertex : mesh.vertices)
     if (vertex.z() > 0.3f) {

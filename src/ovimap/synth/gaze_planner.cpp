@@ -13,18 +13,19 @@ namespace ovimap {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr int kSides = 24;             // directions from which a thing counts as seen anew
-constexpr double kNewSide = 0.8;       // worth of each further side, against the one before
-constexpr double kSeenAgain = 0.03;    // worth of a view from a side already seen
-constexpr double kShellWeight = 0.1;   // of a patch of wall or floor, against 1 for a piece of furniture
+constexpr int kSides = 24;           // directions from which a thing counts as seen anew
+constexpr double kNewSide = 0.8;     // worth of each further side, against the one before
+constexpr double kSeenAgain = 0.03;  // worth of a view from a side already seen
+constexpr double kShellWeight =
+    0.1;  // of a patch of wall or floor, against 1 for a piece of furniture
 constexpr float kShellGrid_m = 0.7f;
 constexpr double kLeastDistance_m = 0.45, kBestDistance_m = 1.8;
-constexpr double kWellInView = 0.85;   // share of the field of view in which things count as seen
+constexpr double kWellInView = 0.85;  // share of the field of view in which things count as seen
 constexpr int kYaws = 60;
 constexpr std::array<double, 8> kPitches_rad = {-0.9, -0.7, -0.5, -0.3, -0.1, 0.1, 0.3, 0.5};
-constexpr int kLevel = 3;              // of the pitches, where guesses start
-constexpr double kTurnCost = 0.25;     // of a turn by the full reach
-constexpr double kBeyondReach = 1e3;   // cost of a turn by more than that
+constexpr int kLevel = 3;             // of the pitches, where guesses start
+constexpr double kTurnCost = 0.25;    // of a turn by the full reach
+constexpr double kBeyondReach = 1e3;  // cost of a turn by more than that
 constexpr int kSweeps = 12;
 
 double wrapped(double angle) { return std::remainder(angle, 2 * kPi); }
@@ -49,7 +50,8 @@ std::vector<Sight> sights_of(const SynthRoom& room) {
     for (int x = 0; x < steps.x(); ++x)
       for (int y = 0; y < steps.y(); ++y)
         for (int z = 0; z < steps.z(); ++z) {
-          const Eigen::Array3f part = (Eigen::Array3i(x, y, z).cast<float>() + 0.5f) / steps.cast<float>();
+          const Eigen::Array3f part =
+              (Eigen::Array3i(x, y, z).cast<float>() + 0.5f) / steps.cast<float>();
           const Eigen::Vector3f place = object.box.min() + (part * size.array()).matrix();
           sights.push_back({place.cast<double>(), object.id, kShellWeight});
         }
@@ -115,7 +117,9 @@ class Plan {
   }
 
   static double yaw_of(const Choice& choice) { return 2 * kPi * choice.yaw / kYaws; }
-  static double pitch_of(const Choice& choice) { return kPitches_rad[static_cast<std::size_t>(choice.pitch)]; }
+  static double pitch_of(const Choice& choice) {
+    return kPitches_rad[static_cast<std::size_t>(choice.pitch)];
+  }
 
  private:
   Choice best_at(std::size_t place, const std::vector<Choice>& choices) {
@@ -133,7 +137,8 @@ class Plan {
   }
 
   /// Far below zero, the more so the farther, when the turn from or to a neighbour is beyond reach.
-  double worth_of(std::size_t place, const Choice& choice, const std::vector<Choice>& choices) const {
+  double worth_of(std::size_t place, const Choice& choice,
+                  const std::vector<Choice>& choices) const {
     double worth = 0, beyond = 0;
     for (const std::size_t next : {place - 1, place + 1}) {
       if (next >= choices.size()) continue;
@@ -147,7 +152,8 @@ class Plan {
     for (const Glimpse& glimpse : glimpses_[place]) {
       if (!in_view(glimpse, choice)) continue;
       const bool is_new = times_[glimpse.sight][static_cast<std::size_t>(glimpse.side)] == 0;
-      const double gain = is_new ? (1 - kNewSide) * std::pow(kNewSide, sides_seen(glimpse.sight)) : 0;
+      const double gain =
+          is_new ? (1 - kNewSide) * std::pow(kNewSide, sides_seen(glimpse.sight)) : 0;
       worth += sights_[glimpse.sight].weight * glimpse.near * (gain * kSides + kSeenAgain);
     }
     return worth;
@@ -155,7 +161,8 @@ class Plan {
 
   void count(std::size_t place, const Choice& choice, int change) {
     for (const Glimpse& glimpse : glimpses_[place])
-      if (in_view(glimpse, choice)) times_[glimpse.sight][static_cast<std::size_t>(glimpse.side)] += change;
+      if (in_view(glimpse, choice))
+        times_[glimpse.sight][static_cast<std::size_t>(glimpse.side)] += change;
   }
 
   long sides_seen(std::size_t sight) const {
@@ -174,8 +181,8 @@ class Plan {
 };
 
 /// A first guess: looking at the middle of the room, turned by `offset_rad`, as far as turns allow.
-std::vector<Choice> guess(const SynthRoom& room, std::span<const Eigen::Vector3d> eyes, double offset_rad,
-                          double reach_rad) {
+std::vector<Choice> guess(const SynthRoom& room, std::span<const Eigen::Vector3d> eyes,
+                          double offset_rad, double reach_rad) {
   std::vector<Choice> choices;
   const Eigen::Vector2d middle = room.size_m.head<2>().cast<double>() / 2;
   const int reach = std::max(1, static_cast<int>(reach_rad / (2 * kPi) * kYaws));
@@ -196,8 +203,9 @@ std::vector<Choice> guess(const SynthRoom& room, std::span<const Eigen::Vector3d
 
 }  // namespace
 
-std::vector<Gaze> plan_gazes(const SynthRoom& room, const RayScene& scene, const PinholeCamera& camera,
-                             std::span<const Eigen::Vector3d> eyes_m, double reach_rad) {
+std::vector<Gaze> plan_gazes(const SynthRoom& room, const RayScene& scene,
+                             const PinholeCamera& camera, std::span<const Eigen::Vector3d> eyes_m,
+                             double reach_rad) {
   Plan plan(room, scene, camera, eyes_m, reach_rad);
   std::vector<Choice> best;
   double best_worth = -1;

@@ -15,8 +15,8 @@ class HeightMap {
  public:
   explicit HeightMap(const TexturedMesh& mesh, float cell_m = 0.01f);
 
-  /// The height at which a thing with this footprint (in the furniture's frame) rests, or nothing where
-  /// the surface below it ends or is uneven by more than `tolerance_m`.
+  /// The height at which a thing with this footprint (in the furniture's frame) rests, or nothing
+  /// where the surface below it ends or is uneven by more than `tolerance_m`.
   [[nodiscard]] std::optional<float> rest(const OrientedBox& footprint, float tolerance_m) const;
 
  private:

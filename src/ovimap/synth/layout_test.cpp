@@ -40,8 +40,8 @@ TEST(HeightMap, ThingsRestOnFlatPartsOnly) {
   };
   EXPECT_NEAR(rest(-0.25f, 0.1f).value(), 0.4f, 1e-5f);
   EXPECT_NEAR(rest(0.25f, 0.1f).value(), 0.7f, 1e-5f);
-  EXPECT_FALSE(rest(0.05f, 0.1f).has_value());   // across the step
-  EXPECT_FALSE(rest(0.45f, 0.1f).has_value());   // over the edge
+  EXPECT_FALSE(rest(0.05f, 0.1f).has_value());  // across the step
+  EXPECT_FALSE(rest(0.45f, 0.1f).has_value());  // over the edge
 }
 
 class RoomLayoutTest : public testing::Test {

@@ -13,19 +13,22 @@
 namespace ovimap {
 namespace {
 
-constexpr int kBlock = 4;                 // pixels a side of one sampling pattern
+constexpr int kBlock = 4;  // pixels a side of one sampling pattern
 constexpr int kPatterns = kBlock * kBlock;
-constexpr int kReach = kBlock / 2;        // of the average; half weight at its border covers each pattern once
+constexpr int kReach =
+    kBlock / 2;  // of the average; half weight at its border covers each pattern once
 constexpr float kLeaveSurface_m = 1e-3f;  // where secondary rays start
 constexpr float kSamePlane_m = 0.01f;     // per metre of depth: neighbours to average with
 constexpr float kSameNormal = 0.9f;
 constexpr float kUpperAmbient = 1.f, kLowerAmbient = 0.7f;  // surfaces facing up, facing down
 
-/// Point `index` of the plane-filling sequence of the plastic number (Roberts, 2018), in [0, 1) squared.
+/// Point `index` of the plane-filling sequence of the plastic number (Roberts, 2018), in [0, 1)
+/// squared.
 Eigen::Vector2f plastic_point(int index) {
   constexpr double kFirst = 0.7548776662466927, kSecond = 0.5698402909980532;
   const double x = 0.5 + kFirst * index, y = 0.5 + kSecond * index;
-  return Eigen::Vector2f(static_cast<float>(x - std::floor(x)), static_cast<float>(y - std::floor(y)));
+  return Eigen::Vector2f(static_cast<float>(x - std::floor(x)),
+                         static_cast<float>(y - std::floor(y)));
 }
 
 /// The order in which a block's pixels take samples: neighbours are far apart in the sequence.
@@ -43,7 +46,8 @@ Eigen::Vector3f averaged(const Image<SurfacePoint>& surfaces, const LightImage& 
   for (int v = std::max(0, y - kReach); v <= std::min(raw.height() - 1, y + kReach); ++v)
     for (int u = std::max(0, x - kReach); u <= std::min(raw.width() - 1, x + kReach); ++u) {
       if (!same_plane(center, surfaces.at(u, v))) continue;
-      const float weight = (std::abs(u - x) == kReach ? 0.5f : 1.f) * (std::abs(v - y) == kReach ? 0.5f : 1.f);
+      const float weight =
+          (std::abs(u - x) == kReach ? 0.5f : 1.f) * (std::abs(v - y) == kReach ? 0.5f : 1.f);
       sum += weight * raw.at(u, v);
       weights += weight;
     }
@@ -87,16 +91,19 @@ Eigen::Vector3f Lighting::light_at(const SurfacePoint& point, int pattern) const
   return light;
 }
 
-Eigen::Vector3f Lighting::lamp_light(const AreaLight& lamp, const SurfacePoint& point, int pattern) const {
+Eigen::Vector3f Lighting::lamp_light(const AreaLight& lamp, const SurfacePoint& point,
+                                     int pattern) const {
   Eigen::Vector3f light = Eigen::Vector3f::Zero();
   const Eigen::Vector3f start = point.position + kLeaveSurface_m * point.face_normal;
   for (int i = 0; i < config_.light_samples; ++i) {
     // Pattern p takes samples p, p + 16, ...: each pattern alone is spread over the lamp.
-    const Eigen::Vector2f& sample = lamp_samples_[static_cast<std::size_t>(pattern + i * kPatterns)];
+    const Eigen::Vector2f& sample =
+        lamp_samples_[static_cast<std::size_t>(pattern + i * kPatterns)];
     const Eigen::Vector3f to_lamp =
         lamp.center_m + sample.x() * lamp.half_width_m + sample.y() * lamp.half_height_m - start;
     const float square = to_lamp.squaredNorm(), distance = std::sqrt(square);
-    const float falls = point.normal.dot(to_lamp) / distance, leaves = -lamp.normal.dot(to_lamp) / distance;
+    const float falls = point.normal.dot(to_lamp) / distance,
+                leaves = -lamp.normal.dot(to_lamp) / distance;
     if (falls <= 0 || leaves <= 0 || point.face_normal.dot(to_lamp) <= 0) continue;
     if (!scene_.occluded(start, to_lamp, 1 - kLeaveSurface_m))
       light += lamp.intensity * (falls * leaves / square);
@@ -109,8 +116,10 @@ Eigen::Vector3f Lighting::ambient_light(const SurfacePoint& point, int pattern) 
   const Eigen::Vector3f side = point.normal.unitOrthogonal(), other = point.normal.cross(side);
   int open = 0;
   for (int i = 0; i < config_.ambient_samples; ++i) {
-    const Eigen::Vector3f& sample = ambient_samples_[static_cast<std::size_t>(pattern + i * kPatterns)];
-    const Eigen::Vector3f direction = sample.x() * side + sample.y() * other + sample.z() * point.normal;
+    const Eigen::Vector3f& sample =
+        ambient_samples_[static_cast<std::size_t>(pattern + i * kPatterns)];
+    const Eigen::Vector3f direction =
+        sample.x() * side + sample.y() * other + sample.z() * point.normal;
     if (!scene_.occluded(start, direction, config_.ambient_reach_m)) ++open;
   }
   const float up = 0.5f * (point.normal.z() + 1);

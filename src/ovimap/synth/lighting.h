@@ -14,9 +14,9 @@ namespace ovimap {
 
 using LightImage = Image<Eigen::Vector3f>;  ///< linear RGB light falling on each pixel's surface
 
-/// Light on the surfaces of one image. Each pixel of a 4x4 block tests other points of the lamps and
-/// other directions; the blocks are then averaged over neighbours on the same plane (interleaved
-/// sampling: Keller and Heidrich, 2001), which gives soft shadows for few rays.
+/// Light on the surfaces of one image. Each pixel of a 4x4 block tests other points of the lamps
+/// and other directions; the blocks are then averaged over neighbours on the same plane
+/// (interleaved sampling: Keller and Heidrich, 2001), which gives soft shadows for few rays.
 class Lighting {
  public:
   Lighting(const SynthRoom& room, const RayScene& scene, const RenderConfig& config);

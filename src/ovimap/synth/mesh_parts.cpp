@@ -59,13 +59,16 @@ TexturedMesh placed_mesh(const TexturedMesh& model, const OrientedBox& box) {
   Eigen::Vector3f scale = Eigen::Vector3f::Ones();
   for (int i = 0; i < 3; ++i)
     if (size[i] > 0) scale[i] = wanted[i] / size[i];
-  const Eigen::Vector3f base(bounds(model).center().x(), bounds(model).center().y(), bounds(model).min().z());
-  const Eigen::Matrix3f turn = Eigen::AngleAxisf(box.yaw_rad, Eigen::Vector3f::UnitZ()).toRotationMatrix();
+  const Eigen::Vector3f base(bounds(model).center().x(), bounds(model).center().y(),
+                             bounds(model).min().z());
+  const Eigen::Matrix3f turn =
+      Eigen::AngleAxisf(box.yaw_rad, Eigen::Vector3f::UnitZ()).toRotationMatrix();
   const Eigen::Vector3f place(box.center_m.x(), box.center_m.y(), box.bottom_m);
   TexturedMesh mesh = model;
   for (Eigen::Vector3f& vertex : mesh.vertices)
     vertex = turn * (vertex - base).cwiseProduct(scale) + place;
-  for (Eigen::Vector3f& normal : mesh.normals) normal = (turn * normal.cwiseQuotient(scale)).normalized();
+  for (Eigen::Vector3f& normal : mesh.normals)
+    normal = (turn * normal.cwiseQuotient(scale)).normalized();
   return mesh;
 }
 

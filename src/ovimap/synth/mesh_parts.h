@@ -15,8 +15,8 @@ namespace ovimap {
 /// Appends a material and returns its index.
 std::uint32_t add_material(TexturedMesh& mesh, SurfaceMaterial material);
 
-/// Appends the parallelogram corner + a * u + b * v (0 <= a, b <= 1), texture coordinates running from
-/// `uv_low` at the corner to `uv_high` opposite it. Its normal is u x v.
+/// Appends the parallelogram corner + a * u + b * v (0 <= a, b <= 1), texture coordinates running
+/// from `uv_low` at the corner to `uv_high` opposite it. Its normal is u x v.
 void add_panel(TexturedMesh& mesh, const Eigen::Vector3f& corner, const Eigen::Vector3f& u,
                const Eigen::Vector3f& v, std::uint32_t material,
                const Eigen::Vector2f& uv_low = Eigen::Vector2f::Zero(),

@@ -34,12 +34,15 @@ std::shared_ptr<const RoomModel> made_model(const std::string& class_name,
 
 }  // namespace
 
-std::shared_ptr<const RoomModel> ModelStore::get(const std::string& class_name, const std::string& id,
-                                                 const Eigen::Vector3f& room_size_m, Random& random) {
+std::shared_ptr<const RoomModel> ModelStore::get(const std::string& class_name,
+                                                 const std::string& id,
+                                                 const Eigen::Vector3f& room_size_m,
+                                                 Random& random) {
   const auto& choices = models_of_class(class_name);
   if (!id.empty()) return load(id);
   if (!choices.empty()) return load(choices[random.index(choices.size())]);
-  if (class_name == "rug" || class_name == "picture") return made_model(class_name, room_size_m, random);
+  if (class_name == "rug" || class_name == "picture")
+    return made_model(class_name, room_size_m, random);
   throw Error(concat("furniture class '", class_name,
                      "': part of every room, it cannot be asked for as furniture"));
 }
@@ -51,7 +54,8 @@ std::shared_ptr<const RoomModel> ModelStore::load(const std::string& id) {
   const FurnitureEntry& entry = catalog_->find(id);
   auto made = std::make_shared<RoomModel>();
   made->name = entry.name;
-  made->source = concat("\"", entry.name, "\" (", entry.id, ") by ", entry.creator, ", ", entry.license);
+  made->source =
+      concat("\"", entry.name, "\" (", entry.id, ") by ", entry.creator, ", ", entry.license);
   made->mesh = load_furniture_model(entry);
   made->size_m = bounds(made->mesh).sizes();
   made->upper_side = HeightMap(made->mesh);

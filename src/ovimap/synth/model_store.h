@@ -27,11 +27,12 @@ struct RoomModel {
 /// Picks and loads the models of a room, each once.
 class ModelStore {
  public:
-  explicit ModelStore(std::filesystem::path furniture_folder) : folder_(std::move(furniture_folder)) {}
+  explicit ModelStore(std::filesystem::path furniture_folder)
+      : folder_(std::move(furniture_folder)) {}
 
-  /// The model of that catalogue id, or one of the class drawn by `random` when `id` is empty; pictures
-  /// and rugs are made up to fit a room of `room_size_m`. Throws Error when the furniture package is
-  /// missing, or the class or the id is unknown.
+  /// The model of that catalogue id, or one of the class drawn by `random` when `id` is empty;
+  /// pictures and rugs are made up to fit a room of `room_size_m`. Throws Error when the furniture
+  /// package is missing, or the class or the id is unknown.
   std::shared_ptr<const RoomModel> get(const std::string& class_name, const std::string& id,
                                        const Eigen::Vector3f& room_size_m, Random& random);
 

@@ -34,8 +34,8 @@ float footprint_overlap(const OrientedBox& a, const OrientedBox& b) {
   const auto corners_a = a.corners(), corners_b = b.corners();
   for (const Eigen::Vector2f& axis : {a.x_axis(), a.y_axis(), b.x_axis(), b.y_axis()}) {
     const auto range = [&axis](const std::array<Eigen::Vector2f, 4>& corners) {
-      const auto [low, high] = std::minmax({axis.dot(corners[0]), axis.dot(corners[1]),
-                                            axis.dot(corners[2]), axis.dot(corners[3])});
+      const auto [low, high] = std::minmax(
+          {axis.dot(corners[0]), axis.dot(corners[1]), axis.dot(corners[2]), axis.dot(corners[3])});
       return std::array{low, high};
     };
     const auto [low_a, high_a] = range(corners_a);

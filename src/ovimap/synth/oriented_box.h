@@ -24,8 +24,8 @@ struct OrientedBox {
   bool inside(const Eigen::Vector2f& room_size_m, float margin_m) const;
 };
 
-/// How deep two boxes overlap along the direction in which they overlap least, metres; negative: the
-/// gap between them (at least along one axis). Touching is zero.
+/// How deep two boxes overlap along the direction in which they overlap least, metres; negative:
+/// the gap between them (at least along one axis). Touching is zero.
 float overlap(const OrientedBox& a, const OrientedBox& b);
 
 /// The same for the footprints alone, whatever their heights.

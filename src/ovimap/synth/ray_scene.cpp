@@ -11,16 +11,18 @@
 namespace ovimap {
 namespace {
 
-// One build thread: the tree, and with it which of two coinciding surfaces wins, is always the same.
+// One build thread: the tree, and with it which of two coinciding surfaces wins, is always the
+// same.
 constexpr const char* kDeviceOptions = "threads=1,start_threads=0";
-// Where a sliver's own plane disagrees with Embree by more than this, its plane is not to be trusted.
+// Where a sliver's own plane disagrees with Embree by more than this, its plane is not to be
+// trusted.
 constexpr double kPlaneAgreement = 1e-3;
 
 void add_object(RTCDevice device, RTCScene scene, const TexturedMesh& mesh) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertices = static_cast<float*>(
-      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                              3 * sizeof(float), mesh.vertices.size()));
+  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
+                                                               RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                                               mesh.vertices.size()));
   for (const Eigen::Vector3f& vertex : mesh.vertices)
     for (int axis = 0; axis < 3; ++axis) *vertices++ = vertex[axis];
   auto* indices = static_cast<unsigned*>(
@@ -33,7 +35,8 @@ void add_object(RTCDevice device, RTCScene scene, const TexturedMesh& mesh) {
   rtcReleaseGeometry(geometry);
 }
 
-void fill_ray(RTCRay& ray, const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float reach) {
+void fill_ray(RTCRay& ray, const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
+              float reach) {
   ray.org_x = origin.x(), ray.org_y = origin.y(), ray.org_z = origin.z();
   ray.dir_x = direction.x(), ray.dir_y = direction.y(), ray.dir_z = direction.z();
   ray.tnear = 0, ray.tfar = reach, ray.time = 0;
@@ -56,7 +59,8 @@ RayScene::RayScene(std::span<const RoomObject> objects)
     : objects_(objects), handle_(std::make_unique<Handle>()) {
   rtcSetSceneFlags(handle_->scene, RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(handle_->scene, RTC_BUILD_QUALITY_HIGH);
-  for (const RoomObject& object : objects_) add_object(handle_->device, handle_->scene, object.mesh);
+  for (const RoomObject& object : objects_)
+    add_object(handle_->device, handle_->scene, object.mesh);
   rtcCommitScene(handle_->scene);
 }
 
@@ -67,7 +71,8 @@ RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 std::optional<RayHit> RayScene::trace(const Eigen::Vector3d& origin,
                                       const Eigen::Vector3d& direction) const {
   RTCRayHit query{};
-  fill_ray(query.ray, origin.cast<float>(), direction.cast<float>(), std::numeric_limits<float>::infinity());
+  fill_ray(query.ray, origin.cast<float>(), direction.cast<float>(),
+           std::numeric_limits<float>::infinity());
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);

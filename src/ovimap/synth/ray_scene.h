@@ -15,7 +15,7 @@ namespace ovimap {
 
 /// Where a ray meets a surface.
 struct RayHit {
-  double distance = 0;         ///< in lengths of the ray's direction, from the triangle's plane in double
+  double distance = 0;  ///< in lengths of the ray's direction, from the triangle's plane in double
   std::uint32_t object = 0;    ///< index into the objects
   std::uint32_t triangle = 0;  ///< index into that object's triangles
   Eigen::Vector3f weights;     ///< of the triangle's vertices at the hit, they add up to one

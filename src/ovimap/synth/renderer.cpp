@@ -15,7 +15,8 @@ namespace ovimap {
 namespace {
 
 constexpr std::size_t kRowsPerTask = 4;
-constexpr float kEdgeDepthRatio = 0.02f;  // neighbours farther apart than this share of depth: an edge
+constexpr float kEdgeDepthRatio =
+    0.02f;  // neighbours farther apart than this share of depth: an edge
 constexpr float kEdgeNormal = 0.9f;
 // Inside a pixel, at the corners of a rotated square: no two share a row or column.
 constexpr std::array<std::array<double, 2>, 4> kSubPixels = {
@@ -36,7 +37,8 @@ bool differs(const SurfacePoint& a, const SurfacePoint& b) {
 bool on_edge(const Image<SurfacePoint>& surfaces, int x, int y) {
   const SurfacePoint& center = surfaces.at(x, y);
   for (const auto [dx, dy] : {std::array{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
-    if (surfaces.contains(x + dx, y + dy) && differs(center, surfaces.at(x + dx, y + dy))) return true;
+    if (surfaces.contains(x + dx, y + dy) && differs(center, surfaces.at(x + dx, y + dy)))
+      return true;
   return false;
 }
 
@@ -70,7 +72,8 @@ void list_fields(RenderConfig& config, ConfigFields& fields) {
              "rays a pixel that look for surfaces hiding the ambient light");
   fields.add("ambient_reach_m", config.ambient_reach_m, 0.01f, 10.f,
              "how near a surface must be to hide ambient light, metres");
-  fields.add("exposure", config.exposure, 0.01f, 100.f, "factor on the light before the tone curve");
+  fields.add("exposure", config.exposure, 0.01f, 100.f,
+             "factor on the light before the tone curve");
 }
 
 struct Renderer::State {
@@ -85,12 +88,14 @@ struct Renderer::State {
     return surfaces;
   }
 
-  RgbImage draw(const PinholeCamera& camera, const Pose& pose, const Image<SurfacePoint>& surfaces) const {
+  RgbImage draw(const PinholeCamera& camera, const Pose& pose,
+                const Image<SurfacePoint>& surfaces) const {
     const LightImage light = lighting.gather(surfaces);
     RgbImage color(camera.width, camera.height);
     for_each_pixel(camera.width, camera.height, [&](int x, int y) {
       if (!on_edge(surfaces, x, y)) {
-        color.at(x, y) = srgb_from_linear(toned(surfaces.at(x, y), light.at(x, y), config.exposure));
+        color.at(x, y) =
+            srgb_from_linear(toned(surfaces.at(x, y), light.at(x, y), config.exposure));
         return;
       }
       Eigen::Vector3f sum = Eigen::Vector3f::Zero();

@@ -16,24 +16,24 @@ namespace ovimap {
 class ConfigFields;
 
 struct RenderConfig {
-  int light_samples = 2;          ///< shadow rays a pixel and light
-  int ambient_samples = 2;        ///< rays a pixel that look for nearby surfaces hiding the ambient light
-  float ambient_reach_m = 0.7f;   ///< how near a surface must be to hide ambient light
-  float exposure = 1.f;           ///< factor on the light before the tone curve
+  int light_samples = 1;    ///< shadow rays a pixel and light
+  int ambient_samples = 2;  ///< rays a pixel that look for nearby surfaces hiding the ambient light
+  float ambient_reach_m = 0.7f;  ///< how near a surface must be to hide ambient light
+  float exposure = 1.f;          ///< factor on the light before the tone curve
 };
 void list_fields(RenderConfig& config, ConfigFields& fields);
 
 /// What a camera without noise sees. All images have the camera's size.
 struct RenderedView {
-  RgbImage color;              ///< empty when it was not asked for
-  DepthImage depth;            ///< exact, along the optical axis, metres; 0 where a ray leaves the room
-  IdImage ids;                 ///< RoomObject::id of the same ray; 0 where it leaves the room
+  RgbImage color;    ///< empty when it was not asked for
+  DepthImage depth;  ///< exact, along the optical axis, metres; 0 where a ray leaves the room
+  IdImage ids;       ///< RoomObject::id of the same ray; 0 where it leaves the room
   Image<float> incidence_cos;  ///< between the ray and the surface's normal, 0 (grazing) to 1
 };
 
 /// Draws a room: one ray a pixel for depth and ids, diffuse light of the room's lamps with shadows,
-/// ambient light dimmed in corners. Edges of objects are smoothed in the colour image only. The result
-/// does not depend on the number of threads.
+/// ambient light dimmed in corners. Edges of objects are smoothed in the colour image only. The
+/// result does not depend on the number of threads.
 class Renderer {
  public:
   /// `room` must outlive the renderer.

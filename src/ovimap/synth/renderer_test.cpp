@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/synth/renderer.h"
 
+#include <array>
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "ovimap/base/parallel.h"
@@ -58,9 +61,9 @@ TEST_F(RendererTest, DepthIsExactOnEveryPlane) {
       const Eigen::Vector3f place = p.cast<float>();
       ASSERT_LT(object.box.exteriorDistance(place), 1e-5f) << object.name;  // ids and depth agree
     }
-  EXPECT_GT(pixels[1], 100);                       // floor
-  EXPECT_GT(pixels[3] + pixels[4], 100);           // east and north wall
-  EXPECT_GT(pixels[room_.objects.size()], 50);     // the box
+  EXPECT_GT(pixels[1], 100);                    // floor
+  EXPECT_GT(pixels[3] + pixels[4], 100);        // east and north wall
+  EXPECT_GT(pixels[room_.objects.size()], 50);  // the box
 }
 
 TEST_F(RendererTest, IncidenceIsTheAngleToTheSurface) {
@@ -110,7 +113,8 @@ TEST(TextureTest, FarSurfacesShowTheMeanAndNearOnesTheirPixels) {
 
 TEST(TextureTest, LightAndBytesAreInverse) {
   for (int i = 0; i < 256; ++i)
-    EXPECT_NEAR(srgb_from_linear(linear_from_srgb(static_cast<std::uint8_t>(i))), i, i < 12 ? 1 : 0);
+    EXPECT_NEAR(srgb_from_linear(linear_from_srgb(static_cast<std::uint8_t>(i))), i,
+                i < 12 ? 1 : 0);
 }
 
 }  // namespace

@@ -17,20 +17,21 @@ namespace ovimap {
 
 /// One instance of a room: a piece of furniture, a wall, the floor, a picture.
 struct RoomObject {
-  std::uint16_t id = 0;    ///< 1, 2, ... in the room's order
-  std::string name;        ///< "Coffee mug", "north wall"
-  std::string class_name;  ///< "mug", "wall"
-  std::string source;      ///< who made the model and its licence; empty for our own surfaces
-  TexturedMesh mesh;       ///< in the world frame: metres, z up, floor at z = 0
-  Eigen::AlignedBox3f box; ///< of the mesh
+  std::uint16_t id = 0;     ///< 1, 2, ... in the room's order
+  std::string name;         ///< "Coffee mug", "north wall"
+  std::string class_name;   ///< "mug", "wall"
+  std::string source;       ///< who made the model and its licence; empty for our own surfaces
+  TexturedMesh mesh;        ///< in the world frame: metres, z up, floor at z = 0
+  Eigen::AlignedBox3f box;  ///< of the mesh
   std::optional<OrientedBox> footprint;  ///< the space it takes; floor, walls and ceiling have none
 };
 
 /// A rectangle that shines to one side.
 struct AreaLight {
   Eigen::Vector3f center_m, half_width_m, half_height_m;
-  Eigen::Vector3f normal;     ///< unit length, the side that shines
-  Eigen::Vector3f intensity;  ///< linear RGB along the normal: what falls on a surface 1 m away, facing it
+  Eigen::Vector3f normal;  ///< unit length, the side that shines
+  Eigen::Vector3f
+      intensity;  ///< linear RGB along the normal: what falls on a surface 1 m away, facing it
 };
 
 /// A furnished room. The floor is z = 0; the room spans [0, width] x [0, depth] x [0, height].

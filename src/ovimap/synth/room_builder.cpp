@@ -14,15 +14,15 @@ namespace ovimap {
 namespace {
 
 constexpr int kLayouts = 60;
-constexpr float kInWallDepth_m = 0.07f;    // what is seen of doors and windows
+constexpr float kInWallDepth_m = 0.07f;  // what is seen of doors and windows
 constexpr float kWindowSill_m = 0.85f;
-constexpr float kWindowClear_m = 0.35f;    // no tall furniture nearer to a window
+constexpr float kWindowClear_m = 0.35f;  // no tall furniture nearer to a window
 constexpr float kPictureCenter_m = 1.55f;
 constexpr float kLampGlow = 2.f;
-constexpr float kLampHalf_m = 0.25f;       // of the shining square below a ceiling lamp
+constexpr float kLampHalf_m = 0.25f;  // of the shining square below a ceiling lamp
 constexpr float kLightGap_m = 0.02f;
-const Eigen::Vector3f kLampLight(0.30f, 0.285f, 0.26f);    // per square metre of floor
-const Eigen::Vector3f kWindowLight(1.5f, 1.6f, 1.7f);      // per square metre of window
+const Eigen::Vector3f kLampLight(0.30f, 0.285f, 0.26f);  // per square metre of floor
+const Eigen::Vector3f kWindowLight(1.5f, 1.6f, 1.7f);    // per square metre of window
 const Eigen::Vector3f kAmbient(0.46f, 0.46f, 0.47f);
 
 enum BuildStream : std::uint64_t { kModelStream = 1, kOutdoorStream = 2, kLayoutStream = 1000 };
@@ -72,15 +72,23 @@ class Arranger {
         const bool door = piece.request->class_name == "door";
         return layout_.on_wall({size.x(), kInWallDepth_m, size.z()}, door ? 0 : kWindowSill_m);
       }
-      case Placement::kAgainstWall: return layout_.against_wall(size);
-      case Placement::kInCorner: return layout_.in_corner(size);
-      case Placement::kInMiddle: return layout_.in_middle(size);
-      case Placement::kOnFloor: return layout_.on_floor(size);
-      case Placement::kOnWall: return layout_.on_wall(size, kPictureCenter_m - size.z() / 2);
-      case Placement::kOnCeiling: return on_ceiling(piece);
-      case Placement::kRug: return rug(size);
+      case Placement::kAgainstWall:
+        return layout_.against_wall(size);
+      case Placement::kInCorner:
+        return layout_.in_corner(size);
+      case Placement::kInMiddle:
+        return layout_.in_middle(size);
+      case Placement::kOnFloor:
+        return layout_.on_floor(size);
+      case Placement::kOnWall:
+        return layout_.on_wall(size, kPictureCenter_m - size.z() / 2);
+      case Placement::kOnCeiling:
+        return on_ceiling(piece);
+      case Placement::kRug:
+        return rug(size);
       case Placement::kAround:
-      case Placement::kOnTop: return at_support(piece);
+      case Placement::kOnTop:
+        return at_support(piece);
     }
     return std::nullopt;
   }
@@ -119,7 +127,8 @@ class Arranger {
     for (const Placed& placed : placed_)
       if (placed.piece->request->placement == Placement::kInMiddle)
         center = layout_.pieces()[placed.number].center_m;
-    const Eigen::Vector2f half = size.head<2>() / 2, margin = half + Eigen::Vector2f::Constant(0.05f);
+    const Eigen::Vector2f half = size.head<2>() / 2,
+                          margin = half + Eigen::Vector2f::Constant(0.05f);
     center = center.cwiseMax(margin).cwiseMin(spec_.size_m.head<2>() - margin);
     return {center, half, 0, 0, size.z()};
   }
@@ -144,10 +153,12 @@ std::vector<Piece> pick_models(const RoomSpec& spec, ModelStore& store) {
   Random random(spec.seed, kModelStream);
   std::vector<Piece> pieces;
   for (const FurnitureRequest& request : spec.furniture) {
-    const bool alike = request.placement == Placement::kAround || request.placement == Placement::kOnCeiling;
+    const bool alike =
+        request.placement == Placement::kAround || request.placement == Placement::kOnCeiling;
     std::shared_ptr<const RoomModel> model;
     for (int i = 0; i < request.count; ++i) {
-      if (!model || !alike) model = store.get(request.class_name, request.model, spec.size_m, random);
+      if (!model || !alike)
+        model = store.get(request.class_name, request.model, spec.size_m, random);
       pieces.push_back({&request, model});
     }
   }
@@ -156,7 +167,10 @@ std::vector<Piece> pick_models(const RoomSpec& spec, ModelStore& store) {
 
 AreaLight lamp_light(const OrientedBox& box, float floor_area_m2) {
   const Eigen::Vector3f center(box.center_m.x(), box.center_m.y(), box.bottom_m - kLightGap_m);
-  return {center, {kLampHalf_m, 0, 0}, {0, kLampHalf_m, 0}, -Eigen::Vector3f::UnitZ(),
+  return {center,
+          {kLampHalf_m, 0, 0},
+          {0, kLampHalf_m, 0},
+          -Eigen::Vector3f::UnitZ(),
           kLampLight * floor_area_m2};
 }
 
@@ -208,7 +222,8 @@ SynthRoom build_room(const RoomSpec& spec, const std::filesystem::path& furnitur
   const std::vector<Piece> pieces = pick_models(spec, store);
   Arrangement best;
   for (int i = 0; i < kLayouts && (i == 0 || best.missing > 0); ++i) {
-    const std::uint64_t seed = Random(spec.seed, kLayoutStream + static_cast<std::uint64_t>(i)).bits();
+    const std::uint64_t seed =
+        Random(spec.seed, kLayoutStream + static_cast<std::uint64_t>(i)).bits();
     Arrangement arrangement = Arranger(spec, pieces, config, seed).arrange();
     if (i == 0 || arrangement.missing < best.missing) best = std::move(arrangement);
   }
@@ -219,9 +234,10 @@ SynthRoom build_room(const RoomSpec& spec, const std::filesystem::path& furnitur
   room.size_m = spec.size_m;
   room.ambient = kAmbient;
   room.objects = room_shell(spec);
-  const auto lamps = static_cast<std::size_t>(
-      std::count_if(pieces.begin(), pieces.end(),
-                    [](const Piece& piece) { return piece.request->class_name == "ceiling lamp"; }));
+  const auto lamps =
+      static_cast<std::size_t>(std::count_if(pieces.begin(), pieces.end(), [](const Piece& piece) {
+        return piece.request->class_name == "ceiling lamp";
+      }));
   for (std::size_t i = 0; i < pieces.size(); ++i)
     if (best.boxes[i]) add_piece(pieces[i], *best.boxes[i], lamps, room);
   if (room.lights.empty()) {

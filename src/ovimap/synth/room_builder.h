@@ -11,10 +11,10 @@
 
 namespace ovimap {
 
-/// Makes the room of a spec: the same spec gives the same room on every machine. Several layouts are
-/// drawn from the seed and the one that holds the most pieces is taken; pieces without a place are left
-/// out. Throws Error when furniture is asked for and its package is missing, or a class or model is
-/// unknown.
+/// Makes the room of a spec: the same spec gives the same room on every machine. Several layouts
+/// are drawn from the seed and the one that holds the most pieces is taken; pieces without a place
+/// are left out. Throws Error when furniture is asked for and its package is missing, or a class or
+/// model is unknown.
 SynthRoom build_room(const RoomSpec& spec,
                      const std::filesystem::path& furniture_folder = default_furniture_folder(),
                      const LayoutConfig& config = {});

@@ -17,7 +17,8 @@ constexpr float kMiddleShare = 0.5f;      // of the room, where middle pieces ha
 constexpr float kFloorNearWall_m = 0.9f;  // small things on the floor lie within this of a wall
 constexpr float kLongSide_m = 1.2f;       // a table side this long takes two chairs
 
-OrientedBox box_of(const Eigen::Vector3f& size_m, const Eigen::Vector2f& center, float yaw, float bottom) {
+OrientedBox box_of(const Eigen::Vector3f& size_m, const Eigen::Vector2f& center, float yaw,
+                   float bottom) {
   return {center, size_m.head<2>() / 2, yaw, bottom, bottom + size_m.z()};
 }
 
@@ -31,12 +32,15 @@ bool collide(const OrientedBox& a, const OrientedBox& b, float gap_m) {
 void list_fields(LayoutConfig& config, ConfigFields& fields) {
   fields.add("tries", config.tries, 1, 100000, "random places tried for each piece");
   fields.add("gap_m", config.gap_m, 0.f, 1.f, "least distance between pieces on the floor, metres");
-  fields.add("wall_gap_m", config.wall_gap_m, 0.f, 1.f, "between a piece and the wall behind it, metres");
+  fields.add("wall_gap_m", config.wall_gap_m, 0.f, 1.f,
+             "between a piece and the wall behind it, metres");
   fields.add("front_clearance_m", config.front_clearance_m, 0.f, 5.f,
              "kept free in front of pieces along the walls, metres");
-  fields.add("door_clearance_m", config.door_clearance_m, 0.f, 5.f, "kept free in front of doors, metres");
+  fields.add("door_clearance_m", config.door_clearance_m, 0.f, 5.f,
+             "kept free in front of doors, metres");
   fields.add("chair_gap_m", config.chair_gap_m, 0.f, 1.f, "between a chair and its table, metres");
-  fields.add("surface_gap_m", config.surface_gap_m, 0.f, 1.f, "between things on one surface, metres");
+  fields.add("surface_gap_m", config.surface_gap_m, 0.f, 1.f,
+             "between things on one surface, metres");
   fields.add("surface_tolerance_m", config.surface_tolerance_m, 0.f, 0.1f,
              "unevenness under a thing on a surface, metres");
   fields.add("yaw_jitter_rad", config.yaw_jitter_rad, 0.f, kPi,
@@ -50,16 +54,18 @@ std::array<WallLine, 4> wall_lines(const Eigen::Vector2f& size) {
            {"west wall", {0, size.y()}, {0, -1}, {1, 0}, size.y()}}};
 }
 
-float yaw_facing(const Eigen::Vector2f& direction) { return std::atan2(direction.x(), -direction.y()); }
+float yaw_facing(const Eigen::Vector2f& direction) {
+  return std::atan2(direction.x(), -direction.y());
+}
 
-RoomLayout::RoomLayout(const Eigen::Vector3f& room_size_m, std::uint64_t seed, const LayoutConfig& config)
+RoomLayout::RoomLayout(const Eigen::Vector3f& room_size_m, std::uint64_t seed,
+                       const LayoutConfig& config)
     : room_size_m_(room_size_m), config_(config), random_(seed) {}
 
 bool RoomLayout::free_of_pieces(const OrientedBox& box) const {
   if (!box.inside(room_size_m_.head<2>(), 0) || box.top_m > room_size_m_.z()) return false;
-  return std::none_of(pieces_.begin(), pieces_.end(), [&](const OrientedBox& other) {
-    return collide(box, other, config_.gap_m);
-  });
+  return std::none_of(pieces_.begin(), pieces_.end(),
+                      [&](const OrientedBox& other) { return collide(box, other, config_.gap_m); });
 }
 
 bool RoomLayout::fits(const OrientedBox& box) const {
@@ -137,7 +143,8 @@ std::optional<OrientedBox> RoomLayout::on_wall(const Eigen::Vector3f& size_m, fl
   return std::nullopt;
 }
 
-std::optional<OrientedBox> RoomLayout::around(const OrientedBox& table, const Eigen::Vector3f& size_m) {
+std::optional<OrientedBox> RoomLayout::around(const OrientedBox& table,
+                                              const Eigen::Vector3f& size_m) {
   for (int i = 0; i < config_.tries; ++i) {
     const bool long_side = (table.half_m.x() >= table.half_m.y()) == (random_.index(4) != 0);
     const float sign = random_.index(2) == 0 ? 1.f : -1.f;
@@ -151,7 +158,8 @@ std::optional<OrientedBox> RoomLayout::around(const OrientedBox& table, const Ei
     place[along] += random_.uniform(-config_.chair_gap_m, config_.chair_gap_m);
     const Eigen::Vector2f facing = -(outward.x() * table.x_axis() + outward.y() * table.y_axis());
     const float turn = random_.uniform(-config_.yaw_jitter_rad, config_.yaw_jitter_rad);
-    const OrientedBox box = box_of(size_m, table.world_from_box(place), yaw_facing(facing) + turn, 0);
+    const OrientedBox box =
+        box_of(size_m, table.world_from_box(place), yaw_facing(facing) + turn, 0);
     if (fits(box)) return box;
   }
   return std::nullopt;
@@ -167,9 +175,10 @@ std::optional<OrientedBox> RoomLayout::on_top(std::size_t support, const HeightM
     const OrientedBox local = box_of(size_m, part.cwiseProduct(carrier.half_m), turn, 0);
     const auto height = upper_side.rest(local, config_.surface_tolerance_m);
     if (!height) continue;
-    const OrientedBox box = box_of(size_m, carrier.world_from_box(local.center_m), carrier.yaw_rad + turn,
-                                   *height + kRestGap_m);
-    bool free = box.inside(room_size_m_.head<2>(), config_.wall_gap_m) && box.top_m < room_size_m_.z();
+    const OrientedBox box = box_of(size_m, carrier.world_from_box(local.center_m),
+                                   carrier.yaw_rad + turn, *height + kRestGap_m);
+    bool free =
+        box.inside(room_size_m_.head<2>(), config_.wall_gap_m) && box.top_m < room_size_m_.z();
     for (std::size_t k = 0; free && k < pieces_.size(); ++k)
       free = k == support || !collide(box, pieces_[k], config_.surface_gap_m);
     if (free) return box;

@@ -18,15 +18,15 @@ namespace ovimap {
 class ConfigFields;
 
 struct LayoutConfig {
-  int tries = 400;                   ///< random places tried for each piece
-  float gap_m = 0.04f;               ///< least distance between pieces on the floor
-  float wall_gap_m = 0.02f;          ///< between a piece and the wall behind it
-  float front_clearance_m = 0.3f;    ///< kept free in front of pieces along the walls
-  float door_clearance_m = 0.8f;     ///< kept free in front of doors
-  float chair_gap_m = 0.05f;         ///< between a chair and its table
-  float surface_gap_m = 0.02f;       ///< between things on one surface
+  int tries = 400;                     ///< random places tried for each piece
+  float gap_m = 0.04f;                 ///< least distance between pieces on the floor
+  float wall_gap_m = 0.02f;            ///< between a piece and the wall behind it
+  float front_clearance_m = 0.3f;      ///< kept free in front of pieces along the walls
+  float door_clearance_m = 0.8f;       ///< kept free in front of doors
+  float chair_gap_m = 0.05f;           ///< between a chair and its table
+  float surface_gap_m = 0.02f;         ///< between things on one surface
   float surface_tolerance_m = 0.008f;  ///< unevenness under a thing
-  float yaw_jitter_rad = 0.2f;       ///< how carelessly chairs and small things are turned
+  float yaw_jitter_rad = 0.2f;         ///< how carelessly chairs and small things are turned
 };
 void list_fields(LayoutConfig& config, ConfigFields& fields);
 
@@ -42,10 +42,12 @@ std::array<WallLine, 4> wall_lines(const Eigen::Vector2f& room_size_m);
 float yaw_facing(const Eigen::Vector2f& direction);
 
 /// Finds places for pieces so that no two occupy the same space. A piece is found a place for, then
-/// added. Sizes are width, depth, height in metres. Every finder returns nothing when all tries failed.
+/// added. Sizes are width, depth, height in metres. Every finder returns nothing when all tries
+/// failed.
 class RoomLayout {
  public:
-  RoomLayout(const Eigen::Vector3f& room_size_m, std::uint64_t seed, const LayoutConfig& config = {});
+  RoomLayout(const Eigen::Vector3f& room_size_m, std::uint64_t seed,
+             const LayoutConfig& config = {});
 
   [[nodiscard]] std::optional<OrientedBox> against_wall(const Eigen::Vector3f& size_m);
   [[nodiscard]] std::optional<OrientedBox> in_corner(const Eigen::Vector3f& size_m);
@@ -54,7 +56,8 @@ class RoomLayout {
   /// Flat on a wall, its lower edge at `bottom_m`.
   [[nodiscard]] std::optional<OrientedBox> on_wall(const Eigen::Vector3f& size_m, float bottom_m);
   /// At a side of `table`, facing it.
-  [[nodiscard]] std::optional<OrientedBox> around(const OrientedBox& table, const Eigen::Vector3f& size_m);
+  [[nodiscard]] std::optional<OrientedBox> around(const OrientedBox& table,
+                                                  const Eigen::Vector3f& size_m);
   /// On the upper side of the added piece number `support`. `aligned`: facing as that piece does.
   [[nodiscard]] std::optional<OrientedBox> on_top(std::size_t support, const HeightMap& upper_side,
                                                   const Eigen::Vector3f& size_m, bool aligned);
@@ -72,7 +75,8 @@ class RoomLayout {
  private:
   bool free_of_pieces(const OrientedBox& box) const;
   bool fits(const OrientedBox& box) const;  ///< and free of the spaces kept clear
-  OrientedBox at_wall(const WallLine& wall, float position_m, float gap_m, const Eigen::Vector3f& size_m) const;
+  OrientedBox at_wall(const WallLine& wall, float position_m, float gap_m,
+                      const Eigen::Vector3f& size_m) const;
 
   Eigen::Vector3f room_size_m_;
   LayoutConfig config_;

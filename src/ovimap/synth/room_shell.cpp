@@ -36,10 +36,12 @@ RoomObject shell_object(const std::string& name, const std::string& class_name, 
 }
 
 RoomObject floor_object(const RoomSpec& spec) {
-  const SurfacePattern pattern = floor_pattern(spec.floor_style, Random(spec.seed, kFloorStream).bits());
+  const SurfacePattern pattern =
+      floor_pattern(spec.floor_style, Random(spec.seed, kFloorStream).bits());
   TexturedMesh mesh;
   const auto material = add_material(mesh, textured(pattern));
-  const Eigen::Vector2f repeats(spec.size_m.x() / pattern.width_m, spec.size_m.y() / pattern.height_m);
+  const Eigen::Vector2f repeats(spec.size_m.x() / pattern.width_m,
+                                spec.size_m.y() / pattern.height_m);
   add_panel(mesh, {0, 0, 0}, {spec.size_m.x(), 0, 0}, {0, spec.size_m.y(), 0}, material,
             Eigen::Vector2f::Zero(), repeats);
   return shell_object("floor", "floor", std::move(mesh));
@@ -50,7 +52,8 @@ RoomObject ceiling_object(const RoomSpec& spec) {
   SurfaceMaterial paint;
   paint.albedo = kCeilingColor;
   const auto material = add_material(mesh, paint);
-  add_panel(mesh, {0, 0, spec.size_m.z()}, {0, spec.size_m.y(), 0}, {spec.size_m.x(), 0, 0}, material);
+  add_panel(mesh, {0, 0, spec.size_m.z()}, {0, spec.size_m.y(), 0}, {spec.size_m.x(), 0, 0},
+            material);
   return shell_object("ceiling", "ceiling", std::move(mesh));
 }
 
@@ -118,7 +121,8 @@ TexturedMesh outdoor_model(const Eigen::Vector3f& size, std::uint64_t seed) {
   TexturedMesh mesh;
   SurfaceMaterial view = textured(outdoor_pattern(size.x(), size.z(), seed));
   view.emission.setConstant(kOutdoorGlow);
-  add_panel(mesh, {-size.x() / 2, 0, 0}, {size.x(), 0, 0}, {0, 0, size.z()}, add_material(mesh, view));
+  add_panel(mesh, {-size.x() / 2, 0, 0}, {size.x(), 0, 0}, {0, 0, size.z()},
+            add_material(mesh, view));
   return mesh;
 }
 

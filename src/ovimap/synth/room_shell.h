@@ -13,7 +13,8 @@ namespace ovimap {
 /// Floor, four walls with skirting boards, ceiling; ids are not set yet.
 std::vector<RoomObject> room_shell(const RoomSpec& spec);
 
-/// Flat things made without a model, in their own frame like a furniture model (front -y, base at z = 0).
+/// Flat things made without a model, in their own frame like a furniture model (front -y, base at z
+/// = 0).
 TexturedMesh picture_model(const Eigen::Vector3f& size_m, std::uint64_t seed);
 TexturedMesh rug_model(const Eigen::Vector3f& size_m, std::uint64_t seed);
 /// The view behind a window's panes, shining.

@@ -11,7 +11,11 @@ namespace {
 /// A camera of 67 degrees across, as depth cameras have.
 PinholeCamera depth_camera(int width, int height) {
   const float focal_px = 0.75f * static_cast<float>(width);
-  return {width, height, focal_px, focal_px, 0.5f * static_cast<float>(width - 1),
+  return {width,
+          height,
+          focal_px,
+          focal_px,
+          0.5f * static_cast<float>(width - 1),
           0.5f * static_cast<float>(height - 1)};
 }
 
@@ -27,19 +31,23 @@ RoomSpec tiny_spec() {
   RoomSpec spec = bare_spec();
   using enum Placement;
   const std::vector<std::string> tables = {"table"}, low = {"cabinet"};
-  spec.furniture = {
-      {"door", kInWall, 1, {}, ""},         {"window", kInWall, 1, {}, ""},
-      {"sofa", kAgainstWall, 1, {}, "BlendSwap-CC-0/sofa2"},
-      {"bookshelf", kAgainstWall, 1, {}, "KatorLegaz/full-bookcase"},
-      {"cabinet", kAgainstWall, 1, {}, "BlendSwap-CC-0/shelves"},
-      {"table", kInMiddle, 1, {}, "Scopia/white_kitchen_table"},
-      {"chair", kAround, 2, tables, "BlendSwap-CC-BY/plaidChair"},
-      {"plant", kInCorner, 1, {}, "BlendSwap-CC-0/decorativePlant"},
-      {"trash can", kOnFloor, 1, {}, ""},   {"lamp", kOnTop, 1, low, "Scopia/little_lamp1"},
-      {"laptop", kOnTop, 1, tables, ""},    {"mug", kOnTop, 1, tables, "Scopia/cup"},
-      {"book", kOnTop, 1, tables, ""},      {"bowl", kOnTop, 1, tables, "Scopia/bowlWithFruits"},
-      {"picture", kOnWall, 1, {}, ""},      {"rug", kRug, 1, {}, ""},
-      {"ceiling lamp", kOnCeiling, 1, {}, ""}};
+  spec.furniture = {{"door", kInWall, 1, {}, ""},
+                    {"window", kInWall, 1, {}, ""},
+                    {"sofa", kAgainstWall, 1, {}, "BlendSwap-CC-0/sofa2"},
+                    {"bookshelf", kAgainstWall, 1, {}, "KatorLegaz/full-bookcase"},
+                    {"cabinet", kAgainstWall, 1, {}, "BlendSwap-CC-0/shelves"},
+                    {"table", kInMiddle, 1, {}, "Scopia/white_kitchen_table"},
+                    {"chair", kAround, 2, tables, "BlendSwap-CC-BY/plaidChair"},
+                    {"plant", kInCorner, 1, {}, "BlendSwap-CC-0/decorativePlant"},
+                    {"trash can", kOnFloor, 1, {}, ""},
+                    {"lamp", kOnTop, 1, low, "Scopia/little_lamp1"},
+                    {"laptop", kOnTop, 1, tables, ""},
+                    {"mug", kOnTop, 1, tables, "Scopia/cup"},
+                    {"book", kOnTop, 1, tables, ""},
+                    {"bowl", kOnTop, 1, tables, "Scopia/bowlWithFruits"},
+                    {"picture", kOnWall, 1, {}, ""},
+                    {"rug", kRug, 1, {}, ""},
+                    {"ceiling lamp", kOnCeiling, 1, {}, ""}};
   return spec;
 }
 

@@ -19,12 +19,12 @@ enum class Placement {
   kAgainstWall,  ///< back to a wall, front facing inwards
   kInCorner,
   kInMiddle,
-  kAround,       ///< at the sides of pieces of the named classes, facing them: chairs at a table
-  kOnTop,        ///< on pieces of the named classes
-  kOnFloor,      ///< anywhere free, near the walls
-  kOnWall,       ///< hung on a wall: pictures
+  kAround,   ///< at the sides of pieces of the named classes, facing them: chairs at a table
+  kOnTop,    ///< on pieces of the named classes
+  kOnFloor,  ///< anywhere free, near the walls
+  kOnWall,   ///< hung on a wall: pictures
   kOnCeiling,
-  kRug,          ///< flat on the floor; furniture may stand on it
+  kRug,  ///< flat on the floor; furniture may stand on it
 };
 
 struct FurnitureRequest {
@@ -50,8 +50,8 @@ struct RoomSpec {
   PinholeCamera camera;
 };
 
-/// The rooms that can be made by name: "tiny" (3.6 x 3.1 m, 40 frames of 320x240) and "bare" (the same
-/// without furniture, which needs no furniture package). Throws Error for another name.
+/// The rooms that can be made by name: "tiny" (3.6 x 3.1 m, 40 frames of 320x240) and "bare" (the
+/// same without furniture, which needs no furniture package). Throws Error for another name.
 RoomSpec room_spec(const std::string& name, std::uint64_t seed = 1);
 std::vector<std::string> room_names();
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/synth/sensor_noise.h"
 
+#include <cmath>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -25,7 +26,8 @@ Spread spread_of(const DepthImage& depth) {
   for (const float value : depth)
     if (value > 0) sum += value, squares += value * value, ++valid;
   const double mean = sum / valid;
-  return {mean, std::sqrt(squares / valid - mean * mean), 1 - valid / static_cast<double>(depth.size())};
+  return {mean, std::sqrt(squares / valid - mean * mean),
+          1 - valid / static_cast<double>(depth.size())};
 }
 
 TEST(SensorNoise, SpreadGrowsAsTheModelSays) {

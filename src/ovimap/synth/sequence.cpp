@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/synth/sequence.h"
 
+#include <array>
 #include <cstdio>
 #include <set>
 
@@ -93,7 +94,8 @@ std::optional<IdImage> SynthSequence::truth_ids(std::int64_t position) const {
 std::vector<TruthInstance> SynthSequence::instances() const {
   std::vector<TruthInstance> instances;
   for (const RoomObject& object : state_->room.objects)
-    instances.push_back({object.id, object.name, room_class_id(object.class_name), object.class_name});
+    instances.push_back(
+        {object.id, object.name, room_class_id(object.class_name), object.class_name});
   return instances;
 }
 
@@ -106,14 +108,25 @@ std::string SynthSequence::notice() const {
   std::set<std::string> sources;
   for (const RoomObject& object : state_->room.objects)
     if (!object.source.empty()) sources.insert(object.source);
-  std::string text = concat("# Notice\n\nThe room \"", state_->room.name, "\" (seed ", state_->room.seed,
-                            ") was drawn by ovimap.\n");
+  std::string text = concat("# Notice\n\nThe room \"", state_->room.name, "\" (seed ",
+                            state_->room.seed, ") was drawn by ovimap.\n");
   if (sources.empty()) return text;
   text +=
-      "It shows these models of the Sweet Home 3D furniture libraries (https://www.sweethome3d.com), "
+      "It shows these models of the Sweet Home 3D furniture libraries "
+      "(https://www.sweethome3d.com), "
       "scaled, turned and placed:\n\n";
   for (const std::string& source : sources) text += "- " + source + "\n";
   return text;
+}
+
+std::string SynthSequence::settings() const {
+  const PinholeCamera& camera = state_->camera;
+  ConfigFields fields;
+  list_fields(state_->config, fields);
+  return concat("room: ", state_->room.name, "\nseed: ", state_->room.seed, "\nframes: ", size(),
+                "\ncamera: {width: ", camera.width, ", height: ", camera.height,
+                ", fx: ", camera.fx, ", fy: ", camera.fy, ", cx: ", camera.cx, ", cy: ", camera.cy,
+                "}\n", fields.dump());
 }
 
 }  // namespace ovimap

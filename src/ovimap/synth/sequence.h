@@ -33,9 +33,9 @@ struct TruthInstance {
   std::string class_name;
 };
 
-/// A walk through a room as a sequence of posed RGB-D frames with exact truth. Frames are drawn when
-/// read, each from its position and the room's seed alone: any order and any subset gives the same
-/// bits. Colour and depth share one camera.
+/// A walk through a room as a sequence of posed RGB-D frames with exact truth. Frames are drawn
+/// when read, each from its position and the room's seed alone: any order and any subset gives the
+/// same bits. Colour and depth share one camera.
 class SynthSequence final : public FrameSource {
  public:
   SynthSequence(SynthRoom room, const PinholeCamera& camera, int frames,
@@ -59,6 +59,8 @@ class SynthSequence final : public FrameSource {
   Mesh truth_mesh() const;
   /// Who made the models in the room, as a text to go beside anything drawn from it (Markdown).
   std::string notice() const;
+  /// Everything the frames depend on, as YAML: two sequences with the same settings are the same.
+  std::string settings() const;
 
  private:
   struct State;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/synth/sequence.h"
 
+#include <algorithm>
 #include <map>
 #include <numbers>
 
@@ -29,7 +30,8 @@ std::string error_of(const RoomSpec& spec, const std::filesystem::path& folder) 
 
 TEST(RoomSpecTest, UnknownRoomsAndMissingFurnitureAreSaid) {
   EXPECT_THROW(room_spec("tinny"), Error);
-  EXPECT_NE(error_of(room_spec("tiny"), "/nowhere").find("sweethome3d-furniture"), std::string::npos);
+  EXPECT_NE(error_of(room_spec("tiny"), "/nowhere").find("sweethome3d-furniture"),
+            std::string::npos);
   EXPECT_EQ(error_of(room_spec("bare"), "/nowhere"), "no error");
   RoomSpec spec = room_spec("bare");
   spec.furniture = {{"wall", Placement::kAgainstWall, 1, {}, ""}};
@@ -86,11 +88,27 @@ TEST(SynthSequenceTest, NoiseMovesDepthButNotItsMean) {
   EXPECT_NEAR(sum / valid, 0, 0.01);
 }
 
+TEST(SynthSequenceTest, SettingsTellSequencesApart) {
+  SynthSequenceConfig noisy;
+  noisy.noise = true;
+  const auto settings = [](std::uint64_t seed, int frames, const SynthSequenceConfig& config) {
+    return SynthSequence(build_room(room_spec("bare", seed)), kSmall, frames, config).settings();
+  };
+  const std::string plain = settings(1, 2, {});
+  EXPECT_NE(plain.find("room: bare\nseed: 1\nframes: 2\n"), std::string::npos);
+  EXPECT_EQ(settings(1, 2, {}), plain);
+  EXPECT_NE(settings(2, 2, {}), plain);
+  EXPECT_NE(settings(1, 3, {}), plain);
+  EXPECT_NE(settings(1, 2, noisy), plain);
+}
+
 class TinyRoom : public testing::Test {
  protected:
   void SetUp() override {
-    if (!furniture_installed()) GTEST_SKIP() << "the Debian package sweethome3d-furniture is not installed";
-    static const SynthSequence* shared = new SynthSequence(build_room(room_spec("tiny")), kSmall, 40);
+    if (!furniture_installed())
+      GTEST_SKIP() << "the Debian package sweethome3d-furniture is not installed";
+    static const SynthSequence* shared =
+        new SynthSequence(build_room(room_spec("tiny")), kSmall, 40);
     sequence_ = shared;
   }
   const SynthSequence* sequence_ = nullptr;
@@ -127,8 +145,10 @@ TEST_F(TinyRoom, EveryInstanceIsSeenFromSeveralSides) {
     EXPECT_EQ(pixels.count(0), 0u);  // no holes in the room
     for (const auto& [id, count] : pixels) {
       if (count < 3) continue;
-      const Eigen::Vector3d middle = sequence_->room().objects.at(id - 1u).box.center().cast<double>();
-      const Eigen::Vector3d way = middle - sequence_->true_poses()[static_cast<std::size_t>(i)].translation();
+      const Eigen::Vector3d middle =
+          sequence_->room().objects.at(id - 1u).box.center().cast<double>();
+      const Eigen::Vector3d way =
+          middle - sequence_->true_poses()[static_cast<std::size_t>(i)].translation();
       directions[id].push_back(std::atan2(way.y(), way.x()) * 180 / std::numbers::pi);
     }
   }
@@ -152,6 +172,17 @@ TEST_F(TinyRoom, EveryInstanceIsSeenFromSeveralSides) {
   }
 }
 
+TEST_F(TinyRoom, TheCameraKeepsClearOfTallFurniture) {
+  for (const Pose& pose : sequence_->true_poses())
+    for (const RoomObject& object : sequence_->room().objects) {
+      if (!object.footprint || object.footprint->top_m < pose.translation().z()) continue;
+      if (object.footprint->bottom_m > pose.translation().z()) continue;
+      const Eigen::Vector2f eye = pose.translation().head<2>().cast<float>();
+      EXPECT_LT(footprint_overlap(*object.footprint, {eye, {0.1f, 0.1f}, 0, 0, 2}), 0)
+          << object.name;
+    }
+}
+
 TEST_F(TinyRoom, IdsAgreeWithGeometry) {
   const Frame frame = *sequence_->read(7).frame;
   const IdImage ids = *sequence_->truth_ids(7);
@@ -159,7 +190,8 @@ TEST_F(TinyRoom, IdsAgreeWithGeometry) {
     for (int x = 0; x < kSmall.width; ++x) {
       const Eigen::Vector3d ray((x - kSmall.cx) / kSmall.fx, (y - kSmall.cy) / kSmall.fy, 1);
       const Eigen::Vector3f p =
-          (frame.world_from_camera * (static_cast<double>(frame.depth.at(x, y)) * ray)).cast<float>();
+          (frame.world_from_camera * (static_cast<double>(frame.depth.at(x, y)) * ray))
+              .cast<float>();
       const RoomObject& object = sequence_->room().objects.at(ids.at(x, y) - 1u);
       EXPECT_LT(object.box.exteriorDistance(p), 1e-4f) << object.name;
     }
@@ -172,7 +204,8 @@ TEST_F(TinyRoom, SameSeedSameRoomAndOtherSeedOtherRoom) {
   bool differs = false;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     EXPECT_EQ(again.objects[i].mesh.vertices, objects[i].mesh.vertices);
-    if (i < other.objects.size()) differs |= other.objects[i].mesh.vertices != objects[i].mesh.vertices;
+    if (i < other.objects.size())
+      differs |= other.objects[i].mesh.vertices != objects[i].mesh.vertices;
   }
   EXPECT_TRUE(differs);
 }

@@ -89,7 +89,8 @@ SurfacePattern planks(const Color& light, const Color& dark, std::uint64_t seed)
     const float row = std::floor(y * kRows), in_row = y * kRows - row;
     const float shift = tone.at(0.5f, row, 7, kRows);
     const float along = (x + shift) * kPlanksPerRow, plank = std::floor(along);
-    const int index = static_cast<int>(plank) % kPlanksPerRow + kPlanksPerRow * static_cast<int>(row);
+    const int index =
+        static_cast<int>(plank) % kPlanksPerRow + kPlanksPerRow * static_cast<int>(row);
     const float plank_tone = tone.at(static_cast<float>(index) * 3 + 0.5f, 5.5f, 97, 31);
     const float fine = grain.at(x * 32, y * 512, 32, 512), broad = grain.at(x * 6, y * 96, 6, 96);
     const float share = 0.15f + 0.45f * plank_tone + 0.25f * broad + 0.15f * fine;
@@ -115,7 +116,8 @@ SurfacePattern carpet(std::uint64_t seed) {
   const LatticeNoise noise(seed);
   const Color pile(0.55f, 0.54f, 0.56f);
   return repeating([=](float x, float y) {
-    const float fine = noise.at(x * 512, y * 512, 512, 512), broad = noise.at(x * 24, y * 24, 24, 24);
+    const float fine = noise.at(x * 512, y * 512, 512, 512),
+                broad = noise.at(x * 24, y * 24, 24, 24);
     return Color(pile * (0.7f + 0.4f * fine + 0.12f * broad));
   });
 }
@@ -149,9 +151,11 @@ SurfacePattern wall_pattern(const std::string& style, Rgb8 color, std::uint64_t 
   const Color base = Color(color.r, color.g, color.b) / 255;
   const LatticeNoise noise(seed);
   const auto plaster = [=](float x, float y) {
-    return 0.95f + 0.03f * noise.at(x * 10, y * 10, 10, 10) + 0.04f * noise.at(x * 256, y * 256, 256, 256);
+    return 0.95f + 0.03f * noise.at(x * 10, y * 10, 10, 10) +
+           0.04f * noise.at(x * 256, y * 256, 256, 256);
   };
-  if (style == "plaster") return repeating([=](float x, float y) { return Color(base * plaster(x, y)); });
+  if (style == "plaster")
+    return repeating([=](float x, float y) { return Color(base * plaster(x, y)); });
   if (style == "stripes")
     return repeating([=](float x, float y) {
       const float wave = x * 16 - std::floor(x * 16);
@@ -202,7 +206,8 @@ SurfacePattern painting_pattern(float width_m, float height_m, std::uint64_t see
       const float u = dx * std::cos(stroke.angle) + dy * std::sin(stroke.angle);
       const float v = dy * std::cos(stroke.angle) - dx * std::sin(stroke.angle);
       const float distance = std::sqrt(u * u + v * v * stroke.stretch * stroke.stretch);
-      color = mixed(color, stroke.color, 1 - smooth_step(stroke.radius * 0.94f, stroke.radius, distance));
+      color = mixed(color, stroke.color,
+                    1 - smooth_step(stroke.radius * 0.94f, stroke.radius, distance));
     }
     return Color(color * (0.9f + 0.12f * noise.at(x * 90, y * 90, 90, 90)));
   });
@@ -211,12 +216,15 @@ SurfacePattern painting_pattern(float width_m, float height_m, std::uint64_t see
 SurfacePattern outdoor_pattern(float width_m, float height_m, std::uint64_t seed) {
   const LatticeNoise noise(seed);
   return picture(width_m, height_m, [=](float x, float y) {
-    const float cloud = noise.at(x * 4, y * 6, 64, 64) * 0.6f + noise.at(x * 9, y * 13, 64, 64) * 0.4f;
-    const Color sky = mixed({0.62f, 0.78f, 0.95f}, {0.97f, 0.97f, 0.97f}, smooth_step(0.4f, 0.75f, cloud));
+    const float cloud =
+        noise.at(x * 4, y * 6, 64, 64) * 0.6f + noise.at(x * 9, y * 13, 64, 64) * 0.4f;
+    const Color sky =
+        mixed({0.62f, 0.78f, 0.95f}, {0.97f, 0.97f, 0.97f}, smooth_step(0.4f, 0.75f, cloud));
     const float ridge = 0.55f + 0.15f * noise.at(x * 3, 0.5f, 64, 64);
     const float crown = 0.68f + 0.2f * noise.at(x * 7, 7.5f, 64, 64);
     const Color hill(0.55f, 0.68f, 0.62f);
-    const Color tree = Color(0.22f, 0.42f, 0.18f) * (0.7f + 0.6f * noise.at(x * 14, y * 14, 64, 64));
+    const Color tree =
+        Color(0.22f, 0.42f, 0.18f) * (0.7f + 0.6f * noise.at(x * 14, y * 14, 64, 64));
     const Color far = mixed(sky, hill, smooth_step(ridge - 0.02f, ridge + 0.02f, y));
     return mixed(far, tree, smooth_step(crown - 0.02f, crown + 0.02f, y));
   });

@@ -23,10 +23,10 @@ std::vector<float> texel_densities(const TexturedMesh& mesh) {
     const auto& [a, b, c] = mesh.triangles[i];
     const Eigen::Vector2f s = mesh.uvs[b] - mesh.uvs[a], t = mesh.uvs[c] - mesh.uvs[a];
     const float pixels = std::abs(s.x() * t.y() - s.y() * t.x()) *
-                         static_cast<float>(texture->width()) * static_cast<float>(texture->height());
-    const float area = (mesh.vertices[b] - mesh.vertices[a])
-                           .cross(mesh.vertices[c] - mesh.vertices[a])
-                           .norm();
+                         static_cast<float>(texture->width()) *
+                         static_cast<float>(texture->height());
+    const float area =
+        (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]).norm();
     if (area > 0) densities[i] = std::sqrt(pixels / area);
   }
   return densities;
@@ -38,8 +38,8 @@ SurfaceTracer::SurfaceTracer(std::span<const RoomObject> objects) : scene_(objec
   for (const RoomObject& object : objects) texel_density_.push_back(texel_densities(object.mesh));
 }
 
-SurfacePoint SurfaceTracer::trace(const PinholeCamera& camera, const Pose& world_from_camera, double u,
-                                  double v, bool with_material) const {
+SurfacePoint SurfaceTracer::trace(const PinholeCamera& camera, const Pose& world_from_camera,
+                                  double u, double v, bool with_material) const {
   // The direction has length one along the optical axis, so that distance along it is depth.
   const Eigen::Vector3d direction =
       world_from_camera.linear() *

@@ -16,8 +16,8 @@ namespace ovimap {
 
 /// What one ray of a camera meets.
 struct SurfacePoint {
-  std::uint16_t id = 0;         ///< RoomObject::id; 0: the ray leaves the room, nothing else is set
-  float depth = 0;              ///< along the optical axis, metres
+  std::uint16_t id = 0;  ///< RoomObject::id; 0: the ray leaves the room, nothing else is set
+  float depth = 0;       ///< along the optical axis, metres
   float incidence_cos = 0;
   Eigen::Vector3f position = Eigen::Vector3f::Zero();     ///< world frame
   Eigen::Vector3f face_normal = Eigen::Vector3f::Zero();  ///< of the triangle, towards the camera
@@ -42,7 +42,8 @@ class SurfaceTracer {
   void read_material(const RayHit& hit, float footprint_m, SurfacePoint& point) const;
 
   RayScene scene_;
-  std::vector<std::vector<float>> texel_density_;  ///< texture pixels a metre, by object and triangle
+  std::vector<std::vector<float>>
+      texel_density_;  ///< texture pixels a metre, by object and triangle
 };
 
 }  // namespace ovimap

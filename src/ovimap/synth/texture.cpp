@@ -44,7 +44,8 @@ float linear_from_srgb(std::uint8_t value) {
 }
 
 std::uint8_t srgb_from_linear(float value) {
-  // The curve is sampled once: 4096 steps resolve all 256 values except in the first few darkest ones.
+  // The curve is sampled once: 4096 steps resolve all 256 values except in the first few darkest
+  // ones.
   constexpr int kSteps = 4096;
   static const std::vector<std::uint8_t> table = [] {
     std::vector<std::uint8_t> made(kSteps + 1);

@@ -38,8 +38,8 @@ class Texture {
 /// How a surface answers light: a diffuse colour or texture, and light of its own.
 struct SurfaceMaterial {
   Eigen::Vector3f albedo = Eigen::Vector3f::Constant(0.5f);  ///< linear, where there is no texture
-  std::shared_ptr<const Texture> texture;                     ///< may be null
-  Eigen::Vector3f emission = Eigen::Vector3f::Zero();         ///< times the albedo, linear
+  std::shared_ptr<const Texture> texture;                    ///< may be null
+  Eigen::Vector3f emission = Eigen::Vector3f::Zero();        ///< times the albedo, linear
 };
 
 /// Triangles with textures, metres. `normals` and `uvs` are as long as `vertices`.

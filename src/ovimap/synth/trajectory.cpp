@@ -56,7 +56,8 @@ void list_fields(TrajectoryConfig& config, ConfigFields& fields) {
   fields.add("low_furniture_cost", config.low_furniture_cost, 1.f, 1000.f,
              "how much longer a way is preferred to one over low furniture");
   fields.add("laps", config.laps, 1, 1000, "rounds of the room");
-  fields.add("max_turn_rad", config.max_turn_rad, 0.01f, 3.f, "largest turn between two frames, radians");
+  fields.add("max_turn_rad", config.max_turn_rad, 0.01f, 3.f,
+             "largest turn between two frames, radians");
   fields.add("max_gaze_turn_rad", config.max_gaze_turn_rad, 0.01f, 3.f,
              "largest turn between two decisions where to look, radians");
 }
@@ -74,8 +75,9 @@ Pose looking(const Eigen::Vector3d& eye_m, double yaw_rad, double pitch_rad, dou
   return pose;
 }
 
-std::vector<Pose> plan_trajectory(const SynthRoom& room, const RayScene& scene, const PinholeCamera& camera,
-                                  int frames, const TrajectoryConfig& config) {
+std::vector<Pose> plan_trajectory(const SynthRoom& room, const RayScene& scene,
+                                  const PinholeCamera& camera, int frames,
+                                  const TrajectoryConfig& config) {
   const int laps = config.laps;
   const std::vector<Eigen::Vector2f> walk = walk_round(room, laps, frames, config);
   Random random(room.seed, kSwayStream);
@@ -85,13 +87,16 @@ std::vector<Pose> plan_trajectory(const SynthRoom& room, const RayScene& scene, 
   std::vector<Eigen::Vector3d> eyes;
   for (int i = 0; i < frames; ++i) {
     const auto& plan = walk[static_cast<std::size_t>(i)];
-    eyes.emplace_back(plan.x(), plan.y(), middle + swing * rise.at(static_cast<double>(laps) * i / frames));
+    eyes.emplace_back(plan.x(), plan.y(),
+                      middle + swing * rise.at(static_cast<double>(laps) * i / frames));
   }
 
   const int step = std::max(1, frames / (laps * kKeyframes));
   std::vector<Eigen::Vector3d> stops;
-  for (std::size_t i = 0; i < eyes.size(); i += static_cast<std::size_t>(step)) stops.push_back(eyes[i]);
-  const double reach = std::min(config.max_turn_rad * static_cast<float>(step), config.max_gaze_turn_rad);
+  for (std::size_t i = 0; i < eyes.size(); i += static_cast<std::size_t>(step))
+    stops.push_back(eyes[i]);
+  const double reach =
+      std::min(config.max_turn_rad * static_cast<float>(step), config.max_gaze_turn_rad);
   std::vector<double> yaws, pitches;
   for (const Gaze& gaze : plan_gazes(room, scene, camera, stops, reach)) {
     yaws.push_back(gaze.yaw_rad);
@@ -102,7 +107,8 @@ std::vector<Pose> plan_trajectory(const SynthRoom& room, const RayScene& scene, 
   for (int i = 0; i < frames; ++i) {
     const double key = static_cast<double>(i) / step, lap = static_cast<double>(laps) * i / frames;
     poses.push_back(looking(eyes[static_cast<std::size_t>(i)], through(yaws, key),
-                            through(pitches, key) + kSway_rad * nod.at(lap), kSway_rad * lean.at(lap)));
+                            through(pitches, key) + kSway_rad * nod.at(lap),
+                            kSway_rad * lean.at(lap)));
   }
   return poses;
 }

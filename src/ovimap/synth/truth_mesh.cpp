@@ -49,8 +49,8 @@ class Gatherer {
     return {object_->mesh.vertices[i], object_->mesh.normals[i], object_->mesh.uvs[i]};
   }
 
-  /// Halves the longest edge until all are short. An edge is cut into equal parts whose number depends
-  /// on its length alone, so that neighbouring triangles stay joined.
+  /// Halves the longest edge until all are short. An edge is cut into equal parts whose number
+  /// depends on its length alone, so that neighbouring triangles stay joined.
   void split(const Corner& a, const Corner& b, const Corner& c) {
     const float ab = (a.position - b.position).norm(), bc = (b.position - c.position).norm(),
                 ca = (c.position - a.position).norm();
@@ -81,7 +81,8 @@ class Gatherer {
   std::uint32_t vertex(const Corner& corner) {
     std::uint64_t key = 0;
     for (int i = 0; i < 3; ++i) {
-      const auto cell = static_cast<std::int64_t>(std::floor(corner.position[i] / config_.merge_cell_m));
+      const auto cell =
+          static_cast<std::int64_t>(std::floor(corner.position[i] / config_.merge_cell_m));
       key = (key << 21) | (static_cast<std::uint64_t>(cell) & 0x1fffff);
     }
     // Mixed, because the map takes the low bits of a key and those of packed coordinates are alike.
@@ -110,20 +111,23 @@ bool seen_from(const Eigen::Vector3f& point, const RayScene& scene, const Pinhol
   const Eigen::Vector3d in_camera = world_from_camera.inverse() * point.cast<double>();
   if (in_camera.z() <= 0) return false;
   const Eigen::Vector2f pixel = camera.project(in_camera.cast<float>());
-  if (pixel.x() < -0.5f || pixel.y() < -0.5f || pixel.x() > static_cast<float>(camera.width) - 0.5f ||
+  if (pixel.x() < -0.5f || pixel.y() < -0.5f ||
+      pixel.x() > static_cast<float>(camera.width) - 0.5f ||
       pixel.y() > static_cast<float>(camera.height) - 0.5f)
     return false;
   const Eigen::Vector3f to_camera = world_from_camera.translation().cast<float>() - point;
   const float distance = to_camera.norm();
   if (distance <= leave_surface_m) return false;
   const Eigen::Vector3f direction = to_camera / distance;
-  return !scene.occluded(point + leave_surface_m * direction, direction, distance - leave_surface_m);
+  return !scene.occluded(point + leave_surface_m * direction, direction,
+                         distance - leave_surface_m);
 }
 
 }  // namespace
 
 void list_fields(TruthMeshConfig& config, ConfigFields& fields) {
-  fields.add("longest_edge_m", config.longest_edge_m, 0.002f, 10.f, "longer edges are halved, metres");
+  fields.add("longest_edge_m", config.longest_edge_m, 0.002f, 10.f,
+             "longer edges are halved, metres");
   fields.add("merge_cell_m", config.merge_cell_m, 0.0005f, 1.f,
              "vertices of one instance in one cell of this size become one, metres");
   fields.add("leave_surface_m", config.leave_surface_m, 0.f, 0.1f,
@@ -140,9 +144,10 @@ Mesh seen_part(const Mesh& mesh, const RayScene& scene, const PinholeCamera& cam
                std::span<const Pose> world_from_camera, const TruthMeshConfig& config) {
   std::vector<std::uint8_t> seen(mesh.vertices.size(), 0);
   parallel_for(mesh.vertices.size(), kVerticesPerTask, [&](std::size_t i) {
-    seen[i] = std::any_of(world_from_camera.begin(), world_from_camera.end(), [&](const Pose& pose) {
-      return seen_from(mesh.vertices[i], scene, camera, pose, config.leave_surface_m);
-    });
+    seen[i] =
+        std::any_of(world_from_camera.begin(), world_from_camera.end(), [&](const Pose& pose) {
+          return seen_from(mesh.vertices[i], scene, camera, pose, config.leave_surface_m);
+        });
   });
   Mesh part;
   std::vector<std::uint32_t> new_index(mesh.vertices.size(), kDropped);

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/synth/truth_mesh.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "ovimap/synth/mesh_parts.h"
@@ -27,7 +30,8 @@ SynthRoom floor_and_plate() {
 double area(const Mesh& mesh) {
   double sum = 0;
   for (const auto& [a, b, c] : mesh.triangles)
-    sum += 0.5 * (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]).norm();
+    sum += 0.5 *
+           (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]).norm();
   return sum;
 }
 
@@ -37,7 +41,8 @@ TEST(TruthMesh, TrianglesAreSmallAndCoverTheSurface) {
   for (const auto& [a, b, c] : mesh.triangles)
     for (const auto& [from, to] : {std::pair{a, b}, {b, c}, {c, a}}) {
       // Merging moves each end by less than a cell.
-      EXPECT_LE((mesh.vertices[from] - mesh.vertices[to]).norm(), 0.025f + 2 * std::sqrt(2.f) * 0.01f);
+      EXPECT_LE((mesh.vertices[from] - mesh.vertices[to]).norm(),
+                0.025f + 2 * std::sqrt(2.f) * 0.01f);
       EXPECT_EQ(mesh.labels[from], mesh.labels[to]);
     }
   EXPECT_NEAR(area(mesh), 5, 0.1);

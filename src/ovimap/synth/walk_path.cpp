@@ -13,12 +13,12 @@ namespace {
 
 constexpr float kCell_m = 0.05f;
 constexpr float kBlocked = std::numeric_limits<float>::infinity();
-constexpr float kLow_m = 0.1f;        // lower things are stepped over
-constexpr int kCornersPerLap = 10;    // waypoints, by direction from the middle
+constexpr float kLow_m = 0.1f;      // lower things are stepped over
+constexpr int kCornersPerLap = 10;  // waypoints, by direction from the middle
 constexpr int kRadiusSteps = 24;
-constexpr float kInnerLap = 0.5f;     // later laps, as a share of the way from the middle to the walls
+constexpr float kInnerLap = 0.5f;  // later laps, as a share of the way from the middle to the walls
 constexpr int kSmoothings = 80;
-constexpr float kSpacing_m = 0.05f;   // of the path while it is smoothed
+constexpr float kSpacing_m = 0.05f;  // of the path while it is smoothed
 
 float distance_outside(const OrientedBox& box, const Eigen::Vector2f& point) {
   const Eigen::Vector2f offset = point - box.center_m;
@@ -29,11 +29,13 @@ float distance_outside(const OrientedBox& box, const Eigen::Vector2f& point) {
 /// Points at equal distances along a polyline.
 std::vector<Eigen::Vector2f> resampled(const std::vector<Eigen::Vector2f>& line, int count) {
   std::vector<float> along = {0};
-  for (std::size_t i = 1; i < line.size(); ++i) along.push_back(along.back() + (line[i] - line[i - 1]).norm());
+  for (std::size_t i = 1; i < line.size(); ++i)
+    along.push_back(along.back() + (line[i] - line[i - 1]).norm());
   std::vector<Eigen::Vector2f> points;
   std::size_t segment = 1;
   for (int i = 0; i < count; ++i) {
-    const float wanted = along.back() * static_cast<float>(i) / static_cast<float>(std::max(count, 1));
+    const float wanted =
+        along.back() * static_cast<float>(i) / static_cast<float>(std::max(count, 1));
     while (segment + 1 < line.size() && along[segment] < wanted) ++segment;
     const float length = along[segment] - along[segment - 1];
     const float part = length > 0 ? (wanted - along[segment - 1]) / length : 0;
@@ -52,8 +54,8 @@ void smooth_loop(const WalkMap& map, std::vector<Eigen::Vector2f>& loop) {
     }
 }
 
-/// The cheapest point in this direction from the middle; among equals the one nearest to `share` of the
-/// way to the wall.
+/// The cheapest point in this direction from the middle; among equals the one nearest to `share` of
+/// the way to the wall.
 Eigen::Vector2f corner(const SynthRoom& room, const WalkMap& map, float angle, float share) {
   const Eigen::Vector2f half = room.size_m.head<2>() / 2;
   const Eigen::Vector2f direction(std::cos(angle), std::sin(angle));
@@ -111,7 +113,8 @@ float WalkMap::cost(const Eigen::Vector2f& point_m) const {
 
 bool WalkMap::blocked(const Eigen::Vector2f& point_m) const { return cost(point_m) == kBlocked; }
 
-std::vector<Eigen::Vector2f> WalkMap::way(const Eigen::Vector2f& from_m, const Eigen::Vector2f& to_m) const {
+std::vector<Eigen::Vector2f> WalkMap::way(const Eigen::Vector2f& from_m,
+                                          const Eigen::Vector2f& to_m) const {
   const int start = cell_of(from_m), goal = cell_of(to_m);
   if (start < 0 || goal < 0) return {from_m, to_m};
   using Entry = std::pair<float, int>;
@@ -163,7 +166,8 @@ std::vector<Eigen::Vector2f> walk_round(const SynthRoom& room, int laps, int cou
   loop.push_back(loop.front());
   float length = 0;
   for (std::size_t i = 1; i < loop.size(); ++i) length += (loop[i] - loop[i - 1]).norm();
-  std::vector<Eigen::Vector2f> even = resampled(loop, std::max(count, static_cast<int>(length / kSpacing_m)));
+  std::vector<Eigen::Vector2f> even =
+      resampled(loop, std::max(count, static_cast<int>(length / kSpacing_m)));
   smooth_loop(map, even);
   even.push_back(even.front());
   return resampled(even, count);

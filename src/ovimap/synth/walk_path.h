@@ -12,7 +12,8 @@
 
 namespace ovimap {
 
-/// Where on the floor plan a walker may be: the price of each cell, infinite in walls and tall furniture.
+/// Where on the floor plan a walker may be: the price of each cell, infinite in walls and tall
+/// furniture.
 class WalkMap {
  public:
   WalkMap(const SynthRoom& room, const TrajectoryConfig& config);
@@ -21,7 +22,8 @@ class WalkMap {
   bool blocked(const Eigen::Vector2f& point_m) const;
 
   /// The cheapest way between two points, both ends included; just the ends when there is none.
-  std::vector<Eigen::Vector2f> way(const Eigen::Vector2f& from_m, const Eigen::Vector2f& to_m) const;
+  std::vector<Eigen::Vector2f> way(const Eigen::Vector2f& from_m,
+                                   const Eigen::Vector2f& to_m) const;
 
  private:
   int cell_of(const Eigen::Vector2f& point_m) const;

@@ -42,7 +42,8 @@ std::optional<Bytes> ZipArchive::read(const std::string& name) const {
     intact = unzCloseCurrentFile(handle_->file) == UNZ_OK && intact;
   }
   if (!intact)
-    throw Error(concat(path_.string(), ": entry ", name, " is damaged; reinstall what it came with"));
+    throw Error(
+        concat(path_.string(), ": entry ", name, " is damaged; reinstall what it came with"));
   return bytes;
 }
 

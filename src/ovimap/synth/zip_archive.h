@@ -23,9 +23,9 @@ class ZipArchive {
 
   const std::filesystem::path& path() const { return path_; }
 
-  /// The bytes of an entry (a leading slash in `name` is ignored; upper and lower case are alike, as
-  /// models name their textures carelessly), or nothing when there is no such entry.
-  /// Throws Error when the entry is damaged.
+  /// The bytes of an entry (a leading slash in `name` is ignored; upper and lower case are alike,
+  /// as models name their textures carelessly), or nothing when there is no such entry. Throws
+  /// Error when the entry is damaged.
   [[nodiscard]] std::optional<Bytes> read(const std::string& name) const;
 
  private:
