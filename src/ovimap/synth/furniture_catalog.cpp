@@ -3,6 +3,7 @@
 #include "ovimap/synth/furniture_catalog.h"
 
 #include <algorithm>
+#include <charconv>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -32,13 +33,17 @@ void append_utf8(std::string& text, unsigned code) {
 
 /// Java's encoding of property files: ISO 8859-1 with \uXXXX escapes.
 std::string property_value(const std::string& raw) {
+  constexpr std::size_t kDigits = 4;
   std::string value;
   for (std::size_t i = 0; i < raw.size(); ++i) {
-    if (raw[i] == '\\' && i + 5 < raw.size() && raw[i + 1] == 'u') {
-      append_utf8(value, static_cast<unsigned>(std::stoul(raw.substr(i + 2, 4), nullptr, 16)));
-      i += 5;
-    } else if (raw[i] != '\\') {
+    if (raw[i] != '\\') {
       append_utf8(value, static_cast<unsigned char>(raw[i]));
+    } else if (raw.compare(i + 1, 1, "u") == 0 && i + 2 + kDigits <= raw.size()) {
+      unsigned code = 0;
+      const char* digits = raw.data() + i + 2;
+      const auto read = std::from_chars(digits, digits + kDigits, code, 16);
+      if (read.ptr == digits + kDigits) append_utf8(value, code);
+      i += 1 + kDigits;
     }
   }
   value.erase(value.find_last_not_of(" \t\r") + 1);

@@ -43,6 +43,16 @@ TEST_F(Furniture, CatalogueListsModelsWithTheirSizesAndMakers) {
   EXPECT_TRUE(entry.size_m.isApprox(Eigen::Vector3f(1, 0.6f, 0.8f)));
 }
 
+TEST(FurnitureProperties, OddLinesAreHarmless) {
+  const auto entries = parse_furniture_properties(
+      "name#1=20 \\u20ac \\uZZ00 \\u2\nmodel#1=/a/b.obj\nwidth#1=10\ndepth#1=x\nheight#1=5\n"
+      "name#2=bill 5\\u20ac\nmodel#2=/a/c.obj\nwidth#2=10\ndepth#2=20\nheight#2=5\n=\nnonsense\n",
+      "/lib/Odd.sh3f");
+  ASSERT_EQ(entries.size(), 1u);  // the first has no depth
+  EXPECT_EQ(entries[0].name, "bill 5\xe2\x82\xac");
+  EXPECT_EQ(entries[0].id, "Odd/c");
+}
+
 TEST_F(Furniture, MissingPackageAndWrongNamesAreSaid) {
   const auto nowhere = error_of([&] { FurnitureCatalog(folder_.path() / "nowhere"); });
   EXPECT_NE(nowhere.find("install the Debian package sweethome3d-furniture"), std::string::npos);
