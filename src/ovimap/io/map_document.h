@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "ovimap/geometry/camera.h"
+#include "ovimap/geometry/pose.h"
+#include "ovimap/instance/instance_registry.h"
+#include "ovimap/instance/instance_summary.h"
+#include "ovimap/map/voxel_map.h"
+
+namespace ovimap {
+
+/// One frame that went into a map.
+struct FrameLogEntry {
+  std::int64_t index = 0;  ///< position in its source
+  double timestamp_s = 0;
+  std::string name;
+  Pose world_from_camera = Pose::Identity();  ///< of the depth camera
+  bool labelled = false;                      ///< voted for labels, not only geometry and colour
+};
+
+/// Everything a saved map holds besides its voxels.
+struct MapRecord {
+  InstanceConfig instance_config;
+  InstanceRegistry::State registry;
+  std::vector<InstanceSummary> instances;   ///< as summarised when the map was saved
+  std::map<InstanceId, std::string> names;  ///< given by people or queries; none for most instances
+  std::vector<FrameLogEntry> frames;        ///< in the order they were fused
+  PinholeCamera depth_camera;
+  std::string config_text;  ///< effective configuration, "name: value" lines (ConfigFields::dump)
+  std::string source;       ///< where the frames came from
+  int mask_frames = 0;      ///< frames with 2D masks
+  std::string version;      ///< of the program that wrote the map
+  std::uint64_t content_hash = 0;  ///< VoxelMap::content_hash; set by load_map, ignored by save_map
+};
+
+/// A whole saved map.
+struct MapDocument : MapRecord {
+  VoxelMap map;
+};
+
+}  // namespace ovimap

@@ -1,0 +1,175 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/io/map_file.h"
+
+#include <algorithm>
+
+#include "ovimap/base/error.h"
+#include "ovimap/base/parallel.h"
+#include "ovimap/io/map_file_access.h"
+#include "ovimap/io/map_file_blocks.h"
+#include "ovimap/io/map_file_record.h"
+#include "ovimap/io/map_file_rows.h"
+
+namespace ovimap {
+
+namespace {
+
+using map_tables::kBlocks;
+using map_tables::kLabelForest;
+
+// Tiles in memory at a time between voxels and file, and how many a thread takes at once.
+constexpr std::size_t kTilesPerBatch = 256;
+constexpr std::size_t kTilesPerTask = 4;
+
+/// VoxelRef counts voxels in 32 bits.
+constexpr std::size_t kMostBlocks = VoxelRef::kNone / kBlockVoxels;
+
+void write_forest(SQLite::Database& database, const LabelForest& forest) {
+  Bytes roots;
+  roots.reserve(forest.roots().size() * 4);
+  for (Label root : forest.roots())
+    for (int i = 0; i < 4; ++i) roots.push_back(static_cast<std::uint8_t>(root >> 8 * i));
+  RowWriter rows(database, kLabelForest);
+  rows.insert(forest.epoch(), roots);
+  rows.finish();
+}
+
+LabelForest read_forest(SQLite::Database& database) {
+  std::vector<Label> roots;
+  std::uint32_t epoch = 0;
+  RowReader rows(database, kLabelForest);
+  while (rows.next()) {
+    epoch = rows.integer<std::uint32_t>();
+    const std::span<const std::uint8_t> bytes = rows.blob();
+    roots.assign(bytes.size() / 4, 0);
+    for (std::size_t i = 0; i < roots.size() * 4; ++i) roots[i / 4] |= Label{bytes[i]} << 8 * (i % 4);
+  }
+  return LabelForest::from_roots(std::move(roots), epoch);
+}
+
+void write_blocks(SQLite::Database& database, const VoxelMap& map) {
+  const std::vector<Tile> tiles = tiles_of(map);
+  RowWriter rows(database, kBlocks);
+  std::vector<Bytes> data(std::min(kTilesPerBatch, tiles.size()));
+  for (std::size_t first = 0; first < tiles.size(); first += kTilesPerBatch) {
+    const std::size_t count = std::min(kTilesPerBatch, tiles.size() - first);
+    parallel_for_ranges(count, kTilesPerTask, [&](std::size_t begin, std::size_t end) {
+      TileEncoder encoder;
+      for (std::size_t i = begin; i < end; ++i) data[i] = encoder.encode(map, tiles[first + i]);
+    });
+    for (std::size_t i = 0; i < count; ++i)
+      rows.insert(tiles[first + i].key, tiles[first + i].present, stored_hash(data[i]), data[i]);
+  }
+  rows.finish();
+}
+
+struct StoredTile {
+  Tile tile;
+  std::int64_t hash;
+  Bytes data;
+};
+
+void decode_tiles(const std::vector<StoredTile>& stored, VoxelMap& map) {
+  std::vector<std::string> faults(stored.size());
+  parallel_for_ranges(stored.size(), kTilesPerTask, [&](std::size_t begin, std::size_t end) {
+    TileDecoder decoder;
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto& [tile, hash, data] = stored[i];
+      faults[i] = stored_hash(data) == hash ? decoder.decode(data, tile, map) : "it is not what was written";
+    }
+  });
+  for (std::size_t i = 0; i < stored.size(); ++i)
+    if (!faults[i].empty()) throw Error(concat("tile ", stored[i].tile.key, " of its voxels: ", faults[i]));
+}
+
+void read_blocks(SQLite::Database& database, VoxelMap& map) {
+  std::vector<StoredTile> batch;
+  std::int64_t last_key = -1;
+  RowReader rows(database, kBlocks);
+  for (bool more = true; more;) {
+    if ((more = rows.next())) {
+      const auto key = rows.integer<std::int64_t>();
+      const auto present = static_cast<std::uint64_t>(rows.integer<std::int64_t>());
+      if (key <= last_key || !valid_tile_key(static_cast<std::uint64_t>(key))) rows.fail(concat("has a tile ", key, " out of place"));
+      last_key = key;
+      Tile tile = create_tile(map, static_cast<std::uint64_t>(key), present);
+      if (map.block_count() > kMostBlocks) rows.fail("has more blocks than fit into memory");
+      const auto hash = rows.integer<std::int64_t>();
+      const std::span<const std::uint8_t> data = rows.blob();
+      batch.push_back({std::move(tile), hash, Bytes(data.begin(), data.end())});
+    }
+    if (!more || batch.size() == kTilesPerBatch) {
+      decode_tiles(batch, map);
+      batch.clear();
+    }
+  }
+}
+
+VoxelMap read_voxels(SQLite::Database& database, const MapMeta& meta) {
+  VoxelMap map(meta.map_config);
+  map.labels() = read_forest(database);
+  read_blocks(database, map);
+  if (map.block_count() != meta.blocks)
+    throw Error(concat("it has ", map.block_count(), " blocks, but ", meta.blocks, " were written"));
+  if (map.content_hash() != meta.content_hash) throw Error("its voxels are not those that were written");
+  return map;
+}
+
+}  // namespace
+
+void save_map(const std::filesystem::path& path, const VoxelMap& map, const MapRecord& record) {
+  PendingMap pending(path);
+  const MapMeta meta{map.config(), static_cast<std::int64_t>(record.frames.size()), map.block_count(), map.content_hash()};
+  pending.write([&](SQLite::Database& database) {
+    write_record(database, record, meta);
+    write_forest(database, map.labels());
+    write_blocks(database, map);
+  });
+  pending.commit();
+}
+
+void save_map(const std::filesystem::path& path, const MapDocument& document) { save_map(path, document.map, document); }
+
+void check_map_target(const std::filesystem::path& path) { PendingMap pending(path); }
+
+MapDocument load_map(const std::filesystem::path& path) {
+  MapDocument document;
+  OpenMap file(path);
+  file.read([&](SQLite::Database& database) {
+    const MapMeta meta = read_meta(database, document);
+    document.map = read_voxels(database, meta);
+    read_registry(database, document.map.labels(), document);
+    read_instances(database, document);
+    read_frames(database, document);
+    if (static_cast<std::int64_t>(document.frames.size()) != meta.frames) throw Error("its frame log is not complete");
+  });
+  return document;
+}
+
+MapInfo read_map_info(const std::filesystem::path& path) {
+  MapRecord record;
+  MapMeta meta;
+  OpenMap file(path);
+  file.read([&](SQLite::Database& database) {
+    meta = read_meta(database, record);
+    read_instances(database, record);
+  });
+  MapInfo info;
+  info.schema = file.schema();
+  info.version = std::move(record.version);
+  info.source = std::move(record.source);
+  info.config_text = std::move(record.config_text);
+  info.frames = meta.frames;
+  info.mask_frames = record.mask_frames;
+  info.instances = std::move(record.instances);
+  info.names = std::move(record.names);
+  info.depth_camera = record.depth_camera;
+  info.voxel_size_m = meta.map_config.voxel_size_m;
+  info.blocks = meta.blocks;
+  info.size_bytes = file.size_bytes();
+  info.content_hash = meta.content_hash;
+  return info;
+}
+
+}  // namespace ovimap

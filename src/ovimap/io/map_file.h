@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "ovimap/io/map_document.h"
+
+namespace ovimap {
+
+/// The newest file layout this program writes and reads; docs/map-format.md describes it.
+inline constexpr int kMapSchema = 1;
+
+/// What a map file tells without its voxels.
+struct MapInfo {
+  int schema = kMapSchema;
+  std::string version, source, config_text;  ///< as in MapRecord
+  std::int64_t frames = 0;
+  int mask_frames = 0;
+  std::vector<InstanceSummary> instances;
+  std::map<InstanceId, std::string> names;
+  PinholeCamera depth_camera;
+  float voxel_size_m = 0;
+  std::uint64_t blocks = 0;
+  std::uint64_t size_bytes = 0;
+  std::uint64_t content_hash = 0;
+};
+
+/// Writes a map as one file. It is built beside `path` and takes its place only when complete and on
+/// disk: on any failure a map that was there stays as it was and nothing is left behind. The same map
+/// gives the same bytes. Throws Error naming the path, the reason and the remedy.
+void save_map(const std::filesystem::path& path, const VoxelMap& map, const MapRecord& record);
+void save_map(const std::filesystem::path& path, const MapDocument& document);
+
+/// Throws what save_map would throw for a target that cannot be written (missing folder, a folder
+/// itself, no permission), so that a long run learns of it before it starts. Changes nothing.
+void check_map_target(const std::filesystem::path& path);
+
+/// Reads a whole map and verifies every part of it against its stored hash. Throws Error when the
+/// file is missing, no ovimap map, of a newer schema, or damaged; never returns altered content.
+MapDocument load_map(const std::filesystem::path& path);
+
+/// Reads what needs no voxels (milliseconds), verified likewise; a damaged voxel goes unnoticed here.
+MapInfo read_map_info(const std::filesystem::path& path);
+
+}  // namespace ovimap

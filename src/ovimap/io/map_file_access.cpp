@@ -1,0 +1,188 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/io/map_file_access.h"
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <fcntl.h>
+#include <sqlite3.h>
+#include <unistd.h>
+
+#include "ovimap/base/error.h"
+#include "ovimap/io/map_file.h"
+
+namespace ovimap {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kApplicationId = 'O' << 24 | 'V' << 16 | 'I' << 8 | 'M';
+constexpr std::string_view kMagic("SQLite format 3\0", 16);
+constexpr std::array<const char*, 3> kSidecars = {"-journal", "-wal", "-shm"};
+
+fs::path with_suffix(fs::path path, const std::string& suffix) { return path += suffix; }
+
+/// Beside the target, so that renaming stays within one file system; unique among threads and processes.
+fs::path temporary_beside(const fs::path& target) {
+  static std::atomic<unsigned> counter{0};
+  return with_suffix(target, concat(".", ::getpid(), "-", counter.fetch_add(1), ".part"));
+}
+
+std::string remedy_for(int error) {
+  switch (error) {
+    case ENOSPC:
+    case EDQUOT: return "free some space or choose another disk";
+    case EACCES:
+    case EPERM:
+    case EROFS: return "choose a folder that you can write to";
+    case ENOENT:
+    case ENOTDIR: return "create the folder first or choose another";
+    case EFBIG: return "choose a file system that takes larger files";
+    default: return "choose another place";
+  }
+}
+
+[[noreturn]] void fail_to_write(const fs::path& target, int error) {
+  throw Error(concat("cannot write map '", target.string(), "': ", std::generic_category().message(error), "; ", remedy_for(error)));
+}
+
+/// Flushes a file or folder to disk.
+bool flush(const fs::path& path, int flags) {
+  const int descriptor = ::open(path.c_str(), flags | O_CLOEXEC);
+  if (descriptor < 0) return false;
+  const bool flushed = ::fsync(descriptor) == 0;
+  const int error = errno;
+  const bool closed = ::close(descriptor) == 0;
+  if (!flushed) errno = error;
+  return flushed && closed;
+}
+
+/// What the operating system said when SQLite's writing failed; 0 when it was not asked.
+int system_error(const SQLite::Database& database, const SQLite::Exception& fault) {
+  if (fault.getErrorCode() == SQLITE_FULL) return ENOSPC;
+  return fault.getErrorCode() == SQLITE_IOERR ? sqlite3_system_errno(database.getHandle()) : 0;
+}
+
+/// The database through a URI. A file with no log beside it is declared immutable: it is then read
+/// without locks, which need a writable folder.
+std::string read_uri(const fs::path& path) {
+  static constexpr std::string_view kHex = "0123456789abcdef";
+  std::string uri = "file://";
+  for (const char c : fs::absolute(path).string()) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool plain = std::isalnum(byte) || std::strchr("/._-~", c) != nullptr;
+    if (plain) uri += c;
+    else (uri += '%') += {kHex[byte >> 4], kHex[byte & 15]};
+  }
+  const bool logged = fs::exists(with_suffix(path, "-wal")) || fs::exists(with_suffix(path, "-journal"));
+  return uri + (logged ? "?mode=ro" : "?mode=ro&immutable=1");
+}
+
+/// Throws unless the path is a readable file that begins as SQLite files do.
+void check_file(const fs::path& path) {
+  const std::string name = concat("map '", path.string(), "'");
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  const int error = errno;
+  if (descriptor < 0)
+    throw Error(concat("cannot open ", name, ": ", std::generic_category().message(error),
+                       "; give a map file that `ovimap run` wrote"));
+  std::array<char, kMagic.size()> start{};
+  const ssize_t length = fs::is_regular_file(path) ? ::pread(descriptor, start.data(), start.size(), 0) : 0;
+  ::close(descriptor);
+  if (!fs::is_regular_file(path)) throw Error(concat("'", path.string(), "' is not a file; give a map file that `ovimap run` wrote"));
+  if (length != static_cast<ssize_t>(start.size()) || std::string_view(start.data(), start.size()) != kMagic)
+    throw Error(concat("'", path.string(), "' is not an ovimap map; give a map file that `ovimap run` wrote"));
+}
+
+int pragma(SQLite::Database& database, const char* name) {
+  return database.execAndGet(concat("PRAGMA ", name)).getInt();
+}
+
+[[noreturn]] void fail_as_damaged(const fs::path& path, const std::string& fault) {
+  throw Error(concat("map '", path.string(), "' is damaged: ", fault, "; restore it from a copy or map again"));
+}
+
+/// A map consists of plain tables; anything else could make reading do work of the file's choosing.
+void check_plain_tables(SQLite::Database& database) {
+  const char* sql = "SELECT count(*) FROM sqlite_master WHERE type NOT IN ('table', 'index') OR sql LIKE '%virtual%'";
+  if (database.execAndGet(sql).getInt() != 0) throw Error("it holds views, triggers or virtual tables");
+}
+
+}  // namespace
+
+PendingMap::PendingMap(const fs::path& target) : target_(fs::absolute(target)), temporary_(temporary_beside(target_)) {
+  std::error_code ignored;
+  if (!target_.has_filename() || fs::is_directory(target_, ignored))
+    throw Error(concat("cannot write map '", target.string(), "': it is a folder; give a file name"));
+  const int descriptor = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (descriptor < 0) fail_to_write(target_, errno);
+  ::close(descriptor);
+}
+
+PendingMap::~PendingMap() { ::unlink(temporary_.c_str()); }  // nothing there after a commit
+
+void PendingMap::write(const std::function<void(SQLite::Database&)>& fill) {
+  // No journal and no waiting for the disk: until the commit the file is nobody's.
+  SQLite::Database database(temporary_.string(), SQLite::OPEN_READWRITE);
+  try {
+    database.exec("PRAGMA page_size = 4096; PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF; "
+                  "PRAGMA locking_mode = EXCLUSIVE");
+    database.exec(concat("PRAGMA application_id = ", kApplicationId, "; PRAGMA user_version = ", kMapSchema));
+    SQLite::Transaction transaction(database);
+    fill(database);
+    transaction.commit();
+  } catch (const SQLite::Exception& fault) {
+    if (const int error = system_error(database, fault); error != 0) fail_to_write(target_, error);
+    throw Error(concat("cannot write map '", target_.string(), "': ", fault.what(), "; choose another place"));
+  }
+}
+
+void PendingMap::commit() {
+  if (!flush(temporary_, O_RDWR)) fail_to_write(target_, errno);
+  // A log left beside the old map would be taken for the new one's.
+  for (const char* sidecar : kSidecars) ::unlink(with_suffix(target_, sidecar).c_str());
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail_to_write(target_, errno);
+  (void)flush(target_.parent_path(), O_RDONLY | O_DIRECTORY);  // some file systems cannot; the map is whole either way
+}
+
+OpenMap::OpenMap(const fs::path& path) : path_(path) {
+  check_file(path);
+  int application = 0;
+  try {
+    size_bytes_ = fs::file_size(path);
+    database_ = std::make_unique<SQLite::Database>(read_uri(path), SQLite::OPEN_READONLY | SQLite::OPEN_URI);
+    database_->exec("PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON");
+    application = pragma(*database_, "application_id");
+    schema_ = pragma(*database_, "user_version");
+  } catch (const std::exception& fault) {
+    fail_as_damaged(path, fault.what());
+  }
+  if (application != kApplicationId)
+    throw Error(concat("'", path.string(), "' is not an ovimap map but another program's SQLite file; give a map file that `ovimap run` wrote"));
+  if (schema_ > kMapSchema)
+    throw Error(concat("map '", path.string(), "' was written by a newer ovimap (schema ", schema_,
+                       ", this program reads up to ", kMapSchema, "); update ovimap"));
+  if (schema_ < 1) fail_as_damaged(path, concat("it has schema ", schema_));
+}
+OpenMap::~OpenMap() = default;
+
+void OpenMap::read(const std::function<void(SQLite::Database&)>& read) {
+  try {
+    check_plain_tables(*database_);
+    read(*database_);
+  } catch (const SQLite::Exception& fault) {
+    fail_as_damaged(path_, fault.what());
+  } catch (const Error& fault) {
+    fail_as_damaged(path_, fault.what());
+  }
+}
+
+}  // namespace ovimap

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+
+namespace SQLite {
+class Database;
+}
+
+namespace ovimap {
+
+/// A map being written: an empty database beside the target, which takes the target's place at commit
+/// and disappears when there is none. Throws Error naming the target, the reason and the remedy.
+class PendingMap {
+ public:
+  explicit PendingMap(const std::filesystem::path& target);
+  ~PendingMap();
+  PendingMap(const PendingMap&) = delete;
+  PendingMap& operator=(const PendingMap&) = delete;
+
+  /// Calls `fill` in one transaction.
+  void write(const std::function<void(SQLite::Database&)>& fill);
+  /// Waits until the file is on disk and renames it.
+  void commit();
+
+ private:
+  std::filesystem::path target_, temporary_;
+};
+
+/// An existing map, opened for reading only; also from folders and media that cannot be written. Throws
+/// Error when there is none, or it is no ovimap map of a schema this program knows.
+class OpenMap {
+ public:
+  explicit OpenMap(const std::filesystem::path& path);
+  ~OpenMap();
+
+  int schema() const { return schema_; }
+  std::uint64_t size_bytes() const { return size_bytes_; }
+
+  /// Calls `read`; what it throws about the content becomes "map 'x' is damaged: ...".
+  void read(const std::function<void(SQLite::Database&)>& read);
+
+ private:
+  std::filesystem::path path_;
+  std::unique_ptr<SQLite::Database> database_;
+  int schema_ = 0;
+  std::uint64_t size_bytes_ = 0;
+};
+
+}  // namespace ovimap

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ovimap/image/codec.h"
+#include "ovimap/map/voxel_map.h"
+
+struct ZSTD_CCtx_s;
+struct ZSTD_DCtx_s;
+
+namespace ovimap {
+
+/// A tile is a cube of 4 x 4 x 4 blocks, the unit in which voxels are stored: large enough for the
+/// entropy coder, small enough to be written alone.
+inline constexpr int kTileSide = 4;
+
+struct Tile {
+  std::uint64_t key = 0;      ///< pack_index of the tile, that is of its block indices / 4 rounded down
+  std::uint64_t present = 0;  ///< bit x + 4 * (y + 4 * z): the block at that place of the tile exists
+  std::vector<std::uint32_t> slots;  ///< of the blocks, in the order of their bits
+};
+
+/// All tiles with blocks, ascending by key.
+std::vector<Tile> tiles_of(const VoxelMap& map);
+
+/// Whether blocks of such a tile have indices that can be packed.
+bool valid_tile_key(std::uint64_t key);
+
+/// Creates the blocks of a tile, empty.
+Tile create_tile(VoxelMap& map, std::uint64_t key, std::uint64_t present);
+
+/// Turns the blocks of a tile into bytes (docs/map-format.md, "Tiles"). Keeps its buffers between
+/// calls; one per thread.
+class TileEncoder {
+ public:
+  TileEncoder();
+  ~TileEncoder();
+  Bytes encode(const VoxelMap& map, const Tile& tile);
+
+ private:
+  std::unique_ptr<ZSTD_CCtx_s, void (*)(ZSTD_CCtx_s*)> context_;
+  Bytes body_;
+};
+
+/// The way back. Trusts no byte of its input.
+class TileDecoder {
+ public:
+  TileDecoder();
+  ~TileDecoder();
+
+  /// Fills the blocks of `tile`, which must be fresh, and returns what is wrong with `data`; empty
+  /// when nothing is. Different tiles of one map may be filled at the same time.
+  [[nodiscard]] std::string decode(std::span<const std::uint8_t> data, const Tile& tile,
+                                   VoxelMap& map);
+
+ private:
+  std::unique_ptr<ZSTD_DCtx_s, void (*)(ZSTD_DCtx_s*)> context_;
+  Bytes body_;
+};
+
+}  // namespace ovimap

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "ovimap/io/map_document.h"
+
+namespace SQLite {
+class Database;
+}
+
+namespace ovimap {
+
+/// What the table `meta` holds besides the fields of MapRecord.
+struct MapMeta {
+  VoxelMapConfig map_config;
+  std::int64_t frames = 0;
+  std::uint64_t blocks = 0;
+  std::uint64_t content_hash = 0;
+};
+
+/// Writes everything of a map but its blocks and its forest of labels.
+void write_record(SQLite::Database& database, const MapRecord& record, const MapMeta& meta);
+
+/// The parts of the way back. Each fills its part of `record` and throws Error with a phrase when the
+/// file does not hold what was written.
+MapMeta read_meta(SQLite::Database& database, MapRecord& record);
+void read_instances(SQLite::Database& database, MapRecord& record);  ///< with their names
+void read_frames(SQLite::Database& database, MapRecord& record);
+/// `forest`: the labels that the state may speak of.
+void read_registry(SQLite::Database& database, const LabelForest& forest, MapRecord& record);
+
+/// 16 hexadecimal digits.
+std::string hash_text(std::uint64_t hash);
+
+}  // namespace ovimap
