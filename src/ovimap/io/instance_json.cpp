@@ -15,7 +15,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The number with as few digits as tell the float apart (0.1, not 0.10000000149); null unless finite.
+/// The number with as few digits as tell the float apart (0.1, not 0.10000000149); null unless
+/// finite.
 Json number(float value) {
   if (!std::isfinite(value)) return nullptr;
   char text[48];
@@ -25,9 +26,12 @@ Json number(float value) {
   return shortest;
 }
 
-Json vector(const Eigen::Vector3f& v) { return Json::array({number(v.x()), number(v.y()), number(v.z())}); }
+Json vector(const Eigen::Vector3f& v) {
+  return Json::array({number(v.x()), number(v.y()), number(v.z())});
+}
 
-Json instance_list(std::span<const InstanceSummary> instances, const std::map<InstanceId, std::string>& names) {
+Json instance_list(std::span<const InstanceSummary> instances,
+                   const std::map<InstanceId, std::string>& names) {
   Json list = Json::array();
   for (const InstanceSummary& instance : instances) {
     const auto name = names.find(instance.id);
@@ -52,7 +56,8 @@ std::string text_of(const Json& document) {
 
 }  // namespace
 
-std::string instances_json(std::span<const InstanceSummary> instances, const std::map<InstanceId, std::string>& names) {
+std::string instances_json(std::span<const InstanceSummary> instances,
+                           const std::map<InstanceId, std::string>& names) {
   Json document;
   document["instances"] = instance_list(instances, names);
   return text_of(document);

@@ -12,13 +12,14 @@
 namespace ovimap {
 
 /// Instances as a JSON object {"instances": [...]}, each {"id", "name", "box": {"min", "max"},
-/// "centroid", "points", "views", "superpoints"}; metres in the world frame. The name is "" when it has
-/// none; what is not UTF-8 in it is replaced.
-std::string instances_json(std::span<const InstanceSummary> instances, const std::map<InstanceId, std::string>& names);
+/// "centroid", "points", "views", "superpoints"}; metres in the world frame. The name is "" when it
+/// has none; what is not UTF-8 in it is replaced.
+std::string instances_json(std::span<const InstanceSummary> instances,
+                           const std::map<InstanceId, std::string>& names);
 
 /// What a map file is, as a JSON object: {"map", "schema", "frames", "mask_frames", "instances" (as
-/// above), "voxel_size_m", "blocks", "size_bytes", "content_hash" (16 hexadecimal digits), "source",
-/// "version", "config"}. `path` is how the map is called in it.
+/// above), "voxel_size_m", "blocks", "size_bytes", "content_hash" (16 hexadecimal digits),
+/// "source", "version", "config"}. `path` is how the map is called in it.
 std::string info_json(const std::filesystem::path& path, const MapInfo& info);
 
 }  // namespace ovimap

@@ -11,7 +11,8 @@ namespace {
 InstanceSummary cup() {
   InstanceSummary instance;
   instance.id = 7;
-  instance.box = Eigen::AlignedBox3f(Eigen::Vector3f(-0.1f, 0.2f, 0.f), Eigen::Vector3f(0.3f, 0.4f, 0.5f));
+  instance.box =
+      Eigen::AlignedBox3f(Eigen::Vector3f(-0.1f, 0.2f, 0.f), Eigen::Vector3f(0.3f, 0.4f, 0.5f));
   instance.centroid = {0.1f, 0.3f, 0.25f};
   instance.points = 1234;
   instance.views = 9;
@@ -20,15 +21,18 @@ InstanceSummary cup() {
 }
 
 TEST(InstanceJson, WritesAnInstance) {
-  EXPECT_EQ(instances_json(std::vector{cup()}, {{7, "cup"}}),
-            R"({"instances":[{"id":7,"name":"cup","box":{"min":[-0.1,0.2,0.0],"max":[0.3,0.4,0.5]},)"
-            R"("centroid":[0.1,0.3,0.25],"points":1234,"views":9,"superpoints":[2,5]}]})");
+  EXPECT_EQ(
+      instances_json(std::vector{cup()}, {{7, "cup"}}),
+      R"({"instances":[{"id":7,"name":"cup","box":{"min":[-0.1,0.2,0.0],"max":[0.3,0.4,0.5]},)"
+      R"("centroid":[0.1,0.3,0.25],"points":1234,"views":9,"superpoints":[2,5]}]})");
 }
 
 TEST(InstanceJson, WritesWhatIsMissing) {
   InstanceSummary empty;
   empty.id = 1;
-  const auto entry = nlohmann::json::parse(instances_json(std::vector{empty}, {{2, "other"}})).at("instances").at(0);
+  const auto entry = nlohmann::json::parse(instances_json(std::vector{empty}, {{2, "other"}}))
+                         .at("instances")
+                         .at(0);
   EXPECT_EQ(entry.at("name"), "");
   EXPECT_TRUE(entry.at("superpoints").is_array() && entry.at("superpoints").empty());
   EXPECT_EQ(instances_json({}, {}), R"({"instances":[]})");
@@ -36,14 +40,16 @@ TEST(InstanceJson, WritesWhatIsMissing) {
 
 TEST(InstanceJson, AnyNameMakesValidJson) {
   const std::string text = instances_json(std::vector{cup()}, {{7, "a\"\n\x01\xff\\"}});
-  EXPECT_EQ(nlohmann::json::parse(text).at("instances").at(0).at("name"), "a\"\n\x01\xef\xbf\xbd\\");
+  EXPECT_EQ(nlohmann::json::parse(text).at("instances").at(0).at("name"),
+            "a\"\n\x01\xef\xbf\xbd\\");
 }
 
 TEST(InstanceJson, NumbersThatAreNoneAreNull) {
   InstanceSummary instance = cup();
   instance.box.setEmpty();
   instance.centroid.x() = std::numeric_limits<float>::infinity();
-  const auto entry = nlohmann::json::parse(instances_json(std::vector{instance}, {})).at("instances").at(0);
+  const auto entry =
+      nlohmann::json::parse(instances_json(std::vector{instance}, {})).at("instances").at(0);
   EXPECT_TRUE(entry.at("centroid").at(0).is_null());
   EXPECT_EQ(entry.at("centroid").at(1), 0.3);
 }

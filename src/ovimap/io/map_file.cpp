@@ -43,7 +43,8 @@ LabelForest read_forest(SQLite::Database& database) {
     epoch = rows.integer<std::uint32_t>();
     const std::span<const std::uint8_t> bytes = rows.blob();
     roots.assign(bytes.size() / 4, 0);
-    for (std::size_t i = 0; i < roots.size() * 4; ++i) roots[i / 4] |= Label{bytes[i]} << 8 * (i % 4);
+    for (std::size_t i = 0; i < roots.size() * 4; ++i)
+      roots[i / 4] |= Label{bytes[i]} << 8 * (i % 4);
   }
   return LabelForest::from_roots(std::move(roots), epoch);
 }
@@ -76,11 +77,13 @@ void decode_tiles(const std::vector<StoredTile>& stored, VoxelMap& map) {
     TileDecoder decoder;
     for (std::size_t i = begin; i < end; ++i) {
       const auto& [tile, hash, data] = stored[i];
-      faults[i] = stored_hash(data) == hash ? decoder.decode(data, tile, map) : "it is not what was written";
+      faults[i] = stored_hash(data) == hash ? decoder.decode(data, tile, map)
+                                            : "it is not what was written";
     }
   });
   for (std::size_t i = 0; i < stored.size(); ++i)
-    if (!faults[i].empty()) throw Error(concat("tile ", stored[i].tile.key, " of its voxels: ", faults[i]));
+    if (!faults[i].empty())
+      throw Error(concat("tile ", stored[i].tile.key, " of its voxels: ", faults[i]));
 }
 
 void read_blocks(SQLite::Database& database, VoxelMap& map) {
@@ -91,7 +94,8 @@ void read_blocks(SQLite::Database& database, VoxelMap& map) {
     if ((more = rows.next())) {
       const auto key = rows.integer<std::int64_t>();
       const auto present = static_cast<std::uint64_t>(rows.integer<std::int64_t>());
-      if (key <= last_key || !valid_tile_key(static_cast<std::uint64_t>(key))) rows.fail(concat("has a tile ", key, " out of place"));
+      if (key <= last_key || !valid_tile_key(static_cast<std::uint64_t>(key)))
+        rows.fail(concat("has a tile ", key, " out of place"));
       last_key = key;
       Tile tile = create_tile(map, static_cast<std::uint64_t>(key), present);
       if (map.block_count() > kMostBlocks) rows.fail("has more blocks than fit into memory");
@@ -111,8 +115,10 @@ VoxelMap read_voxels(SQLite::Database& database, const MapMeta& meta) {
   map.labels() = read_forest(database);
   read_blocks(database, map);
   if (map.block_count() != meta.blocks)
-    throw Error(concat("it has ", map.block_count(), " blocks, but ", meta.blocks, " were written"));
-  if (map.content_hash() != meta.content_hash) throw Error("its voxels are not those that were written");
+    throw Error(
+        concat("it has ", map.block_count(), " blocks, but ", meta.blocks, " were written"));
+  if (map.content_hash() != meta.content_hash)
+    throw Error("its voxels are not those that were written");
   return map;
 }
 
@@ -120,7 +126,8 @@ VoxelMap read_voxels(SQLite::Database& database, const MapMeta& meta) {
 
 void save_map(const std::filesystem::path& path, const VoxelMap& map, const MapRecord& record) {
   PendingMap pending(path);
-  const MapMeta meta{map.config(), static_cast<std::int64_t>(record.frames.size()), map.block_count(), map.content_hash()};
+  const MapMeta meta{map.config(), static_cast<std::int64_t>(record.frames.size()),
+                     map.block_count(), map.content_hash()};
   pending.write([&](SQLite::Database& database) {
     write_record(database, record, meta);
     write_forest(database, map.labels());
@@ -129,7 +136,9 @@ void save_map(const std::filesystem::path& path, const VoxelMap& map, const MapR
   pending.commit();
 }
 
-void save_map(const std::filesystem::path& path, const MapDocument& document) { save_map(path, document.map, document); }
+void save_map(const std::filesystem::path& path, const MapDocument& document) {
+  save_map(path, document.map, document);
+}
 
 void check_map_target(const std::filesystem::path& path) { PendingMap pending(path); }
 
@@ -142,7 +151,8 @@ MapDocument load_map(const std::filesystem::path& path) {
     read_registry(database, document.map.labels(), document);
     read_instances(database, document);
     read_frames(database, document);
-    if (static_cast<std::int64_t>(document.frames.size()) != meta.frames) throw Error("its frame log is not complete");
+    if (static_cast<std::int64_t>(document.frames.size()) != meta.frames)
+      throw Error("its frame log is not complete");
   });
   return document;
 }

@@ -26,9 +26,9 @@ struct MapInfo {
   std::uint64_t content_hash = 0;
 };
 
-/// Writes a map as one file. It is built beside `path` and takes its place only when complete and on
-/// disk: on any failure a map that was there stays as it was and nothing is left behind. The same map
-/// gives the same bytes. Throws Error naming the path, the reason and the remedy.
+/// Writes a map as one file. It is built beside `path` and takes its place only when complete and
+/// on disk: on any failure a map that was there stays as it was and nothing is left behind. The
+/// same map gives the same bytes. Throws Error naming the path, the reason and the remedy.
 void save_map(const std::filesystem::path& path, const VoxelMap& map, const MapRecord& record);
 void save_map(const std::filesystem::path& path, const MapDocument& document);
 
@@ -40,7 +40,8 @@ void check_map_target(const std::filesystem::path& path);
 /// file is missing, no ovimap map, of a newer schema, or damaged; never returns altered content.
 MapDocument load_map(const std::filesystem::path& path);
 
-/// Reads what needs no voxels (milliseconds), verified likewise; a damaged voxel goes unnoticed here.
+/// Reads what needs no voxels (milliseconds), verified likewise; a damaged voxel goes unnoticed
+/// here.
 MapInfo read_map_info(const std::filesystem::path& path);
 
 }  // namespace ovimap

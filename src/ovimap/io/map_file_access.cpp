@@ -4,6 +4,7 @@
 
 #include <array>
 #include <atomic>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <string>
@@ -30,7 +31,8 @@ constexpr std::array<const char*, 3> kSidecars = {"-journal", "-wal", "-shm"};
 
 fs::path with_suffix(fs::path path, const std::string& suffix) { return path += suffix; }
 
-/// Beside the target, so that renaming stays within one file system; unique among threads and processes.
+/// Beside the target, so that renaming stays within one file system; unique among threads and
+/// processes.
 fs::path temporary_beside(const fs::path& target) {
   static std::atomic<unsigned> counter{0};
   return with_suffix(target, concat(".", ::getpid(), "-", counter.fetch_add(1), ".part"));
@@ -51,7 +53,8 @@ std::string remedy_for(int error) {
 }
 
 [[noreturn]] void fail_to_write(const fs::path& target, int error) {
-  throw Error(concat("cannot write map '", target.string(), "': ", std::generic_category().message(error), "; ", remedy_for(error)));
+  throw Error(concat("cannot write map '", target.string(),
+                     "': ", std::generic_category().message(error), "; ", remedy_for(error)));
 }
 
 /// Flushes a file or folder to disk.
@@ -82,7 +85,8 @@ std::string read_uri(const fs::path& path) {
     if (plain) uri += c;
     else (uri += '%') += {kHex[byte >> 4], kHex[byte & 15]};
   }
-  const bool logged = fs::exists(with_suffix(path, "-wal")) || fs::exists(with_suffix(path, "-journal"));
+  const bool logged =
+      fs::exists(with_suffix(path, "-wal")) || fs::exists(with_suffix(path, "-journal"));
   return uri + (logged ? "?mode=ro" : "?mode=ro&immutable=1");
 }
 
@@ -95,11 +99,16 @@ void check_file(const fs::path& path) {
     throw Error(concat("cannot open ", name, ": ", std::generic_category().message(error),
                        "; give a map file that `ovimap run` wrote"));
   std::array<char, kMagic.size()> start{};
-  const ssize_t length = fs::is_regular_file(path) ? ::pread(descriptor, start.data(), start.size(), 0) : 0;
+  const ssize_t length =
+      fs::is_regular_file(path) ? ::pread(descriptor, start.data(), start.size(), 0) : 0;
   ::close(descriptor);
-  if (!fs::is_regular_file(path)) throw Error(concat("'", path.string(), "' is not a file; give a map file that `ovimap run` wrote"));
-  if (length != static_cast<ssize_t>(start.size()) || std::string_view(start.data(), start.size()) != kMagic)
-    throw Error(concat("'", path.string(), "' is not an ovimap map; give a map file that `ovimap run` wrote"));
+  if (!fs::is_regular_file(path))
+    throw Error(
+        concat("'", path.string(), "' is not a file; give a map file that `ovimap run` wrote"));
+  if (length != static_cast<ssize_t>(start.size()) ||
+      std::string_view(start.data(), start.size()) != kMagic)
+    throw Error(concat("'", path.string(),
+                       "' is not an ovimap map; give a map file that `ovimap run` wrote"));
 }
 
 int pragma(SQLite::Database& database, const char* name) {
@@ -107,21 +116,27 @@ int pragma(SQLite::Database& database, const char* name) {
 }
 
 [[noreturn]] void fail_as_damaged(const fs::path& path, const std::string& fault) {
-  throw Error(concat("map '", path.string(), "' is damaged: ", fault, "; restore it from a copy or map again"));
+  throw Error(concat("map '", path.string(), "' is damaged: ", fault,
+                     "; restore it from a copy or map again"));
 }
 
 /// A map consists of plain tables; anything else could make reading do work of the file's choosing.
 void check_plain_tables(SQLite::Database& database) {
-  const char* sql = "SELECT count(*) FROM sqlite_master WHERE type NOT IN ('table', 'index') OR sql LIKE '%virtual%'";
-  if (database.execAndGet(sql).getInt() != 0) throw Error("it holds views, triggers or virtual tables");
+  const char* sql =
+      "SELECT count(*) FROM sqlite_master WHERE type NOT IN ('table', 'index') OR sql LIKE "
+      "'%virtual%'";
+  if (database.execAndGet(sql).getInt() != 0)
+    throw Error("it holds views, triggers or virtual tables");
 }
 
 }  // namespace
 
-PendingMap::PendingMap(const fs::path& target) : target_(fs::absolute(target)), temporary_(temporary_beside(target_)) {
+PendingMap::PendingMap(const fs::path& target)
+    : target_(fs::absolute(target)), temporary_(temporary_beside(target_)) {
   std::error_code ignored;
   if (!target_.has_filename() || fs::is_directory(target_, ignored))
-    throw Error(concat("cannot write map '", target.string(), "': it is a folder; give a file name"));
+    throw Error(
+        concat("cannot write map '", target.string(), "': it is a folder; give a file name"));
   const int descriptor = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor < 0) fail_to_write(target_, errno);
   ::close(descriptor);
@@ -133,15 +148,18 @@ void PendingMap::write(const std::function<void(SQLite::Database&)>& fill) {
   // No journal and no waiting for the disk: until the commit the file is nobody's.
   SQLite::Database database(temporary_.string(), SQLite::OPEN_READWRITE);
   try {
-    database.exec("PRAGMA page_size = 4096; PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF; "
-                  "PRAGMA locking_mode = EXCLUSIVE");
-    database.exec(concat("PRAGMA application_id = ", kApplicationId, "; PRAGMA user_version = ", kMapSchema));
+    database.exec(
+        "PRAGMA page_size = 4096; PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF; "
+        "PRAGMA locking_mode = EXCLUSIVE");
+    database.exec(
+        concat("PRAGMA application_id = ", kApplicationId, "; PRAGMA user_version = ", kMapSchema));
     SQLite::Transaction transaction(database);
     fill(database);
     transaction.commit();
   } catch (const SQLite::Exception& fault) {
     if (const int error = system_error(database, fault); error != 0) fail_to_write(target_, error);
-    throw Error(concat("cannot write map '", target_.string(), "': ", fault.what(), "; choose another place"));
+    throw Error(concat("cannot write map '", target_.string(), "': ", fault.what(),
+                       "; choose another place"));
   }
 }
 
@@ -150,7 +168,8 @@ void PendingMap::commit() {
   // A log left beside the old map would be taken for the new one's.
   for (const char* sidecar : kSidecars) ::unlink(with_suffix(target_, sidecar).c_str());
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail_to_write(target_, errno);
-  (void)flush(target_.parent_path(), O_RDONLY | O_DIRECTORY);  // some file systems cannot; the map is whole either way
+  // Some file systems cannot flush a folder; the map is whole either way.
+  (void)flush(target_.parent_path(), O_RDONLY | O_DIRECTORY);
 }
 
 OpenMap::OpenMap(const fs::path& path) : path_(path) {
@@ -158,7 +177,8 @@ OpenMap::OpenMap(const fs::path& path) : path_(path) {
   int application = 0;
   try {
     size_bytes_ = fs::file_size(path);
-    database_ = std::make_unique<SQLite::Database>(read_uri(path), SQLite::OPEN_READONLY | SQLite::OPEN_URI);
+    database_ = std::make_unique<SQLite::Database>(read_uri(path),
+                                                   SQLite::OPEN_READONLY | SQLite::OPEN_URI);
     database_->exec("PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON");
     application = pragma(*database_, "application_id");
     schema_ = pragma(*database_, "user_version");
@@ -166,7 +186,9 @@ OpenMap::OpenMap(const fs::path& path) : path_(path) {
     fail_as_damaged(path, fault.what());
   }
   if (application != kApplicationId)
-    throw Error(concat("'", path.string(), "' is not an ovimap map but another program's SQLite file; give a map file that `ovimap run` wrote"));
+    throw Error(concat("'", path.string(),
+                       "' is not an ovimap map but another program's SQLite file; give a map file "
+                       "that `ovimap run` wrote"));
   if (schema_ > kMapSchema)
     throw Error(concat("map '", path.string(), "' was written by a newer ovimap (schema ", schema_,
                        ", this program reads up to ", kMapSchema, "); update ovimap"));
@@ -179,6 +201,9 @@ void OpenMap::read(const std::function<void(SQLite::Database&)>& read) {
     check_plain_tables(*database_);
     read(*database_);
   } catch (const SQLite::Exception& fault) {
+    if (fault.getErrorCode() == SQLITE_BUSY || fault.getErrorCode() == SQLITE_LOCKED)
+      throw Error(concat("map '", path_.string(),
+                         "' is in use by another program; try again when that is done"));
     fail_as_damaged(path_, fault.what());
   } catch (const Error& fault) {
     fail_as_damaged(path_, fault.what());

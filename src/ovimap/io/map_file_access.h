@@ -12,8 +12,9 @@ class Database;
 
 namespace ovimap {
 
-/// A map being written: an empty database beside the target, which takes the target's place at commit
-/// and disappears when there is none. Throws Error naming the target, the reason and the remedy.
+/// A map being written: an empty database beside the target, which takes the target's place at
+/// commit and disappears when there is none. Throws Error naming the target, the reason and the
+/// remedy.
 class PendingMap {
  public:
   explicit PendingMap(const std::filesystem::path& target);
@@ -30,8 +31,8 @@ class PendingMap {
   std::filesystem::path target_, temporary_;
 };
 
-/// An existing map, opened for reading only; also from folders and media that cannot be written. Throws
-/// Error when there is none, or it is no ovimap map of a schema this program knows.
+/// An existing map, opened for reading only; also from folders and media that cannot be written.
+/// Throws Error when there is none, or it is no ovimap map of a schema this program knows.
 class OpenMap {
  public:
   explicit OpenMap(const std::filesystem::path& path);

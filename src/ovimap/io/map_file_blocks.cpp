@@ -25,10 +25,12 @@ constexpr std::size_t kVoxelBytes = 24;
 constexpr std::array<std::uint16_t, kBlockVoxels> kPath = [] {
   std::array<std::uint16_t, kBlockVoxels> path{};
   for (int i = 0; i < kBlockVoxels; ++i) {
-    const int column = i % kBlockSide, row = i / kBlockSide % kBlockSide, z = i / (kBlockSide * kBlockSide);
+    const int column = i % kBlockSide, row = i / kBlockSide % kBlockSide,
+              z = i / (kBlockSide * kBlockSide);
     const int x = row % 2 == 0 ? column : kBlockSide - 1 - column;
     const int y = z % 2 == 0 ? row : kBlockSide - 1 - row;
-    path[static_cast<std::size_t>(i)] = static_cast<std::uint16_t>(x + kBlockSide * (y + kBlockSide * z));
+    path[static_cast<std::size_t>(i)] =
+        static_cast<std::uint16_t>(x + kBlockSide * (y + kBlockSide * z));
   }
   return path;
 }();
@@ -40,8 +42,8 @@ struct Place {
   std::uint16_t voxel;
 };
 
-/// The parts of a tile's body after the blocks' heads. Bytes of like statistics lie together, and the
-/// low bytes, which are mostly noise, come last.
+/// The parts of a tile's body after the blocks' heads. Bytes of like statistics lie together, and
+/// the low bytes, which are mostly noise, come last.
 struct BodyLayout {
   std::size_t labels, support, tsdf_high, weight_high, color_high, low, end;
   std::size_t voxels, supports;
@@ -61,16 +63,18 @@ struct BodyLayout {
 template <class Number>
 Number zigzag(Number difference) {
   const bool negative = difference >> (8 * sizeof(Number) - 1);
-  return static_cast<Number>(static_cast<Number>(difference << 1) ^ (negative ? static_cast<Number>(~Number{0}) : Number{0}));
+  return static_cast<Number>(static_cast<Number>(difference << 1) ^
+                             (negative ? static_cast<Number>(~Number{0}) : Number{0}));
 }
 
 template <class Number>
 Number unzigzag(Number code) {
-  return static_cast<Number>(static_cast<Number>(code >> 1) ^ static_cast<Number>(Number{0} - (code & 1)));
+  return static_cast<Number>(static_cast<Number>(code >> 1) ^
+                             static_cast<Number>(Number{0} - (code & 1)));
 }
 
-/// Byte planes of a sequence of numbers, lowest byte first; each number is stored as the difference to
-/// the one before.
+/// Byte planes of a sequence of numbers, lowest byte first; each number is stored as the difference
+/// to the one before.
 template <class Number>
 class Planes {
  public:
@@ -89,7 +93,8 @@ class Planes {
   Number take() {
     Number code = 0;
     for (std::size_t i = 0; i < sizeof(Number); ++i)
-      code = static_cast<Number>(code | static_cast<Number>(static_cast<Number>(*planes_[i]++) << 8 * i));
+      code = static_cast<Number>(code |
+                                 static_cast<Number>(static_cast<Number>(*planes_[i]++) << 8 * i));
     previous_ = static_cast<Number>(previous_ + unzigzag(code));
     return previous_;
   }
@@ -107,7 +112,8 @@ Planes<std::uint32_t> weight_planes(std::uint8_t* body, const BodyLayout& at) {
   return Planes<std::uint32_t>({low, low + at.voxels, low + 2 * at.voxels, body + at.weight_high});
 }
 Planes<std::uint16_t> color_planes(std::uint8_t* body, const BodyLayout& at, std::size_t channel) {
-  return Planes<std::uint16_t>({body + at.low + (4 + channel) * at.voxels, body + at.color_high + channel * at.voxels});
+  return Planes<std::uint16_t>(
+      {body + at.low + (4 + channel) * at.voxels, body + at.color_high + channel * at.voxels});
 }
 Planes<std::uint16_t> support_planes(std::uint8_t* body, const BodyLayout& at) {
   return Planes<std::uint16_t>({body + at.support, body + at.support + at.supports});
@@ -118,7 +124,8 @@ void append(Bytes& bytes, std::uint32_t value, int count) {
 }
 
 bool stored(const VoxelBlock& block, std::size_t v) {
-  std::uint32_t any = static_cast<std::uint16_t>(block.tsdf[v]) | std::bit_cast<std::uint32_t>(block.weight[v]);
+  std::uint32_t any =
+      static_cast<std::uint16_t>(block.tsdf[v]) | std::bit_cast<std::uint32_t>(block.weight[v]);
   for (const auto& channel : block.color) any |= channel[v];
   for (const auto& slot : block.label) any |= slot[v];
   return any != 0;
@@ -127,11 +134,13 @@ bool stored(const VoxelBlock& block, std::size_t v) {
 using SavedPlace = Place<const VoxelBlock>;
 using LoadedPlace = Place<VoxelBlock>;
 
-/// Writes the blocks' heads (epochs, palettes, which voxels are stored) and lists the stored voxels.
+/// Writes the blocks' heads (epochs, palettes, which voxels are stored) and lists the stored
+/// voxels.
 std::vector<SavedPlace> put_heads(const VoxelMap& map, const Tile& tile, Bytes& body) {
   std::vector<SavedPlace> places;
   for (std::uint32_t slot : tile.slots) append(body, map.block(slot).forest_epoch, 4);
-  for (std::uint32_t slot : tile.slots) append(body, static_cast<std::uint32_t>(map.block(slot).palette.size()), 2);
+  for (std::uint32_t slot : tile.slots)
+    append(body, static_cast<std::uint32_t>(map.block(slot).palette.size()), 2);
   for (std::uint32_t slot : tile.slots)
     for (Label label : map.block(slot).palette) append(body, label, 4);
   for (std::uint32_t slot : tile.slots) {
@@ -153,7 +162,8 @@ void put_voxels(const std::vector<SavedPlace>& places, std::uint8_t* body, const
   Planes<std::uint32_t> weight = weight_planes(body, at);
   for (const auto [block, v] : places) weight.put(std::bit_cast<std::uint32_t>(block->weight[v]));
   // Green, then red and blue as differences to it: the three channels rise and fall together.
-  Planes<std::uint16_t> green = color_planes(body, at, 0), red = color_planes(body, at, 1), blue = color_planes(body, at, 2);
+  Planes<std::uint16_t> green = color_planes(body, at, 0), red = color_planes(body, at, 1),
+                        blue = color_planes(body, at, 2);
   for (const auto [block, v] : places) {
     const auto& [r, g, b] = block->color;
     green.put(g[v]);
@@ -188,11 +198,13 @@ class HeadCursor {
 };
 
 /// Reads the blocks' heads; returns what is wrong with them.
-std::string take_heads(HeadCursor& head, const Tile& tile, VoxelMap& map, std::vector<LoadedPlace>& places) {
+std::string take_heads(HeadCursor& head, const Tile& tile, VoxelMap& map,
+                       std::vector<LoadedPlace>& places) {
   if (!head.has(tile.slots.size() * 6)) return "its heads are cut off";
   for (std::uint32_t slot : tile.slots) {
     map.block(slot).forest_epoch = head.take(4);
-    if (map.block(slot).forest_epoch > map.labels().epoch()) return "it is newer than the table of merged labels";
+    if (map.block(slot).forest_epoch > map.labels().epoch())
+      return "it is newer than the table of merged labels";
   }
   for (std::uint32_t slot : tile.slots) {
     const std::uint32_t size = head.take(2);
@@ -242,7 +254,8 @@ bool take_voxels(const std::vector<LoadedPlace>& places, std::uint8_t* body, con
     weights_valid = weights_valid && value >= 0.f && value <= std::numeric_limits<float>::max();
     block->weight[v] = value;
   }
-  Planes<std::uint16_t> green = color_planes(body, at, 0), red = color_planes(body, at, 1), blue = color_planes(body, at, 2);
+  Planes<std::uint16_t> green = color_planes(body, at, 0), red = color_planes(body, at, 1),
+                        blue = color_planes(body, at, 2);
   for (const auto [block, v] : places) {
     auto& [r, g, b] = block->color;
     g[v] = green.take();
@@ -261,7 +274,9 @@ BlockIndex tile_of(const BlockIndex& block) {
   return {block.x() >> kShift, block.y() >> kShift, block.z() >> kShift};  // floor for either sign
 }
 
-int bit_of(const BlockIndex& place) { return place.x() + kTileSide * (place.y() + kTileSide * place.z()); }
+int bit_of(const BlockIndex& place) {
+  return place.x() + kTileSide * (place.y() + kTileSide * place.z());
+}
 
 }  // namespace
 
@@ -300,7 +315,8 @@ Tile create_tile(VoxelMap& map, std::uint64_t key, std::uint64_t present) {
   const BlockIndex first = unpack_index(key) * kTileSide;
   for (int bit = 0; bit < kTileSide * kTileSide * kTileSide; ++bit) {
     if ((present >> bit & 1) == 0) continue;
-    const BlockIndex place(bit % kTileSide, bit / kTileSide % kTileSide, bit / (kTileSide * kTileSide));
+    const BlockIndex place(bit % kTileSide, bit / kTileSide % kTileSide,
+                           bit / (kTileSide * kTileSide));
     tile.slots.push_back(map.find_or_create(first + place));
   }
   return tile;
@@ -331,7 +347,8 @@ Bytes TileEncoder::encode(const VoxelMap& map, const Tile& tile) {
   const std::size_t flushed = ZSTD_compressStream2(context_.get(), &out, &in, ZSTD_e_flush);
   in.size = body_.size();
   const std::size_t left = ZSTD_compressStream2(context_.get(), &out, &in, ZSTD_e_end);
-  if (flushed != 0 || left != 0) throw Error("the compressor ran out of memory; close other programs");
+  if (flushed != 0 || left != 0)
+    throw Error("the compressor ran out of memory; close other programs");
   data.resize(out.pos);
   return data;
 }
@@ -340,11 +357,13 @@ TileDecoder::TileDecoder()
     : context_(ZSTD_createDCtx(), [](ZSTD_DCtx* context) { ZSTD_freeDCtx(context); }) {}
 TileDecoder::~TileDecoder() = default;
 
-std::string TileDecoder::decode(std::span<const std::uint8_t> data, const Tile& tile, VoxelMap& map) {
-  constexpr std::size_t kMostBlockBytes = 6 + 4 * kPaletteLimit + kMaskBytes + kVoxelBytes * kBlockVoxels;
+std::string TileDecoder::decode(std::span<const std::uint8_t> data, const Tile& tile,
+                                VoxelMap& map) {
+  constexpr std::size_t kMostBlockBytes =
+      6 + 4 * kPaletteLimit + kMaskBytes + kVoxelBytes * kBlockVoxels;
   body_.resize(std::max(body_.size(), tile.slots.size() * kMostBlockBytes));
-  const std::size_t size = ZSTD_decompressDCtx(context_.get(), body_.data(), tile.slots.size() * kMostBlockBytes,
-                                               data.data(), data.size());
+  const std::size_t size = ZSTD_decompressDCtx(
+      context_.get(), body_.data(), tile.slots.size() * kMostBlockBytes, data.data(), data.size());
   if (ZSTD_isError(size)) return concat("it does not decompress (", ZSTD_getErrorName(size), ")");
   const std::span<const std::uint8_t> body(body_.data(), size);
   HeadCursor head(body);
@@ -352,8 +371,10 @@ std::string TileDecoder::decode(std::span<const std::uint8_t> data, const Tile& 
   if (std::string fault = take_heads(head, tile, map, places); !fault.empty()) return fault;
   const std::size_t label_bytes = kLabelSlots * places.size();
   if (!head.has(label_bytes)) return "its labels are cut off";
-  const BodyLayout layout(head.position(), places.size(), count_supports(body.subspan(head.position(), label_bytes)));
-  if (layout.end != size) return concat("it has ", size, " bytes where ", layout.end, " are expected");
+  const BodyLayout layout(head.position(), places.size(),
+                          count_supports(body.subspan(head.position(), label_bytes)));
+  if (layout.end != size)
+    return concat("it has ", size, " bytes where ", layout.end, " are expected");
   if (!take_labels(places, body_.data(), layout)) return "a label slot points beyond its palette";
   if (!take_voxels(places, body_.data(), layout)) return "a weight is negative or not finite";
   return {};

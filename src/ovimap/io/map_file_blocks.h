@@ -21,8 +21,9 @@ namespace ovimap {
 inline constexpr int kTileSide = 4;
 
 struct Tile {
-  std::uint64_t key = 0;      ///< pack_index of the tile, that is of its block indices / 4 rounded down
-  std::uint64_t present = 0;  ///< bit x + 4 * (y + 4 * z): the block at that place of the tile exists
+  std::uint64_t key = 0;  ///< pack_index of the tile, that is of its block indices / 4 rounded down
+  std::uint64_t present =
+      0;  ///< bit x + 4 * (y + 4 * z): the block at that place of the tile exists
   std::vector<std::uint32_t> slots;  ///< of the blocks, in the order of their bits
 };
 

@@ -76,18 +76,22 @@ TEST(MapFileBlocks, ExtremeBlocksReturnBitForBit) {
   VoxelBlock& full = map.block(map.find_or_create({1, 0, 0}));
   for (Label label = 1; label < 256; ++label) full.palette.push_back(label);
   for (std::size_t v = 0; v < kBlockVoxels; ++v) {
-    full.tsdf[v] = v % 2 == 0 ? std::numeric_limits<std::int16_t>::min() : std::numeric_limits<std::int16_t>::max();
-    full.weight[v] = v % 2 == 0 ? std::numeric_limits<float>::max() : std::numeric_limits<float>::denorm_min();
+    full.tsdf[v] = v % 2 == 0 ? std::numeric_limits<std::int16_t>::min()
+                              : std::numeric_limits<std::int16_t>::max();
+    full.weight[v] =
+        v % 2 == 0 ? std::numeric_limits<float>::max() : std::numeric_limits<float>::denorm_min();
     for (auto& channel : full.color) channel[v] = v % 3 == 0 ? 0 : 0xffff;
     for (auto& slot : full.label) slot[v] = static_cast<std::uint8_t>(255 - v % 256);
     for (auto& slot : full.support) slot[v] = v % 256 == 255 ? 0 : 0xffff;
   }
-  VoxelBlock& lone = map.block(map.find_or_create({2, 0, 0}));  // one voxel, known by its colour alone
+  VoxelBlock& lone =
+      map.block(map.find_or_create({2, 0, 0}));  // one voxel, known by its colour alone
   lone.color[2][511] = 1;
   EXPECT_TRUE(same_voxels(map, through_tiles(map)));
 }
 
-/// Decodes a body that was changed before compression, so that only the decoder's checks stand guard.
+/// Decodes a body that was changed before compression, so that only the decoder's checks stand
+/// guard.
 class TileBody : public ::testing::Test {
  protected:
   TileBody() : map_(random_map(40, 7)), tile_(tiles_of(map_)[1]) {
@@ -117,7 +121,8 @@ TEST_F(TileBody, NoChangeCrashesTheDecoder) {
     Bytes body = body_;
     const std::size_t head = tile_.slots.size() * 100;  // where every byte counts
     for (int change = 0; change < 3; ++change)
-      body[random() % (trial % 2 == 0 ? std::min(head, body.size()) : body.size())] = static_cast<std::uint8_t>(random());
+      body[random() % (trial % 2 == 0 ? std::min(head, body.size()) : body.size())] =
+          static_cast<std::uint8_t>(random());
     if (trial % 5 == 0) body.resize(random() % body.size());
     faults += !fault(body).empty();
   }

@@ -18,13 +18,16 @@ class MapFileDamage : public MapFolder {
  protected:
   MapFileDamage() { save_map(path_, saved_); }
 
-  /// Loads the bytes as a map. True when that failed with an Error of one line; reports a failure of the
-  /// test when the content is other than what was saved.
+  /// Loads the bytes as a map. True when that failed with an Error of one line; reports a failure
+  /// of the test when the content is other than what was saved.
   bool refused(const Bytes& bytes, const std::string& what) {
     write_file(path_, bytes);
-    const auto instances_are_true = [&] { EXPECT_TRUE(same_instances(read_map_info(path_).instances, saved_.instances)) << what; };
+    const auto instances_are_true = [&] {
+      EXPECT_TRUE(same_instances(read_map_info(path_).instances, saved_.instances)) << what;
+    };
     const std::string info_fault = fault_of(instances_are_true);
-    const std::string fault = fault_of([&] { EXPECT_EQ(difference(saved_, load_map(path_)), "") << what; });
+    const std::string fault =
+        fault_of([&] { EXPECT_EQ(difference(saved_, load_map(path_)), "") << what; });
     EXPECT_EQ(fault.find('\n'), std::string::npos) << what;
     EXPECT_TRUE(info_fault.empty() || !fault.empty()) << what << ": only info says " << info_fault;
     return !fault.empty();
@@ -69,26 +72,41 @@ TEST_F(MapFileDamage, AnOverwrittenStretchIsFoundOrHarmless) {
 
 TEST_F(MapFileDamage, ACutFileIsRefused) {
   const Bytes intact = read_file(path_);
-  std::vector<std::size_t> lengths = {0, 1, 15, 16, 99, 100, 4095, 4096, 8192, intact.size() - 4096, intact.size() - 1};
+  std::vector<std::size_t> lengths = {
+      0, 1, 15, 16, 99, 100, 4095, 4096, 8192, intact.size() - 4096, intact.size() - 1};
   for (int i = 0; i < 100; ++i) lengths.push_back(random_() % intact.size());
   for (const std::size_t length : lengths)
-    EXPECT_TRUE(refused(Bytes(intact.begin(), intact.begin() + static_cast<std::ptrdiff_t>(length)), concat("cut to ", length)));
+    EXPECT_TRUE(refused(Bytes(intact.begin(), intact.begin() + static_cast<std::ptrdiff_t>(length)),
+                        concat("cut to ", length)));
 }
 
 TEST_F(MapFileDamage, EveryTableIsGuarded) {
-  const auto is_damaged = [](const std::string& fault) { return fault.find("' is damaged: ") != std::string::npos; };
-  for (const char* sql :
-       {"UPDATE meta SET value = '0.02' WHERE key = 'map.voxel_size_m'", "UPDATE instances SET points = points + 1",
-        "UPDATE instances SET min_x = 'left'", "DELETE FROM instance_super_points WHERE label = 1",
-        "UPDATE instance_names SET name = 'cup'", "UPDATE instance_records SET views = 4 WHERE id = 1",
-        "UPDATE instance_aliases SET target = 3", "UPDATE super_points SET frames_seen = 99999999999999",
-        "UPDATE votes SET votes = 6 WHERE votes = 5", "UPDATE label_pairs SET apart = 3 WHERE apart = 2",
-        "UPDATE label_forest SET epoch = epoch + 1", "UPDATE label_forest SET roots = substr(roots, 1, 8)",
-        "UPDATE frames SET world_from_camera = x'00'", "DELETE FROM frames WHERE position = 1",
-        "UPDATE blocks SET present = -1", "UPDATE blocks SET tile = tile + 1", "UPDATE blocks SET data = x''",
-        "DELETE FROM blocks WHERE tile = (SELECT max(tile) FROM blocks)", "DELETE FROM checks WHERE name = 'votes'",
-        "DROP TABLE frames", "CREATE VIEW v AS SELECT 1", "PRAGMA user_version = 0",
-        "ALTER TABLE votes RENAME COLUMN votes TO ballots"}) {
+  const auto is_damaged = [](const std::string& fault) {
+    return fault.find("' is damaged: ") != std::string::npos;
+  };
+  for (const char* sql : {"UPDATE meta SET value = '0.02' WHERE key = 'map.voxel_size_m'",
+                          "UPDATE instances SET points = points + 1",
+                          "UPDATE instances SET min_x = 'left'",
+                          "DELETE FROM instance_super_points WHERE label = 1",
+                          "UPDATE instance_names SET name = 'cup'",
+                          "UPDATE instance_records SET views = 4 WHERE id = 1",
+                          "UPDATE instance_aliases SET target = 3",
+                          "UPDATE super_points SET frames_seen = 99999999999999",
+                          "UPDATE votes SET votes = 6 WHERE votes = 5",
+                          "UPDATE label_pairs SET apart = 3 WHERE apart = 2",
+                          "UPDATE label_forest SET epoch = epoch + 1",
+                          "UPDATE label_forest SET roots = substr(roots, 1, 8)",
+                          "UPDATE frames SET world_from_camera = x'00'",
+                          "DELETE FROM frames WHERE position = 1",
+                          "UPDATE blocks SET present = -1",
+                          "UPDATE blocks SET tile = tile + 1",
+                          "UPDATE blocks SET data = x''",
+                          "DELETE FROM blocks WHERE tile = (SELECT max(tile) FROM blocks)",
+                          "DELETE FROM checks WHERE name = 'votes'",
+                          "DROP TABLE frames",
+                          "CREATE VIEW v AS SELECT 1",
+                          "PRAGMA user_version = 0",
+                          "ALTER TABLE votes RENAME COLUMN votes TO ballots"}) {
     const std::string fault = fault_after(sql);
     EXPECT_TRUE(is_damaged(fault)) << sql << ": " << fault;
   }
@@ -96,18 +114,25 @@ TEST_F(MapFileDamage, EveryTableIsGuarded) {
 }
 
 TEST_F(MapFileDamage, SaysWhenItIsNoMap) {
-  EXPECT_NE(fault_after("PRAGMA application_id = 7").find("is not an ovimap map but another program's SQLite file"), std::string::npos);
+  EXPECT_NE(fault_after("PRAGMA application_id = 7")
+                .find("is not an ovimap map but another program's SQLite file"),
+            std::string::npos);
   write_file(path_, Bytes(100, 'x'));
   EXPECT_NE(fault_of([&] { load_map(path_); }).find("is not an ovimap map"), std::string::npos);
   write_file(path_, Bytes());
-  EXPECT_NE(fault_of([&] { read_map_info(path_); }).find("is not an ovimap map"), std::string::npos);
+  EXPECT_NE(fault_of([&] { read_map_info(path_); }).find("is not an ovimap map"),
+            std::string::npos);
   EXPECT_NE(fault_of([&] { load_map(root_); }).find("is not a file"), std::string::npos);
   EXPECT_NE(fault_of([&] { load_map(root_ / "none"); }).find("No such file"), std::string::npos);
 }
 
 TEST_F(MapFileDamage, SaysWhenItIsTooNew) {
   const std::string fault = fault_after("PRAGMA user_version = 7");
-  EXPECT_NE(fault.find("was written by a newer ovimap (schema 7, this program reads up to 1); update ovimap"), std::string::npos) << fault;
+  EXPECT_NE(
+      fault.find(
+          "was written by a newer ovimap (schema 7, this program reads up to 1); update ovimap"),
+      std::string::npos)
+      << fault;
 }
 
 }  // namespace

@@ -40,12 +40,15 @@ class MapFolder : public ::testing::Test {
 
   const std::filesystem::path root_ =
       std::filesystem::temp_directory_path() /
-      ("ovimap_map_" + std::to_string(getpid()) + "_" + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+      ("ovimap_map_" + std::to_string(getpid()) + "_" +
+       ::testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
 /// Fills a block with random content of which about half the voxels are observed.
 inline void fill_randomly(VoxelBlock& block, const LabelForest& forest, std::mt19937& random) {
-  const auto below = [&](std::uint32_t limit) { return static_cast<std::uint32_t>(random() % limit); };
+  const auto below = [&](std::uint32_t limit) {
+    return static_cast<std::uint32_t>(random() % limit);
+  };
   block.forest_epoch = below(forest.epoch() + 1);
   for (Label label = 1; label <= forest.last_label(); ++label)
     if (below(3) == 0) block.palette.push_back(label);
@@ -55,13 +58,16 @@ inline void fill_randomly(VoxelBlock& block, const LabelForest& forest, std::mt1
     block.weight[v] = static_cast<float>(1 + below(100000)) * 1e-3f;
     for (auto& channel : block.color) channel[v] = static_cast<std::uint16_t>(random());
     for (std::size_t s = 0; s < kLabelSlots; ++s) {
-      block.label[s][v] = static_cast<std::uint8_t>(below(static_cast<std::uint32_t>(block.palette.size())));
-      if (block.label[s][v] != 0) block.support[s][v] = static_cast<std::uint16_t>(below(3) == 0 ? 0 : random());
+      block.label[s][v] =
+          static_cast<std::uint8_t>(below(static_cast<std::uint32_t>(block.palette.size())));
+      if (block.label[s][v] != 0)
+        block.support[s][v] = static_cast<std::uint16_t>(below(3) == 0 ? 0 : random());
     }
   }
 }
 
-/// A map with every kind of content: blocks on both sides of the origin and far away, merged labels.
+/// A map with every kind of content: blocks on both sides of the origin and far away, merged
+/// labels.
 inline VoxelMap random_map(int block_count, std::uint32_t seed) {
   VoxelMapConfig config;
   config.voxel_size_m = 0.0213f;
@@ -69,10 +75,13 @@ inline VoxelMap random_map(int block_count, std::uint32_t seed) {
   VoxelMap map(config);
   std::mt19937 random(seed);
   for (int i = 0; i < 20; ++i) map.labels().create();
-  for (int i = 0; i < 6; ++i) map.labels().merge(1 + static_cast<Label>(random() % 20), 1 + static_cast<Label>(random() % 20));
+  for (int i = 0; i < 6; ++i)
+    map.labels().merge(1 + static_cast<Label>(random() % 20),
+                       1 + static_cast<Label>(random() % 20));
   std::vector<BlockIndex> indices = {{-(1 << 20), 0, (1 << 20) - 1}};
   while (static_cast<int>(indices.size()) < block_count)
-    indices.emplace_back(static_cast<int>(random() % 12) - 6, static_cast<int>(random() % 12) - 6, static_cast<int>(random() % 12) - 6);
+    indices.emplace_back(static_cast<int>(random() % 12) - 6, static_cast<int>(random() % 12) - 6,
+                         static_cast<int>(random() % 12) - 6);
   for (const BlockIndex& index : indices) {
     if (map.find(index) != nullptr) continue;
     fill_randomly(map.block(map.find_or_create(index)), map.labels(), random);
@@ -86,14 +95,16 @@ inline MapDocument random_document(int block_count, std::uint32_t seed) {
   document.instance_config.min_vote_share = 0.37f;
   document.instance_config.instances = InstanceReading::kSuperPoints;
   document.instance_config.merging.merge_min_count = 23;
-  document.registry.super_points = {{1, {7, {{1, 3}, {2, 5}}}}, {4, {1, {}}}, {20, {900, {{3, 800}}}}};
+  document.registry.super_points = {
+      {1, {7, {{1, 3}, {2, 5}}}}, {4, {1, {}}}, {20, {900, {{3, 800}}}}};
   document.registry.records = {{1, {3, 0, 70}}, {3, {800, -5, std::int64_t{1} << 40}}};
   document.registry.aliases = {{2, 1}};
   document.registry.pair_counts = {{{1, 4}, {11, 2}}, {{4, 20}, {0, 1}}};
   document.registry.last_id = 3;
   InstanceSummary cup, table;
   cup.id = 1;
-  cup.box = Eigen::AlignedBox3f(Eigen::Vector3f(-0.1f, 0.2f, -0.f), Eigen::Vector3f(0.3f, 0.4f, 1e-20f));
+  cup.box =
+      Eigen::AlignedBox3f(Eigen::Vector3f(-0.1f, 0.2f, -0.f), Eigen::Vector3f(0.3f, 0.4f, 1e-20f));
   cup.centroid = {0.1f, 0.3f, 1.f / 3.f};
   cup.points = 5000000000;
   cup.views = 3;
@@ -123,54 +134,67 @@ inline std::string dump_of(VoxelMapConfig map, InstanceConfig instance) {
 }
 
 inline bool same_block(const VoxelBlock& a, const VoxelBlock& b) {
-  return a.index == b.index && a.forest_epoch == b.forest_epoch && a.palette == b.palette && a.tsdf == b.tsdf &&
-         a.weight == b.weight && a.color == b.color && a.label == b.label && a.support == b.support;
+  return a.index == b.index && a.forest_epoch == b.forest_epoch && a.palette == b.palette &&
+         a.tsdf == b.tsdf && a.weight == b.weight && a.color == b.color && a.label == b.label &&
+         a.support == b.support;
 }
 
 inline bool same_voxels(const VoxelMap& a, const VoxelMap& b) {
   const std::vector<std::uint32_t> in_a = a.ordered_slots(), in_b = b.ordered_slots();
-  return std::equal(in_a.begin(), in_a.end(), in_b.begin(), in_b.end(),
-                    [&](std::uint32_t i, std::uint32_t j) { return same_block(a.block(i), b.block(j)); });
+  return std::equal(
+      in_a.begin(), in_a.end(), in_b.begin(), in_b.end(),
+      [&](std::uint32_t i, std::uint32_t j) { return same_block(a.block(i), b.block(j)); });
 }
 
 inline bool same_instance(const InstanceSummary& a, const InstanceSummary& b) {
-  return a.id == b.id && a.box.min() == b.box.min() && a.box.max() == b.box.max() && a.centroid == b.centroid &&
-         a.points == b.points && a.views == b.views && a.super_points == b.super_points;
+  return a.id == b.id && a.box.min() == b.box.min() && a.box.max() == b.box.max() &&
+         a.centroid == b.centroid && a.points == b.points && a.views == b.views &&
+         a.super_points == b.super_points;
 }
 
-inline bool same_instances(const std::vector<InstanceSummary>& a, const std::vector<InstanceSummary>& b) {
+inline bool same_instances(const std::vector<InstanceSummary>& a,
+                           const std::vector<InstanceSummary>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), same_instance);
 }
 
 inline bool same_frame(const FrameLogEntry& a, const FrameLogEntry& b) {
-  return a.index == b.index && a.timestamp_s == b.timestamp_s && a.name == b.name && a.labelled == b.labelled &&
-         a.world_from_camera.matrix() == b.world_from_camera.matrix();
+  return a.index == b.index && a.timestamp_s == b.timestamp_s && a.name == b.name &&
+         a.labelled == b.labelled && a.world_from_camera.matrix() == b.world_from_camera.matrix();
 }
 
 inline bool same_registry(const InstanceRegistry::State& a, const InstanceRegistry::State& b) {
   const auto same_point = [](const auto& x, const auto& y) {
-    return x.first == y.first && x.second.frames_seen == y.second.frames_seen && x.second.votes == y.second.votes;
+    return x.first == y.first && x.second.frames_seen == y.second.frames_seen &&
+           x.second.votes == y.second.votes;
   };
   const auto same_record = [](const auto& x, const auto& y) {
-    return x.first == y.first && x.second.views == y.second.views && x.second.first_frame == y.second.first_frame &&
+    return x.first == y.first && x.second.views == y.second.views &&
+           x.second.first_frame == y.second.first_frame &&
            x.second.last_frame == y.second.last_frame;
   };
-  return std::equal(a.super_points.begin(), a.super_points.end(), b.super_points.begin(), b.super_points.end(), same_point) &&
-         std::equal(a.records.begin(), a.records.end(), b.records.begin(), b.records.end(), same_record) &&
+  return std::equal(a.super_points.begin(), a.super_points.end(), b.super_points.begin(),
+                    b.super_points.end(), same_point) &&
+         std::equal(a.records.begin(), a.records.end(), b.records.begin(), b.records.end(),
+                    same_record) &&
          a.aliases == b.aliases && a.pair_counts == b.pair_counts && a.last_id == b.last_id;
 }
 
 /// What two documents differ in; empty when in nothing.
 inline std::string difference(const MapDocument& a, const MapDocument& b) {
   if (!same_voxels(a.map, b.map)) return "voxels";
-  if (a.map.labels().roots() != b.map.labels().roots() || a.map.labels().epoch() != b.map.labels().epoch()) return "labels";
-  if (dump_of(a.map.config(), a.instance_config) != dump_of(b.map.config(), b.instance_config)) return "configs";
+  if (a.map.labels().roots() != b.map.labels().roots() ||
+      a.map.labels().epoch() != b.map.labels().epoch())
+    return "labels";
+  if (dump_of(a.map.config(), a.instance_config) != dump_of(b.map.config(), b.instance_config))
+    return "configs";
   if (!same_registry(a.registry, b.registry)) return "registry";
   if (!same_instances(a.instances, b.instances)) return "instances";
   if (a.names != b.names) return "names";
-  if (!std::equal(a.frames.begin(), a.frames.end(), b.frames.begin(), b.frames.end(), same_frame)) return "frames";
+  if (!std::equal(a.frames.begin(), a.frames.end(), b.frames.begin(), b.frames.end(), same_frame))
+    return "frames";
   if (a.depth_camera != b.depth_camera) return "camera";
-  if (a.config_text != b.config_text || a.source != b.source || a.version != b.version) return "texts";
+  if (a.config_text != b.config_text || a.source != b.source || a.version != b.version)
+    return "texts";
   return a.mask_frames == b.mask_frames ? "" : "mask frames";
 }
 

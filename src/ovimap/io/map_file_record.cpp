@@ -16,15 +16,16 @@ namespace {
 
 using namespace map_tables;
 
-/// Every plain value of a map by its key in the table `meta`. Written and read through this one list; a
-/// key that a file lacks keeps its default.
+/// Every plain value of a map by its key in the table `meta`. Written and read through this one
+/// list; a key that a file lacks keeps its default.
 void list_meta(MapRecord& record, VoxelMapConfig& map_config, ConfigFields& fields) {
   constexpr int kMostPixels = 1 << 20;
   constexpr float kMostFocalPixels = 1e9f;
   fields.add("version", record.version, "of the program that wrote the map");
   fields.add("source", record.source, "where the frames came from");
   fields.add("config", record.config_text, "effective configuration");
-  fields.add("mask_frames", record.mask_frames, 0, std::numeric_limits<int>::max(), "frames with 2D masks");
+  fields.add("mask_frames", record.mask_frames, 0, std::numeric_limits<int>::max(),
+             "frames with 2D masks");
   fields.group("depth_camera", [&](ConfigFields& camera) {
     camera.add("width", record.depth_camera.width, 0, kMostPixels, "pixels");
     camera.add("height", record.depth_camera.height, 0, kMostPixels, "pixels");
@@ -34,11 +35,12 @@ void list_meta(MapRecord& record, VoxelMapConfig& map_config, ConfigFields& fiel
     camera.add("cy", record.depth_camera.cy, -kMostFocalPixels, kMostFocalPixels, "pixels");
   });
   fields.group("map", [&](ConfigFields& map) { list_fields(map_config, map); });
-  fields.group("instance", [&](ConfigFields& instance) { list_fields(record.instance_config, instance); });
+  fields.group("instance",
+               [&](ConfigFields& instance) { list_fields(record.instance_config, instance); });
 }
 
-std::uint64_t parse_number(const std::map<std::string, std::string>& meta, const std::string& key, int base,
-                           std::uint64_t max) {
+std::uint64_t parse_number(const std::map<std::string, std::string>& meta, const std::string& key,
+                           int base, std::uint64_t max) {
   const auto found = meta.find(key);
   if (found == meta.end()) throw Error(concat("table meta has no ", key));
   const std::string& text = found->second;
@@ -77,8 +79,8 @@ void write_instances(SQLite::Database& database, const MapRecord& record) {
   RowWriter instances(database, kInstances);
   for (const InstanceSummary& instance : record.instances) {
     const auto &low = instance.box.min(), &high = instance.box.max(), &center = instance.centroid;
-    instances.insert(instance.id, low.x(), low.y(), low.z(), high.x(), high.y(), high.z(), center.x(), center.y(),
-                     center.z(), instance.points, instance.views);
+    instances.insert(instance.id, low.x(), low.y(), low.z(), high.x(), high.y(), high.z(),
+                     center.x(), center.y(), center.z(), instance.points, instance.views);
   }
   instances.finish();
   RowWriter super_points(database, kInstanceSuperPoints);
@@ -90,8 +92,8 @@ void write_instances(SQLite::Database& database, const MapRecord& record) {
   names.finish();
 }
 
-/// Pose as bytes: the upper three rows, row by row, 12 little-endian doubles. A column each would cost
-/// readers more than it tells them.
+/// Pose as bytes: the upper three rows, row by row, 12 little-endian doubles. A column each would
+/// cost readers more than it tells them.
 std::array<std::uint8_t, 96> pose_bytes(const Pose& pose) {
   std::array<std::uint8_t, 96> bytes;
   for (std::size_t i = 0; i < bytes.size(); ++i) {
@@ -107,7 +109,8 @@ Pose pose_from(std::span<const std::uint8_t> bytes) {
   for (std::size_t number = 0; number < 12; ++number) {
     std::uint64_t word = 0;
     for (std::size_t i = 0; i < 8; ++i) word |= std::uint64_t{bytes[number * 8 + i]} << 8 * i;
-    pose.matrix()(static_cast<Eigen::Index>(number / 4), static_cast<Eigen::Index>(number % 4)) = std::bit_cast<double>(word);
+    pose.matrix()(static_cast<Eigen::Index>(number / 4), static_cast<Eigen::Index>(number % 4)) =
+        std::bit_cast<double>(word);
   }
   return pose;
 }
@@ -117,7 +120,8 @@ void write_frames(SQLite::Database& database, const MapRecord& record) {
   for (std::size_t i = 0; i < record.frames.size(); ++i) {
     const FrameLogEntry& frame = record.frames[i];
     const auto pose = pose_bytes(frame.world_from_camera);
-    rows.insert(i, frame.index, frame.timestamp_s, frame.name, std::span<const std::uint8_t>(pose), frame.labelled);
+    rows.insert(i, frame.index, frame.timestamp_s, frame.name, std::span<const std::uint8_t>(pose),
+                frame.labelled);
   }
   rows.finish();
 }
@@ -131,10 +135,12 @@ void write_registry(SQLite::Database& database, const InstanceRegistry::State& s
     for (const auto& [id, count] : point.votes) votes.insert(label, id, count);
   votes.finish();
   RowWriter pairs(database, kLabelPairs);
-  for (const auto& [pair, count] : state.pair_counts) pairs.insert(pair.first, pair.second, count.joined, count.apart);
+  for (const auto& [pair, count] : state.pair_counts)
+    pairs.insert(pair.first, pair.second, count.joined, count.apart);
   pairs.finish();
   RowWriter records(database, kInstanceRecords);
-  for (const auto& [id, known] : state.records) records.insert(id, known.views, known.first_frame, known.last_frame);
+  for (const auto& [id, known] : state.records)
+    records.insert(id, known.views, known.first_frame, known.last_frame);
   records.finish();
   RowWriter aliases(database, kInstanceAliases);
   for (const auto& [id, target] : state.aliases) aliases.insert(id, target);
@@ -144,7 +150,8 @@ void write_registry(SQLite::Database& database, const InstanceRegistry::State& s
 /// A label that exists.
 Label take_label(RowReader& rows, const LabelForest& forest) {
   const auto label = rows.integer<Label>();
-  if (label == kNoLabel || label > forest.last_label()) rows.fail(concat("names label ", label, ", which was never given"));
+  if (label == kNoLabel || label > forest.last_label())
+    rows.fail(concat("names label ", label, ", which was never given"));
   return label;
 }
 
@@ -159,7 +166,8 @@ InstanceId take_instance(RowReader& rows, InstanceId last_id) {
 
 std::string hash_text(std::uint64_t hash) {
   std::string text(16, '0');
-  for (auto digit = text.rbegin(); digit != text.rend(); ++digit, hash >>= 4) *digit = "0123456789abcdef"[hash & 15];
+  for (auto digit = text.rbegin(); digit != text.rend(); ++digit, hash >>= 4)
+    *digit = "0123456789abcdef"[hash & 15];
   return text;
 }
 
@@ -185,9 +193,10 @@ MapMeta read_meta(SQLite::Database& database, MapRecord& record) {
   constexpr auto kMost = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
   meta.frames = static_cast<std::int64_t>(parse_number(texts, "frames", 10, kMost));
   meta.blocks = parse_number(texts, "blocks", 10, kMost);
-  record.registry.last_id =
-      static_cast<InstanceId>(parse_number(texts, "last_instance_id", 10, std::numeric_limits<InstanceId>::max()));
-  meta.content_hash = parse_number(texts, "content_hash", 16, std::numeric_limits<std::uint64_t>::max());
+  record.registry.last_id = static_cast<InstanceId>(
+      parse_number(texts, "last_instance_id", 10, std::numeric_limits<InstanceId>::max()));
+  meta.content_hash =
+      parse_number(texts, "content_hash", 16, std::numeric_limits<std::uint64_t>::max());
   record.content_hash = meta.content_hash;
   return meta;
 }
@@ -228,7 +237,8 @@ void read_frames(SQLite::Database& database, MapRecord& record) {
     frame.timestamp_s = rows.real();
     frame.name = rows.text();
     const std::span<const std::uint8_t> pose = rows.blob();
-    if (pose.size() != pose_bytes(frame.world_from_camera).size()) rows.fail(concat("has a pose of ", pose.size(), " bytes"));
+    if (pose.size() != pose_bytes(frame.world_from_camera).size())
+      rows.fail(concat("has a pose of ", pose.size(), " bytes"));
     frame.world_from_camera = pose_from(pose);
     frame.labelled = rows.integer<int>() != 0;
     record.frames.push_back(std::move(frame));

@@ -24,8 +24,8 @@ struct MapMeta {
 /// Writes everything of a map but its blocks and its forest of labels.
 void write_record(SQLite::Database& database, const MapRecord& record, const MapMeta& meta);
 
-/// The parts of the way back. Each fills its part of `record` and throws Error with a phrase when the
-/// file does not hold what was written.
+/// The parts of the way back. Each fills its part of `record` and throws Error with a phrase when
+/// the file does not hold what was written.
 MapMeta read_meta(SQLite::Database& database, MapRecord& record);
 void read_instances(SQLite::Database& database, MapRecord& record);  ///< with their names
 void read_frames(SQLite::Database& database, MapRecord& record);

@@ -26,7 +26,8 @@ std::string insert_sql(const MapTable& table) {
 }
 
 void create(SQLite::Database& database, const MapTable& table) {
-  database.exec(concat("CREATE TABLE IF NOT EXISTS ", table.name, " (", table.definition, ") ", table.options));
+  database.exec(concat("CREATE TABLE IF NOT EXISTS ", table.name, " (", table.definition, ") ",
+                       table.options));
 }
 
 }  // namespace
@@ -52,7 +53,9 @@ void TableHash::add(double value) {
   else add_word('r', std::bit_cast<std::uint64_t>(value == 0 ? 0.0 : value));
 }
 void TableHash::add(std::string_view value) { add_bytes('t', value.data(), value.size()); }
-void TableHash::add(std::span<const std::uint8_t> value) { add_bytes('b', value.data(), value.size()); }
+void TableHash::add(std::span<const std::uint8_t> value) {
+  add_bytes('b', value.data(), value.size());
+}
 
 void TableHash::end_row() {
   sum_ += XXH64(row_.data(), row_.size(), 0);
@@ -60,7 +63,8 @@ void TableHash::end_row() {
   row_.clear();
 }
 
-RowWriter::RowWriter(SQLite::Database& database, const MapTable& table) : database_(database), table_(table) {
+RowWriter::RowWriter(SQLite::Database& database, const MapTable& table)
+    : database_(database), table_(table) {
   create(database, table);
   statement_ = std::make_unique<SQLite::Statement>(database, insert_sql(table));
 }
@@ -85,7 +89,8 @@ void RowWriter::bind(std::span<const std::uint8_t> value) {
   // SQLite would take the null pointer of an empty span for NULL.
   static constexpr std::uint8_t kNothing = 0;
   hash_.add(value);
-  statement_->bindNoCopy(++column_, value.empty() ? &kNothing : value.data(), static_cast<int>(value.size()));
+  statement_->bindNoCopy(++column_, value.empty() ? &kNothing : value.data(),
+                         static_cast<int>(value.size()));
 }
 
 void RowWriter::end_row() {
@@ -106,7 +111,8 @@ void RowWriter::finish() {
 }
 
 RowReader::RowReader(SQLite::Database& database, const MapTable& table)
-    : database_(database), table_(table),
+    : database_(database),
+      table_(table),
       statement_(std::make_unique<SQLite::Statement>(
           database, concat("SELECT ", table.columns, " FROM ", table.name, " ORDER BY 1, 2"))) {}
 RowReader::~RowReader() = default;
@@ -137,7 +143,8 @@ std::int64_t RowReader::integer_value() {
 double RowReader::real() {
   const bool absent = statement_->getColumn(column_).isNull();
   const int column = take_column(absent ? SQLite::Null : SQLite::FLOAT);
-  const double value = absent ? std::numeric_limits<double>::quiet_NaN() : statement_->getColumn(column).getDouble();
+  const double value =
+      absent ? std::numeric_limits<double>::quiet_NaN() : statement_->getColumn(column).getDouble();
   hash_.add(value);
   return value;
 }
@@ -150,7 +157,8 @@ std::string RowReader::text() {
 
 std::span<const std::uint8_t> RowReader::blob() {
   const SQLite::Column column = statement_->getColumn(take_column(SQLite::BLOB));
-  const std::span value(static_cast<const std::uint8_t*>(column.getBlob()), static_cast<std::size_t>(column.getBytes()));
+  const std::span value(static_cast<const std::uint8_t*>(column.getBlob()),
+                        static_cast<std::size_t>(column.getBytes()));
   hash_.add(value);
   return value;
 }
@@ -160,10 +168,13 @@ void RowReader::verify() {
   check.bind(1, table_.name);
   if (!check.executeStep()) fail("has no check");
   const std::int64_t rows = check.getColumn(0).getInt64(), sum = check.getColumn(1).getInt64();
-  if (rows != hash_.rows()) fail(concat("has ", hash_.rows(), " rows, but ", rows, " were written"));
+  if (rows != hash_.rows())
+    fail(concat("has ", hash_.rows(), " rows, but ", rows, " were written"));
   if (sum != hash_.sum()) fail("is not what was written");
 }
 
-void RowReader::fail(const std::string& fault) const { throw Error(concat("table ", table_.name, " ", fault)); }
+void RowReader::fail(const std::string& fault) const {
+  throw Error(concat("table ", table_.name, " ", fault));
+}
 
 }  // namespace ovimap

@@ -28,50 +28,60 @@ struct MapTable {
 };
 
 namespace map_tables {
-inline constexpr MapTable kMeta{"meta", "key, value", "key TEXT PRIMARY KEY, value TEXT NOT NULL", "WITHOUT ROWID"};
-inline constexpr MapTable kInstances{
-    "instances", "id, min_x, min_y, min_z, max_x, max_y, max_z, centroid_x, centroid_y, centroid_z, points, views",
-    "id INTEGER PRIMARY KEY, min_x REAL, min_y REAL, min_z REAL, max_x REAL, max_y REAL, max_z REAL, "
-    "centroid_x REAL, centroid_y REAL, centroid_z REAL, points INTEGER NOT NULL, views INTEGER NOT NULL"};
+inline constexpr MapTable kMeta{"meta", "key, value", "key TEXT PRIMARY KEY, value TEXT NOT NULL",
+                                "WITHOUT ROWID"};
+inline constexpr MapTable kInstances{"instances",
+                                     "id, min_x, min_y, min_z, max_x, max_y, max_z, centroid_x, "
+                                     "centroid_y, centroid_z, points, views",
+                                     "id INTEGER PRIMARY KEY, min_x REAL, min_y REAL, min_z REAL, "
+                                     "max_x REAL, max_y REAL, max_z REAL, "
+                                     "centroid_x REAL, centroid_y REAL, centroid_z REAL, points "
+                                     "INTEGER NOT NULL, views INTEGER NOT NULL"};
 inline constexpr MapTable kInstanceSuperPoints{
     "instance_super_points", "instance, label",
-    "instance INTEGER NOT NULL, label INTEGER NOT NULL, PRIMARY KEY (instance, label)", "WITHOUT ROWID"};
-inline constexpr MapTable kInstanceNames{"instance_names", "id, name", "id INTEGER PRIMARY KEY, name TEXT NOT NULL"};
+    "instance INTEGER NOT NULL, label INTEGER NOT NULL, PRIMARY KEY (instance, label)",
+    "WITHOUT ROWID"};
+inline constexpr MapTable kInstanceNames{"instance_names", "id, name",
+                                         "id INTEGER PRIMARY KEY, name TEXT NOT NULL"};
 inline constexpr MapTable kInstanceRecords{
     "instance_records", "id, views, first_frame, last_frame",
-    "id INTEGER PRIMARY KEY, views INTEGER NOT NULL, first_frame INTEGER NOT NULL, last_frame INTEGER NOT NULL"};
+    "id INTEGER PRIMARY KEY, views INTEGER NOT NULL, first_frame INTEGER NOT NULL, last_frame "
+    "INTEGER NOT NULL"};
 inline constexpr MapTable kInstanceAliases{"instance_aliases", "id, target",
                                            "id INTEGER PRIMARY KEY, target INTEGER NOT NULL"};
 inline constexpr MapTable kSuperPoints{"super_points", "label, frames_seen",
                                        "label INTEGER PRIMARY KEY, frames_seen INTEGER NOT NULL"};
-inline constexpr MapTable kVotes{
-    "votes", "label, instance, votes",
-    "label INTEGER NOT NULL, instance INTEGER NOT NULL, votes INTEGER NOT NULL, PRIMARY KEY (label, instance)",
-    "WITHOUT ROWID"};
-inline constexpr MapTable kLabelPairs{
-    "label_pairs", "lower, higher, joined, apart",
-    "lower INTEGER NOT NULL, higher INTEGER NOT NULL, joined INTEGER NOT NULL, apart INTEGER NOT NULL, "
-    "PRIMARY KEY (lower, higher)",
-    "WITHOUT ROWID"};
-inline constexpr MapTable kLabelForest{"label_forest", "epoch, roots", "epoch INTEGER PRIMARY KEY, roots BLOB NOT NULL"};
+inline constexpr MapTable kVotes{"votes", "label, instance, votes",
+                                 "label INTEGER NOT NULL, instance INTEGER NOT NULL, votes INTEGER "
+                                 "NOT NULL, PRIMARY KEY (label, instance)",
+                                 "WITHOUT ROWID"};
+inline constexpr MapTable kLabelPairs{"label_pairs", "lower, higher, joined, apart",
+                                      "lower INTEGER NOT NULL, higher INTEGER NOT NULL, joined "
+                                      "INTEGER NOT NULL, apart INTEGER NOT NULL, "
+                                      "PRIMARY KEY (lower, higher)",
+                                      "WITHOUT ROWID"};
+inline constexpr MapTable kLabelForest{"label_forest", "epoch, roots",
+                                       "epoch INTEGER PRIMARY KEY, roots BLOB NOT NULL"};
 inline constexpr MapTable kFrames{
     "frames", "position, source_index, timestamp_s, name, world_from_camera, labelled",
-    "position INTEGER PRIMARY KEY, source_index INTEGER NOT NULL, timestamp_s REAL, name TEXT NOT NULL, "
+    "position INTEGER PRIMARY KEY, source_index INTEGER NOT NULL, timestamp_s REAL, name TEXT NOT "
+    "NULL, "
     "world_from_camera BLOB NOT NULL, labelled INTEGER NOT NULL"};
-inline constexpr MapTable kBlocks{
-    "blocks", "tile, present, hash, data",
-    "tile INTEGER PRIMARY KEY, present INTEGER NOT NULL, hash INTEGER NOT NULL, data BLOB NOT NULL"};
+inline constexpr MapTable kBlocks{"blocks", "tile, present, hash, data",
+                                  "tile INTEGER PRIMARY KEY, present INTEGER NOT NULL, hash "
+                                  "INTEGER NOT NULL, data BLOB NOT NULL"};
 /// Number of rows and hash of every other table; filled by RowWriter, read by RowReader.
-inline constexpr MapTable kChecks{"checks", "name, rows, hash",
-                                  "name TEXT PRIMARY KEY, rows INTEGER NOT NULL, hash INTEGER NOT NULL",
-                                  "WITHOUT ROWID"};
+inline constexpr MapTable kChecks{
+    "checks", "name, rows, hash",
+    "name TEXT PRIMARY KEY, rows INTEGER NOT NULL, hash INTEGER NOT NULL", "WITHOUT ROWID"};
 }  // namespace map_tables
 
 /// XXH64 with seed 0, as SQLite can hold it.
 std::int64_t stored_hash(std::span<const std::uint8_t> bytes);
 
-/// The hash of a table is the sum of its rows' hashes, so the order of rows does not matter and a row
-/// can be replaced without reading the others. A row is hashed as its values, each led by its type.
+/// The hash of a table is the sum of its rows' hashes, so the order of rows does not matter and a
+/// row can be replaced without reading the others. A row is hashed as its values, each led by its
+/// type.
 class TableHash {
  public:
   void add(std::int64_t value);
@@ -109,10 +119,8 @@ class RowWriter {
 
  private:
   template <class Integer>
-    requires std::is_integral_v<Integer>
-  void bind(Integer value) {
-    bind_integer(static_cast<std::int64_t>(value));
-  }
+  requires std::is_integral_v<Integer>
+  void bind(Integer value) { bind_integer(static_cast<std::int64_t>(value)); }
   void bind(float value) { bind_real(value); }
   void bind(double value) { bind_real(value); }
   void bind(const std::string& value);
@@ -128,8 +136,8 @@ class RowWriter {
   int column_ = 0;
 };
 
-/// Reads a table in the order of its primary key. Throws Error with a phrase ("table votes ...") when
-/// the table is not what was written; SQLite's exceptions pass through.
+/// Reads a table in the order of its primary key. Throws Error with a phrase ("table votes ...")
+/// when the table is not what was written; SQLite's exceptions pass through.
 class RowReader {
  public:
   RowReader(SQLite::Database& database, const MapTable& table);

@@ -121,7 +121,8 @@ TEST_F(MapFile, SaysWhyItCannotBeWritten) {
   EXPECT_NE(missing.find("create the folder first"), std::string::npos) << missing;
   const std::string folder = fault_of([&] { save_map(root_, document); });
   EXPECT_NE(folder.find("it is a folder; give a file name"), std::string::npos) << folder;
-  EXPECT_NE(fault_of([&] { save_map(root_ / "", document); }).find("it is a folder"), std::string::npos);
+  EXPECT_NE(fault_of([&] { save_map(root_ / "", document); }).find("it is a folder"),
+            std::string::npos);
   EXPECT_NE(fault_of([&] { save_map("/proc/a.ovimap", document); }), "");
   for (const fs::path& path : {root_ / "no" / "a.ovimap", root_, fs::path("/proc/a.ovimap")})
     EXPECT_NE(fault_of([&] { check_map_target(path); }), "");
@@ -174,7 +175,8 @@ TEST_F(MapFile, RefusesToSaveWhatCouldNotBeLoaded) {
   VoxelMapConfig config;
   config.voxel_size_m = 1e-6f;
   document.map = VoxelMap(config);
-  EXPECT_NE(fault_of([&] { save_map(root_ / "a.ovimap", document); }).find("map.voxel_size_m"), std::string::npos);
+  EXPECT_NE(fault_of([&] { save_map(root_ / "a.ovimap", document); }).find("map.voxel_size_m"),
+            std::string::npos);
   EXPECT_EQ(files_in_root(), 0u);
 }
 
