@@ -6,7 +6,7 @@ include(CMakePackageConfigHelpers)
 get_property(modules GLOBAL PROPERTY OVIMAP_MODULES)
 install(TARGETS ${modules} EXPORT ovimapTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/src/ovimap" DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
-  FILES_MATCHING PATTERN "*.h")
+  FILES_MATCHING PATTERN "*.h" PATTERN "*_fixture.h" EXCLUDE PATTERN "test_support.h" EXCLUDE PATTERN "testdata" EXCLUDE)
 install(EXPORT ovimapTargets NAMESPACE ovimap:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/ovimap)
 configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/ovimapConfig.cmake.in"
   "${PROJECT_BINARY_DIR}/ovimapConfig.cmake" INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/ovimap)

@@ -22,6 +22,7 @@ class EntityMaskSource : public MaskSource {
   EntityMaskSource(const ModelFolder& model, const EntityConfig& config,
                    const RuntimeConfig& runtime);
   std::string kind() const override { return "entity"; }
+  bool is_slow() const override { return true; }
   Entities entities(const Frame& frame, std::span<const MaskPrompt> prompts) override;
 
  private:

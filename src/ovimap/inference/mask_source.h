@@ -33,8 +33,11 @@ class MaskSource {
   virtual ~MaskSource() = default;
   virtual std::string kind() const = 0;  ///< "sam", "entity", "dir", "gt"
 
-  /// The entities of `frame`. `prompts` are hints that a source may ignore. Throws Error when the
-  /// source cannot deliver for a reason the user can mend (mask file of another size, model failure).
+  /// Takes seconds a frame (a network): worth asking on some frames only.
+  virtual bool is_slow() const { return false; }
+
+  /// The entities of `frame`. `prompts` are hints that a source may ignore. Throws Error when the source
+  /// cannot deliver for a reason the user can mend (mask file of another size, model failure).
   virtual Entities entities(const Frame& frame, std::span<const MaskPrompt> prompts) = 0;
 };
 

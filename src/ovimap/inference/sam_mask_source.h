@@ -14,6 +14,7 @@ class SamMaskSource : public MaskSource {
  public:
   SamMaskSource(const ModelFolder& model, const SamConfig& config, const RuntimeConfig& runtime);
   std::string kind() const override { return "sam"; }
+  bool is_slow() const override { return true; }
   Entities entities(const Frame& frame, std::span<const MaskPrompt> prompts) override;
 
  private:

@@ -43,7 +43,10 @@ std::vector<Label> labels_of(std::span<const SegmentAssociation> associations) {
 }  // namespace
 
 Mapper::Mapper(const MapperConfig& config, std::shared_ptr<MaskSource> masks)
-    : config_(config), masks_(std::move(masks)), map_(config.map), registry_(config.instance) {}
+    : config_(config), masks_(std::move(masks)), map_(config.map), registry_(config.instance) {
+  constexpr int kNetworkInterval = 5;
+  if (config_.mask_interval == 0) config_.mask_interval = masks_ && masks_->is_slow() ? kNetworkInterval : 1;
+}
 
 FrameReport Mapper::process(const Frame& frame) {
   FrameReport report;

@@ -29,7 +29,8 @@ void list_fields(MapperConfig& config, ConfigFields& fields) {
   fields.group("instance", [&](ConfigFields& f) { list_fields(config.instance, f); });
   fields.group("summary", [&](ConfigFields& f) { list_fields(config.summary, f); });
   fields.group("map", [&](ConfigFields& f) { list_fields(config.map, f); });
-  fields.add("mask_interval", config.mask_interval, 1, 1000000, "2D masks every n-th frame");
+  fields.add("mask_interval", config.mask_interval, 0, 1000000,
+             "2D masks every n-th frame; 0: every 5th for networks, every frame otherwise");
   fields.add("max_range_m", config.max_range_m, 0.1f, 1000.f, "how far the map is projected back, metres");
 }
 

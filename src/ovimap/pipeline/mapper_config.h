@@ -23,7 +23,8 @@ struct MapperConfig {
   InstanceConfig instance;
   InstanceSummaryConfig summary;
   VoxelMapConfig map;
-  int mask_interval = 1;      ///< 2D masks are asked for every n-th frame; the frames between add geometry and colour
+  int mask_interval = 0;      ///< 2D masks are asked for every n-th frame, the frames between add geometry and
+                              ///< colour; 0: every 5th frame for networks, every frame otherwise
   float max_range_m = 10.f;   ///< how far the map is projected back
 };
 void list_fields(MapperConfig& config, ConfigFields& fields);

@@ -58,6 +58,7 @@ SequenceResult run_sequence(const FrameSource& source, const std::vector<std::in
 MapDocument make_document(Mapper&& mapper, const SequenceResult& sequence, std::string source, std::string config_text) {
   MapDocument document;
   document.instances = summarize_instances(mapper.map(), mapper.registry(), mapper.config().summary);
+  document.instance_config = mapper.config().instance;
   document.registry = mapper.registry().state();
   document.frames = sequence.frames;
   document.depth_camera = sequence.depth_camera;

@@ -1,0 +1,43 @@
+# SPDX-FileCopyrightText: 2026 The ovimap authors
+# SPDX-License-Identifier: Apache-2.0
+# The whole project from one place. `make demo` and `make test` set up what is missing first.
+BUILD := build/release
+OVIMAP := $(BUILD)/bin/ovimap
+JOBS ?= $(shell nproc)
+SOURCE ?= demo/tiny/room
+
+.PHONY: help setup build demo test asan tsan bench clean
+
+help:
+	@echo "make demo    set up, build, render a room, map it, show the objects"
+	@echo "make test    set up, build, run every test"
+	@echo "make build   build the program: $(OVIMAP)"
+	@echo "make bench   measure speed and memory on SOURCE (default: the demo room)"
+	@echo "make asan    run the tests under AddressSanitizer and UBSan;  make tsan: ThreadSanitizer"
+
+setup:
+	@tools/setup.sh
+
+build: setup
+	@cmake --preset release > build-configure.log 2>&1 || { cat build-configure.log; exit 1; }
+	@rm -f build-configure.log
+	@cmake --build --preset release -j $(JOBS)
+
+demo: build
+	@tools/demo.sh $(OVIMAP)
+
+test: build
+	@tools/run_tests.sh $(BUILD)
+
+asan tsan: setup
+	@cmake --preset $@ > /dev/null
+	@cmake --build --preset $@ -j $(JOBS)
+	@tools/run_tests.sh build/$@
+
+bench: build
+	@test -d "$(SOURCE)" || $(OVIMAP) synth demo/tiny --room tiny
+	@$(OVIMAP) bench "$(SOURCE)"
+	@$(BUILD)/bin/ovimap_micro_bench --benchmark_min_time=0.2
+
+clean:
+	rm -rf build demo

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "ovimap/frames/frame_source.h"
+#include "ovimap/inference/mask_source_factory.h"
+#include "ovimap/pipeline/mapper.h"
+
+namespace ovimap::apps {
+
+enum ExitCode { kDone = 0, kAnswerIsNo = 1, kUserCanMend = 2, kDefect = 3 };
+
+/// What a subcommand does once its options are read; returns an exit code.
+using Action = std::function<int()>;
+
+// Each adds its options to its subcommand and returns what to do.
+Action add_run(CLI::App& command);
+Action add_check(CLI::App& command);
+Action add_info(CLI::App& command);
+Action add_export(CLI::App& command);
+Action add_eval(CLI::App& command);
+Action add_bench(CLI::App& command);
+Action add_synth(CLI::App& command);
+Action add_models(CLI::App& command);
+Action add_config(CLI::App& command);
+
+/// Options that several commands share.
+struct MappingOptions {
+  std::string source;
+  std::string masks = "none";
+  std::string preset = "default";
+  std::filesystem::path config_file;
+  std::vector<std::string> settings;  ///< "a.b=c"
+  std::vector<std::filesystem::path> model_dirs;
+  std::string frames = ":";           ///< "A:B:STEP"
+  int threads = 0;
+};
+void add_mapping_options(CLI::App& command, MappingOptions& options);
+
+/// Everything that --preset, --config and --set can set.
+struct ProgramConfig {
+  MapperConfig mapper;
+  FrameSourceConfig source;
+  MaskSourceConfig masks;
+};
+void list_fields(ProgramConfig& config, ConfigFields& fields);
+
+/// Preset, then file, then settings. Throws Error for what is unknown.
+ProgramConfig read_program_config(const MappingOptions& options);
+
+/// One line on stderr, rewritten as work goes on; silent when stderr is no terminal.
+class Progress {
+ public:
+  explicit Progress(std::string what);
+  ~Progress();
+  void show(std::size_t done, std::size_t total, const std::string& detail = {});
+
+ private:
+  std::string what_;
+  bool terminal_;
+  bool shown_ = false;
+};
+
+/// Prints the one JSON object of a --json run.
+void print_json(const nlohmann::json& value);
+nlohmann::json stages_json(const StageTimers& timers);
+double peak_rss_mb();
+
+/// True once the user pressed Ctrl-C; from then on a second Ctrl-C ends the program.
+bool interrupted();
+void watch_for_interrupt();
+
+}  // namespace ovimap::apps

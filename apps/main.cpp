@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <exception>
+#include <map>
+
+#include "command.h"
+#include "ovimap/base/version.h"
+
+namespace {
+
+using namespace ovimap::apps;
+
+struct Entry {
+  const char* name;
+  const char* help;
+  Action (*add)(CLI::App&);
+};
+
+constexpr Entry kCommands[] = {
+    {"run", "map a recording: SOURCE in, MAP out", add_run},
+    {"check", "look for what commonly is wrong with a recording", add_check},
+    {"info", "what a map holds", add_info},
+    {"export", "write a map as mesh, JSON or picture", add_export},
+    {"eval", "score maps against the truth", add_eval},
+    {"bench", "measure speed and memory on a recording", add_bench},
+    {"synth", "render a furnished room with exact truth", add_synth},
+    {"models", "list, verify and find networks", add_models},
+    {"config", "list every setting with its default", add_config},
+};
+
+int complain(const char* message, int code) {
+  std::fprintf(stderr, "ovimap: %s\n", message);
+  return code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"ovimap: turns posed RGB-D frames into a 3D map of separate objects", "ovimap"};
+  app.set_version_flag("--version", std::string("ovimap ") + ovimap::version() + " (" + ovimap::commit() + ")");
+  app.require_subcommand(1);
+  std::map<const CLI::App*, Action> actions;
+  for (const Entry& entry : kCommands) {
+    CLI::App* command = app.add_subcommand(entry.name, entry.help);
+    actions[command] = entry.add(*command);
+  }
+  try {
+    app.parse(argc, argv);
+    return actions.at(app.get_subcommands().front())();
+  } catch (const CLI::Success& success) {
+    return app.exit(success);  // --help and --version
+  } catch (const CLI::ParseError& error) {
+    return complain((std::string(error.what()) + "; see ovimap --help").c_str(), kUserCanMend);
+  } catch (const ovimap::Error& error) {
+    return complain(error.what(), kUserCanMend);
+  } catch (const std::bad_alloc&) {
+    return complain("out of memory; use larger voxels (--set map.voxel_size_m=0.02) or fewer frames", kUserCanMend);
+  } catch (const std::exception& error) {
+    return complain((std::string("internal defect: ") + error.what()).c_str(), kDefect);
+  }
+}

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+
+#include "command.h"
+#include "ovimap/base/parallel.h"
+#include "ovimap/io/map_file.h"
+#include "ovimap/pipeline/map_pictures.h"
+#include "ovimap/pipeline/sequence_run.h"
+
+namespace ovimap::apps {
+
+namespace {
+
+struct RunOptions {
+  MappingOptions mapping;
+  std::filesystem::path map;
+  std::filesystem::path pictures;
+  bool json = false;
+};
+
+void report_skipped(const SequenceResult& result) {
+  std::map<std::string, std::pair<int, std::int64_t>> faults;
+  for (const SkippedFrame& frame : result.skipped) {
+    auto& [count, first] = faults.try_emplace(frame.fault, 0, frame.position).first->second;
+    ++count;
+  }
+  for (const auto& [fault, where] : faults)
+    std::fprintf(stderr, "ovimap: skipped %d frame(s), first at %lld: %s\n", where.first, static_cast<long long>(where.second), fault.c_str());
+}
+
+int run(const RunOptions& options) {
+  const ThreadLimit limit(options.mapping.threads);
+  ProgramConfig config = read_program_config(options.mapping);
+  ConfigFields fields;
+  list_fields(config, fields);
+  check_map_target(options.map);
+  const auto source = open_frame_source(options.mapping.source, config.source);
+  const auto range = positions(parse_frame_range(options.mapping.frames), source->size());
+  auto masks = make_mask_source(options.mapping.masks, config.masks, {source.get(), options.mapping.model_dirs});
+
+  Mapper mapper(config.mapper, std::move(masks));
+  watch_for_interrupt();
+  SequenceResult result;
+  {
+    Progress progress("mapping");
+    result = run_sequence(*source, range, mapper, [&](std::size_t done, std::size_t total, const FrameReport*) {
+      progress.show(done, total);
+      return !interrupted();
+    });
+  }
+  report_skipped(result);
+  nlohmann::json summary = {
+      {"map", options.map.string()}, {"frames", result.frames.size()}, {"frames_skipped", result.skipped.size()},
+      {"seconds", result.seconds}, {"fps", static_cast<double>(result.frames.size()) / result.seconds},
+      {"mask_frames", mapper.mask_frames()}, {"embedding_queries", 0}, {"stages", stages_json(mapper.timers())}};
+  const MapDocument document = make_document(std::move(mapper), result, source->kind() + ":" + options.mapping.source, fields.dump());
+  save_map(options.map, document);
+  if (!options.pictures.empty()) write_map_pictures(options.pictures, document, *source);
+  summary["instances"] = document.instances.size();
+  summary["peak_rss_mb"] = peak_rss_mb();
+  if (options.json)
+    print_json(summary);
+  else
+    std::printf("%s: %zu objects from %zu frames in %.1f s (%.1f frames/s)\n", options.map.c_str(), document.instances.size(),
+                result.frames.size(), result.seconds, summary["fps"].get<double>());
+  return kDone;
+}
+
+}  // namespace
+
+Action add_run(CLI::App& command) {
+  auto options = std::make_shared<RunOptions>();
+  add_mapping_options(command, options->mapping);
+  command.add_option("-o,--output", options->map, "map file to write")->required();
+  command.add_option("--pictures", options->pictures, "folder for a top view and a contact sheet");
+  command.add_flag("--json", options->json, "print one JSON object");
+  return [options] { return run(*options); };
+}
+
+}  // namespace ovimap::apps

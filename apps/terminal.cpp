@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+
+#include "command.h"
+
+namespace ovimap::apps {
+
+namespace {
+volatile std::sig_atomic_t interrupt_seen = 0;
+
+void on_interrupt(int signal) {
+  interrupt_seen = 1;
+  std::signal(signal, SIG_DFL);
+}
+}  // namespace
+
+Progress::Progress(std::string what) : what_(std::move(what)), terminal_(isatty(STDERR_FILENO)) {}
+
+Progress::~Progress() {
+  if (shown_) std::fputc('\n', stderr);
+}
+
+void Progress::show(std::size_t done, std::size_t total, const std::string& detail) {
+  if (!terminal_) return;
+  std::fprintf(stderr, "\r%s %zu/%zu %s\x1b[K", what_.c_str(), done, total, detail.c_str());
+  std::fflush(stderr);
+  shown_ = true;
+}
+
+void print_json(const nlohmann::json& value) { std::cout << value.dump(2) << std::endl; }
+
+nlohmann::json stages_json(const StageTimers& timers) {
+  nlohmann::json stages = nlohmann::json::object();
+  for (const auto& [stage, summary] : timers.summary())
+    stages[stage] = {{"p50_ms", summary.p50_ms}, {"p95_ms", summary.p95_ms}, {"p99_ms", summary.p99_ms}, {"count", summary.count}};
+  return stages;
+}
+
+double peak_rss_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+bool interrupted() { return interrupt_seen != 0; }
+void watch_for_interrupt() { std::signal(SIGINT, on_interrupt); }
+
+}  // namespace ovimap::apps

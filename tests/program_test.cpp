@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+// The program as a user meets it: what it writes, prints and returns.
+#include "program_fixture.h"
+
+namespace ovimap {
+namespace {
+
+TEST_F(ProgramTest, MapsARecordingAndTellsWhatIsInIt) {
+  const auto run_report = run_json("run recording -o room.ovimap --json");
+  EXPECT_EQ(run_report["frames"], sequence_.frames);
+  EXPECT_EQ(run_report["frames_skipped"], 0);
+  EXPECT_GT(run_report["instances"], 0);
+  EXPECT_GT(run_report["stages"]["integrate"]["p50_ms"], 0.0);
+  EXPECT_GT(run_report["peak_rss_mb"], 0.0);
+
+  const auto info = run_json("info room.ovimap --json");
+  EXPECT_EQ(info["frames"], sequence_.frames);
+  EXPECT_EQ(info["instances"].size(), run_report["instances"]);
+  EXPECT_EQ(info["voxel_size_m"], 0.01f);
+  for (const auto& instance : info["instances"]) {
+    EXPECT_GT(instance["points"], 0);
+    EXPECT_LE(instance["box"]["min"][0], instance["box"]["max"][0]);
+  }
+}
+
+TEST_F(ProgramTest, SameMapForEveryRunAndThreadCount) {
+  std::set<std::string> hashes;
+  for (const char* options : {"--threads 1", "--threads 2", "--threads 2"}) {
+    run(std::string("run recording -o room.ovimap ") + options);
+    hashes.insert(run_json("info room.ovimap --json")["content_hash"].get<std::string>());
+  }
+  EXPECT_EQ(hashes.size(), 1u);
+}
+
+TEST_F(ProgramTest, TruthMasksGiveTheTrueObjects) {
+  ASSERT_EQ(run("run replica/scene --masks gt -o room.ovimap --set summary.min_instance_views=1").code, 0);
+  EXPECT_GE(run_json("info room.ovimap --json")["instances"].size(), 3u);
+}
+
+TEST_F(ProgramTest, ExportsMeshObjectsAndPicture) {
+  ASSERT_EQ(run("run recording -o room.ovimap --pictures pictures").code, 0);
+  for (const char* file : {"a.ply", "a.json", "a.png"}) {
+    EXPECT_EQ(run(std::string("export room.ovimap ") + file + " --what instances").code, 0);
+    EXPECT_GT(std::filesystem::file_size(path(file)), 100u) << file;
+  }
+  EXPECT_EQ(slurp(path("a.ply")).substr(0, 3), "ply");
+  for (const char* file : {"top_view.png", "contact_sheet.png"}) EXPECT_TRUE(std::filesystem::exists(path("pictures") / file));
+}
+
+TEST_F(ProgramTest, SkipsAndCountsBadFrames) {
+  write_file(path("recording/frame-000002.depth.png"), Bytes{1, 2, 3});
+  fixture::write_text(path("recording/frame-000003.pose.txt"), "nan 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1");
+  const ProgramResult result = run("run recording -o room.ovimap --json");
+  EXPECT_EQ(nlohmann::json::parse(result.out)["frames_skipped"], 2);
+  EXPECT_NE(result.err.find("frame-000002"), std::string::npos);
+}
+
+TEST_F(ProgramTest, ChecksRecordings) {
+  EXPECT_EQ(run("check recording").code, 0);
+  sequence_.stored_pose = [](const Pose& pose) { return pose.inverse().matrix(); };
+  sequence_.frames = 40;
+  std::filesystem::create_directories(path("inverted"));
+  fixture::write_seven_scenes(path("inverted"), sequence_);
+  const ProgramResult result = run("check inverted");
+  EXPECT_EQ(result.code, 1);
+  EXPECT_NE(result.out.find("verdict: fault"), std::string::npos);
+}
+
+TEST_F(ProgramTest, SaysWhatIsWrongWithTheCommandLine) {
+  expect_complaint("", {"subcommand"});
+  expect_complaint("fly", {"ovimap"});
+  expect_complaint("run recording", {"output"});
+  expect_complaint("run recording -o a.ovimap --set map.voxel=1", {"map.voxel_size_m"});
+  expect_complaint("run recording -o a.ovimap --set map.voxel_size_m=-1", {"0.001 to 1"});
+  expect_complaint("run recording -o a.ovimap --preset best", {"default or reference"});
+  expect_complaint("run recording -o a.ovimap --masks nothing_such", {"nothing_such"});
+  expect_complaint("run recording -o a.ovimap --masks gt", {"gt"});
+  expect_complaint("run recording -o a.ovimap --frames a:b", {"a:b"});
+  EXPECT_EQ(run("--help").code, 0);
+}
+
+TEST_F(ProgramTest, SaysWhatIsWrongWithTheRecording) {
+  std::filesystem::create_directories(path("empty"));
+  expect_complaint("run nowhere -o a.ovimap", {"nowhere"});
+  expect_complaint("run empty -o a.ovimap", {"empty"});
+  for (int i = 0; i < sequence_.frames; ++i)
+    write_file(path("recording/frame-" + fixture::padded(i, 6) + ".depth.png"), encode_png(Image<std::uint16_t>(80, 60)));
+  expect_complaint("run recording -o a.ovimap", {"none of the", "depth"});
+  EXPECT_FALSE(std::filesystem::exists(path("a.ovimap")));
+}
+
+TEST_F(ProgramTest, SaysWhatIsWrongWithTheMap) {
+  fixture::write_text(path("text.ovimap"), "not a database at all");
+  expect_complaint("info text.ovimap", {"text.ovimap"});
+  expect_complaint("info missing.ovimap", {"missing.ovimap"});
+  expect_complaint("info recording", {"recording"});
+  expect_complaint("export text.ovimap a.ply", {"text.ovimap"});
+  ASSERT_EQ(run("run recording -o room.ovimap").code, 0);
+  expect_complaint("export room.ovimap a.xyz", {".ply"});
+  expect_complaint("eval room.ovimap --gt replica/scene", {"scene_mesh.ply"});
+}
+
+TEST_F(ProgramTest, AFailedRunLeavesTheOldMapAndNothingElse) {
+  ASSERT_EQ(run("run recording -o room.ovimap").code, 0);
+  const std::string before = slurp(path("room.ovimap"));
+  const std::size_t files = file_count();
+  expect_complaint("run recording -o room.ovimap --frames 500:600", {"frame"});
+  expect_complaint("run recording -o nowhere/room.ovimap", {"nowhere"});
+  EXPECT_EQ(slurp(path("room.ovimap")), before);
+  EXPECT_EQ(file_count(), files);
+}
+
+TEST_F(ProgramTest, AFullDiskLeavesTheOldMap) {
+  ASSERT_EQ(run("run recording -o room.ovimap").code, 0);
+  const std::string before = slurp(path("room.ovimap"));
+  // A limit on file size stands in for the full disk: writes fail the same way, part of the way through.
+  const ProgramResult result = run("run recording -o other.ovimap; (ulimit -f 40; trap '' XFSZ; '" OVIMAP_PROGRAM "' run recording -o room.ovimap)");
+  EXPECT_EQ(result.code, 2) << result.err;
+  EXPECT_EQ(slurp(path("room.ovimap")), before);
+}
+
+TEST_F(ProgramTest, KeepsStdoutForTheJsonObject) {
+  for (const char* command : {"run recording -o room.ovimap --json", "info room.ovimap --json", "check recording --json", "models list --json"}) {
+    const ProgramResult result = run(command);
+    EXPECT_TRUE(nlohmann::json::parse(result.out, nullptr, false).is_object()) << command << "\n" << result.out;
+  }
+}
+
+}  // namespace
+}  // namespace ovimap
