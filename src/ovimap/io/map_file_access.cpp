@@ -129,14 +129,27 @@ void check_plain_tables(SQLite::Database& database) {
     throw Error("it holds views, triggers or virtual tables");
 }
 
+/// The file that saving to `path` replaces: through a link, what it points to. Devices and pipes
+/// must not be renamed away.
+fs::path writable_target(const fs::path& path) {
+  std::error_code ignored;
+  const fs::file_type type = fs::status(path, ignored).type();
+  const auto refuse = [&](const char* why) {
+    throw Error(concat("cannot write map '", path.string(), "': ", why, "; give a file name"));
+  };
+  if (!path.has_filename() || type == fs::file_type::directory) refuse("it is a folder");
+  if (type == fs::file_type::regular) return fs::canonical(path);
+  if (type == fs::file_type::not_found && fs::is_symlink(path, ignored))
+    refuse("it is a link to nowhere");
+  if (type != fs::file_type::not_found && type != fs::file_type::none)
+    refuse("it is no plain file");
+  return fs::absolute(path);
+}
+
 }  // namespace
 
 PendingMap::PendingMap(const fs::path& target)
-    : target_(fs::absolute(target)), temporary_(temporary_beside(target_)) {
-  std::error_code ignored;
-  if (!target_.has_filename() || fs::is_directory(target_, ignored))
-    throw Error(
-        concat("cannot write map '", target.string(), "': it is a folder; give a file name"));
+    : target_(writable_target(target)), temporary_(temporary_beside(target_)) {
   const int descriptor = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor < 0) fail_to_write(target_, errno);
   ::close(descriptor);

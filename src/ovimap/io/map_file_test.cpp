@@ -2,14 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/io/map_file.h"
 
+#include <cmath>
 #include <csignal>
 #include <fstream>
 #include <limits>
 
 #include <sys/resource.h>
+#include <sys/stat.h>
 
+#include "ovimap/base/parallel.h"
 #include "ovimap/image/codec.h"
-#include "ovimap/instance/instance_registry.h"
 #include "ovimap/io/map_file_fixture.h"
 
 namespace ovimap {
@@ -32,6 +34,15 @@ TEST_F(MapFile, SavingWhatWasLoadedGivesTheSameFile) {
   save_map(root_ / "a.ovimap", random_document(60, 2));
   save_map(root_ / "b.ovimap", load_map(root_ / "a.ovimap"));
   EXPECT_EQ(read_file(root_ / "a.ovimap"), read_file(root_ / "b.ovimap"));
+}
+
+TEST_F(MapFile, TheNumberOfThreadsDoesNotShow) {
+  const MapDocument saved = random_document(400, 17);
+  save_map(root_ / "many.ovimap", saved);
+  const ThreadLimit one_thread(1);
+  save_map(root_ / "one.ovimap", saved);
+  EXPECT_EQ(read_file(root_ / "many.ovimap"), read_file(root_ / "one.ovimap"));
+  EXPECT_EQ(difference(saved, load_map(root_ / "many.ovimap")), "");
 }
 
 TEST_F(MapFile, AnEmptyMapIsAMap) {
@@ -128,6 +139,24 @@ TEST_F(MapFile, SaysWhyItCannotBeWritten) {
     EXPECT_NE(fault_of([&] { check_map_target(path); }), "");
   EXPECT_EQ(fault_of([&] { check_map_target(root_ / "a.ovimap"); }), "");
   EXPECT_EQ(files_in_root(), 0u);
+}
+
+TEST_F(MapFile, WritesThroughALinkAndSparesWhatIsNoFile) {
+  const MapDocument first = random_document(3, 15), second = random_document(4, 16);
+  save_map(root_ / "a.ovimap", first);
+  fs::create_symlink("a.ovimap", root_ / "link.ovimap");
+  save_map(root_ / "link.ovimap", second);
+  EXPECT_TRUE(fs::is_symlink(root_ / "link.ovimap"));
+  EXPECT_EQ(difference(second, load_map(root_ / "a.ovimap")), "");
+  fs::create_symlink("nowhere", root_ / "lost.ovimap");
+  ASSERT_EQ(::mkfifo((root_ / "pipe.ovimap").c_str(), 0600), 0);
+  for (const char* name : {"lost.ovimap", "pipe.ovimap"}) {
+    const std::string fault = fault_of([&] { save_map(root_ / name, second); });
+    EXPECT_NE(fault.find("give a file name"), std::string::npos) << name << ": " << fault;
+    EXPECT_NE(fault_of([&] { load_map(root_ / name); }), "");
+  }
+  EXPECT_TRUE(fs::is_fifo(root_ / "pipe.ovimap"));
+  EXPECT_EQ(files_in_root(), 4u);
 }
 
 TEST_F(MapFile, RefusesToWriteIntoAFolderWithoutPermission) {
