@@ -36,6 +36,7 @@ class ProgramTest : public ::testing::Test {
   ProgramTest() {
     std::filesystem::create_directories(path("recording"));
     fixture::write_seven_scenes(path("recording"), sequence_);
+    std::filesystem::create_directories(path("replica"));
     fixture::write_replica(path("replica"), sequence_);
   }
 

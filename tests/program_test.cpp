@@ -17,7 +17,7 @@ TEST_F(ProgramTest, MapsARecordingAndTellsWhatIsInIt) {
   const auto info = run_json("info room.ovimap --json");
   EXPECT_EQ(info["frames"], sequence_.frames);
   EXPECT_EQ(info["instances"].size(), run_report["instances"]);
-  EXPECT_EQ(info["voxel_size_m"], 0.01f);
+  EXPECT_NEAR(info["voxel_size_m"].get<double>(), 0.01, 1e-9);
   for (const auto& instance : info["instances"]) {
     EXPECT_GT(instance["points"], 0);
     EXPECT_LE(instance["box"]["min"][0], instance["box"]["max"][0]);
