@@ -1,0 +1,64 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The ovimap authors
+# SPDX-License-Identifier: Apache-2.0
+"""Checks every include against the module table of ARCHITECTURE.md; prints one line per offence."""
+import pathlib
+import re
+import sys
+
+ROW = re.compile(r"^\| (\d+) \| (\w+) \| [^|]* \| ([^|]*) \|$")
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]')
+TEST_LIBRARIES = {"gtest"}
+SYSTEM = {"unistd.h", "sys", "fcntl.h", "dirent.h"}  # POSIX
+
+
+def read_table(text):
+    rows = (ROW.match(line) for line in text.splitlines())
+    return {r[2]: (int(r[1]), {name.strip() for name in r[3].split(",")}) for r in rows if r}
+
+
+def offence(module, include, table, is_test):
+    """Why `module` must not include `include`; None when it may."""
+    layer, libraries = table[module]
+    parts = include.split("/")
+    if parts[0] == "ovimap":
+        other = parts[1]
+        if other not in table:
+            return f"module '{other}' is not in the table"
+        if other != module and table[other][0] >= layer:
+            return f"{module} (layer {layer}) may not include {other} (layer {table[other][0]})"
+        return None
+    name = parts[0].removesuffix(".h").removesuffix(".hpp")
+    name = {"unzip": "minizip"}.get(name, "onnxruntime" if name.startswith("onnxruntime") else name)
+    known = libraries | (TEST_LIBRARIES if is_test else set())
+    if "." not in parts[0] and len(parts) == 1 or parts[0] in SYSTEM or name in known:
+        return None  # the standard library, POSIX, or listed
+    return f"{module} may not use {include}; its row does not list it"
+
+
+def check(root):
+    table = read_table((root / "ARCHITECTURE.md").read_text())
+    if not table:
+        return ["ARCHITECTURE.md has no module table"]
+    found = []
+    folders = [(p.name, p) for p in sorted((root / "src/ovimap").iterdir()) if p.is_dir()] + [("apps", root / "apps")]
+    for module, folder in folders:
+        if module not in table:
+            found.append(f"{folder.relative_to(root)}: no row in ARCHITECTURE.md")
+            continue
+        for file in sorted(folder.rglob("*.h")) + sorted(folder.rglob("*.cpp")):
+            is_test = bool(re.search(r"(_test\.cpp|_fixture\.h|test_support\.h)$", file.name))
+            for number, line in enumerate(file.read_text().splitlines(), 1):
+                match = INCLUDE.match(line)
+                if not match or (match[1] == '"' and "/" not in match[2]):
+                    continue  # a quoted plain name is a header of the same folder
+                reason = offence(module, match[2], table, is_test)
+                if reason:
+                    found.append(f"{file.relative_to(root)}:{number}: {reason}")
+    return found
+
+
+if __name__ == "__main__":
+    offences = check(pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".").resolve())
+    print("\n".join(offences) if offences else "every include respects the layers")
+    sys.exit(1 if offences else 0)
