@@ -6,13 +6,14 @@ OVIMAP := $(BUILD)/bin/ovimap
 JOBS ?= $(shell nproc)
 SOURCE ?= demo/tiny/room
 
-.PHONY: help setup build demo test asan tsan bench clean
+.PHONY: help setup build demo test asan tsan bench benchmarks clean
 
 help:
 	@echo "make demo    set up, build, render a room, map it, show the objects"
 	@echo "make test    set up, build, run every test"
 	@echo "make build   build the program: $(OVIMAP)"
 	@echo "make bench   measure speed and memory on SOURCE (default: the demo room)"
+	@echo "make benchmarks KITCHEN=FOLDER   write docs/benchmarks.md"
 	@echo "make asan    run the tests under AddressSanitizer and UBSan;  make tsan: ThreadSanitizer"
 
 setup:
@@ -38,6 +39,9 @@ bench: build
 	@test -d "$(SOURCE)" || $(OVIMAP) synth demo/tiny --room tiny
 	@$(OVIMAP) bench "$(SOURCE)"
 	@$(BUILD)/bin/ovimap_micro_bench --benchmark_min_time=0.2
+
+benchmarks: build
+	@python3 tools/benchmarks.py $(OVIMAP) $(if $(KITCHEN),--kitchen "$(KITCHEN)")
 
 clean:
 	rm -rf build demo

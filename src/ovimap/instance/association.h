@@ -10,12 +10,12 @@
 namespace ovimap {
 
 enum class AssociationRule {
-  kOneToOne,  ///< greedy; a label serves one segment a frame (as released)
-  kArgmax,    ///< every segment takes its most voted label (the paper's text)
+  kOneToOne,  ///< greedy; a label serves one segment a frame (the released code)
+  kArgmax,    ///< every segment takes its most voted label (the paper's text; better, docs/experiments.md)
 };
 
 struct AssociationConfig {
-  AssociationRule association = AssociationRule::kOneToOne;
+  AssociationRule association = AssociationRule::kArgmax;
   int assoc_min_votes = 20;        ///< a label needs more votes than this (theta_assoc)
   int merge_min_points = 1000;     ///< larger segments tell which super-points belong together
   float merge_min_share = 0.15f;   ///< ... namely those holding more than this share of its points

@@ -58,6 +58,7 @@ TEST_F(AssociateTest, FoundsALabelWithoutEnoughVotes) {
 }
 
 TEST_F(AssociateTest, OneToOneGivesTheLoserItsNextLabel) {
+  config_.association = AssociationRule::kOneToOne;
   hold(0, 200, 2, 3);
   hold(150, 200, 5, 1);  // second choice of the right part
   const auto result = associate(cut({{0, 150}, {150, 200}}), surface_, map_, config_);
@@ -66,7 +67,6 @@ TEST_F(AssociateTest, OneToOneGivesTheLoserItsNextLabel) {
 }
 
 TEST_F(AssociateTest, ArgmaxMayShareALabel) {
-  config_.association = AssociationRule::kArgmax;
   hold(0, 200, 2);
   const auto result = associate(cut({{0, 150}, {150, 200}}), surface_, map_, config_);
   EXPECT_EQ(result[0].label, 2u);
