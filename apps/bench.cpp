@@ -32,9 +32,16 @@ std::string processor_name() {
 
 /// Saves the map beside other temporary files and returns its size, removing it again.
 std::uintmax_t saved_bytes(const MapDocument& document, StageTimers& timers) {
-  const auto path = std::filesystem::temp_directory_path() / ("ovimap-bench-" + std::to_string(getpid()) + ".ovimap");
-  { auto t = timers.measure("save"); save_map(path, document); }
-  { auto t = timers.measure("load"); load_map(path); }
+  const auto path = std::filesystem::temp_directory_path() /
+                    ("ovimap-bench-" + std::to_string(getpid()) + ".ovimap");
+  {
+    auto t = timers.measure("save");
+    save_map(path, document);
+  }
+  {
+    auto t = timers.measure("load");
+    load_map(path);
+  }
   const std::uintmax_t bytes = std::filesystem::file_size(path);
   std::filesystem::remove(path);
   return bytes;
@@ -45,18 +52,23 @@ int bench(const BenchOptions& options) {
   const ProgramConfig config = read_program_config(options.mapping);
   const auto source = open_frame_source(options.mapping.source, config.source);
   const auto range = positions(parse_frame_range(options.mapping.frames), source->size());
-  Mapper mapper(config.mapper, make_mask_source(options.mapping.masks, config.masks, {source.get(), options.mapping.model_dirs}));
+  Mapper mapper(config.mapper, make_mask_source(options.mapping.masks, config.masks,
+                                                {source.get(), options.mapping.model_dirs}));
   Progress progress("measuring");
-  const SequenceResult result = run_sequence(*source, range, mapper, [&](std::size_t done, std::size_t total, const FrameReport*) {
-    progress.show(done, total);
-    return true;
-  });
+  const SequenceResult result = run_sequence(
+      *source, range, mapper, [&](std::size_t done, std::size_t total, const FrameReport*) {
+        progress.show(done, total);
+        return true;
+      });
   for (std::size_t i = 0; i < range.size(); i += static_cast<std::size_t>(options.project_every)) {
     const FrameRead read = source->read(range[i]);
     if (read.frame) (void)mapper.project(*read.frame);
   }
   const double peak_mb = peak_rss_mb();
-  { auto t = mapper.timers().measure("mesh"); (void)extract_mesh(mapper.map()); }
+  {
+    auto t = mapper.timers().measure("mesh");
+    (void)extract_mesh(mapper.map());
+  }
   const auto voxels = static_cast<double>(mapper.map().block_count()) * kBlockVoxels;
   const double map_bytes = static_cast<double>(mapper.map().bytes());
   StageTimers timers = mapper.timers();
@@ -64,17 +76,26 @@ int bench(const BenchOptions& options) {
   const std::uintmax_t file_bytes = saved_bytes(document, timers);
   const double fps = static_cast<double>(result.frames.size()) / result.seconds;
   if (options.json) {
-    print_json({{"machine", processor_name() + ", " + std::to_string(std::thread::hardware_concurrency()) + " threads"},
-                {"commit", commit()}, {"source", options.mapping.source}, {"masks", options.mapping.masks},
-                {"frames", result.frames.size()}, {"stages", stages_json(timers)}, {"fps", fps}, {"peak_rss_mb", peak_mb},
-                {"bytes_per_voxel", map_bytes / voxels}, {"map_bytes", file_bytes}, {"instances", document.instances.size()}});
+    print_json({{"machine", processor_name() + ", " +
+                                std::to_string(std::thread::hardware_concurrency()) + " threads"},
+                {"commit", commit()},
+                {"source", options.mapping.source},
+                {"masks", options.mapping.masks},
+                {"frames", result.frames.size()},
+                {"stages", stages_json(timers)},
+                {"fps", fps},
+                {"peak_rss_mb", peak_mb},
+                {"bytes_per_voxel", map_bytes / voxels},
+                {"map_bytes", file_bytes},
+                {"instances", document.instances.size()}});
     return kDone;
   }
   std::printf("%-16s %9s %9s %9s %7s\n", "stage", "p50 ms", "p95 ms", "p99 ms", "count");
   for (const auto& [stage, s] : timers.summary())
-    std::printf("%-16s %9.2f %9.2f %9.2f %7zu\n", stage.c_str(), s.p50_ms, s.p95_ms, s.p99_ms, s.count);
-  std::printf("%.1f frames/s, peak memory %.0f MB, %.1f bytes a voxel, map file %.1f MB\n", fps, peak_mb, map_bytes / voxels,
-              static_cast<double>(file_bytes) / 1e6);
+    std::printf("%-16s %9.2f %9.2f %9.2f %7zu\n", stage.c_str(), s.p50_ms, s.p95_ms, s.p99_ms,
+                s.count);
+  std::printf("%.1f frames/s, peak memory %.0f MB, %.1f bytes a voxel, map file %.1f MB\n", fps,
+              peak_mb, map_bytes / voxels, static_cast<double>(file_bytes) / 1e6);
   return kDone;
 }
 
@@ -83,7 +104,11 @@ int bench(const BenchOptions& options) {
 Action add_bench(CLI::App& command) {
   auto options = std::make_shared<BenchOptions>();
   add_mapping_options(command, options->mapping);
-  command.add_option("--project-every", options->project_every, "measure the projection of every n-th frame")->check(CLI::Range(1, 1000000))->capture_default_str();
+  command
+      .add_option("--project-every", options->project_every,
+                  "measure the projection of every n-th frame")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
   command.add_flag("--json", options->json, "print one JSON object");
   return [options] { return bench(*options); };
 }

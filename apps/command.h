@@ -40,7 +40,7 @@ struct MappingOptions {
   std::filesystem::path config_file;
   std::vector<std::string> settings;  ///< "a.b=c"
   std::vector<std::filesystem::path> model_dirs;
-  std::string frames = ":";           ///< "A:B:STEP"
+  std::string frames = ":";  ///< "A:B:STEP"
   int threads = 0;
 };
 void add_mapping_options(CLI::App& command, MappingOptions& options);

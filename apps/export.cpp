@@ -43,9 +43,12 @@ int export_map(const ExportOptions& options) {
     const auto coloring = options.what == "mesh" ? MeshColoring::kColors : MeshColoring::kInstances;
     write_file(options.out, encode_png(top_down_picture(load_map(options.map), coloring)));
   } else {
-    throw Error(concat("cannot export to '", options.out.string(), "'; the name must end in .ply, .json or .png"));
+    throw Error(concat("cannot export to '", options.out.string(),
+                       "'; the name must end in .ply, .json or .png"));
   }
-  if (options.json) print_json({{"map", options.map.string()}, {"out", options.out.string()}, {"what", options.what}});
+  if (options.json)
+    print_json(
+        {{"map", options.map.string()}, {"out", options.out.string()}, {"what", options.what}});
   return kDone;
 }
 
@@ -54,9 +57,16 @@ int export_map(const ExportOptions& options) {
 Action add_export(CLI::App& command) {
   auto options = std::make_shared<ExportOptions>();
   command.add_option("MAP", options->map, "map file")->required();
-  command.add_option("OUT", options->out, "file to write: .ply (mesh with instance ids), .json (objects), .png (from above)")->required();
-  command.add_option("--what", options->what, "mesh: true colours; instances: a colour per object; points: vertices alone")
-      ->check(CLI::IsMember({"mesh", "instances", "points"}))->capture_default_str();
+  command
+      .add_option(
+          "OUT", options->out,
+          "file to write: .ply (mesh with instance ids), .json (objects), .png (from above)")
+      ->required();
+  command
+      .add_option("--what", options->what,
+                  "mesh: true colours; instances: a colour per object; points: vertices alone")
+      ->check(CLI::IsMember({"mesh", "instances", "points"}))
+      ->capture_default_str();
   command.add_flag("--json", options->json, "print one JSON object");
   return [options] { return export_map(*options); };
 }

@@ -38,7 +38,8 @@ int complain(const char* message, int code) {
 
 int main(int argc, char** argv) {
   CLI::App app{"ovimap: turns posed RGB-D frames into a 3D map of separate objects", "ovimap"};
-  app.set_version_flag("--version", std::string("ovimap ") + ovimap::version() + " (" + ovimap::commit() + ")");
+  app.set_version_flag("--version",
+                       std::string("ovimap ") + ovimap::version() + " (" + ovimap::commit() + ")");
   app.require_subcommand(1);
   std::map<const CLI::App*, Action> actions;
   for (const Entry& entry : kCommands) {
@@ -55,7 +56,9 @@ int main(int argc, char** argv) {
   } catch (const ovimap::Error& error) {
     return complain(error.what(), kUserCanMend);
   } catch (const std::bad_alloc&) {
-    return complain("out of memory; use larger voxels (--set map.voxel_size_m=0.02) or fewer frames", kUserCanMend);
+    return complain(
+        "out of memory; use larger voxels (--set map.voxel_size_m=0.02) or fewer frames",
+        kUserCanMend);
   } catch (const std::exception& error) {
     return complain((std::string("internal defect: ") + error.what()).c_str(), kDefect);
   }

@@ -18,9 +18,13 @@ struct ModelsOptions {
 int list(const ModelsOptions& options) {
   nlohmann::json rows = nlohmann::json::array();
   for (const ModelListing& model : list_models(model_search_path(options.model_dirs))) {
-    rows.push_back({{"name", model.name}, {"kind", model.kind}, {"folder", model.folder.string()}, {"fault", model.fault}});
+    rows.push_back({{"name", model.name},
+                    {"kind", model.kind},
+                    {"folder", model.folder.string()},
+                    {"fault", model.fault}});
     if (!options.json)
-      std::printf("%-20s %-14s %s\n", model.name.c_str(), model.kind.empty() ? "broken" : model.kind.c_str(),
+      std::printf("%-20s %-14s %s\n", model.name.c_str(),
+                  model.kind.empty() ? "broken" : model.kind.c_str(),
                   model.fault.empty() ? model.folder.c_str() : model.fault.c_str());
   }
   if (options.json) print_json({{"models", rows}});
@@ -28,7 +32,8 @@ int list(const ModelsOptions& options) {
 }
 
 int verify(const ModelsOptions& options) {
-  const ModelFolder model = read_model_folder(find_model(options.name, model_search_path(options.model_dirs)));
+  const ModelFolder model =
+      read_model_folder(find_model(options.name, model_search_path(options.model_dirs)));
   verify_model_files(model);
   if (options.json)
     print_json({{"name", options.name}, {"folder", model.folder.string()}, {"verdict", "ok"}});
@@ -38,7 +43,8 @@ int verify(const ModelsOptions& options) {
 }
 
 int path(const ModelsOptions& options) {
-  for (const std::filesystem::path& folder : model_search_path(options.model_dirs)) std::printf("%s\n", folder.c_str());
+  for (const std::filesystem::path& folder : model_search_path(options.model_dirs))
+    std::printf("%s\n", folder.c_str());
   return kDone;
 }
 
@@ -50,11 +56,17 @@ Action add_models(CLI::App& command) {
   command.require_subcommand(1);
   command.add_option("--model-dir", options->model_dirs, "folder to look for models in first");
   command.add_flag("--json", options->json, "print one JSON object");
-  command.add_subcommand("list", "models that can be found")->fallthrough()->callback([=] { *action = [=] { return list(*options); }; });
-  CLI::App* verify_command = command.add_subcommand("verify", "check a model's files against its description")->fallthrough();
+  command.add_subcommand("list", "models that can be found")->fallthrough()->callback([=] {
+    *action = [=] { return list(*options); };
+  });
+  CLI::App* verify_command =
+      command.add_subcommand("verify", "check a model's files against its description")
+          ->fallthrough();
   verify_command->add_option("MODEL", options->name, "name or folder of a model")->required();
   verify_command->callback([=] { *action = [=] { return verify(*options); }; });
-  command.add_subcommand("path", "where models are looked for")->fallthrough()->callback([=] { *action = [=] { return path(*options); }; });
+  command.add_subcommand("path", "where models are looked for")->fallthrough()->callback([=] {
+    *action = [=] { return path(*options); };
+  });
   return [action] { return (*action)(); };
 }
 

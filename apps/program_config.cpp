@@ -5,14 +5,24 @@
 namespace ovimap::apps {
 
 void add_mapping_options(CLI::App& command, MappingOptions& options) {
-  command.add_option("SOURCE", options.source, "recording: a folder of a known layout (see docs/sources.md)")->required();
-  command.add_option("--masks", options.masks, "2D masks: none, sam, gt, a folder of PNGs or a model")->capture_default_str();
-  command.add_option("--preset", options.preset, "default or reference (thresholds as the paper's code ships them)")->capture_default_str();
+  command
+      .add_option("SOURCE", options.source,
+                  "recording: a folder of a known layout (see docs/sources.md)")
+      ->required();
+  command
+      .add_option("--masks", options.masks, "2D masks: none, sam, gt, a folder of PNGs or a model")
+      ->capture_default_str();
+  command
+      .add_option("--preset", options.preset,
+                  "default or reference (thresholds as the paper's code ships them)")
+      ->capture_default_str();
   command.add_option("--config", options.config_file, "YAML file of settings");
   command.add_option("--set", options.settings, "one setting, a.b=c; may be repeated");
   command.add_option("--model-dir", options.model_dirs, "folder to look for models in first");
-  command.add_option("--frames", options.frames, "which frames: FIRST:LAST:STEP, each part optional");
-  command.add_option("--threads", options.threads, "threads to use; 0: all cores")->check(CLI::Range(0, 1024));
+  command.add_option("--frames", options.frames,
+                     "which frames: FIRST:LAST:STEP, each part optional");
+  command.add_option("--threads", options.threads, "threads to use; 0: all cores")
+      ->check(CLI::Range(0, 1024));
 }
 
 void list_fields(ProgramConfig& config, ConfigFields& fields) {
@@ -29,7 +39,8 @@ ProgramConfig read_program_config(const MappingOptions& options) {
   if (!options.config_file.empty()) load_config(options.config_file, fields);
   for (const std::string& setting : options.settings) {
     const std::size_t equals = setting.find('=');
-    if (equals == std::string::npos) throw Error("--set takes name=value, not '" + setting + "'; `ovimap config` lists the names");
+    if (equals == std::string::npos)
+      throw Error("--set takes name=value, not '" + setting + "'; `ovimap config` lists the names");
     fields.set(setting.substr(0, equals), setting.substr(equals + 1));
   }
   return config;
@@ -48,7 +59,8 @@ Action add_config(CLI::App& command) {
     }
     std::puts("| setting | default | accepts | meaning |\n| --- | --- | --- | --- |");
     for (const ConfigField& field : fields.fields())
-      std::printf("| `%s` | %s | %s | %s |\n", field.name.c_str(), field.get().c_str(), field.accepts.c_str(), field.help.c_str());
+      std::printf("| `%s` | %s | %s | %s |\n", field.name.c_str(), field.get().c_str(),
+                  field.accepts.c_str(), field.help.c_str());
     return int{kDone};
   };
 }

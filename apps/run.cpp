@@ -26,7 +26,8 @@ void report_skipped(const SequenceResult& result) {
     ++count;
   }
   for (const auto& [fault, where] : faults)
-    std::fprintf(stderr, "ovimap: skipped %d frame(s), first at %lld: %s\n", where.first, static_cast<long long>(where.second), fault.c_str());
+    std::fprintf(stderr, "ovimap: skipped %d frame(s), first at %lld: %s\n", where.first,
+                 static_cast<long long>(where.second), fault.c_str());
 }
 
 int run(const RunOptions& options) {
@@ -37,24 +38,31 @@ int run(const RunOptions& options) {
   check_map_target(options.map);
   const auto source = open_frame_source(options.mapping.source, config.source);
   const auto range = positions(parse_frame_range(options.mapping.frames), source->size());
-  auto masks = make_mask_source(options.mapping.masks, config.masks, {source.get(), options.mapping.model_dirs});
+  auto masks = make_mask_source(options.mapping.masks, config.masks,
+                                {source.get(), options.mapping.model_dirs});
 
   Mapper mapper(config.mapper, std::move(masks));
   watch_for_interrupt();
   SequenceResult result;
   {
     Progress progress("mapping");
-    result = run_sequence(*source, range, mapper, [&](std::size_t done, std::size_t total, const FrameReport*) {
-      progress.show(done, total);
-      return !interrupted();
-    });
+    result = run_sequence(*source, range, mapper,
+                          [&](std::size_t done, std::size_t total, const FrameReport*) {
+                            progress.show(done, total);
+                            return !interrupted();
+                          });
   }
   report_skipped(result);
-  nlohmann::json summary = {
-      {"map", options.map.string()}, {"frames", result.frames.size()}, {"frames_skipped", result.skipped.size()},
-      {"seconds", result.seconds}, {"fps", static_cast<double>(result.frames.size()) / result.seconds},
-      {"mask_frames", mapper.mask_frames()}, {"embedding_queries", 0}, {"stages", stages_json(mapper.timers())}};
-  const MapDocument document = make_document(std::move(mapper), result, source->kind() + ":" + options.mapping.source, fields.dump());
+  nlohmann::json summary = {{"map", options.map.string()},
+                            {"frames", result.frames.size()},
+                            {"frames_skipped", result.skipped.size()},
+                            {"seconds", result.seconds},
+                            {"fps", static_cast<double>(result.frames.size()) / result.seconds},
+                            {"mask_frames", mapper.mask_frames()},
+                            {"embedding_queries", 0},
+                            {"stages", stages_json(mapper.timers())}};
+  const MapDocument document = make_document(
+      std::move(mapper), result, source->kind() + ":" + options.mapping.source, fields.dump());
   save_map(options.map, document);
   if (!options.pictures.empty()) write_map_pictures(options.pictures, document, *source);
   summary["instances"] = document.instances.size();
@@ -62,8 +70,9 @@ int run(const RunOptions& options) {
   if (options.json)
     print_json(summary);
   else
-    std::printf("%s: %zu objects from %zu frames in %.1f s (%.1f frames/s)\n", options.map.c_str(), document.instances.size(),
-                result.frames.size(), result.seconds, summary["fps"].get<double>());
+    std::printf("%s: %zu objects from %zu frames in %.1f s (%.1f frames/s)\n", options.map.c_str(),
+                document.instances.size(), result.frames.size(), result.seconds,
+                summary["fps"].get<double>());
   return kDone;
 }
 

@@ -45,9 +45,11 @@ int synth(const SynthOptions& options) {
   }
   const std::string scene = (options.out / pack.scene).string();
   if (options.json)
-    print_json({{"scene", scene}, {"frames", sequence.size()}, {"instances", pack.instances.size()}});
+    print_json(
+        {{"scene", scene}, {"frames", sequence.size()}, {"instances", pack.instances.size()}});
   else
-    std::printf("%s: %lld frames, %zu objects\n", scene.c_str(), static_cast<long long>(sequence.size()), pack.instances.size());
+    std::printf("%s: %lld frames, %zu objects\n", scene.c_str(),
+                static_cast<long long>(sequence.size()), pack.instances.size());
   return kDone;
 }
 
@@ -59,11 +61,16 @@ Action add_synth(CLI::App& command) {
   for (const std::string& name : room_names()) rooms += (rooms.empty() ? "" : ", ") + name;
   command.add_option("OUT", options->out, "folder to write; the recording is OUT/room")->required();
   command.add_option("--room", options->room, "which room: " + rooms)->capture_default_str();
-  command.add_option("--frames", options->frames, "number of frames; 0: as the room says")->check(CLI::Range(0, 1000000));
-  command.add_option("--seed", options->seed, "another seed gives another room of the kind")->capture_default_str();
-  command.add_flag("--noise", options->noise, "as a depth camera sees it: noise, quantisation, holes");
-  command.add_option("--furniture", options->furniture, "folder of .sh3f furniture catalogues")->capture_default_str();
-  command.add_option("--threads", options->threads, "threads to use; 0: all cores")->check(CLI::Range(0, 1024));
+  command.add_option("--frames", options->frames, "number of frames; 0: as the room says")
+      ->check(CLI::Range(0, 1000000));
+  command.add_option("--seed", options->seed, "another seed gives another room of the kind")
+      ->capture_default_str();
+  command.add_flag("--noise", options->noise,
+                   "as a depth camera sees it: noise, quantisation, holes");
+  command.add_option("--furniture", options->furniture, "folder of .sh3f furniture catalogues")
+      ->capture_default_str();
+  command.add_option("--threads", options->threads, "threads to use; 0: all cores")
+      ->check(CLI::Range(0, 1024));
   command.add_flag("--json", options->json, "print one JSON object");
   return [options] { return synth(*options); };
 }

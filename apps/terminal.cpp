@@ -33,12 +33,17 @@ void Progress::show(std::size_t done, std::size_t total, const std::string& deta
   shown_ = true;
 }
 
-void print_json(const nlohmann::json& value) { std::cout << value.dump(2) << std::endl; }
+void print_json(const nlohmann::json& value) {
+  std::cout << value.dump(2) << std::endl;
+}
 
 nlohmann::json stages_json(const StageTimers& timers) {
   nlohmann::json stages = nlohmann::json::object();
   for (const auto& [stage, summary] : timers.summary())
-    stages[stage] = {{"p50_ms", summary.p50_ms}, {"p95_ms", summary.p95_ms}, {"p99_ms", summary.p99_ms}, {"count", summary.count}};
+    stages[stage] = {{"p50_ms", summary.p50_ms},
+                     {"p95_ms", summary.p95_ms},
+                     {"p99_ms", summary.p99_ms},
+                     {"count", summary.count}};
   return stages;
 }
 
@@ -48,7 +53,11 @@ double peak_rss_mb() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-bool interrupted() { return interrupt_seen != 0; }
-void watch_for_interrupt() { std::signal(SIGINT, on_interrupt); }
+bool interrupted() {
+  return interrupt_seen != 0;
+}
+void watch_for_interrupt() {
+  std::signal(SIGINT, on_interrupt);
+}
 
 }  // namespace ovimap::apps

@@ -29,8 +29,8 @@ inline std::string slurp(const std::filesystem::path& path) {
   return text.str();
 }
 
-/// Runs the built program as a user's shell would, in a temporary folder of its own that holds a small
-/// analytic recording ("recording", Replica layout with truth ids: "replica/scene").
+/// Runs the built program as a user's shell would, in a temporary folder of its own that holds a
+/// small analytic recording ("recording", Replica layout with truth ids: "replica/scene").
 class ProgramTest : public ::testing::Test {
  protected:
   ProgramTest() {
@@ -43,17 +43,22 @@ class ProgramTest : public ::testing::Test {
   std::filesystem::path path(const std::string& name) const { return folder_.path() / name; }
 
   ProgramResult run(const std::string& arguments) const {
-    const std::string command = "cd '" + folder_.path().string() + "' && '" OVIMAP_PROGRAM "' " + arguments + " > out.txt 2> err.txt < /dev/null";
+    const std::string command = "cd '" + folder_.path().string() + "' && '" OVIMAP_PROGRAM "' " +
+                                arguments + " > out.txt 2> err.txt < /dev/null";
     const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(path("out.txt")), slurp(path("err.txt"))};
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(path("out.txt")),
+            slurp(path("err.txt"))};
   }
 
   /// The user's fault: exit code 2 and one line on stderr that says all of `words`.
-  void expect_complaint(const std::string& arguments, std::initializer_list<const char*> words) const {
+  void expect_complaint(const std::string& arguments,
+                        std::initializer_list<const char*> words) const {
     const ProgramResult result = run(arguments);
     EXPECT_EQ(result.code, 2) << arguments << "\n" << result.err;
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
-    for (const char* word : words) EXPECT_NE(result.err.find(word), std::string::npos) << "no '" << word << "' in: " << result.err;
+    for (const char* word : words)
+      EXPECT_NE(result.err.find(word), std::string::npos)
+          << "no '" << word << "' in: " << result.err;
   }
 
   nlohmann::json run_json(const std::string& arguments) const {
@@ -65,7 +70,8 @@ class ProgramTest : public ::testing::Test {
   /// Files in the test's folder, to see that nothing half-written stays behind.
   std::size_t file_count() const {
     std::size_t count = 0;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_.path())) count += entry.is_regular_file();
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_.path()))
+      count += entry.is_regular_file();
     return count;
   }
 

@@ -34,7 +34,9 @@ TEST_F(ProgramTest, SameMapForEveryRunAndThreadCount) {
 }
 
 TEST_F(ProgramTest, TruthMasksGiveTheTrueObjects) {
-  ASSERT_EQ(run("run replica/scene --masks gt -o room.ovimap --set summary.min_instance_views=1").code, 0);
+  ASSERT_EQ(
+      run("run replica/scene --masks gt -o room.ovimap --set summary.min_instance_views=1").code,
+      0);
   EXPECT_GE(run_json("info room.ovimap --json")["instances"].size(), 3u);
 }
 
@@ -45,7 +47,8 @@ TEST_F(ProgramTest, ExportsMeshObjectsAndPicture) {
     EXPECT_GT(std::filesystem::file_size(path(file)), 100u) << file;
   }
   EXPECT_EQ(slurp(path("a.ply")).substr(0, 3), "ply");
-  for (const char* file : {"top_view.png", "contact_sheet.png"}) EXPECT_TRUE(std::filesystem::exists(path("pictures") / file));
+  for (const char* file : {"top_view.png", "contact_sheet.png"})
+    EXPECT_TRUE(std::filesystem::exists(path("pictures") / file));
 }
 
 TEST_F(ProgramTest, SkipsAndCountsBadFrames) {
@@ -85,7 +88,8 @@ TEST_F(ProgramTest, SaysWhatIsWrongWithTheRecording) {
   expect_complaint("run nowhere -o a.ovimap", {"nowhere"});
   expect_complaint("run empty -o a.ovimap", {"empty"});
   for (int i = 0; i < sequence_.frames; ++i)
-    write_file(path("recording/frame-" + fixture::padded(i, 6) + ".depth.png"), encode_png(Image<std::uint16_t>(80, 60)));
+    write_file(path("recording/frame-" + fixture::padded(i, 6) + ".depth.png"),
+               encode_png(Image<std::uint16_t>(80, 60)));
   expect_complaint("run recording -o a.ovimap", {"none of the", "depth"});
   EXPECT_FALSE(std::filesystem::exists(path("a.ovimap")));
 }
@@ -114,16 +118,21 @@ TEST_F(ProgramTest, AFailedRunLeavesTheOldMapAndNothingElse) {
 TEST_F(ProgramTest, AFullDiskLeavesTheOldMap) {
   ASSERT_EQ(run("run recording -o room.ovimap").code, 0);
   const std::string before = slurp(path("room.ovimap"));
-  // A limit on file size stands in for the full disk: writes fail the same way, part of the way through.
-  const ProgramResult result = run("run recording -o other.ovimap; (ulimit -f 40; trap '' XFSZ; '" OVIMAP_PROGRAM "' run recording -o room.ovimap)");
+  // A limit on file size stands in for the full disk: writes fail the same way, part of the way
+  // through.
+  const ProgramResult result =
+      run("run recording -o other.ovimap; (ulimit -f 40; trap '' XFSZ; '" OVIMAP_PROGRAM
+          "' run recording -o room.ovimap)");
   EXPECT_EQ(result.code, 2) << result.err;
   EXPECT_EQ(slurp(path("room.ovimap")), before);
 }
 
 TEST_F(ProgramTest, KeepsStdoutForTheJsonObject) {
-  for (const char* command : {"run recording -o room.ovimap --json", "info room.ovimap --json", "check recording --json", "models list --json"}) {
+  for (const char* command : {"run recording -o room.ovimap --json", "info room.ovimap --json",
+                              "check recording --json", "models list --json"}) {
     const ProgramResult result = run(command);
-    EXPECT_TRUE(nlohmann::json::parse(result.out, nullptr, false).is_object()) << command << "\n" << result.out;
+    EXPECT_TRUE(nlohmann::json::parse(result.out, nullptr, false).is_object()) << command << "\n"
+                                                                               << result.out;
   }
 }
 

@@ -21,12 +21,17 @@ struct MappedRoom {
   std::vector<Label> labels;
 
   MappedRoom() {
-    for (std::size_t i = 0; i < segments.segments.size(); ++i) labels.push_back(map.labels().create());
+    for (std::size_t i = 0; i < segments.segments.size(); ++i)
+      labels.push_back(map.labels().create());
     for (int view = 0; view < 6; ++view) add(RoomScene(view));
   }
   void add(const RoomScene& view) {
-    integrate(map, {.depth = view.depth, .camera = view.camera, .world_from_camera = view.pose, .normals = &surface.normals,
-                    .segment_ids = &segments.ids, .segment_labels = labels});
+    integrate(map, {.depth = view.depth,
+                    .camera = view.camera,
+                    .world_from_camera = view.pose,
+                    .normals = &surface.normals,
+                    .segment_ids = &segments.ids,
+                    .segment_labels = labels});
   }
 };
 
@@ -38,20 +43,24 @@ BENCHMARK(integrate_frame)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void look_up_surface(benchmark::State& state) {
   const MappedRoom room;
-  for (auto _ : state) benchmark::DoNotOptimize(surface_voxels(room.map, room.scene.depth, room.scene.camera, room.scene.pose));
+  for (auto _ : state)
+    benchmark::DoNotOptimize(
+        surface_voxels(room.map, room.scene.depth, room.scene.camera, room.scene.pose));
 }
 BENCHMARK(look_up_surface)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void count_votes(benchmark::State& state) {
   MappedRoom room;
-  const auto surface = surface_voxels(room.map, room.scene.depth, room.scene.camera, room.scene.pose);
+  const auto surface =
+      surface_voxels(room.map, room.scene.depth, room.scene.camera, room.scene.pose);
   for (auto _ : state) benchmark::DoNotOptimize(associate(room.segments, surface, room.map, {}));
 }
 BENCHMARK(count_votes)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void cast_all_rays(benchmark::State& state) {
   const MappedRoom room;
-  for (auto _ : state) benchmark::DoNotOptimize(cast_rays(room.map, room.scene.camera, room.scene.pose, 10.f));
+  for (auto _ : state)
+    benchmark::DoNotOptimize(cast_rays(room.map, room.scene.camera, room.scene.pose, 10.f));
 }
 BENCHMARK(cast_all_rays)->Unit(benchmark::kMillisecond)->UseRealTime();
 

@@ -12,8 +12,8 @@
 
 namespace ovimap::bench {
 
-/// Fixed input for the kernels: the inside of a 4 x 5 x 2.5 m room with three balls, 640 x 480 depth with
-/// a little repeatable noise, seen while turning on the spot.
+/// Fixed input for the kernels: the inside of a 4 x 5 x 2.5 m room with three balls, 640 x 480
+/// depth with a little repeatable noise, seen while turning on the spot.
 struct RoomScene {
   PinholeCamera camera{640, 480, 585.f, 585.f, 319.5f, 239.5f};
   Pose pose;
@@ -25,7 +25,8 @@ struct RoomScene {
     for (int y = 0; y < camera.height; ++y)
       for (int x = 0; x < camera.width; ++x) {
         const Eigen::Vector3f ray =
-            pose.linear().cast<float>() * camera.unproject(static_cast<float>(x), static_cast<float>(y), 1.f);
+            pose.linear().cast<float>() *
+            camera.unproject(static_cast<float>(x), static_cast<float>(y), 1.f);
         seed = seed * 1664525u + 1013904223u;
         const float z = trace(eye, ray);
         depth.at(x, y) = z + 0.002f * z * (static_cast<float>(seed >> 8) / 16777216.f - 0.5f);
@@ -47,10 +48,13 @@ struct RoomScene {
       const float wall = (std::copysign(half[axis], ray[axis]) - eye[axis]) / ray[axis];
       nearest = std::min(nearest, wall);
     }
-    for (const Eigen::Vector3f& center : {Eigen::Vector3f(0.4f, 0.3f, 1.5f), Eigen::Vector3f(-0.5f, 0.2f, 1.8f), Eigen::Vector3f(1.2f, 0.5f, -1.f)}) {
+    for (const Eigen::Vector3f& center :
+         {Eigen::Vector3f(0.4f, 0.3f, 1.5f), Eigen::Vector3f(-0.5f, 0.2f, 1.8f),
+          Eigen::Vector3f(1.2f, 0.5f, -1.f)}) {
       const Eigen::Vector3f from = eye - center;
       const float a = ray.squaredNorm(), b = ray.dot(from), c = from.squaredNorm() - 0.09f;
-      if (b * b > a * c && -b - std::sqrt(b * b - a * c) > 0.f) nearest = std::min(nearest, (-b - std::sqrt(b * b - a * c)) / a);
+      if (b * b > a * c && -b - std::sqrt(b * b - a * c) > 0.f)
+        nearest = std::min(nearest, (-b - std::sqrt(b * b - a * c)) / a);
     }
     return nearest;
   }

@@ -23,7 +23,8 @@ Number parse_number(const std::string& name, std::string_view text, Number min, 
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   const bool readable = error == std::errc() && end == text.data() + text.size();
   if (!readable || !(value >= min && value <= max))
-    throw Error(concat("setting ", name, " is '", text, "'; accepted is a number from ", min, " to ", max));
+    throw Error(
+        concat("setting ", name, " is '", text, "'; accepted is a number from ", min, " to ", max));
   return value;
 }
 
@@ -44,16 +45,17 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string nearest_word(std::string_view word, const std::vector<std::string>& candidates) {
-  const auto best = std::min_element(
-      candidates.begin(), candidates.end(), [word](const std::string& a, const std::string& b) {
-        return edit_distance(word, a) < edit_distance(word, b);
-      });
+  const auto best = std::min_element(candidates.begin(), candidates.end(),
+                                     [word](const std::string& a, const std::string& b) {
+                                       return edit_distance(word, a) < edit_distance(word, b);
+                                     });
   return best == candidates.end() ? std::string() : *best;
 }
 
 void ConfigFields::add(std::string name, int& value, int min, int max, std::string help) {
   const std::string full = prefix_ + name;
-  fields_.push_back({full, std::move(help), concat(min, " to ", max), [&value] { return to_text(value); },
+  fields_.push_back({full, std::move(help), concat(min, " to ", max),
+                     [&value] { return to_text(value); },
                      [&value, full, min, max](std::string_view text) {
                        value = parse_number<int>(full, text, min, max);
                      }});
@@ -61,15 +63,17 @@ void ConfigFields::add(std::string name, int& value, int min, int max, std::stri
 
 void ConfigFields::add(std::string name, float& value, float min, float max, std::string help) {
   const std::string full = prefix_ + name;
-  fields_.push_back({full, std::move(help), concat(min, " to ", max), [&value] { return to_text(value); },
+  fields_.push_back({full, std::move(help), concat(min, " to ", max),
+                     [&value] { return to_text(value); },
                      [&value, full, min, max](std::string_view text) {
                        value = parse_number<float>(full, text, min, max);
                      }});
 }
 
 void ConfigFields::add(std::string name, bool& value, std::string help) {
-  add_words(std::move(name), {"false", "true"}, [&value] { return value ? "true" : "false"; },
-            [&value](std::size_t index) { value = index == 1; }, std::move(help));
+  add_words(
+      std::move(name), {"false", "true"}, [&value] { return value ? "true" : "false"; },
+      [&value](std::size_t index) { value = index == 1; }, std::move(help));
 }
 
 void ConfigFields::add(std::string name, std::string& value, std::string help) {
@@ -87,12 +91,14 @@ void ConfigFields::add_words(std::string name, std::vector<std::string> words,
                      [full, words, accepts, set_index](std::string_view text) {
                        const auto found = std::find(words.begin(), words.end(), text);
                        if (found == words.end())
-                         throw Error(concat("setting ", full, " is '", text, "'; accepted is ", accepts));
+                         throw Error(
+                             concat("setting ", full, " is '", text, "'; accepted is ", accepts));
                        set_index(static_cast<std::size_t>(found - words.begin()));
                      }});
 }
 
-void ConfigFields::group(const std::string& prefix, const std::function<void(ConfigFields&)>& fill) {
+void ConfigFields::group(const std::string& prefix,
+                         const std::function<void(ConfigFields&)>& fill) {
   const std::string outer = prefix_;
   prefix_ += prefix + ".";
   fill(*this);
@@ -104,7 +110,8 @@ void ConfigFields::set(std::string_view name, std::string_view text) {
     if (field.name == name) return field.set(text);
   std::vector<std::string> names;
   for (const ConfigField& field : fields_) names.push_back(field.name);
-  throw Error(concat("there is no setting '", name, "'; did you mean '", nearest_word(name, names), "'?"));
+  throw Error(
+      concat("there is no setting '", name, "'; did you mean '", nearest_word(name, names), "'?"));
 }
 
 std::string ConfigFields::dump() const {

@@ -22,7 +22,8 @@ ConfigFields fields_of(ExampleConfig& config) {
     f.add("count", config.count, 1, 10, "how many");
     f.add("size_m", config.size_m, 0.f, 1.f, "how large");
     f.add("on", config.on, "whether");
-    f.add_choice<Mode>("mode", config.mode, {{"fast", Mode::kFast}, {"exact", Mode::kExact}}, "which");
+    f.add_choice<Mode>("mode", config.mode, {{"fast", Mode::kFast}, {"exact", Mode::kExact}},
+                       "which");
   });
   return fields;
 }
@@ -53,7 +54,8 @@ TEST(ConfigFields, SetsEveryKindOfField) {
 TEST(ConfigFields, NamesTheNearestFieldForAnUnknownOne) {
   ExampleConfig config;
   ConfigFields fields = fields_of(config);
-  EXPECT_NE(message_of(fields, "part.cuont", "1").find("did you mean 'part.count'"), std::string::npos);
+  EXPECT_NE(message_of(fields, "part.cuont", "1").find("did you mean 'part.count'"),
+            std::string::npos);
 }
 
 TEST(ConfigFields, RefusesWhatIsOutOfRangeOrUnreadable) {

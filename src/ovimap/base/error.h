@@ -8,9 +8,10 @@
 
 namespace ovimap {
 
-/// Something the user can mend: a path, a file, a setting, a model, a map version. The message is one
-/// line that names the thing, its value, what is accepted and the remedy. Thrown only at boundaries
-/// (construct, load, save, connect); normal absence is an optional, a pointer or a status instead.
+/// Something the user can mend: a path, a file, a setting, a model, a map version. The message is
+/// one line that names the thing, its value, what is accepted and the remedy. Thrown only at
+/// boundaries (construct, load, save, connect); normal absence is an optional, a pointer or a
+/// status instead.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

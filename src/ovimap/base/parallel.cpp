@@ -27,9 +27,8 @@ struct ThreadLimit::Control {
 
 ThreadLimit::ThreadLimit(int threads) {
   if (threads > 0) {
-    control_ = std::make_unique<Control>(
-        Control{tbb::global_control(tbb::global_control::max_allowed_parallelism,
-                                    static_cast<std::size_t>(threads))});
+    control_ = std::make_unique<Control>(Control{tbb::global_control(
+        tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads))});
   }
 }
 

@@ -14,8 +14,8 @@ void parallel_ranges(std::size_t count, std::size_t grain, void* context, RangeF
 }  // namespace detail
 
 /// Calls `body(begin, end)` over [0, count) cut into ranges of at most `grain` items, in parallel.
-/// The cuts depend on `count` and `grain` alone, never on the number of threads, so a body that writes
-/// per-range results and a reduction in range order give the same bits on every machine.
+/// The cuts depend on `count` and `grain` alone, never on the number of threads, so a body that
+/// writes per-range results and a reduction in range order give the same bits on every machine.
 template <class Body>
 void parallel_for_ranges(std::size_t count, std::size_t grain, Body&& body) {
   using Plain = std::remove_reference_t<Body>;
@@ -33,7 +33,8 @@ void parallel_for(std::size_t count, std::size_t grain, Body&& body) {
   });
 }
 
-/// While alive, no more than `threads` threads run parallel_for bodies in this process (0: all cores).
+/// While alive, no more than `threads` threads run parallel_for bodies in this process (0: all
+/// cores).
 class ThreadLimit {
  public:
   explicit ThreadLimit(int threads);

@@ -21,7 +21,8 @@ TEST(ParallelFor, CutsRangesTheSameForAnyThreadCount) {
   const auto cuts = [](int threads) {
     ThreadLimit limit(threads);
     std::vector<std::size_t> end_of(103, 0);
-    parallel_for_ranges(end_of.size(), 10, [&](std::size_t begin, std::size_t end) { end_of[begin] = end; });
+    parallel_for_ranges(end_of.size(), 10,
+                        [&](std::size_t begin, std::size_t end) { end_of[begin] = end; });
     return end_of;
   };
   EXPECT_EQ(cuts(1), cuts(2));
@@ -29,7 +30,10 @@ TEST(ParallelFor, CutsRangesTheSameForAnyThreadCount) {
 }
 
 TEST(ParallelFor, HandsExceptionsToTheCaller) {
-  EXPECT_THROW(parallel_for(100, 1, [](std::size_t i) { if (i == 57) throw std::runtime_error("57"); }),
+  EXPECT_THROW(parallel_for(100, 1,
+                            [](std::size_t i) {
+                              if (i == 57) throw std::runtime_error("57");
+                            }),
                std::runtime_error);
 }
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Marks a hot loop that the compiler vectorises: built once for the baseline processor and once for
-/// AVX2, chosen when the program starts. Both give the same bits (no fused multiply-add).
+/// Marks a hot loop that the compiler vectorises: built once for the baseline processor and once
+/// for AVX2, chosen when the program starts. Both give the same bits (no fused multiply-add).
 /// Sanitizers cannot intercept the start-up choice, so they get the baseline alone.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
     !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)

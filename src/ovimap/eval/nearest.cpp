@@ -68,11 +68,15 @@ void NearestPoints::search(std::size_t begin, std::size_t end, Best& best) const
   const int axis = split_axis_[middle];
   const float to_plane = best.query[axis] - entries_[middle].point[axis];
   best.offer(entries_[middle]);
-  if (to_plane < 0) search(begin, middle, best);
-  else search(middle + 1, end, best);
+  if (to_plane < 0)
+    search(begin, middle, best);
+  else
+    search(middle + 1, end, best);
   if (to_plane * to_plane > best.squared_distance) return;
-  if (to_plane < 0) search(middle + 1, end, best);
-  else search(begin, middle, best);
+  if (to_plane < 0)
+    search(middle + 1, end, best);
+  else
+    search(begin, middle, best);
 }
 
 std::optional<NearestPoints::Neighbor> NearestPoints::find(const Eigen::Vector3f& query,

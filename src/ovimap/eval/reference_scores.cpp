@@ -59,7 +59,9 @@ Sums sums_of(const LabelledScene& scene, const ReferenceProtocolConfig& config) 
   return sums;
 }
 
-double ratio(double part, double whole) { return whole > 0 ? part / whole : 0; }
+double ratio(double part, double whole) {
+  return whole > 0 ? part / whole : 0;
+}
 
 ReferenceScores scores_of(const Sums& sums) {
   const auto precision = [&](std::size_t i) { return ratio(sums.right[i], sums.predicted); };

@@ -29,7 +29,9 @@ LabelledScene three_things() {
   return scene;
 }
 
-StandardScores scores_of(const LabelledScene& scene) { return standard_scores({&scene, 1}); }
+StandardScores scores_of(const LabelledScene& scene) {
+  return standard_scores({&scene, 1});
+}
 
 TEST(StandardScores, AreAsComputedByHand) {
   const StandardScores scores = scores_of(three_things());

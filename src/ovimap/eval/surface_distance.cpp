@@ -95,8 +95,10 @@ void SurfaceDistance::search(std::size_t node, Range range, const Eigen::Vector3
   const auto visit_right = [&] {
     if (to_right <= best) search(right, {middle, range.end}, point, best);
   };
-  if (to_left <= to_right) visit_left(), visit_right();
-  else visit_right(), visit_left();
+  if (to_left <= to_right)
+    visit_left(), visit_right();
+  else
+    visit_right(), visit_left();
 }
 
 std::optional<float> SurfaceDistance::find(const Eigen::Vector3f& point, float limit_m) const {

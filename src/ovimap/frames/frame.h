@@ -14,12 +14,12 @@ namespace ovimap {
 /// One posed RGB-D observation. Colour and depth may come from two cameras that were never
 /// registered.
 struct Frame {
-  std::int64_t index = 0;   ///< position in its source
-  std::string name;         ///< file stem of the colour image; names 2D mask files (`--masks DIR`)
+  std::int64_t index = 0;  ///< position in its source
+  std::string name;        ///< file stem of the colour image; names 2D mask files (`--masks DIR`)
   double timestamp_s = 0;
-  RgbImage color;           ///< native colour image, color_camera's size
+  RgbImage color;  ///< native colour image, color_camera's size
   PinholeCamera color_camera;
-  DepthImage depth;         ///< metres; every invalid value (0, NaN, inf, out of range) stored as 0
+  DepthImage depth;  ///< metres; every invalid value (0, NaN, inf, out of range) stored as 0
   PinholeCamera depth_camera;
   Pose color_from_depth = Pose::Identity();   ///< x_in_color = color_from_depth * x_in_depth
   Pose world_from_camera = Pose::Identity();  ///< of the depth camera

@@ -17,8 +17,8 @@ namespace ovimap {
 class ConfigFields;
 
 struct FrameSourceConfig {
-  float min_depth_m = 0.1f;  ///< nearer depth is invalid
-  float max_depth_m = 10.f;  ///< farther depth is invalid
+  float min_depth_m = 0.1f;      ///< nearer depth is invalid
+  float max_depth_m = 10.f;      ///< farther depth is invalid
   float max_time_gap_s = 0.02f;  ///< colour, depth and pose farther apart do not belong together
 };
 void list_fields(FrameSourceConfig& config, ConfigFields& fields);

@@ -8,7 +8,9 @@ namespace ovimap {
 
 namespace {
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
 
 /// Takes the digits at the front of `text`, without their leading zeros.
 std::string_view take_number(std::string_view& text) {

@@ -44,7 +44,9 @@ class RecordingTest : public testing::Test {
   fixture::Sequence sequence_;
 };
 
-TEST_F(RecordingTest, GoodFrameHasNoFault) { EXPECT_EQ(fault(), ""); }
+TEST_F(RecordingTest, GoodFrameHasNoFault) {
+  EXPECT_EQ(fault(), "");
+}
 
 TEST_F(RecordingTest, MissingFilesAreNamed) {
   std::filesystem::remove(file("color.png"));

@@ -16,9 +16,15 @@ constexpr std::size_t kRowsPerTask = 16;
 constexpr std::int32_t kOutside = -1;
 
 /// A colour pixel in one number, so that its column and row come back without a division.
-std::int32_t packed(std::int32_t x, std::int32_t y) { return (y << 16) | x; }
-std::int32_t packed_x(std::int32_t pixel) { return pixel & 0xffff; }
-std::int32_t packed_y(std::int32_t pixel) { return pixel >> 16; }
+std::int32_t packed(std::int32_t x, std::int32_t y) {
+  return (y << 16) | x;
+}
+std::int32_t packed_x(std::int32_t pixel) {
+  return pixel & 0xffff;
+}
+std::int32_t packed_y(std::int32_t pixel) {
+  return pixel >> 16;
+}
 
 /// A depth image seen from the colour camera: for each depth pixel its colour pixel and distance.
 struct Projected {

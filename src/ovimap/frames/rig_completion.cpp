@@ -40,7 +40,9 @@ ImageSize color_size(const Recording& recording) {
   return first_readable(recording, [](const RecordedFrame& f) { return read_rgb(f.color); });
 }
 
-bool has_intrinsics(const PinholeCamera& camera) { return camera.fx > 0 || camera.fy > 0; }
+bool has_intrinsics(const PinholeCamera& camera) {
+  return camera.fx > 0 || camera.fy > 0;
+}
 
 std::string missing_keys(const PinholeCamera& camera) {
   std::string keys;

@@ -15,7 +15,8 @@ PinholeCamera PinholeCamera::scaled_to(int new_width, int new_height) const {
   const float sx = static_cast<float>(new_width) / static_cast<float>(width);
   const float sy = static_cast<float>(new_height) / static_cast<float>(height);
   // Pixel centres are integers, so the image spans [-0.5, width - 0.5].
-  return {new_width, new_height, fx * sx, fy * sy, (cx + 0.5f) * sx - 0.5f, (cy + 0.5f) * sy - 0.5f};
+  return {
+      new_width, new_height, fx * sx, fy * sy, (cx + 0.5f) * sx - 0.5f, (cy + 0.5f) * sy - 0.5f};
 }
 
 }  // namespace ovimap

@@ -6,8 +6,8 @@
 
 namespace ovimap {
 
-/// Pinhole camera without distortion: x right, y down, z forward. Integer pixel coordinates are pixel
-/// centres. All intrinsics in pixels.
+/// Pinhole camera without distortion: x right, y down, z forward. Integer pixel coordinates are
+/// pixel centres. All intrinsics in pixels.
 struct PinholeCamera {
   int width = 0, height = 0;
   float fx = 0, fy = 0, cx = 0, cy = 0;

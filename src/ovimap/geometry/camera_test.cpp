@@ -25,7 +25,8 @@ TEST(PinholeCamera, UnprojectInvertsProject) {
 TEST(PinholeCamera, ScalingKeepsTheRayOfAnImageCorner) {
   const PinholeCamera half = kCamera.scaled_to(320, 240);
   // The image's outer corner is (-0.5, -0.5) at every size.
-  EXPECT_TRUE(half.unproject(-0.5f, -0.5f, 1.f).isApprox(kCamera.unproject(-0.5f, -0.5f, 1.f), 1e-6f));
+  EXPECT_TRUE(
+      half.unproject(-0.5f, -0.5f, 1.f).isApprox(kCamera.unproject(-0.5f, -0.5f, 1.f), 1e-6f));
 }
 
 TEST(PinholeCamera, RejectsImpossibleIntrinsics) {

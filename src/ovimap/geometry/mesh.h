@@ -10,13 +10,15 @@
 
 namespace ovimap {
 
-/// A triangle mesh in the world frame, metres. Per-vertex attributes are empty or as long as vertices.
+/// A triangle mesh in the world frame, metres. Per-vertex attributes are empty or as long as
+/// vertices.
 struct Mesh {
   std::vector<Eigen::Vector3f> vertices;
-  std::vector<Eigen::Vector3f> normals;              ///< unit length, outward
-  std::vector<std::array<std::uint8_t, 3>> colors;   ///< RGB
-  std::vector<std::uint32_t> labels;                 ///< instance id (or label) per vertex; 0 = none
-  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< vertex indices, counter-clockwise from outside
+  std::vector<Eigen::Vector3f> normals;             ///< unit length, outward
+  std::vector<std::array<std::uint8_t, 3>> colors;  ///< RGB
+  std::vector<std::uint32_t> labels;                ///< instance id (or label) per vertex; 0 = none
+  std::vector<std::array<std::uint32_t, 3>>
+      triangles;  ///< vertex indices, counter-clockwise from outside
 };
 
 }  // namespace ovimap

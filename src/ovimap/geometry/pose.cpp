@@ -19,7 +19,9 @@ std::string pose_fault(const Eigen::Matrix4d& matrix) {
 
 Pose rigid_pose(const Eigen::Matrix4d& matrix) {
   Pose pose = Pose::Identity();
-  pose.linear() = Eigen::Quaterniond(Eigen::Matrix3d(matrix.topLeftCorner<3, 3>())).normalized().toRotationMatrix();
+  pose.linear() = Eigen::Quaterniond(Eigen::Matrix3d(matrix.topLeftCorner<3, 3>()))
+                      .normalized()
+                      .toRotationMatrix();
   pose.translation() = matrix.topRightCorner<3, 1>();
   return pose;
 }

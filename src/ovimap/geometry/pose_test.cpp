@@ -11,7 +11,8 @@ namespace {
 
 TEST(PoseFault, AcceptsARigidTransformWithFewDigits) {
   Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
-  matrix.topLeftCorner<3, 3>() = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).matrix();
+  matrix.topLeftCorner<3, 3>() =
+      Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).matrix();
   matrix(0, 0) += 1e-4;
   EXPECT_EQ(pose_fault(matrix), "");
   const Eigen::Matrix3d rotation = rigid_pose(matrix).linear();

@@ -14,7 +14,9 @@ namespace ovimap {
 
 namespace {
 
-std::string reason(int error) { return std::generic_category().message(error); }
+std::string reason(int error) {
+  return std::generic_category().message(error);
+}
 
 class Descriptor {
  public:

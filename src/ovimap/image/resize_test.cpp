@@ -22,7 +22,9 @@ RgbImage random_rgb(int width, int height) {
   return image;
 }
 
-double triangle(double distance) { return std::max(0.0, 1.0 - std::abs(distance)); }
+double triangle(double distance) {
+  return std::max(0.0, 1.0 - std::abs(distance));
+}
 
 /// The definition, in two dimensions at once and in double precision.
 double naive_red(const RgbImage& image, int width, int height, int x, int y) {

@@ -13,7 +13,9 @@
 namespace ovimap {
 namespace {
 
-std::filesystem::path golden_folder() { return inference_testdata() / "golden_entity"; }
+std::filesystem::path golden_folder() {
+  return inference_testdata() / "golden_entity";
+}
 
 EntityConfig golden_config() {
   EntityConfig config;

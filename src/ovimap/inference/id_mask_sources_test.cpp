@@ -41,7 +41,9 @@ void write_ids(const std::filesystem::path& file, int width, int height, std::ui
   write_file(file, encode_png(IdImage(width, height, id)));
 }
 
-Frame frame_at(std::int64_t position) { return *TestFrames(false).read(position).frame; }
+Frame frame_at(std::int64_t position) {
+  return *TestFrames(false).read(position).frame;
+}
 
 TEST(GtMaskSource, GivesTheTruth) {
   const TestFrames frames(true);
@@ -55,7 +57,9 @@ TEST(GtMaskSource, GivesTheTruth) {
 
 TEST(GtMaskSource, NeedsTruth) {
   const TestFrames frames(false);
-  EXPECT_TRUE(contains(error_of([&] { make_mask_source("gt", {}, {&frames, {}}); }),
+  EXPECT_TRUE(contains(error_of([&] {
+                         make_mask_source("gt", {}, {&frames, {}});
+                       }),
                        "this test source has none"));
   EXPECT_TRUE(contains(error_of([&] { make_mask_source("gt", {}, {}); }), "recorded source"));
 }

@@ -16,9 +16,9 @@ namespace ovimap {
 
 /// Where a promptable network should look for an entity, in pixels of the colour image.
 struct MaskPrompt {
-  Eigen::Vector2f interior_px;      ///< a point well inside the region
-  Eigen::AlignedBox2f extent_px;    ///< the region's box
-  int area_px = 0;                  ///< the region's size
+  Eigen::Vector2f interior_px;    ///< a point well inside the region
+  Eigen::AlignedBox2f extent_px;  ///< the region's box
+  int area_px = 0;                ///< the region's size
 };
 
 /// 2D entities of one frame: class-agnostic masks that do not overlap.
@@ -27,7 +27,8 @@ struct Entities {
   std::vector<float> scores;  ///< scores[id - 1] in [0, 1]; ids are 1..scores.size()
 };
 
-/// Finds the 2D entities of a frame: a network, a folder of PNGs, the truth or nothing (method section 2).
+/// Finds the 2D entities of a frame: a network, a folder of PNGs, the truth or nothing (method
+/// section 2).
 class MaskSource {
  public:
   virtual ~MaskSource() = default;
@@ -36,8 +37,9 @@ class MaskSource {
   /// Takes seconds a frame (a network): worth asking on some frames only.
   virtual bool is_slow() const { return false; }
 
-  /// The entities of `frame`. `prompts` are hints that a source may ignore. Throws Error when the source
-  /// cannot deliver for a reason the user can mend (mask file of another size, model failure).
+  /// The entities of `frame`. `prompts` are hints that a source may ignore. Throws Error when the
+  /// source cannot deliver for a reason the user can mend (mask file of another size, model
+  /// failure).
   virtual Entities entities(const Frame& frame, std::span<const MaskPrompt> prompts) = 0;
 };
 

@@ -75,7 +75,9 @@ TEST(RuntimeConfig, ReadsProviderWords) {
   EXPECT_THROW(fields.set("execution_provider", "abacus"), Error);
 }
 
-TEST(TensorShape, ReadsWell) { EXPECT_EQ(to_text(TensorShape{1, kAnySize, 2}), "[1,any,2]"); }
+TEST(TensorShape, ReadsWell) {
+  EXPECT_EQ(to_text(TensorShape{1, kAnySize, 2}), "[1,any,2]");
+}
 
 }  // namespace
 }  // namespace ovimap

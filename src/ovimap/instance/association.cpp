@@ -21,10 +21,14 @@ constexpr std::size_t kPixelsPerTask = 16 * 640;
 using Votes = std::map<Label, int>;
 
 /// (segment, label) in one word, segment in the high half.
-std::uint64_t ballot(std::uint16_t segment, Label label) { return std::uint64_t{segment} << 32 | label; }
+std::uint64_t ballot(std::uint16_t segment, Label label) {
+  return std::uint64_t{segment} << 32 | label;
+}
 
-/// Votes of every segment for the labels of its surface voxels; runs of equal ballots are counted as one.
-std::vector<Votes> count_votes(const Segments& segments, const Image<VoxelRef>& surface, const VoxelMap& map) {
+/// Votes of every segment for the labels of its surface voxels; runs of equal ballots are counted
+/// as one.
+std::vector<Votes> count_votes(const Segments& segments, const Image<VoxelRef>& surface,
+                               const VoxelMap& map) {
   const std::size_t tasks = (surface.size() + kPixelsPerTask - 1) / kPixelsPerTask;
   std::vector<std::vector<std::pair<std::uint64_t, int>>> runs(tasks);
   parallel_for(tasks, 1, [&](std::size_t task) {
@@ -43,8 +47,7 @@ std::vector<Votes> count_votes(const Segments& segments, const Image<VoxelRef>& 
   });
   std::vector<Votes> votes(segments.segments.size());
   for (const auto& part : runs)
-    for (const auto& [key, count] : part)
-      votes[(key >> 32) - 1][static_cast<Label>(key)] += count;
+    for (const auto& [key, count] : part) votes[(key >> 32) - 1][static_cast<Label>(key)] += count;
   return votes;
 }
 
@@ -56,18 +59,21 @@ std::pair<Label, int> winner(const Votes& votes) {
   return best;
 }
 
-/// Greedy one-to-one assignment: the pair with most votes first; a segment whose label is taken votes
-/// again, every point for the best label of its voxel that is still free (reference code, 2.5).
+/// Greedy one-to-one assignment: the pair with most votes first; a segment whose label is taken
+/// votes again, every point for the best label of its voxel that is still free (reference
+/// code, 2.5).
 class OneToOne {
  public:
-  OneToOne(const Segments& segments, const Image<VoxelRef>& surface, const VoxelMap& map, const AssociationConfig& config)
+  OneToOne(const Segments& segments, const Image<VoxelRef>& surface, const VoxelMap& map,
+           const AssociationConfig& config)
       : surface_(surface), map_(map), config_(config), pixels_(segments.segments.size()) {
     for (std::uint32_t i = 0; i < surface.size(); ++i)
       if (segments.ids[i] != 0 && surface[i]) pixels_[segments.ids[i] - 1u].push_back(i);
   }
 
   void assign(const std::vector<Votes>& votes, std::vector<SegmentAssociation>& result) {
-    for (std::size_t segment = 0; segment < votes.size(); ++segment) enqueue(segment, votes[segment]);
+    for (std::size_t segment = 0; segment < votes.size(); ++segment)
+      enqueue(segment, votes[segment]);
     while (!queue_.empty()) {
       const auto [count, order, label] = queue_.top();
       queue_.pop();
@@ -90,7 +96,8 @@ class OneToOne {
     Votes votes;
     for (std::uint32_t pixel : pixels_[segment]) {
       const VoxelRef ref = surface_[pixel];
-      for (const LabelSupport& held : voxel_labels(map_.block(ref.block()), ref.voxel(), map_.labels())) {
+      for (const LabelSupport& held :
+           voxel_labels(map_.block(ref.block()), ref.voxel(), map_.labels())) {
         if (held.label == kNoLabel) break;
         if (taken_.contains(held.label)) continue;
         ++votes[held.label];
@@ -108,12 +115,15 @@ class OneToOne {
   std::priority_queue<std::tuple<int, std::size_t, Label>> queue_;
 };
 
-/// Labels that one segment shows to belong together: inputs of Spa (paper, supplement; method section 6).
-std::vector<Label> overlapped_labels(const Votes& votes, int area_px, const AssociationConfig& config) {
+/// Labels that one segment shows to belong together: inputs of Spa (paper, supplement; method
+/// section 6).
+std::vector<Label> overlapped_labels(const Votes& votes, int area_px,
+                                     const AssociationConfig& config) {
   std::vector<Label> labels;
   if (area_px <= config.merge_min_points) return labels;
   for (const auto& [label, count] : votes)
-    if (static_cast<float>(count) > config.merge_min_share * static_cast<float>(area_px)) labels.push_back(label);
+    if (static_cast<float>(count) > config.merge_min_share * static_cast<float>(area_px))
+      labels.push_back(label);
   if (labels.size() < 2) labels.clear();
   return labels;
 }
@@ -121,16 +131,20 @@ std::vector<Label> overlapped_labels(const Votes& votes, int area_px, const Asso
 }  // namespace
 
 void list_fields(AssociationConfig& config, ConfigFields& fields) {
-  fields.add_choice<AssociationRule>("association", config.association,
-                                     {{"one_to_one", AssociationRule::kOneToOne}, {"argmax", AssociationRule::kArgmax}},
-                                     "how segments take super-points");
-  fields.add("assoc_min_votes", config.assoc_min_votes, 0, 1000000, "a super-point needs more votes than this, points");
-  fields.add("merge_min_points", config.merge_min_points, 0, 100000000, "segments with more points tell what to merge");
-  fields.add("merge_min_share", config.merge_min_share, 0.f, 1.f, "share of a segment's points a super-point must hold");
+  fields.add_choice<AssociationRule>(
+      "association", config.association,
+      {{"one_to_one", AssociationRule::kOneToOne}, {"argmax", AssociationRule::kArgmax}},
+      "how segments take super-points");
+  fields.add("assoc_min_votes", config.assoc_min_votes, 0, 1000000,
+             "a super-point needs more votes than this, points");
+  fields.add("merge_min_points", config.merge_min_points, 0, 100000000,
+             "segments with more points tell what to merge");
+  fields.add("merge_min_share", config.merge_min_share, 0.f, 1.f,
+             "share of a segment's points a super-point must hold");
 }
 
-std::vector<SegmentAssociation> associate(const Segments& segments, const Image<VoxelRef>& surface, VoxelMap& map,
-                                          const AssociationConfig& config) {
+std::vector<SegmentAssociation> associate(const Segments& segments, const Image<VoxelRef>& surface,
+                                          VoxelMap& map, const AssociationConfig& config) {
   const std::vector<Votes> votes = count_votes(segments, surface, map);
   std::vector<SegmentAssociation> result(segments.segments.size());
   if (config.association == AssociationRule::kOneToOne) {

@@ -11,29 +11,31 @@ namespace ovimap {
 
 enum class AssociationRule {
   kOneToOne,  ///< greedy; a label serves one segment a frame (the released code)
-  kArgmax,    ///< every segment takes its most voted label (the paper's text; better, docs/experiments.md)
+  kArgmax,    ///< every segment takes its most voted label (the paper's text; better,
+              ///< docs/experiments.md)
 };
 
 struct AssociationConfig {
   AssociationRule association = AssociationRule::kArgmax;
-  int assoc_min_votes = 20;        ///< a label needs more votes than this (theta_assoc)
-  int merge_min_points = 1000;     ///< larger segments tell which super-points belong together
-  float merge_min_share = 0.15f;   ///< ... namely those holding more than this share of its points
+  int assoc_min_votes = 20;       ///< a label needs more votes than this (theta_assoc)
+  int merge_min_points = 1000;    ///< larger segments tell which super-points belong together
+  float merge_min_share = 0.15f;  ///< ... namely those holding more than this share of its points
 };
 void list_fields(AssociationConfig& config, ConfigFields& fields);
 
 struct SegmentAssociation {
-  Label label = kNoLabel;        ///< the super-point the segment is fused into
-  bool founded = false;          ///< the label is new
-  std::vector<Label> overlapped; ///< two or more labels when the segment says they are one (Spa), ascending
+  Label label = kNoLabel;  ///< the super-point the segment is fused into
+  bool founded = false;    ///< the label is new
+  std::vector<Label>
+      overlapped;  ///< two or more labels when the segment says they are one (Spa), ascending
 };
 
-/// Gives every segment a super-point by spatial voting (paper section 3.1, equation for Omega; method
-/// section 4): each point votes for the label of the surface voxel it falls in.
+/// Gives every segment a super-point by spatial voting (paper section 3.1, equation for Omega;
+/// method section 4): each point votes for the label of the surface voxel it falls in.
 ///
-/// `surface`: surface_voxels of the frame's depth. Segments without a label found new ones, in the order
-/// of their ids. Result by segment, [id - 1].
-std::vector<SegmentAssociation> associate(const Segments& segments, const Image<VoxelRef>& surface, VoxelMap& map,
-                                          const AssociationConfig& config);
+/// `surface`: surface_voxels of the frame's depth. Segments without a label found new ones, in the
+/// order of their ids. Result by segment, [id - 1].
+std::vector<SegmentAssociation> associate(const Segments& segments, const Image<VoxelRef>& surface,
+                                          VoxelMap& map, const AssociationConfig& config);
 
 }  // namespace ovimap

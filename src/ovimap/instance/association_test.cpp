@@ -17,13 +17,15 @@ class AssociateTest : public ::testing::Test {
   AssociateTest() : surface_(kWidth, 1) {
     config_.merge_min_points = 100;
     for (int i = 0; i < 5; ++i) map_.labels().create();
-    for (int x = 0; x < kWidth; ++x) surface_.at(x, 0) = VoxelRef::of(map_.find_or_create({x / 8, 0, 0}), x % 8);
+    for (int x = 0; x < kWidth; ++x)
+      surface_.at(x, 0) = VoxelRef::of(map_.find_or_create({x / 8, 0, 0}), x % 8);
   }
 
   void hold(int begin, int end, Label label, int support = 1) {
     for (int x = begin; x < end; ++x) {
       VoxelBlock& block = map_.block(surface_.at(x, 0).block());
-      for (int i = 0; i < support; ++i) add_support(block, surface_.at(x, 0).voxel(), palette_position(block, label));
+      for (int i = 0; i < support; ++i)
+        add_support(block, surface_.at(x, 0).voxel(), palette_position(block, label));
     }
   }
 
@@ -31,7 +33,8 @@ class AssociateTest : public ::testing::Test {
     Segments segments{IdImage(kWidth, 1), {}};
     for (const auto& [begin, end] : spans) {
       segments.segments.push_back({0, end - begin});
-      for (int x = begin; x < end; ++x) segments.ids.at(x, 0) = static_cast<std::uint16_t>(segments.segments.size());
+      for (int x = begin; x < end; ++x)
+        segments.ids.at(x, 0) = static_cast<std::uint16_t>(segments.segments.size());
     }
     return segments;
   }

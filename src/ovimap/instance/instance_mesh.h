@@ -9,7 +9,8 @@
 
 namespace ovimap {
 
-/// The map's mesh with instance ids as labels. Only the ids of `instances` occur; other surface has 0.
+/// The map's mesh with instance ids as labels. Only the ids of `instances` occur; other surface has
+/// 0.
 Mesh extract_instance_mesh(const VoxelMap& map, std::span<const InstanceSummary> instances);
 
 }  // namespace ovimap

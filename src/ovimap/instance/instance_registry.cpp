@@ -29,11 +29,13 @@ void list_fields(InstanceConfig& config, ConfigFields& fields) {
                                      {{"superpoints", InstanceReading::kSuperPoints},
                                       {"entity_votes", InstanceReading::kEntityVotes}},
                                      "what an instance is when there are 2D masks");
-  fields.add("min_vote_share", config.min_vote_share, 0.f, 100.f, "votes needed per frame without such a vote");
+  fields.add("min_vote_share", config.min_vote_share, 0.f, 100.f,
+             "votes needed per frame without such a vote");
   list_fields(config.merging, fields);
 }
 
-void InstanceRegistry::observe(const Segments& segments, std::span<const SegmentAssociation> associations,
+void InstanceRegistry::observe(const Segments& segments,
+                               std::span<const SegmentAssociation> associations,
                                std::int64_t frame_index, bool has_entities, LabelForest& forest) {
   const bool by_votes = has_entities && config_.instances == InstanceReading::kEntityVotes;
   if (by_votes) vote(segments, associations, forest);
@@ -42,14 +44,16 @@ void InstanceRegistry::observe(const Segments& segments, std::span<const Segment
     for (const SegmentAssociation& segment : associations) {
       SuperPoint& point = super_points_[forest.root(segment.label)];
       ++point.frames_seen;
-      const InstanceId own = point.votes.empty() ? ++last_id_ : instance_of(forest.root(segment.label));
+      const InstanceId own =
+          point.votes.empty() ? ++last_id_ : instance_of(forest.root(segment.label));
       ++point.votes[own];
     }
   }
   count_views(associations, frame_index, forest);
 }
 
-void InstanceRegistry::vote(const Segments& segments, std::span<const SegmentAssociation> associations,
+void InstanceRegistry::vote(const Segments& segments,
+                            std::span<const SegmentAssociation> associations,
                             const LabelForest& forest) {
   std::map<std::uint16_t, InstanceId> instance_of_entity;
   std::set<InstanceId> used;
@@ -79,11 +83,13 @@ void InstanceRegistry::merge(Label keep, Label drop) {
   for (const auto& [id, votes] : from.votes) into.votes[id] += votes;
   super_points_.erase(drop);
   if (kept_instance == 0 || dropped_instance == 0 || kept_instance == dropped_instance) return;
-  if (!owns_super_point(kept_instance) || !owns_super_point(dropped_instance)) unify(kept_instance, dropped_instance);
+  if (!owns_super_point(kept_instance) || !owns_super_point(dropped_instance))
+    unify(kept_instance, dropped_instance);
 }
 
 bool InstanceRegistry::owns_super_point(InstanceId id) const {
-  return std::any_of(super_points_.begin(), super_points_.end(), [&](const auto& entry) { return instance_of(entry.first) == id; });
+  return std::any_of(super_points_.begin(), super_points_.end(),
+                     [&](const auto& entry) { return instance_of(entry.first) == id; });
 }
 
 /// The younger id becomes an alias of the older, with everything it had.
@@ -109,13 +115,15 @@ void InstanceRegistry::unify(InstanceId a, InstanceId b) {
   records_.erase(drop);
 }
 
-void InstanceRegistry::count_views(std::span<const SegmentAssociation> associations, std::int64_t frame_index,
-                                   const LabelForest& forest) {
+void InstanceRegistry::count_views(std::span<const SegmentAssociation> associations,
+                                   std::int64_t frame_index, const LabelForest& forest) {
   std::set<InstanceId> seen;
-  for (const SegmentAssociation& segment : associations) seen.insert(instance_of(forest.root(segment.label)));
+  for (const SegmentAssociation& segment : associations)
+    seen.insert(instance_of(forest.root(segment.label)));
   seen.erase(0);
   for (InstanceId id : seen) {
-    const auto [found, created] = records_.try_emplace(id, InstanceRecord{0, frame_index, frame_index});
+    const auto [found, created] =
+        records_.try_emplace(id, InstanceRecord{0, frame_index, frame_index});
     ++found->second.views;
     found->second.last_frame = frame_index;
   }
@@ -131,7 +139,9 @@ InstanceId InstanceRegistry::instance_of(Label root) const {
     if (votes > most) best = id, most = votes;
   const bool by_votes = config_.instances == InstanceReading::kEntityVotes;
   const auto unsupported = static_cast<float>(point.frames_seen - most);
-  if (by_votes && point.votes.size() > 0 && static_cast<float>(most) <= config_.min_vote_share * unsupported) return 0;
+  if (by_votes && point.votes.size() > 0 &&
+      static_cast<float>(most) <= config_.min_vote_share * unsupported)
+    return 0;
   return best;
 }
 

@@ -15,12 +15,14 @@ using InstanceId = std::uint32_t;  ///< 0 = none
 
 enum class InstanceReading {
   kSuperPoints,  ///< an instance is a super-point (the paper's text)
-  kEntityVotes,  ///< super-points vote for instances keyed by 2D entities (released code, printed numbers)
+  kEntityVotes,  ///< super-points vote for instances keyed by 2D entities (released code, printed
+                 ///< numbers)
 };
 
 struct InstanceConfig {
   InstanceReading instances = InstanceReading::kEntityVotes;
-  float min_vote_share = 0.1f;  ///< votes needed per frame in which the super-point was seen without voting so
+  float min_vote_share =
+      0.1f;  ///< votes needed per frame in which the super-point was seen without voting so
   MergeConfig merging;
 };
 void list_fields(InstanceConfig& config, ConfigFields& fields);
@@ -33,26 +35,29 @@ struct SuperPoint {
 
 /// What is known of an instance besides its geometry.
 struct InstanceRecord {
-  int views = 0;             ///< frames in which it was seen
+  int views = 0;  ///< frames in which it was seen
   std::int64_t first_frame = 0;
   std::int64_t last_frame = 0;
 };
 
-/// Which super-points are which object, over time (method sections 6 and 7). Ids, once given, stay: when
-/// two instances turn out to be one, the older id survives and the other becomes its alias.
+/// Which super-points are which object, over time (method sections 6 and 7). Ids, once given, stay:
+/// when two instances turn out to be one, the older id survives and the other becomes its alias.
 class InstanceRegistry {
  public:
-  explicit InstanceRegistry(const InstanceConfig& config = {}) : config_(config), merging_(config.merging) {}
+  explicit InstanceRegistry(const InstanceConfig& config = {})
+      : config_(config), merging_(config.merging) {}
 
   /// Adds one frame: merges super-points in `forest`, counts entity votes, updates instances.
-  /// `has_entities`: the frame had 2D masks (else every super-point is an instance of its own kind of evidence).
-  void observe(const Segments& segments, std::span<const SegmentAssociation> associations, std::int64_t frame_index,
-               bool has_entities, LabelForest& forest);
+  /// `has_entities`: the frame had 2D masks (else every super-point is an instance of its own kind
+  /// of evidence).
+  void observe(const Segments& segments, std::span<const SegmentAssociation> associations,
+               std::int64_t frame_index, bool has_entities, LabelForest& forest);
 
   /// The instance of a super-point root; 0 when it is none (background, too little evidence).
   InstanceId instance_of(Label root) const;
 
-  /// Instance by label, index 0 .. forest.last_label(): for translating images and meshes in one pass.
+  /// Instance by label, index 0 .. forest.last_label(): for translating images and meshes in one
+  /// pass.
   std::vector<InstanceId> instance_table(const LabelForest& forest) const;
 
   /// The id that an id once given goes by now.
@@ -76,11 +81,13 @@ class InstanceRegistry {
   void restore(State state);
 
  private:
-  void vote(const Segments& segments, std::span<const SegmentAssociation> associations, const LabelForest& forest);
+  void vote(const Segments& segments, std::span<const SegmentAssociation> associations,
+            const LabelForest& forest);
   void merge(Label keep, Label drop);
   void unify(InstanceId a, InstanceId b);
   bool owns_super_point(InstanceId id) const;
-  void count_views(std::span<const SegmentAssociation> associations, std::int64_t frame_index, const LabelForest& forest);
+  void count_views(std::span<const SegmentAssociation> associations, std::int64_t frame_index,
+                   const LabelForest& forest);
 
   InstanceConfig config_;
   SuperPointMerging merging_;

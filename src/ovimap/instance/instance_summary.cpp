@@ -25,11 +25,14 @@ std::map<Label, Extent> block_extents(const VoxelMap& map, const VoxelBlock& blo
   std::map<Label, Extent> extents;
   const float voxel_size = map.config().voxel_size_m;
   for (int v = 0; v < kBlockVoxels; ++v) {
-    if (block.weight[static_cast<std::size_t>(v)] <= 0.f || std::fabs(map.distance_m(block, v)) >= voxel_size) continue;
+    if (block.weight[static_cast<std::size_t>(v)] <= 0.f ||
+        std::fabs(map.distance_m(block, v)) >= voxel_size)
+      continue;
     const Label label = voxel_label(block, v, map.labels());
     if (label == kNoLabel) continue;
     const Eigen::Vector3i offset(v & 7, v >> 3 & 7, v >> 6);
-    const Eigen::Vector3f center = ((block.index * kBlockSide + offset).cast<float>().array() + 0.5f) * voxel_size;
+    const Eigen::Vector3f center =
+        ((block.index * kBlockSide + offset).cast<float>().array() + 0.5f) * voxel_size;
     Extent& extent = extents[label];
     ++extent.points;
     extent.sum += center.cast<double>();
@@ -41,15 +44,19 @@ std::map<Label, Extent> block_extents(const VoxelMap& map, const VoxelBlock& blo
 }  // namespace
 
 void list_fields(InstanceSummaryConfig& config, ConfigFields& fields) {
-  fields.add("min_instance_voxels", config.min_instance_voxels, 0, 100000000, "instances with fewer surface voxels are left out");
-  fields.add("min_instance_views", config.min_instance_views, 0, 1000000, "instances seen in fewer frames are left out");
+  fields.add("min_instance_voxels", config.min_instance_voxels, 0, 100000000,
+             "instances with fewer surface voxels are left out");
+  fields.add("min_instance_views", config.min_instance_views, 0, 1000000,
+             "instances seen in fewer frames are left out");
 }
 
-std::vector<InstanceSummary> summarize_instances(const VoxelMap& map, const InstanceRegistry& registry,
+std::vector<InstanceSummary> summarize_instances(const VoxelMap& map,
+                                                 const InstanceRegistry& registry,
                                                  const InstanceSummaryConfig& config) {
   const std::vector<std::uint32_t> slots = map.ordered_slots();
   std::vector<std::map<Label, Extent>> extents(slots.size());
-  parallel_for(slots.size(), 64, [&](std::size_t i) { extents[i] = block_extents(map, map.block(slots[i])); });
+  parallel_for(slots.size(), 64,
+               [&](std::size_t i) { extents[i] = block_extents(map, map.block(slots[i])); });
   const std::vector<InstanceId> instance_of = registry.instance_table(map.labels());
   std::map<InstanceId, InstanceSummary> summaries;
   std::map<InstanceId, Eigen::Vector3d> sums;
@@ -68,11 +75,15 @@ std::vector<InstanceSummary> summarize_instances(const VoxelMap& map, const Inst
   for (auto& [id, summary] : summaries) {
     const auto record = registry.records().find(id);
     summary.views = record == registry.records().end() ? 0 : record->second.views;
-    if (summary.points < static_cast<std::size_t>(config.min_instance_voxels) || summary.views < config.min_instance_views) continue;
+    if (summary.points < static_cast<std::size_t>(config.min_instance_voxels) ||
+        summary.views < config.min_instance_views)
+      continue;
     summary.id = id;
     summary.centroid = (sums.at(id) / static_cast<double>(summary.points)).cast<float>();
     std::sort(summary.super_points.begin(), summary.super_points.end());
-    summary.super_points.erase(std::unique(summary.super_points.begin(), summary.super_points.end()), summary.super_points.end());
+    summary.super_points.erase(
+        std::unique(summary.super_points.begin(), summary.super_points.end()),
+        summary.super_points.end());
     result.push_back(std::move(summary));
   }
   return result;

@@ -24,13 +24,14 @@ struct InstanceSummary {
   InstanceId id = 0;
   Eigen::AlignedBox3f box;
   Eigen::Vector3f centroid = Eigen::Vector3f::Zero();
-  std::size_t points = 0;  ///< surface voxels
-  int views = 0;           ///< frames in which it was seen
+  std::size_t points = 0;           ///< surface voxels
+  int views = 0;                    ///< frames in which it was seen
   std::vector<Label> super_points;  ///< roots, ascending
 };
 
 /// Gathers every instance's geometry by one pass over the map. Ordered by id.
-std::vector<InstanceSummary> summarize_instances(const VoxelMap& map, const InstanceRegistry& registry,
+std::vector<InstanceSummary> summarize_instances(const VoxelMap& map,
+                                                 const InstanceRegistry& registry,
                                                  const InstanceSummaryConfig& config);
 
 }  // namespace ovimap

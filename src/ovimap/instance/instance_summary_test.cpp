@@ -17,7 +17,8 @@ TEST(SummarizeInstances, DescribesASphere) {
   InstanceRegistry registry;
   const Segments segments{IdImage(1, 1), {{1, 500}}};
   const std::vector<SegmentAssociation> associations{{label, false, {}}};
-  for (int frame = 0; frame < 3; ++frame) registry.observe(segments, associations, frame, true, map.labels());
+  for (int frame = 0; frame < 3; ++frame)
+    registry.observe(segments, associations, frame, true, map.labels());
 
   const auto summaries = summarize_instances(map, registry, {});
   ASSERT_EQ(summaries.size(), 1u);
@@ -40,7 +41,9 @@ TEST(SummarizeInstances, LeavesOutWhatIsSmallOrSeenOnce) {
   registry.observe(segments, associations, 0, true, map.labels());
   EXPECT_TRUE(summarize_instances(map, registry, {}).empty());
   EXPECT_EQ(summarize_instances(map, registry, {.min_instance_views = 1}).size(), 1u);
-  EXPECT_TRUE(summarize_instances(map, registry, {.min_instance_voxels = 1000000, .min_instance_views = 1}).empty());
+  EXPECT_TRUE(
+      summarize_instances(map, registry, {.min_instance_voxels = 1000000, .min_instance_views = 1})
+          .empty());
 }
 
 }  // namespace

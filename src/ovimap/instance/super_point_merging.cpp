@@ -10,13 +10,15 @@
 namespace ovimap {
 
 void list_fields(MergeConfig& config, ConfigFields& fields) {
-  fields.add("merge_min_count", config.merge_min_count, 0, 1000000, "super-points merge when more segments than this span both");
+  fields.add("merge_min_count", config.merge_min_count, 0, 1000000,
+             "super-points merge when more segments than this span both");
   fields.add("merge_max_dissent", config.merge_max_dissent, 0.f, 1e6f,
-             "... and at most this many frames keep them apart per segment that spans them (1000000: the paper)");
+             "... and at most this many frames keep them apart per segment that spans them "
+             "(1000000: the paper)");
 }
 
-std::vector<SuperPointMerging::Merge> SuperPointMerging::observe(std::span<const SegmentAssociation> associations,
-                                                                 LabelForest& forest) {
+std::vector<SuperPointMerging::Merge> SuperPointMerging::observe(
+    std::span<const SegmentAssociation> associations, LabelForest& forest) {
   count_joined(associations);
   count_apart(associations);
   std::vector<Merge> merges;
@@ -36,7 +38,8 @@ std::vector<SuperPointMerging::Merge> SuperPointMerging::observe(std::span<const
 
 bool SuperPointMerging::ripe(const PairCount& count) const {
   return count.joined > config_.merge_min_count &&
-         static_cast<float>(count.apart) <= config_.merge_max_dissent * static_cast<float>(count.joined);
+         static_cast<float>(count.apart) <=
+             config_.merge_max_dissent * static_cast<float>(count.joined);
 }
 
 void SuperPointMerging::count_joined(std::span<const SegmentAssociation> associations) {
@@ -54,14 +57,17 @@ void SuperPointMerging::count_apart(std::span<const SegmentAssociation> associat
     for (Label a : segment.overlapped)
       for (Label b : segment.overlapped) joined_now.emplace(a, b);
   for (auto& [pair, count] : counts_)
-    if (seen.contains(pair.first) && seen.contains(pair.second) && !joined_now.contains(pair)) ++count.apart;
+    if (seen.contains(pair.first) && seen.contains(pair.second) && !joined_now.contains(pair))
+      ++count.apart;
 }
 
-/// Counts of the dropped label go to the kept one. Combined by maximum: the two histories overlap in time.
+/// Counts of the dropped label go to the kept one. Combined by maximum: the two histories overlap
+/// in time.
 void SuperPointMerging::rename(Label keep, Label drop) {
   PairCounts renamed;
   for (const auto& [pair, count] : counts_) {
-    const Label a = pair.first == drop ? keep : pair.first, b = pair.second == drop ? keep : pair.second;
+    const Label a = pair.first == drop ? keep : pair.first,
+                b = pair.second == drop ? keep : pair.second;
     if (a == b) continue;
     PairCount& into = renamed[std::minmax(a, b)];
     into.joined = std::max(into.joined, count.joined);

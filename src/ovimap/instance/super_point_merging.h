@@ -13,15 +13,16 @@ namespace ovimap {
 
 struct MergeConfig {
   int merge_min_count = 10;       ///< merge when Spa exceeds this (theta_merge)
-  float merge_max_dissent = 1.f;  ///< ... and is not outweighed: frames that keep the two apart, per frame that joins them
+  float merge_max_dissent = 1.f;  ///< ... and is not outweighed: frames that keep the two apart,
+                                  ///< per frame that joins them
 };
 void list_fields(MergeConfig& config, ConfigFields& fields);
 
 /// Counts how often segments span two super-points and says when to merge them (paper, supplement:
 /// Spa(a, b) > theta_merge; method section 6).
 ///
-/// Beyond the paper, frames that show both super-points as different segments count against the merge: a
-/// magazine that the mask of its table swallows in some frames stays a magazine.
+/// Beyond the paper, frames that show both super-points as different segments count against the
+/// merge: a magazine that the mask of its table swallows in some frames stays a magazine.
 class SuperPointMerging {
  public:
   struct Merge {

@@ -7,8 +7,12 @@
 namespace ovimap {
 namespace {
 
-std::vector<SegmentAssociation> spanning(std::vector<Label> labels) { return {{labels[0], false, labels}}; }
-std::vector<SegmentAssociation> apart(Label a, Label b) { return {{a, false, {}}, {b, false, {}}}; }
+std::vector<SegmentAssociation> spanning(std::vector<Label> labels) {
+  return {{labels[0], false, labels}};
+}
+std::vector<SegmentAssociation> apart(Label a, Label b) {
+  return {{a, false, {}}, {b, false, {}}};
+}
 
 LabelForest forest_of(int labels) {
   LabelForest forest;

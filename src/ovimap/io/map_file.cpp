@@ -140,7 +140,9 @@ void save_map(const std::filesystem::path& path, const MapDocument& document) {
   save_map(path, document.map, document);
 }
 
-void check_map_target(const std::filesystem::path& path) { PendingMap pending(path); }
+void check_map_target(const std::filesystem::path& path) {
+  PendingMap pending(path);
+}
 
 MapDocument load_map(const std::filesystem::path& path) {
   MapDocument document;

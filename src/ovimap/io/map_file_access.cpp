@@ -29,7 +29,9 @@ constexpr int kApplicationId = 'O' << 24 | 'V' << 16 | 'I' << 8 | 'M';
 constexpr std::string_view kMagic("SQLite format 3\0", 16);
 constexpr std::array<const char*, 3> kSidecars = {"-journal", "-wal", "-shm"};
 
-fs::path with_suffix(fs::path path, const std::string& suffix) { return path += suffix; }
+fs::path with_suffix(fs::path path, const std::string& suffix) {
+  return path += suffix;
+}
 
 /// Beside the target, so that renaming stays within one file system; unique among threads and
 /// processes.
@@ -41,14 +43,19 @@ fs::path temporary_beside(const fs::path& target) {
 std::string remedy_for(int error) {
   switch (error) {
     case ENOSPC:
-    case EDQUOT: return "free some space or choose another disk";
+    case EDQUOT:
+      return "free some space or choose another disk";
     case EACCES:
     case EPERM:
-    case EROFS: return "choose a folder that you can write to";
+    case EROFS:
+      return "choose a folder that you can write to";
     case ENOENT:
-    case ENOTDIR: return "create the folder first or choose another";
-    case EFBIG: return "choose a file system that takes larger files";
-    default: return "choose another place";
+    case ENOTDIR:
+      return "create the folder first or choose another";
+    case EFBIG:
+      return "choose a file system that takes larger files";
+    default:
+      return "choose another place";
   }
 }
 
@@ -82,8 +89,10 @@ std::string read_uri(const fs::path& path) {
   for (const char c : fs::absolute(path).string()) {
     const auto byte = static_cast<unsigned char>(c);
     const bool plain = std::isalnum(byte) || std::strchr("/._-~", c) != nullptr;
-    if (plain) uri += c;
-    else (uri += '%') += {kHex[byte >> 4], kHex[byte & 15]};
+    if (plain)
+      uri += c;
+    else
+      (uri += '%') += {kHex[byte >> 4], kHex[byte & 15]};
   }
   const bool logged =
       fs::exists(with_suffix(path, "-wal")) || fs::exists(with_suffix(path, "-journal"));
@@ -155,7 +164,9 @@ PendingMap::PendingMap(const fs::path& target)
   ::close(descriptor);
 }
 
-PendingMap::~PendingMap() { ::unlink(temporary_.c_str()); }  // nothing there after a commit
+PendingMap::~PendingMap() {
+  ::unlink(temporary_.c_str());
+}  // nothing there after a commit
 
 void PendingMap::write(const std::function<void(SQLite::Database&)>& fill) {
   // No journal and no waiting for the disk: until the commit the file is nobody's.

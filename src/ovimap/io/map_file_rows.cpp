@@ -47,12 +47,18 @@ void TableHash::add_bytes(char type, const void* data, std::size_t size) {
   row_.insert(row_.end(), bytes, bytes + size);
 }
 
-void TableHash::add(std::int64_t value) { add_word('i', static_cast<std::uint64_t>(value)); }
-void TableHash::add(double value) {
-  if (std::isnan(value)) add_word('n', 0);
-  else add_word('r', std::bit_cast<std::uint64_t>(value == 0 ? 0.0 : value));
+void TableHash::add(std::int64_t value) {
+  add_word('i', static_cast<std::uint64_t>(value));
 }
-void TableHash::add(std::string_view value) { add_bytes('t', value.data(), value.size()); }
+void TableHash::add(double value) {
+  if (std::isnan(value))
+    add_word('n', 0);
+  else
+    add_word('r', std::bit_cast<std::uint64_t>(value == 0 ? 0.0 : value));
+}
+void TableHash::add(std::string_view value) {
+  add_bytes('t', value.data(), value.size());
+}
 void TableHash::add(std::span<const std::uint8_t> value) {
   add_bytes('b', value.data(), value.size());
 }

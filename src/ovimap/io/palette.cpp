@@ -20,7 +20,9 @@ constexpr double kLeastChroma = 0.45;  // of the most that sRGB can show at that
 constexpr double kMostChroma = 0.25;
 constexpr Rgb8 kNoInstance = {170, 170, 170};
 
-double fraction(double value) { return value - std::floor(value); }
+double fraction(double value) {
+  return value - std::floor(value);
+}
 
 double encoded(double linear) {
   return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;

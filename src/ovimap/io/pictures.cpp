@@ -34,8 +34,10 @@ class Shader {
         world_from_camera_(view.world_from_camera.cast<float>()),
         to_lamp_(world_from_camera_.linear() *
                  Eigen::Vector3f(-0.35f, -0.55f, -0.75f).normalized()) {
-    if (config.coloring == MeshColoring::kInstances) colors_ = instance_colors(mesh.labels);
-    else colors_ = mesh.colors;
+    if (config.coloring == MeshColoring::kInstances)
+      colors_ = instance_colors(mesh.labels);
+    else
+      colors_ = mesh.colors;
     if (colors_.empty()) {
       const Rgb8 grey = instance_color(0);
       colors_.assign(mesh.vertices.size(), {grey.r, grey.g, grey.b});

@@ -26,7 +26,9 @@ Number swapped(Number value) {
   return value;
 }
 
-bool is_space(std::uint8_t c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+bool is_space(std::uint8_t c) {
+  return c == ' ' || (c >= '\t' && c <= '\r');
+}
 
 /// Reads one value after another from the body of a PLY file.
 class PlyCursor {
@@ -43,14 +45,22 @@ class PlyCursor {
   double next(PlyType type) {
     if (format_ == PlyFormat::kAscii) return next_text();
     switch (type) {
-      case PlyType::kInt8: return next_binary<std::int8_t>();
-      case PlyType::kUint8: return next_binary<std::uint8_t>();
-      case PlyType::kInt16: return next_binary<std::int16_t>();
-      case PlyType::kUint16: return next_binary<std::uint16_t>();
-      case PlyType::kInt32: return next_binary<std::int32_t>();
-      case PlyType::kUint32: return next_binary<std::uint32_t>();
-      case PlyType::kFloat32: return next_binary<float>();
-      case PlyType::kFloat64: return next_binary<double>();
+      case PlyType::kInt8:
+        return next_binary<std::int8_t>();
+      case PlyType::kUint8:
+        return next_binary<std::uint8_t>();
+      case PlyType::kInt16:
+        return next_binary<std::int16_t>();
+      case PlyType::kUint16:
+        return next_binary<std::uint16_t>();
+      case PlyType::kInt32:
+        return next_binary<std::int32_t>();
+      case PlyType::kUint32:
+        return next_binary<std::uint32_t>();
+      case PlyType::kFloat32:
+        return next_binary<float>();
+      case PlyType::kFloat64:
+        return next_binary<double>();
     }
     return 0;
   }
@@ -133,9 +143,12 @@ class PlyReader {
         throw Error(concat("its element '", element.name, "' has ", element.count,
                            " items but only ", cursor_.left(), " bytes are left at byte ",
                            cursor_.offset(), ": the file is cut off or its header is wrong"));
-      if (element.name == "vertex") read_vertices(element);
-      else if (element.name == "face") read_faces(element);
-      else skip_items(element);
+      if (element.name == "vertex")
+        read_vertices(element);
+      else if (element.name == "face")
+        read_faces(element);
+      else
+        skip_items(element);
     }
     check_indices();
     return std::move(mesh_);
@@ -166,8 +179,10 @@ class PlyReader {
     for_items(element, [&] {
       for (std::size_t i = 0; i < element.properties.size(); ++i) {
         const PlyProperty& property = element.properties[i];
-        if (layout.field_of[i] < 0) skip(property);
-        else values[static_cast<std::size_t>(layout.field_of[i])] = cursor_.next(property.type);
+        if (layout.field_of[i] < 0)
+          skip(property);
+        else
+          values[static_cast<std::size_t>(layout.field_of[i])] = cursor_.next(property.type);
       }
       add_vertex(layout, values);
     });
@@ -200,8 +215,10 @@ class PlyReader {
     for_items(element, [&] {
       for (const PlyProperty& property : element.properties) {
         const bool corners = property.name == "vertex_indices" || property.name == "vertex_index";
-        if (corners && property.count_type) read_polygon(property);
-        else skip(property);
+        if (corners && property.count_type)
+          read_polygon(property);
+        else
+          skip(property);
       }
     });
   }

@@ -83,10 +83,14 @@ class HeaderParser {
 
   void take_format(const std::vector<std::string_view>& words) {
     if (words.size() != 3 || words[2] != "1.0") fail("should name a format and version 1.0");
-    if (words[1] == "ascii") header_.format = PlyFormat::kAscii;
-    else if (words[1] == "binary_little_endian") header_.format = PlyFormat::kLittleEndian;
-    else if (words[1] == "binary_big_endian") header_.format = PlyFormat::kBigEndian;
-    else fail("should name ascii, binary_little_endian or binary_big_endian");
+    if (words[1] == "ascii")
+      header_.format = PlyFormat::kAscii;
+    else if (words[1] == "binary_little_endian")
+      header_.format = PlyFormat::kLittleEndian;
+    else if (words[1] == "binary_big_endian")
+      header_.format = PlyFormat::kBigEndian;
+    else
+      fail("should name ascii, binary_little_endian or binary_big_endian");
     has_format_ = true;
   }
 
@@ -141,18 +145,24 @@ class HeaderParser {
 std::size_t size_of(PlyType type) {
   switch (type) {
     case PlyType::kInt8:
-    case PlyType::kUint8: return 1;
+    case PlyType::kUint8:
+      return 1;
     case PlyType::kInt16:
-    case PlyType::kUint16: return 2;
+    case PlyType::kUint16:
+      return 2;
     case PlyType::kInt32:
     case PlyType::kUint32:
-    case PlyType::kFloat32: return 4;
-    case PlyType::kFloat64: return 8;
+    case PlyType::kFloat32:
+      return 4;
+    case PlyType::kFloat64:
+      return 8;
   }
   return 0;
 }
 
-bool is_integer(PlyType type) { return type != PlyType::kFloat32 && type != PlyType::kFloat64; }
+bool is_integer(PlyType type) {
+  return type != PlyType::kFloat32 && type != PlyType::kFloat64;
+}
 
 std::size_t PlyElement::min_item_size(PlyFormat format) const {
   if (format == PlyFormat::kAscii) return properties.size();

@@ -19,7 +19,9 @@ namespace {
 
 using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 
-Bytes bytes_of(const std::string& text) { return Bytes(text.begin(), text.end()); }
+Bytes bytes_of(const std::string& text) {
+  return Bytes(text.begin(), text.end());
+}
 
 std::string fault_of(const Bytes& bytes) {
   try {
@@ -30,7 +32,9 @@ std::string fault_of(const Bytes& bytes) {
   return {};
 }
 
-std::string fault_of(const std::string& text) { return fault_of(bytes_of(text)); }
+std::string fault_of(const std::string& text) {
+  return fault_of(bytes_of(text));
+}
 
 /// Appends a number in the wanted byte order.
 template <class Number>

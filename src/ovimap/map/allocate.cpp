@@ -22,13 +22,17 @@ void sort_unique(std::vector<std::uint64_t>& keys) {
 /// Collects the blocks that the band around one pixel's point runs through.
 class BandBlocks {
  public:
-  BandBlocks(const VoxelMapConfig& config, const PinholeCamera& camera, const Pose& world_from_camera)
-      : camera_(camera), rotation_(world_from_camera.linear().cast<float>()),
-        origin_(world_from_camera.translation().cast<float>()), truncation_m_(config.truncation_m()),
+  BandBlocks(const VoxelMapConfig& config, const PinholeCamera& camera,
+             const Pose& world_from_camera)
+      : camera_(camera),
+        rotation_(world_from_camera.linear().cast<float>()),
+        origin_(world_from_camera.translation().cast<float>()),
+        truncation_m_(config.truncation_m()),
         inverse_block_size_(1.f / config.block_size_m()),
-        // Samples at most half a block apart leave out only corners that the ray cuts by less than that;
-        // an odd number of them includes the point itself.
-        samples_(1 + 2 * static_cast<int>(std::ceil(config.truncation_m() / (0.5f * config.block_size_m())))),
+        // Samples at most half a block apart leave out only corners that the ray cuts by less than
+        // that; an odd number of them includes the point itself.
+        samples_(1 + 2 * static_cast<int>(
+                             std::ceil(config.truncation_m() / (0.5f * config.block_size_m())))),
         // Neighbouring sampled pixels may be a quarter of a block apart on the surface.
         pitch_m_(0.25f * config.block_size_m() * camera.fx) {}
 
@@ -39,12 +43,15 @@ class BandBlocks {
   }
 
   void add(int x, int y, float depth_m, std::vector<std::uint64_t>& keys) const {
-    const Eigen::Vector3f ray = camera_.unproject(static_cast<float>(x), static_cast<float>(y), 1.f);
+    const Eigen::Vector3f ray =
+        camera_.unproject(static_cast<float>(x), static_cast<float>(y), 1.f);
     const Eigen::Vector3f direction = rotation_ * ray.normalized();
     const Eigen::Vector3f start = origin_ + direction * (depth_m * ray.norm() - truncation_m_);
-    const Eigen::Vector3f step = direction * (2.f * truncation_m_ / static_cast<float>(samples_ - 1));
+    const Eigen::Vector3f step =
+        direction * (2.f * truncation_m_ / static_cast<float>(samples_ - 1));
     for (int i = 0; i < samples_; ++i) {
-      const std::uint64_t key = pack_index(block_at(start + step * static_cast<float>(i), inverse_block_size_));
+      const std::uint64_t key =
+          pack_index(block_at(start + step * static_cast<float>(i), inverse_block_size_));
       if (keys.empty() || keys.back() != key) keys.push_back(key);
     }
   }
@@ -60,7 +67,8 @@ class BandBlocks {
 
 }  // namespace
 
-std::vector<std::uint32_t> allocate_blocks(VoxelMap& map, const DepthImage& depth, const PinholeCamera& camera,
+std::vector<std::uint32_t> allocate_blocks(VoxelMap& map, const DepthImage& depth,
+                                           const PinholeCamera& camera,
                                            const Pose& world_from_camera) {
   const BandBlocks band(map.config(), camera, world_from_camera);
   const auto tasks = static_cast<std::size_t>((depth.height() + kRowsPerTask - 1) / kRowsPerTask);

@@ -14,28 +14,30 @@ namespace ovimap {
 
 /// What one frame adds to the map. All images have the depth camera's size.
 struct Observation {
-  const DepthImage& depth;          ///< metres, 0 = invalid
-  const PinholeCamera& camera;      ///< of the depth
+  const DepthImage& depth;      ///< metres, 0 = invalid
+  const PinholeCamera& camera;  ///< of the depth
   const Pose& world_from_camera;
-  const RgbImage* color = nullptr;  ///< registered to the depth; black = unknown
+  const RgbImage* color = nullptr;                  ///< registered to the depth; black = unknown
   const Image<Eigen::Vector3f>* normals = nullptr;  ///< unit, camera frame; 0 = unknown
-  const IdImage* segment_ids = nullptr;       ///< segment of each pixel; 0 = none
-  std::span<const Label> segment_labels = {}; ///< label of segment id, at [id - 1]
+  const IdImage* segment_ids = nullptr;             ///< segment of each pixel; 0 = none
+  std::span<const Label> segment_labels = {};       ///< label of segment id, at [id - 1]
 };
 
-/// Fuses one frame into the map: distance, colour and label support, one pass over the blocks near the
-/// observed surface (method section 5; weights 1/z^2 as in voxblox, linear drop-off behind the surface).
+/// Fuses one frame into the map: distance, colour and label support, one pass over the blocks near
+/// the observed surface (method section 5; weights 1/z^2 as in voxblox, linear drop-off behind the
+/// surface).
 ///
-/// Distances along the ray are multiplied by the cosine between ray and normal where the normal is known:
-/// the distance to the surface's tangent plane. Projective distances alone are too long on surfaces seen
-/// at a slant, and differ from view to view.
+/// Distances along the ray are multiplied by the cosine between ray and normal where the normal is
+/// known: the distance to the surface's tangent plane. Projective distances alone are too long on
+/// surfaces seen at a slant, and differ from view to view.
 ///
 /// The only writer of voxels. Returns the slots of the blocks it visited, in block-index order.
 std::vector<std::uint32_t> integrate(VoxelMap& map, const Observation& observation);
 
-/// Creates the blocks within the truncation band of the observed surface and returns the slots of all
-/// blocks in that band, in block-index order.
-std::vector<std::uint32_t> allocate_blocks(VoxelMap& map, const DepthImage& depth, const PinholeCamera& camera,
+/// Creates the blocks within the truncation band of the observed surface and returns the slots of
+/// all blocks in that band, in block-index order.
+std::vector<std::uint32_t> allocate_blocks(VoxelMap& map, const DepthImage& depth,
+                                           const PinholeCamera& camera,
                                            const Pose& world_from_camera);
 
 }  // namespace ovimap

@@ -21,7 +21,8 @@ TEST(Integrate, DistancesMatchTheSphereAlongTheView) {
     for (int v = 0; v < kBlockVoxels; ++v) {
       if (block.weight[static_cast<std::size_t>(v)] <= 0.f) continue;
       const Eigen::Vector3i offset(v & 7, v >> 3 & 7, v >> 6);
-      const Eigen::Vector3f center = ((block.index * 8 + offset).cast<float>().array() + 0.5f) * 0.01f;
+      const Eigen::Vector3f center =
+          ((block.index * 8 + offset).cast<float>().array() + 0.5f) * 0.01f;
       if (center.head<2>().norm() > 0.05f) continue;  // near the axis the ray is the normal
       EXPECT_NEAR(map.distance_m(block, v), center.norm() - SphereScene::kRadius, 0.004f);
       ++checked;
@@ -63,7 +64,9 @@ TEST(Integrate, IgnoresInvalidDepth) {
   VoxelMap map;
   const PinholeCamera camera{8, 8, 8.f, 8.f, 3.5f, 3.5f};
   const Pose pose = Pose::Identity();
-  EXPECT_TRUE(integrate(map, {.depth = DepthImage(8, 8), .camera = camera, .world_from_camera = pose}).empty());
+  EXPECT_TRUE(
+      integrate(map, {.depth = DepthImage(8, 8), .camera = camera, .world_from_camera = pose})
+          .empty());
   EXPECT_EQ(map.block_count(), 0u);
 }
 
@@ -78,11 +81,13 @@ TEST(AllocateBlocks, CoversTheBandOfEveryPixel) {
     for (int x = 0; x < depth.width(); ++x) {
       if (depth.at(x, y) <= 0.f) continue;
       const Eigen::Vector3f point =
-          pose.cast<float>() * scene.camera.unproject(static_cast<float>(x), static_cast<float>(y), depth.at(x, y));
+          pose.cast<float>() *
+          scene.camera.unproject(static_cast<float>(x), static_cast<float>(y), depth.at(x, y));
       ++points;
       covered += map.find(block_at(point, 1.f / map.config().block_size_m())) != nullptr;
     }
-  EXPECT_GT(covered, points * 995 / 1000) << "only corners cut by less than the sampling pitch may be missing";
+  EXPECT_GT(covered, points * 995 / 1000)
+      << "only corners cut by less than the sampling pitch may be missing";
 }
 
 }  // namespace

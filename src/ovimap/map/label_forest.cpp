@@ -27,7 +27,8 @@ LabelForest LabelForest::from_roots(std::vector<Label> roots, std::uint32_t epoc
   bool consistent = !roots.empty() && roots[0] == kNoLabel;
   for (std::size_t label = 1; consistent && label < roots.size(); ++label)
     consistent = roots[label] >= 1 && roots[label] <= label && roots[roots[label]] == roots[label];
-  if (!consistent) throw Error("the table of merged labels is corrupt; restore the map from a copy");
+  if (!consistent)
+    throw Error("the table of merged labels is corrupt; restore the map from a copy");
   LabelForest forest;
   forest.root_ = std::move(roots);
   forest.epoch_ = epoch;

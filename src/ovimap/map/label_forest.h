@@ -9,8 +9,9 @@
 
 namespace ovimap {
 
-/// Which labels have been merged into which. Voxels keep the labels they were given; reading resolves
-/// them here, so that a merge never scans the map (method section 6). Roots are looked up in one step.
+/// Which labels have been merged into which. Voxels keep the labels they were given; reading
+/// resolves them here, so that a merge never scans the map (method section 6). Roots are looked up
+/// in one step.
 class LabelForest {
  public:
   /// A label never used before: 1, 2, ...

@@ -33,7 +33,8 @@ void compact_palette(VoxelBlock& block) {
 }
 
 void swap_slots(VoxelBlock& block, int voxel, int a, int b) {
-  const auto v = static_cast<std::size_t>(voxel), i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
+  const auto v = static_cast<std::size_t>(voxel), i = static_cast<std::size_t>(a),
+             j = static_cast<std::size_t>(b);
   std::swap(block.label[i][v], block.label[j][v]);
   std::swap(block.support[i][v], block.support[j][v]);
 }
@@ -57,19 +58,22 @@ VoxelLabels voxel_labels(const VoxelBlock& block, int voxel, const LabelForest& 
   for (std::size_t s = 0; s < kLabelSlots; ++s) {
     if (block.label[s][v] == 0) continue;
     const Label label = forest.root(block.palette[block.label[s][v]]);
-    const auto same = std::find_if(result.begin(), result.begin() + static_cast<std::ptrdiff_t>(count),
-                                   [label](const LabelSupport& held) { return held.label == label; });
+    const auto same =
+        std::find_if(result.begin(), result.begin() + static_cast<std::ptrdiff_t>(count),
+                     [label](const LabelSupport& held) { return held.label == label; });
     if (same == result.begin() + static_cast<std::ptrdiff_t>(count)) result[count++].label = label;
     same->support += block.support[s][v];
   }
   // Insertion sort: it is stable, and std::stable_sort would allocate for four items.
   for (std::size_t i = 1; i < count; ++i)
-    for (std::size_t j = i; j > 0 && result[j].support > result[j - 1].support; --j) std::swap(result[j], result[j - 1]);
+    for (std::size_t j = i; j > 0 && result[j].support > result[j - 1].support; --j)
+      std::swap(result[j], result[j - 1]);
   return result;
 }
 
 Label voxel_label(const VoxelBlock& block, int voxel, const LabelForest& forest) {
-  if (block.forest_epoch == forest.epoch()) return block.palette[block.label[0][static_cast<std::size_t>(voxel)]];
+  if (block.forest_epoch == forest.epoch())
+    return block.palette[block.label[0][static_cast<std::size_t>(voxel)]];
   return voxel_labels(block, voxel, forest)[0].label;
 }
 
@@ -79,14 +83,16 @@ void resolve_labels(VoxelBlock& block, const LabelForest& forest) {
                                   [&](Label label) { return forest.root(label) != label; });
   if (merged) {
     std::vector<VoxelLabels> labels(kBlockVoxels);
-    for (int v = 0; v < kBlockVoxels; ++v) labels[static_cast<std::size_t>(v)] = voxel_labels(block, v, forest);
+    for (int v = 0; v < kBlockVoxels; ++v)
+      labels[static_cast<std::size_t>(v)] = voxel_labels(block, v, forest);
     for (Label& label : block.palette) label = forest.root(label);
     for (std::size_t v = 0; v < kBlockVoxels; ++v) {
       for (std::size_t s = 0; s < kLabelSlots; ++s) {
-        const auto found = std::find(block.palette.begin(), block.palette.end(), labels[v][s].label);
+        const auto found =
+            std::find(block.palette.begin(), block.palette.end(), labels[v][s].label);
         block.label[s][v] = static_cast<std::uint8_t>(found - block.palette.begin());
-        block.support[s][v] = static_cast<std::uint16_t>(
-            std::min<std::uint32_t>(labels[v][s].support, std::numeric_limits<std::uint16_t>::max()));
+        block.support[s][v] = static_cast<std::uint16_t>(std::min<std::uint32_t>(
+            labels[v][s].support, std::numeric_limits<std::uint16_t>::max()));
       }
     }
     compact_palette(block);

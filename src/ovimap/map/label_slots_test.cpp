@@ -38,7 +38,8 @@ TEST(LabelSlots, ALabelWithMoreThanAFifthOfTheVotesIsNeverLost) {
     }
     if (votes[1] * (kLabelSlots + 1) <= total) continue;
     const VoxelLabels held = voxel_labels(block, 0, LabelForest());
-    EXPECT_TRUE(std::any_of(held.begin(), held.end(), [](const LabelSupport& h) { return h.label == 1; }));
+    EXPECT_TRUE(
+        std::any_of(held.begin(), held.end(), [](const LabelSupport& h) { return h.label == 1; }));
     for (const LabelSupport& h : held) EXPECT_LE(static_cast<int>(h.support), votes[h.label]);
   }
 }
@@ -52,7 +53,8 @@ TEST(LabelSlots, FewLabelsAreCountedExactly) {
     ++votes[label];
     vote(block, label);
   }
-  for (const LabelSupport& held : voxel_labels(block, 0, LabelForest())) EXPECT_EQ(held.support, votes[held.label]);
+  for (const LabelSupport& held : voxel_labels(block, 0, LabelForest()))
+    EXPECT_EQ(held.support, votes[held.label]);
 }
 
 TEST(LabelSlots, MergedLabelsAddUpBeforeAndAfterTheyAreWritten) {

@@ -55,7 +55,8 @@ CellTriangles triangulate(int inside) {
       next[edge] = kNone;
       edge = following;
     }
-    for (std::size_t i = 2; i < loop.size(); ++i) result.edges[result.count++] = {loop[0], loop[i - 1], loop[i]};
+    for (std::size_t i = 2; i < loop.size(); ++i)
+      result.edges[result.count++] = {loop[0], loop[i - 1], loop[i]};
   }
   return result;
 }
@@ -65,7 +66,8 @@ CellTriangles triangulate(int inside) {
 const std::array<CellTriangles, 256>& marching_cubes_table() {
   static const auto table = [] {
     std::array<CellTriangles, 256> cells;
-    for (int inside = 0; inside < 256; ++inside) cells[static_cast<std::size_t>(inside)] = triangulate(inside);
+    for (int inside = 0; inside < 256; ++inside)
+      cells[static_cast<std::size_t>(inside)] = triangulate(inside);
     return cells;
   }();
   return table;

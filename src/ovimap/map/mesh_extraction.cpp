@@ -46,23 +46,28 @@ class Neighbourhood {
 
  private:
   static int at(int x, int y, int z) { return x + kSide * (y + kSide * z); }
-  static int which(int x, int y, int z) { return x / kBlockSide + 2 * (y / kBlockSide) + 4 * (z / kBlockSide); }
+  static int which(int x, int y, int z) {
+    return x / kBlockSide + 2 * (y / kBlockSide) + 4 * (z / kBlockSide);
+  }
 
   const VoxelBlock* blocks_[8];
   bool observed_[kSide * kSide * kSide];
   VoxelBlock::Tsdf tsdf_[kSide * kSide * kSide];
 };
 
-/// The part of the mesh that one block owns: vertices on the edges that start in it, triangles of its cells.
+/// The part of the mesh that one block owns: vertices on the edges that start in it, triangles of
+/// its cells.
 struct BlockMesh {
-  std::unique_ptr<std::array<std::uint16_t, kEdges>> vertex_of_edge;  ///< null: the surface misses the block
-  Mesh part;                   ///< triangles hold global vertex indices
+  std::unique_ptr<std::array<std::uint16_t, kEdges>>
+      vertex_of_edge;  ///< null: the surface misses the block
+  Mesh part;           ///< triangles hold global vertex indices
   std::uint32_t first_vertex = 0;
 };
 
 class BlockMesher {
  public:
-  BlockMesher(const VoxelMap& map, std::vector<BlockMesh>& meshes, const std::vector<std::uint32_t>& slots)
+  BlockMesher(const VoxelMap& map, std::vector<BlockMesh>& meshes,
+              const std::vector<std::uint32_t>& slots)
       : map_(map), meshes_(meshes), slots_(slots) {}
 
   void add_vertices(std::size_t i) const {
@@ -82,7 +87,8 @@ class BlockMesher {
   }
 
  private:
-  void add_vertex(const Neighbourhood& near, std::size_t i, const Eigen::Vector3i& a, int axis) const {
+  void add_vertex(const Neighbourhood& near, std::size_t i, const Eigen::Vector3i& a,
+                  int axis) const {
     const Eigen::Vector3i b = a + Eigen::Vector3i::Unit(axis);
     if (near.inside(a.x(), a.y(), a.z()) == near.inside(b.x(), b.y(), b.z())) return;
     if (!near.observed(a.x(), a.y(), a.z()) || !near.observed(b.x(), b.y(), b.z())) return;
@@ -93,7 +99,8 @@ class BlockMesher {
     }
     const float da = near.tsdf(a.x(), a.y(), a.z()), db = near.tsdf(b.x(), b.y(), b.z());
     const float along = da / (da - db);
-    Eigen::Vector3f voxel = (map_.block(slots_[i]).index * kBlockSide + a).cast<float>().array() + 0.5f;
+    Eigen::Vector3f voxel =
+        (map_.block(slots_[i]).index * kBlockSide + a).cast<float>().array() + 0.5f;
     voxel[axis] += along;
     const Eigen::Vector3i& nearer = along < 0.5f ? a : b;
     const Eigen::Vector3i& farther = along < 0.5f ? b : a;
@@ -104,43 +111,51 @@ class BlockMesher {
   }
 
   /// Colour and label of the voxel nearer to the surface; of the other one where that has none.
-  void add_attributes(const Neighbourhood& near, const Eigen::Vector3i& nearer, const Eigen::Vector3i& farther, Mesh& part) const {
+  void add_attributes(const Neighbourhood& near, const Eigen::Vector3i& nearer,
+                      const Eigen::Vector3i& farther, Mesh& part) const {
     std::array<std::uint8_t, 3> color{};
     Label label = kNoLabel;
     for (const Eigen::Vector3i& at : {nearer, farther}) {
       const VoxelBlock& block = near.block(at.x(), at.y(), at.z());
       const int voxel = voxel_offset(at.x() & 7, at.y() & 7, at.z() & 7);
       if (color == std::array<std::uint8_t, 3>{})
-        for (std::size_t c = 0; c < 3; ++c) color[c] = static_cast<std::uint8_t>(block.color[c][static_cast<std::size_t>(voxel)] >> 8);
+        for (std::size_t c = 0; c < 3; ++c)
+          color[c] =
+              static_cast<std::uint8_t>(block.color[c][static_cast<std::size_t>(voxel)] >> 8);
       if (label == kNoLabel) label = voxel_label(block, voxel, map_.labels());
     }
     part.colors.push_back(color);
     part.labels.push_back(label);
   }
 
-  void add_cell(const Neighbourhood& near, std::size_t i, const Eigen::Vector3i& cell, const std::vector<std::uint32_t>& mesh_of_slot) const {
+  void add_cell(const Neighbourhood& near, std::size_t i, const Eigen::Vector3i& cell,
+                const std::vector<std::uint32_t>& mesh_of_slot) const {
     int inside = 0;
     for (int corner = 0; corner < 8; ++corner) {
-      const int x = cell.x() + (corner & 1), y = cell.y() + (corner >> 1 & 1), z = cell.z() + (corner >> 2 & 1);
+      const int x = cell.x() + (corner & 1), y = cell.y() + (corner >> 1 & 1),
+                z = cell.z() + (corner >> 2 & 1);
       if (!near.observed(x, y, z)) return;
       inside |= near.inside(x, y, z) << corner;
     }
     const CellTriangles& triangles = marching_cubes_table()[static_cast<std::size_t>(inside)];
     for (std::size_t t = 0; t < triangles.count; ++t) {
       std::array<std::uint32_t, 3> indices;
-      for (std::size_t k = 0; k < 3; ++k) indices[k] = global_vertex(near, i, cell, triangles.edges[t][k], mesh_of_slot);
+      for (std::size_t k = 0; k < 3; ++k)
+        indices[k] = global_vertex(near, i, cell, triangles.edges[t][k], mesh_of_slot);
       meshes_[i].part.triangles.push_back(indices);
     }
   }
 
-  std::uint32_t global_vertex(const Neighbourhood& near, std::size_t i, const Eigen::Vector3i& cell, int edge,
-                              const std::vector<std::uint32_t>& mesh_of_slot) const {
+  std::uint32_t global_vertex(const Neighbourhood& near, std::size_t i, const Eigen::Vector3i& cell,
+                              int edge, const std::vector<std::uint32_t>& mesh_of_slot) const {
     const int corner = kEdgeStart[static_cast<std::size_t>(edge)];
     const Eigen::Vector3i at = cell + Eigen::Vector3i(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
     const bool own = (at.array() < kBlockSide).all();
-    const std::uint32_t slot = own ? slots_[i] : map_.find_slot(near.block(at.x(), at.y(), at.z()).index);
+    const std::uint32_t slot =
+        own ? slots_[i] : map_.find_slot(near.block(at.x(), at.y(), at.z()).index);
     const BlockMesh& mesh = meshes_[mesh_of_slot[slot]];
-    const auto key = static_cast<std::size_t>(voxel_offset(at.x() & 7, at.y() & 7, at.z() & 7) * 3 + edge_axis(edge));
+    const auto key = static_cast<std::size_t>(voxel_offset(at.x() & 7, at.y() & 7, at.z() & 7) * 3 +
+                                              edge_axis(edge));
     return mesh.first_vertex + (*mesh.vertex_of_edge)[key];
   }
 
@@ -152,13 +167,15 @@ class BlockMesher {
 void add_normals(Mesh& mesh) {
   mesh.normals.assign(mesh.vertices.size(), Eigen::Vector3f::Zero());
   for (const auto& [a, b, c] : mesh.triangles) {
-    const Eigen::Vector3f twice_area = (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
+    const Eigen::Vector3f twice_area =
+        (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
     for (std::uint32_t vertex : {a, b, c}) mesh.normals[vertex] += twice_area;
   }
   for (Eigen::Vector3f& normal : mesh.normals) normal.normalize();
 }
 
-/// Joins the parts and leaves out vertices that no triangle uses (edges at the border of observed space).
+/// Joins the parts and leaves out vertices that no triangle uses (edges at the border of observed
+/// space).
 Mesh join(const std::vector<BlockMesh>& meshes, std::uint32_t vertex_count) {
   constexpr std::uint32_t kUnused = ~std::uint32_t{0};
   std::vector<std::uint32_t> packed(vertex_count, kUnused);
@@ -176,7 +193,8 @@ Mesh join(const std::vector<BlockMesh>& meshes, std::uint32_t vertex_count) {
     }
   }
   for (const BlockMesh& mesh : meshes)
-    for (const auto& [a, b, c] : mesh.part.triangles) result.triangles.push_back({packed[a], packed[b], packed[c]});
+    for (const auto& [a, b, c] : mesh.part.triangles)
+      result.triangles.push_back({packed[a], packed[b], packed[c]});
   add_normals(result);
   return result;
 }
@@ -195,7 +213,8 @@ Mesh extract_mesh(const VoxelMap& map) {
     meshes[i].first_vertex = vertex_count;
     vertex_count += static_cast<std::uint32_t>(meshes[i].part.vertices.size());
   }
-  parallel_for(slots.size(), kBlocksPerTask, [&](std::size_t i) { mesher.add_triangles(i, mesh_of_slot); });
+  parallel_for(slots.size(), kBlocksPerTask,
+               [&](std::size_t i) { mesher.add_triangles(i, mesh_of_slot); });
   return join(meshes, vertex_count);
 }
 

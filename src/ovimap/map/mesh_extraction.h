@@ -7,8 +7,8 @@
 
 namespace ovimap {
 
-/// Marching-cubes mesh of the whole map: welded across blocks, with normals, colours and the super-point
-/// label of each vertex (merges resolved). Equal maps give equal meshes.
+/// Marching-cubes mesh of the whole map: welded across blocks, with normals, colours and the
+/// super-point label of each vertex (merges resolved). Equal maps give equal meshes.
 Mesh extract_mesh(const VoxelMap& map);
 
 }  // namespace ovimap

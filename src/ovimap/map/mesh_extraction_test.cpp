@@ -29,7 +29,8 @@ TEST(MarchingCubesTable, TrianglesUseExactlyTheCrossedEdges) {
       if ((inside >> a & 1) != (inside >> b & 1)) crossed.insert(edge);
     }
     const CellTriangles& cell = marching_cubes_table()[inside];
-    for (std::size_t t = 0; t < cell.count; ++t) used.insert(cell.edges[t].begin(), cell.edges[t].end());
+    for (std::size_t t = 0; t < cell.count; ++t)
+      used.insert(cell.edges[t].begin(), cell.edges[t].end());
     EXPECT_EQ(used, crossed) << inside;
   }
 }
@@ -43,8 +44,10 @@ VoxelMap random_map(std::uint32_t seed) {
         VoxelBlock& block = map.block(map.find_or_create({x, y, z}));
         for (int v = 0; v < kBlockVoxels; ++v) {
           seed = seed * 1664525u + 1013904223u;
-          const bool border = (x * 8 + (v & 7)) % 15 == 0 || (y * 8 + (v >> 3 & 7)) % 15 == 0 || (z * 8 + (v >> 6)) % 15 == 0;
-          block.tsdf[static_cast<std::size_t>(v)] = static_cast<std::int16_t>(border || seed >> 31 ? 10000 : -10000);
+          const bool border = (x * 8 + (v & 7)) % 15 == 0 || (y * 8 + (v >> 3 & 7)) % 15 == 0 ||
+                              (z * 8 + (v >> 6)) % 15 == 0;
+          block.tsdf[static_cast<std::size_t>(v)] =
+              static_cast<std::int16_t>(border || seed >> 31 ? 10000 : -10000);
           block.weight[static_cast<std::size_t>(v)] = 1.f;
         }
       }
@@ -85,7 +88,9 @@ TEST(ExtractMesh, WeldsVerticesAcrossBlocks) {
   EXPECT_EQ(places.size(), mesh.vertices.size());
 }
 
-TEST(ExtractMesh, EmptyMapGivesAnEmptyMesh) { EXPECT_TRUE(extract_mesh(VoxelMap()).vertices.empty()); }
+TEST(ExtractMesh, EmptyMapGivesAnEmptyMesh) {
+  EXPECT_TRUE(extract_mesh(VoxelMap()).vertices.empty());
+}
 
 }  // namespace
 }  // namespace ovimap

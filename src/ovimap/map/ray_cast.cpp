@@ -22,17 +22,23 @@ constexpr std::size_t kRowsPerTask = 8;
 class RayMarcher {
  public:
   RayMarcher(const VoxelMap& map, const Eigen::Vector3f& origin)
-      : map_(map), finder_(map), origin_(origin),
-        unobserved_step_(map.config().voxel_size_m * static_cast<float>(std::max(1, map.config().truncation_voxels - 2))), voxel_(map.config().voxel_size_m), inverse_voxel_(1.f / map.config().voxel_size_m),
-        block_(map.config().block_size_m()), inverse_block_(1.f / map.config().block_size_m()) {}
+      : map_(map),
+        finder_(map),
+        origin_(origin),
+        unobserved_step_(map.config().voxel_size_m *
+                         static_cast<float>(std::max(1, map.config().truncation_voxels - 2))),
+        voxel_(map.config().voxel_size_m),
+        inverse_voxel_(1.f / map.config().voxel_size_m),
+        block_(map.config().block_size_m()),
+        inverse_block_(1.f / map.config().block_size_m()) {}
 
   struct Hit {
     float range_m;
     VoxelRef voxel;
   };
 
-  /// First crossing from positive to negative distance along the unit `direction`, between two ranges;
-  /// range 0 when there is none.
+  /// First crossing from positive to negative distance along the unit `direction`, between two
+  /// ranges; range 0 when there is none.
   Hit march(const Eigen::Vector3f& direction, float min_range_m, float max_range_m) {
     const Eigen::Vector3f inverse = direction.cwiseInverse();
     float last_distance = 0.f, last_range = 0.f;  // last_distance > 0: in front of a surface
@@ -62,8 +68,8 @@ class RayMarcher {
 
  private:
   /// Narrows a crossing between two ranges by interpolated distances (false position).
-  Hit refine(const Eigen::Vector3f& direction, float front, float front_distance, float back, float back_distance,
-             VoxelRef fallback) {
+  Hit refine(const Eigen::Vector3f& direction, float front, float front_distance, float back,
+             float back_distance, VoxelRef fallback) {
     float crossing = front;
     for (int step = 0; step < kRefinements; ++step) {
       crossing = front + (back - front) * front_distance / (front_distance - back_distance);
@@ -78,8 +84,8 @@ class RayMarcher {
     return {crossing, at ? at : fallback};
   }
 
-  /// Trilinear distance, metres; that of the nearest voxel when one of the eight was never observed;
-  /// nullopt when that is so itself.
+  /// Trilinear distance, metres; that of the nearest voxel when one of the eight was never
+  /// observed; nullopt when that is so itself.
   std::optional<float> interpolate(const Eigen::Vector3f& point) {
     const Eigen::Vector3f grid = point.array() * inverse_voxel_ - 0.5f;
     const Eigen::Vector3i low = floor_to_int(grid);
@@ -89,24 +95,30 @@ class RayMarcher {
     float distances[8];
     for (int corner = 0; corner < 8; ++corner) {
       const Eigen::Vector3i offset(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
-      const VoxelRef ref = one_block ? VoxelRef{first.value + static_cast<std::uint32_t>(voxel_offset(offset.x(), offset.y(), offset.z()))}
-                                     : finder_.find_voxel(low + offset);
-      if (!ref || map_.block(ref.block()).weight[static_cast<std::size_t>(ref.voxel())] <= 0.f) return nearest(point);
+      const VoxelRef ref = one_block
+                               ? VoxelRef{first.value + static_cast<std::uint32_t>(voxel_offset(
+                                                            offset.x(), offset.y(), offset.z()))}
+                               : finder_.find_voxel(low + offset);
+      if (!ref || map_.block(ref.block()).weight[static_cast<std::size_t>(ref.voxel())] <= 0.f)
+        return nearest(point);
       const VoxelBlock& block = map_.block(ref.block());
       distances[corner] = map_.distance_m(block, ref.voxel());
     }
     for (int axis = 0, width = 1; axis < 3; ++axis, width *= 2)
-      for (int i = 0; i < 8; i += 2 * width) distances[i] += share[axis] * (distances[i + width] - distances[i]);
+      for (int i = 0; i < 8; i += 2 * width)
+        distances[i] += share[axis] * (distances[i + width] - distances[i]);
     return distances[0];
   }
 
   std::optional<float> nearest(const Eigen::Vector3f& point) {
     const VoxelRef ref = finder_.find(point);
-    if (!ref || map_.block(ref.block()).weight[static_cast<std::size_t>(ref.voxel())] <= 0.f) return std::nullopt;
+    if (!ref || map_.block(ref.block()).weight[static_cast<std::size_t>(ref.voxel())] <= 0.f)
+      return std::nullopt;
     return map_.distance_m(map_.block(ref.block()), ref.voxel());
   }
 
-  /// Distance along the ray to the far side of the empty block, or of the empty cube of blocks, at `point`.
+  /// Distance along the ray to the far side of the empty block, or of the empty cube of blocks, at
+  /// `point`.
   float leap(const Eigen::Vector3f& point, const Eigen::Vector3f& inverse_direction) {
     const BlockIndex index = block_at(point, inverse_block_);
     const BlockIndex region(index.x() >> 3, index.y() >> 3, index.z() >> 3);
@@ -139,38 +151,45 @@ class RayMarcher {
 
 /// Fills `result` by rows; `known` may give a pixel's answer and spare the march.
 template <class Known>
-Projection cast(const VoxelMap& map, const PinholeCamera& camera, const Pose& world_from_camera, float max_range_m,
-                const Known& known) {
-  Projection result{DepthImage(camera.width, camera.height), Image<Label>(camera.width, camera.height)};
+Projection cast(const VoxelMap& map, const PinholeCamera& camera, const Pose& world_from_camera,
+                float max_range_m, const Known& known) {
+  Projection result{DepthImage(camera.width, camera.height),
+                    Image<Label>(camera.width, camera.height)};
   const Eigen::Matrix3f rotation = world_from_camera.linear().cast<float>();
   const Eigen::Vector3f origin = world_from_camera.translation().cast<float>();
   const TileRanges ranges(map, camera, world_from_camera, max_range_m);
-  parallel_for_ranges(static_cast<std::size_t>(camera.height), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
-    RayMarcher marcher(map, origin);
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      for (int x = 0; x < camera.width; ++x) {
-        const TileRanges::Range& range = ranges.at_pixel(x, y);
-        if (range.near_m > range.far_m || known(x, y, result)) continue;
-        const Eigen::Vector3f ray = camera.unproject(static_cast<float>(x), static_cast<float>(y), 1.f);
-        const float stretch = ray.norm();
-        const RayMarcher::Hit hit = marcher.march(rotation * ray / stretch, range.near_m * stretch,
-                                                    std::min(range.far_m * stretch, max_range_m));
-        result.depth.at(x, y) = hit.range_m / stretch;
-        result.labels.at(x, y) = map.label(hit.voxel);
-      }
-    }
-  });
+  parallel_for_ranges(static_cast<std::size_t>(camera.height), kRowsPerTask,
+                      [&](std::size_t begin, std::size_t end) {
+                        RayMarcher marcher(map, origin);
+                        for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+                          for (int x = 0; x < camera.width; ++x) {
+                            const TileRanges::Range& range = ranges.at_pixel(x, y);
+                            if (range.near_m > range.far_m || known(x, y, result)) continue;
+                            const Eigen::Vector3f ray =
+                                camera.unproject(static_cast<float>(x), static_cast<float>(y), 1.f);
+                            const float stretch = ray.norm();
+                            const RayMarcher::Hit hit =
+                                marcher.march(rotation * ray / stretch, range.near_m * stretch,
+                                              std::min(range.far_m * stretch, max_range_m));
+                            result.depth.at(x, y) = hit.range_m / stretch;
+                            result.labels.at(x, y) = map.label(hit.voxel);
+                          }
+                        }
+                      });
   return result;
 }
 
 }  // namespace
 
-Projection cast_rays(const VoxelMap& map, const PinholeCamera& camera, const Pose& world_from_camera, float max_range_m) {
-  return cast(map, camera, world_from_camera, max_range_m, [](int, int, Projection&) { return false; });
+Projection cast_rays(const VoxelMap& map, const PinholeCamera& camera,
+                     const Pose& world_from_camera, float max_range_m) {
+  return cast(map, camera, world_from_camera, max_range_m,
+              [](int, int, Projection&) { return false; });
 }
 
-Projection cast_rays_with_depth(const VoxelMap& map, const DepthImage& sensor_depth, const Image<VoxelRef>& surface,
-                                const PinholeCamera& camera, const Pose& world_from_camera, float max_range_m) {
+Projection cast_rays_with_depth(const VoxelMap& map, const DepthImage& sensor_depth,
+                                const Image<VoxelRef>& surface, const PinholeCamera& camera,
+                                const Pose& world_from_camera, float max_range_m) {
   return cast(map, camera, world_from_camera, max_range_m, [&](int x, int y, Projection& result) {
     const VoxelRef ref = surface.at(x, y);
     if (!ref) return false;

@@ -28,9 +28,11 @@ struct SphereScene {
     DepthImage result(camera.width, camera.height);
     for (int y = 0; y < result.height(); ++y) {
       for (int x = 0; x < result.width(); ++x) {
-        const Eigen::Vector3f d = camera.unproject(static_cast<float>(x), static_cast<float>(y), 1.f);
+        const Eigen::Vector3f d =
+            camera.unproject(static_cast<float>(x), static_cast<float>(y), 1.f);
         const Eigen::Vector3f center(0, 0, 1.2f);
-        const float b = d.dot(center), a = d.squaredNorm(), c = center.squaredNorm() - kRadius * kRadius;
+        const float b = d.dot(center), a = d.squaredNorm(),
+                    c = center.squaredNorm() - kRadius * kRadius;
         const float discriminant = b * b - a * c;
         if (discriminant > 0.f) result.at(x, y) = (b - std::sqrt(discriminant)) / a;
       }
@@ -45,8 +47,10 @@ struct SphereScene {
     for (int y = 0; y < image.height(); ++y)
       for (int x = 0; x < image.width(); ++x)
         if (image.at(x, y) > 0.f)
-          result.at(x, y) = (camera.unproject(static_cast<float>(x), static_cast<float>(y), image.at(x, y)) -
-                             Eigen::Vector3f(0, 0, 1.2f)).normalized();
+          result.at(x, y) =
+              (camera.unproject(static_cast<float>(x), static_cast<float>(y), image.at(x, y)) -
+               Eigen::Vector3f(0, 0, 1.2f))
+                  .normalized();
     return result;
   }
 

@@ -11,12 +11,13 @@ namespace ovimap {
 
 /// The map's surface voxel under each depth pixel: V(x) of the paper, with |tsdf| below one voxel.
 ///
-/// A point that noise put off the surface is first moved along its ray by the distance its voxel holds,
-/// once. None where depth is invalid or the map has no surface there.
-Image<VoxelRef> surface_voxels(const VoxelMap& map, const DepthImage& depth, const PinholeCamera& camera,
-                               const Pose& world_from_camera);
+/// A point that noise put off the surface is first moved along its ray by the distance its voxel
+/// holds, once. None where depth is invalid or the map has no surface there.
+Image<VoxelRef> surface_voxels(const VoxelMap& map, const DepthImage& depth,
+                               const PinholeCamera& camera, const Pose& world_from_camera);
 
-/// Looks voxels up by world position, remembering the last block: neighbours mostly share it. One per thread.
+/// Looks voxels up by world position, remembering the last block: neighbours mostly share it. One
+/// per thread.
 class VoxelFinder {
  public:
   explicit VoxelFinder(const VoxelMap& map)

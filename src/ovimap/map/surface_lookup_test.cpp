@@ -19,11 +19,15 @@ TEST(SurfaceVoxels, FindsTheVoxelThatHoldsThePoint) {
   for (int y = 50; y < 70; ++y)
     for (int x = 70; x < 90; ++x) {
       ASSERT_TRUE(surface.at(x, y));
-      const Eigen::Vector3f point = pose.cast<float>() * scene.camera.unproject(static_cast<float>(x), static_cast<float>(y), depth.at(x, y));
+      const Eigen::Vector3f point =
+          pose.cast<float>() *
+          scene.camera.unproject(static_cast<float>(x), static_cast<float>(y), depth.at(x, y));
       const VoxelBlock& block = map.block(surface.at(x, y).block());
       const int v = surface.at(x, y).voxel();
-      const Eigen::Vector3f low = (block.index * 8 + Eigen::Vector3i(v & 7, v >> 3 & 7, v >> 6)).cast<float>() * 0.01f;
-      EXPECT_TRUE(((point - low).array() > -1e-4f).all() && ((point - low).array() < 0.0101f).all());
+      const Eigen::Vector3f low =
+          (block.index * 8 + Eigen::Vector3i(v & 7, v >> 3 & 7, v >> 6)).cast<float>() * 0.01f;
+      EXPECT_TRUE(((point - low).array() > -1e-4f).all() &&
+                  ((point - low).array() < 0.0101f).all());
     }
   EXPECT_FALSE(surface.at(0, 0)) << "no depth there";
 }
@@ -36,7 +40,8 @@ TEST(SurfaceVoxels, FollowsANoisyPointBackToTheSurface) {
   for (float& z : depth) z += z > 0.f ? 0.03f : 0.f;
   EXPECT_TRUE(surface_voxels(map, depth, scene.camera, scene.pose(0)).at(80, 60));
   for (float& z : depth) z += z > 0.f ? 0.2f : 0.f;
-  EXPECT_FALSE(surface_voxels(map, depth, scene.camera, scene.pose(0)).at(80, 60)) << "beyond the band";
+  EXPECT_FALSE(surface_voxels(map, depth, scene.camera, scene.pose(0)).at(80, 60))
+      << "beyond the band";
 }
 
 }  // namespace

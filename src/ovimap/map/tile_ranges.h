@@ -9,8 +9,8 @@
 
 namespace ovimap {
 
-/// Between which depths the blocks of the map lie, for every tile of 16 x 16 pixels: rays need be marched
-/// only there. Costs one projection per block in view, not per ray.
+/// Between which depths the blocks of the map lie, for every tile of 16 x 16 pixels: rays need be
+/// marched only there. Costs one projection per block in view, not per ray.
 class TileRanges {
  public:
   static constexpr int kTile_px = 16;
@@ -18,7 +18,8 @@ class TileRanges {
     float near_m, far_m;  ///< along the optical axis; near > far: no block in this tile
   };
 
-  TileRanges(const VoxelMap& map, const PinholeCamera& camera, const Pose& world_from_camera, float max_depth_m);
+  TileRanges(const VoxelMap& map, const PinholeCamera& camera, const Pose& world_from_camera,
+             float max_depth_m);
 
   const Range& at_pixel(int x, int y) const { return ranges_.at(x / kTile_px, y / kTile_px); }
 

@@ -17,13 +17,14 @@ inline constexpr Label kNoLabel = 0;
 inline constexpr int kBlockSide = 8;
 inline constexpr int kBlockVoxels = kBlockSide * kBlockSide * kBlockSide;
 inline constexpr int kLabelSlots = 4;
-inline constexpr int kRegionBlocks = 8;  ///< a region is a cube of 8^3 blocks, for leaping over empty space
+inline constexpr int kRegionBlocks =
+    8;  ///< a region is a cube of 8^3 blocks, for leaping over empty space
 
 /// Block coordinates: a block covers [index * 8, index * 8 + 8) voxels along each axis.
 using BlockIndex = Eigen::Vector3i;
 
-/// Largest integers not above the coordinates. Truncation and a correction: std::floor is a function call
-/// on processors without SSE4.1, which the baseline build must assume.
+/// Largest integers not above the coordinates. Truncation and a correction: std::floor is a
+/// function call on processors without SSE4.1, which the baseline build must assume.
 inline Eigen::Vector3i floor_to_int(const Eigen::Vector3f& point) {
   const auto floor_of = [](float value) {
     const int truncated = static_cast<int>(value);
@@ -32,7 +33,8 @@ inline Eigen::Vector3i floor_to_int(const Eigen::Vector3f& point) {
   return {floor_of(point.x()), floor_of(point.y()), floor_of(point.z())};
 }
 
-/// Block coordinates in one word, 21 bits an axis (+-84 km at blocks of 8 cm); packed words order as (z, y, x).
+/// Block coordinates in one word, 21 bits an axis (+-84 km at blocks of 8 cm); packed words order
+/// as (z, y, x).
 inline std::uint64_t pack_index(const BlockIndex& index) {
   constexpr int kBias = 1 << 20;
   const auto bits = [](int value) { return static_cast<std::uint64_t>(value + kBias) & 0x1fffff; };
@@ -40,12 +42,16 @@ inline std::uint64_t pack_index(const BlockIndex& index) {
 }
 inline BlockIndex unpack_index(std::uint64_t packed) {
   constexpr int kBias = 1 << 20;
-  const auto axis = [packed](int shift) { return static_cast<int>(packed >> shift & 0x1fffff) - kBias; };
+  const auto axis = [packed](int shift) {
+    return static_cast<int>(packed >> shift & 0x1fffff) - kBias;
+  };
   return {axis(0), axis(21), axis(42)};
 }
 
 /// Voxel within its block: x fastest.
-inline int voxel_offset(int x, int y, int z) { return x + kBlockSide * (y + kBlockSide * z); }
+inline int voxel_offset(int x, int y, int z) {
+  return x + kBlockSide * (y + kBlockSide * z);
+}
 
 /// 8 x 8 x 8 voxels, one array per attribute: a stage touches only the cache lines it needs.
 /// 24 bytes a voxel, and a palette of the labels that occur in the block.
@@ -62,12 +68,13 @@ struct VoxelBlock {
   }
 
   BlockIndex index;
-  std::uint32_t forest_epoch = 0;   ///< merges up to this epoch are already written into the palette
+  std::uint32_t forest_epoch = 0;  ///< merges up to this epoch are already written into the palette
   std::vector<Label> palette{kNoLabel};  ///< labels of the block; slots hold positions in it
 
-  std::array<Tsdf, kBlockVoxels> tsdf;       ///< signed distance in truncations, positive in front
-  std::array<float, kBlockVoxels> weight;    ///< 0 = never observed
-  std::array<std::array<std::uint16_t, kBlockVoxels>, 3> color;  ///< RGB, 8.8 fixed point; all 0 = none yet
+  std::array<Tsdf, kBlockVoxels> tsdf;     ///< signed distance in truncations, positive in front
+  std::array<float, kBlockVoxels> weight;  ///< 0 = never observed
+  std::array<std::array<std::uint16_t, kBlockVoxels>, 3>
+      color;  ///< RGB, 8.8 fixed point; all 0 = none yet
   /// Label slots, strongest first: palette position and support (number of frames).
   std::array<std::array<std::uint8_t, kBlockVoxels>, kLabelSlots> label;
   std::array<std::array<std::uint16_t, kBlockVoxels>, kLabelSlots> support;

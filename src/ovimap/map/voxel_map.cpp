@@ -35,10 +35,13 @@ std::uint64_t block_hash(const VoxelBlock& block, const LabelForest& forest) {
 
 void list_fields(VoxelMapConfig& config, ConfigFields& fields) {
   fields.add("voxel_size_m", config.voxel_size_m, 0.001f, 1.f, "edge of a voxel, metres");
-  fields.add("truncation_voxels", config.truncation_voxels, 2, 20, "half width of the TSDF band, voxels");
+  fields.add("truncation_voxels", config.truncation_voxels, 2, 20,
+             "half width of the TSDF band, voxels");
   fields.add("max_weight", config.max_weight, 0.01f, 1e6f, "cap of a voxel's weight");
-  fields.add("min_mesh_weight", config.min_mesh_weight, 0.f, 1e6f, "lighter voxels make no surface");
-  fields.add("label_band_voxels", config.label_band_voxels, 0.5f, 20.f, "distance from the surface within which voxels take labels, voxels");
+  fields.add("min_mesh_weight", config.min_mesh_weight, 0.f, 1e6f,
+             "lighter voxels make no surface");
+  fields.add("label_band_voxels", config.label_band_voxels, 0.5f, 20.f,
+             "distance from the surface within which voxels take labels, voxels");
 }
 
 VoxelMap::VoxelMap(const VoxelMapConfig& config)
@@ -59,10 +62,13 @@ std::uint32_t VoxelMap::find_slot(const BlockIndex& index) const {
   return found == slots_.end() ? kNoBlock : found->second;
 }
 
-bool VoxelMap::region_occupied(const BlockIndex& index) const { return regions_.contains(pack_index(region_of(index))); }
+bool VoxelMap::region_occupied(const BlockIndex& index) const {
+  return regions_.contains(pack_index(region_of(index)));
+}
 
 std::uint32_t VoxelMap::find_or_create(const BlockIndex& index) {
-  const auto [found, created] = slots_.try_emplace(pack_index(index), static_cast<std::uint32_t>(blocks_.size()));
+  const auto [found, created] =
+      slots_.try_emplace(pack_index(index), static_cast<std::uint32_t>(blocks_.size()));
   if (created) {
     blocks_.push_back(std::make_unique<VoxelBlock>(index));
     blocks_.back()->forest_epoch = labels_.epoch();
@@ -94,7 +100,8 @@ std::size_t VoxelMap::bytes() const {
 std::uint64_t VoxelMap::content_hash() const {
   const std::vector<std::uint32_t> slots = ordered_slots();
   std::vector<std::uint64_t> hashes(slots.size());
-  parallel_for(slots.size(), 64, [&](std::size_t i) { hashes[i] = block_hash(*blocks_[slots[i]], labels_); });
+  parallel_for(slots.size(), 64,
+               [&](std::size_t i) { hashes[i] = block_hash(*blocks_[slots[i]], labels_); });
   return XXH64(hashes.data(), hashes.size() * sizeof(std::uint64_t), 0);
 }
 

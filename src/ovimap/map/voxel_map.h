@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
-#include <Eigen/Core>
 #include <tsl/robin_map.h>
+#include <Eigen/Core>
 
 #include "ovimap/map/label_forest.h"
 #include "ovimap/map/voxel_block.h"
@@ -18,28 +18,32 @@ class ConfigFields;
 
 struct VoxelMapConfig {
   float voxel_size_m = 0.01f;
-  int truncation_voxels = 5;        ///< the band around the surface is this wide to either side
-  float max_weight = 1000.f;        ///< weights are capped here, so that the map follows change
-  float min_mesh_weight = 1e-4f;    ///< lighter voxels make no surface
-  float label_band_voxels = 1.f;    ///< voxels this near to the observed surface take the segment's label
+  int truncation_voxels = 5;      ///< the band around the surface is this wide to either side
+  float max_weight = 1000.f;      ///< weights are capped here, so that the map follows change
+  float min_mesh_weight = 1e-4f;  ///< lighter voxels make no surface
+  float label_band_voxels =
+      1.f;  ///< voxels this near to the observed surface take the segment's label
 
   float truncation_m() const { return voxel_size_m * static_cast<float>(truncation_voxels); }
   float block_size_m() const { return voxel_size_m * kBlockSide; }
 };
 void list_fields(VoxelMapConfig& config, ConfigFields& fields);
 
-/// Position of a voxel in memory: slot of its block and offset in it. Valid as long as the map lives.
+/// Position of a voxel in memory: slot of its block and offset in it. Valid as long as the map
+/// lives.
 struct VoxelRef {
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
   std::uint32_t value = kNone;
   explicit operator bool() const { return value != kNone; }
   std::uint32_t block() const { return value / kBlockVoxels; }
   int voxel() const { return static_cast<int>(value % kBlockVoxels); }
-  static VoxelRef of(std::uint32_t block, int voxel) { return {block * kBlockVoxels + static_cast<std::uint32_t>(voxel)}; }
+  static VoxelRef of(std::uint32_t block, int voxel) {
+    return {block * kBlockVoxels + static_cast<std::uint32_t>(voxel)};
+  }
 };
 
-/// The sparse TSDF of the scene with per-voxel label support. World frame, metres. Blocks are created by
-/// `integrate` alone and never move in memory.
+/// The sparse TSDF of the scene with per-voxel label support. World frame, metres. Blocks are
+/// created by `integrate` alone and never move in memory.
 class VoxelMap {
  public:
   explicit VoxelMap(const VoxelMapConfig& config = {});
@@ -54,8 +58,8 @@ class VoxelMap {
   const VoxelBlock* find(const BlockIndex& index) const;
   static constexpr std::uint32_t kNoBlock = ~std::uint32_t{0};
   std::uint32_t find_slot(const BlockIndex& index) const;
-  /// False when no block of the region (cube of 8^3 blocks) around block `index` exists: empty space to
-  /// leap over.
+  /// False when no block of the region (cube of 8^3 blocks) around block `index` exists: empty
+  /// space to leap over.
   bool region_occupied(const BlockIndex& index) const;
 
   /// Calls `visit(region_index, slots)` for every region, in no particular order.
@@ -82,8 +86,8 @@ class VoxelMap {
     return static_cast<float>(block.tsdf[static_cast<std::size_t>(voxel)]) * metres_per_unit_;
   }
 
-  /// Hash of every block's content and label resolution; equal maps hash equal whatever the order in
-  /// which blocks were created.
+  /// Hash of every block's content and label resolution; equal maps hash equal whatever the order
+  /// in which blocks were created.
   std::uint64_t content_hash() const;
 
  private:

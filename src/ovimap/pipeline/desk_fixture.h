@@ -10,8 +10,8 @@
 
 namespace ovimap {
 
-/// A table top (id 1) with two balls on it (ids 2, 3), seen from a camera that moves around it: exact
-/// depth, colours and ids, for tests of the whole pipeline.
+/// A table top (id 1) with two balls on it (ids 2, 3), seen from a camera that moves around it:
+/// exact depth, colours and ids, for tests of the whole pipeline.
 class DeskScene : public FrameSource {
  public:
   static constexpr int kFrames = 12;
@@ -48,11 +48,13 @@ class DeskScene : public FrameSource {
     float radius;
   };
 
-  /// World: z up, table top at z = 0 within 0.6 m of the origin. The camera circles at 0.7 m height.
+  /// World: z up, table top at z = 0 within 0.6 m of the origin. The camera circles at 0.7 m
+  /// height.
   static Pose pose(std::int64_t position) {
     const double angle = 2 * M_PI * static_cast<double>(position) / kFrames;
     const Eigen::Vector3d eye(0.9 * std::cos(angle), 0.9 * std::sin(angle), 0.7);
-    const Eigen::Vector3d forward = (-eye).normalized(), right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
+    const Eigen::Vector3d forward = (-eye).normalized(),
+                          right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
     Pose result = Pose::Identity();
     result.linear() << right, forward.cross(right), forward;
     result.translation() = eye;
@@ -65,7 +67,9 @@ class DeskScene : public FrameSource {
     const Eigen::Vector3f eye = world_from_camera.translation().cast<float>();
     for (int y = 0; y < kCamera.height; ++y) {
       for (int x = 0; x < kCamera.width; ++x) {
-        const Eigen::Vector3f ray = world_from_camera.linear().cast<float>() * kCamera.unproject(static_cast<float>(x), static_cast<float>(y), 1.f);
+        const Eigen::Vector3f ray =
+            world_from_camera.linear().cast<float>() *
+            kCamera.unproject(static_cast<float>(x), static_cast<float>(y), 1.f);
         float nearest = std::numeric_limits<float>::max();
         const auto hit = [&](float t, std::uint16_t id) {
           if (t > 0.f && t < nearest) nearest = t, ids.at(x, y) = id, depth.at(x, y) = t;
@@ -74,8 +78,10 @@ class DeskScene : public FrameSource {
         if ((eye + table * ray).head<2>().norm() < 0.6f) hit(table, 1);
         for (std::uint16_t i = 0; i < 2; ++i) {
           const Eigen::Vector3f from = eye - balls[i].center;
-          const float a = ray.squaredNorm(), b = ray.dot(from), c = from.squaredNorm() - balls[i].radius * balls[i].radius;
-          if (b * b - a * c > 0.f) hit((-b - std::sqrt(b * b - a * c)) / a, static_cast<std::uint16_t>(i + 2));
+          const float a = ray.squaredNorm(), b = ray.dot(from),
+                      c = from.squaredNorm() - balls[i].radius * balls[i].radius;
+          if (b * b - a * c > 0.f)
+            hit((-b - std::sqrt(b * b - a * c)) / a, static_cast<std::uint16_t>(i + 2));
         }
       }
     }

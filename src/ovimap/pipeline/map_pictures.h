@@ -13,11 +13,12 @@ namespace ovimap {
 /// The map from above, its objects in their palette colours (or the surface in its own).
 RgbImage top_down_picture(const MapDocument& document, MeshColoring coloring);
 
-/// Frames of the recording, evenly spread over those in the map, each beside the map's instances as its
-/// camera sees them.
+/// Frames of the recording, evenly spread over those in the map, each beside the map's instances as
+/// its camera sees them.
 RgbImage contact_sheet_picture(const MapDocument& document, const FrameSource& source, int frames);
 
 /// Writes top_view.png, top_view_color.png and contact_sheet.png into `folder`, which is created.
-void write_map_pictures(const std::filesystem::path& folder, const MapDocument& document, const FrameSource& source);
+void write_map_pictures(const std::filesystem::path& folder, const MapDocument& document,
+                        const FrameSource& source);
 
 }  // namespace ovimap

@@ -22,13 +22,15 @@ std::vector<MaskPrompt> prompts_of(const DepthRegions& regions, const Registrati
     if (regions.ids[i] == 0 || color_index[i] == Registration::kNoColor) continue;
     MaskPrompt& prompt = prompts[regions.ids[i] - 1u];
     ++prompt.area_px;
-    prompt.extent_px.extend(Eigen::Vector2f(static_cast<float>(color_index[i] % color_width), static_cast<float>(color_index[i] / color_width)));
+    prompt.extent_px.extend(Eigen::Vector2f(static_cast<float>(color_index[i] % color_width),
+                                            static_cast<float>(color_index[i] / color_width)));
   }
   for (std::size_t i = 0; i < prompts.size(); ++i) {
     const Eigen::Vector2i& interior = regions.regions[i].interior_px;
     const std::int32_t index = color_index.at(interior.x(), interior.y());
     if (index == Registration::kNoColor) prompts[i].area_px = 0;
-    prompts[i].interior_px = Eigen::Vector2f(static_cast<float>(index % color_width), static_cast<float>(index / color_width));
+    prompts[i].interior_px = Eigen::Vector2f(static_cast<float>(index % color_width),
+                                             static_cast<float>(index / color_width));
   }
   std::erase_if(prompts, [](const MaskPrompt& prompt) { return prompt.area_px == 0; });
   return prompts;
@@ -45,13 +47,17 @@ std::vector<Label> labels_of(std::span<const SegmentAssociation> associations) {
 Mapper::Mapper(const MapperConfig& config, std::shared_ptr<MaskSource> masks)
     : config_(config), masks_(std::move(masks)), map_(config.map), registry_(config.instance) {
   constexpr int kNetworkInterval = 5;
-  if (config_.mask_interval == 0) config_.mask_interval = masks_ && masks_->is_slow() ? kNetworkInterval : 1;
+  if (config_.mask_interval == 0)
+    config_.mask_interval = masks_ && masks_->is_slow() ? kNetworkInterval : 1;
 }
 
 FrameReport Mapper::process(const Frame& frame) {
   FrameReport report;
   const bool labelled = frames_ % config_.mask_interval == 0;
-  const Registration registration = [&] { auto t = timers_.measure("registration"); return Registration(frame); }();
+  const Registration registration = [&] {
+    auto t = timers_.measure("registration");
+    return Registration(frame);
+  }();
   const DepthSurface surface = [&] {
     auto t = timers_.measure("surface");
     return fit_depth_surface(frame.depth, frame.depth_camera, config_.segment.surface);
@@ -67,15 +73,20 @@ FrameReport Mapper::process(const Frame& frame) {
     report.regions = static_cast<int>(regions.regions.size());
     segments = cut_segments(frame, regions, registration, report);
     auto t = timers_.measure("associate");
-    const Image<VoxelRef> voxels = surface_voxels(map_, frame.depth, frame.depth_camera, frame.world_from_camera);
+    const Image<VoxelRef> voxels =
+        surface_voxels(map_, frame.depth, frame.depth_camera, frame.world_from_camera);
     associations = associate(segments, voxels, map_, config_.association);
   }
   const std::vector<Label> labels = labels_of(associations);
   {
     auto t = timers_.measure("integrate");
-    integrate(map_, {.depth = frame.depth, .camera = frame.depth_camera, .world_from_camera = frame.world_from_camera,
-                     .color = &color, .normals = &surface.normals,
-                     .segment_ids = labelled ? &segments.ids : nullptr, .segment_labels = labels});
+    integrate(map_, {.depth = frame.depth,
+                     .camera = frame.depth_camera,
+                     .world_from_camera = frame.world_from_camera,
+                     .color = &color,
+                     .normals = &surface.normals,
+                     .segment_ids = labelled ? &segments.ids : nullptr,
+                     .segment_labels = labels});
   }
   if (labelled) {
     auto t = timers_.measure("registry");
@@ -84,12 +95,13 @@ FrameReport Mapper::process(const Frame& frame) {
   ++frames_;
   report.labelled = labelled;
   report.segments = static_cast<int>(segments.segments.size());
-  report.founded = static_cast<int>(std::count_if(associations.begin(), associations.end(), [](const auto& a) { return a.founded; }));
+  report.founded = static_cast<int>(std::count_if(associations.begin(), associations.end(),
+                                                  [](const auto& a) { return a.founded; }));
   return report;
 }
 
-Segments Mapper::cut_segments(const Frame& frame, const DepthRegions& regions, const Registration& registration,
-                              FrameReport& report) {
+Segments Mapper::cut_segments(const Frame& frame, const DepthRegions& regions,
+                              const Registration& registration, FrameReport& report) {
   if (!masks_) return segments_of_regions(regions);
   Entities entities;
   {
@@ -99,16 +111,21 @@ Segments Mapper::cut_segments(const Frame& frame, const DepthRegions& regions, c
   ++mask_frames_;
   report.entities = static_cast<int>(entities.scores.size());
   auto t = timers_.measure("mask_fusion");
-  return fuse_masks(regions, registration.ids_at_depth(entities.ids), frame.depth, config_.mask_fusion);
+  return fuse_masks(regions, registration.ids_at_depth(entities.ids), frame.depth,
+                    config_.mask_fusion);
 }
 
 InstanceView Mapper::project(const Frame& frame) {
   auto t = timers_.measure("project");
-  const Image<VoxelRef> voxels = surface_voxels(map_, frame.depth, frame.depth_camera, frame.world_from_camera);
-  Projection seen = cast_rays_with_depth(map_, frame.depth, voxels, frame.depth_camera, frame.world_from_camera, config_.max_range_m);
+  const Image<VoxelRef> voxels =
+      surface_voxels(map_, frame.depth, frame.depth_camera, frame.world_from_camera);
+  Projection seen = cast_rays_with_depth(map_, frame.depth, voxels, frame.depth_camera,
+                                         frame.world_from_camera, config_.max_range_m);
   const std::vector<InstanceId> instance_of = registry_.instance_table(map_.labels());
-  InstanceView view{std::move(seen.depth), Image<InstanceId>(frame.depth.width(), frame.depth.height())};
-  for (std::size_t i = 0; i < seen.labels.size(); ++i) view.instances[i] = instance_of[seen.labels[i]];
+  InstanceView view{std::move(seen.depth),
+                    Image<InstanceId>(frame.depth.width(), frame.depth.height())};
+  for (std::size_t i = 0; i < seen.labels.size(); ++i)
+    view.instances[i] = instance_of[seen.labels[i]];
   return view;
 }
 

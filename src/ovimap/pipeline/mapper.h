@@ -16,11 +16,11 @@ namespace ovimap {
 
 /// What became of one frame.
 struct FrameReport {
-  int regions = 0;         ///< geometric regions
-  int entities = 0;        ///< 2D entities; 0 when the frame had no masks
-  int segments = 0;        ///< pieces lifted to 3D
-  int founded = 0;         ///< new super-points
-  bool labelled = false;   ///< the frame voted for labels (else it added geometry and colour alone)
+  int regions = 0;        ///< geometric regions
+  int entities = 0;       ///< 2D entities; 0 when the frame had no masks
+  int segments = 0;       ///< pieces lifted to 3D
+  int founded = 0;        ///< new super-points
+  bool labelled = false;  ///< the frame voted for labels (else it added geometry and colour alone)
 };
 
 /// The map of instances as one camera sees it.
@@ -30,13 +30,15 @@ struct InstanceView {
 };
 
 /// The class-agnostic instance map, built frame by frame in the paper's order (sections 3.1 and
-/// supplement). Synchronous: the same frames give the same map, bit for bit, on every run and thread count.
+/// supplement). Synchronous: the same frames give the same map, bit for bit, on every run and
+/// thread count.
 class Mapper {
  public:
   /// `masks` may be null: then every geometric region is an entity of its own (depth alone).
   explicit Mapper(const MapperConfig& config, std::shared_ptr<MaskSource> masks = nullptr);
 
-  /// Fuses one frame. Throws what the mask source throws; the map is then as it was before the frame.
+  /// Fuses one frame. Throws what the mask source throws; the map is then as it was before the
+  /// frame.
   FrameReport process(const Frame& frame);
 
   /// The map seen from a frame's depth camera, guided by its depth (method section 8).
@@ -52,8 +54,8 @@ class Mapper {
   int mask_frames() const { return mask_frames_; }
 
  private:
-  Segments cut_segments(const Frame& frame, const DepthRegions& regions, const class Registration& registration,
-                        FrameReport& report);
+  Segments cut_segments(const Frame& frame, const DepthRegions& regions,
+                        const class Registration& registration, FrameReport& report);
 
   MapperConfig config_;
   std::shared_ptr<MaskSource> masks_;

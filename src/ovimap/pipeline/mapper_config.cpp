@@ -31,13 +31,15 @@ void list_fields(MapperConfig& config, ConfigFields& fields) {
   fields.group("map", [&](ConfigFields& f) { list_fields(config.map, f); });
   fields.add("mask_interval", config.mask_interval, 0, 1000000,
              "2D masks every n-th frame; 0: every 5th for networks, every frame otherwise");
-  fields.add("max_range_m", config.max_range_m, 0.1f, 1000.f, "how far the map is projected back, metres");
+  fields.add("max_range_m", config.max_range_m, 0.1f, 1000.f,
+             "how far the map is projected back, metres");
 }
 
 MapperConfig mapper_preset(const std::string& name) {
   MapperConfig config;
   if (name == "default") return config;
-  if (name != "reference") throw Error(concat("there is no preset '", name, "'; accepted is default or reference"));
+  if (name != "reference")
+    throw Error(concat("there is no preset '", name, "'; accepted is default or reference"));
   config.segment = reference_segment_depth_config();
   config.association.association = AssociationRule::kOneToOne;
   config.instance.merging.merge_max_dissent = 1e6f;  // the paper counts no dissent

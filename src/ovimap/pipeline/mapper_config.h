@@ -23,18 +23,19 @@ struct MapperConfig {
   InstanceConfig instance;
   InstanceSummaryConfig summary;
   VoxelMapConfig map;
-  int mask_interval = 0;      ///< 2D masks are asked for every n-th frame, the frames between add geometry and
-                              ///< colour; 0: every 5th frame for networks, every frame otherwise
-  float max_range_m = 10.f;   ///< how far the map is projected back
+  int mask_interval =
+      0;  ///< 2D masks are asked for every n-th frame, the frames between add geometry and
+          ///< colour; 0: every 5th frame for networks, every frame otherwise
+  float max_range_m = 10.f;  ///< how far the map is projected back
 };
 void list_fields(MapperConfig& config, ConfigFields& fields);
 
-/// "default", or "reference": thresholds and rules as the paper's released code has them. Throws Error for
-/// another name.
+/// "default", or "reference": thresholds and rules as the paper's released code has them. Throws
+/// Error for another name.
 MapperConfig mapper_preset(const std::string& name);
 
-/// Sets the fields that a YAML file names, as nested maps or dotted keys. Throws Error for a missing or
-/// unreadable file, an unknown key (with the nearest known one) or a value out of range.
+/// Sets the fields that a YAML file names, as nested maps or dotted keys. Throws Error for a
+/// missing or unreadable file, an unknown key (with the nearest known one) or a value out of range.
 void load_config(const std::filesystem::path& path, ConfigFields& fields);
 
 }  // namespace ovimap

@@ -13,7 +13,9 @@ namespace {
 
 class LoadConfigTest : public ::testing::Test {
  protected:
-  LoadConfigTest() : path_(std::filesystem::temp_directory_path() / ("ovimap-config-" + std::to_string(getpid()) + ".yaml")) {
+  LoadConfigTest()
+      : path_(std::filesystem::temp_directory_path() /
+              ("ovimap-config-" + std::to_string(getpid()) + ".yaml")) {
     list_fields(config_, fields_);
   }
   ~LoadConfigTest() override { std::filesystem::remove(path_); }
@@ -48,7 +50,8 @@ TEST_F(LoadConfigTest, ItsOwnDumpReadsBack) {
 }
 
 TEST_F(LoadConfigTest, NamesWhatIsWrong) {
-  EXPECT_NE(load("map:\n  voxelsize: 1\n").find("did you mean 'map.voxel_size_m'"), std::string::npos);
+  EXPECT_NE(load("map:\n  voxelsize: 1\n").find("did you mean 'map.voxel_size_m'"),
+            std::string::npos);
   EXPECT_NE(load("mask_interval: [1, 2]\n").find("must be one value"), std::string::npos);
   EXPECT_NE(load("a: {").find("not valid YAML"), std::string::npos);
   EXPECT_THROW(load_config("/nowhere/x.yaml", fields_), Error);

@@ -18,12 +18,14 @@ void map_desk(Mapper& mapper) {
 }
 
 /// Share of the pixels of a true id that show the instance most of them show, and that instance.
-std::pair<double, InstanceId> purity(const IdImage& truth, const Image<InstanceId>& seen, std::uint16_t id) {
+std::pair<double, InstanceId> purity(const IdImage& truth, const Image<InstanceId>& seen,
+                                     std::uint16_t id) {
   std::map<InstanceId, int> counts;
   int total = 0;
   for (std::size_t i = 0; i < truth.size(); ++i)
     if (truth[i] == id) ++counts[seen[i]], ++total;
-  const auto most = std::max_element(counts.begin(), counts.end(), [](auto& a, auto& b) { return a.second < b.second; });
+  const auto most = std::max_element(counts.begin(), counts.end(),
+                                     [](auto& a, auto& b) { return a.second < b.second; });
   return {static_cast<double>(most->second) / total, most->first};
 }
 
@@ -50,7 +52,8 @@ TEST(Mapper, DepthAloneSeparatesTheBallsFromTheTable) {
   const DeskScene scene;
   const InstanceView view = mapper.project(*scene.read(5).frame);
   std::map<InstanceId, int> owners;
-  for (std::uint16_t id = 1; id <= 3; ++id) ++owners[purity(*scene.truth_ids(5), view.instances, id).second];
+  for (std::uint16_t id = 1; id <= 3; ++id)
+    ++owners[purity(*scene.truth_ids(5), view.instances, id).second];
   EXPECT_EQ(owners.size(), 3u);
 }
 
@@ -84,7 +87,8 @@ TEST(Mapper, AsksForMasksAtTheInterval) {
   config.mask_interval = 3;
   Mapper mapper(config, std::make_shared<DeskMasks>());
   const DeskScene scene;
-  for (std::int64_t i = 0; i < 6; ++i) EXPECT_EQ(mapper.process(*scene.read(i).frame).labelled, i % 3 == 0);
+  for (std::int64_t i = 0; i < 6; ++i)
+    EXPECT_EQ(mapper.process(*scene.read(i).frame).labelled, i % 3 == 0);
   EXPECT_EQ(mapper.mask_frames(), 2);
 }
 

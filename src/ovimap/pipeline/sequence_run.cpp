@@ -17,15 +17,16 @@ namespace {
 std::string commonest_fault(const std::vector<SkippedFrame>& skipped) {
   std::map<std::string, int> counts;
   for (const SkippedFrame& frame : skipped) ++counts[frame.fault];
-  const auto most = std::max_element(counts.begin(), counts.end(),
-                                     [](const auto& a, const auto& b) { return a.second < b.second; });
+  const auto most =
+      std::max_element(counts.begin(), counts.end(),
+                       [](const auto& a, const auto& b) { return a.second < b.second; });
   return most == counts.end() ? "no frame was chosen" : most->first;
 }
 
 }  // namespace
 
-SequenceResult run_sequence(const FrameSource& source, const std::vector<std::int64_t>& positions, Mapper& mapper,
-                            const SequenceProgress& progress) {
+SequenceResult run_sequence(const FrameSource& source, const std::vector<std::int64_t>& positions,
+                            Mapper& mapper, const SequenceProgress& progress) {
   const auto start = std::chrono::steady_clock::now();
   const auto read = [&source](std::int64_t position) {
     return std::async(std::launch::async, [&source, position] { return source.read(position); });
@@ -34,14 +35,18 @@ SequenceResult run_sequence(const FrameSource& source, const std::vector<std::in
   std::future<FrameRead> next;
   if (!positions.empty()) next = read(positions[0]);
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    FrameRead current = [&] { auto t = mapper.timers().measure("wait_for_frame"); return next.get(); }();
+    FrameRead current = [&] {
+      auto t = mapper.timers().measure("wait_for_frame");
+      return next.get();
+    }();
     if (i + 1 < positions.size()) next = read(positions[i + 1]);
     FrameReport report;
     if (current.frame) {
       report = mapper.process(*current.frame);
       const Frame& frame = *current.frame;
       if (result.frames.empty()) result.depth_camera = frame.depth_camera;
-      result.frames.push_back({frame.index, frame.timestamp_s, frame.name, frame.world_from_camera, report.labelled});
+      result.frames.push_back(
+          {frame.index, frame.timestamp_s, frame.name, frame.world_from_camera, report.labelled});
     } else {
       result.skipped.push_back({positions[i], current.fault});
     }
@@ -49,15 +54,17 @@ SequenceResult run_sequence(const FrameSource& source, const std::vector<std::in
   }
   if (next.valid()) next.wait();
   if (result.frames.empty())
-    throw Error(concat("none of the ", result.skipped.size(), " frames is usable: ", commonest_fault(result.skipped),
-                       "; `ovimap check` tells more"));
+    throw Error(concat("none of the ", result.skipped.size(), " frames is usable: ",
+                       commonest_fault(result.skipped), "; `ovimap check` tells more"));
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }
 
-MapDocument make_document(Mapper&& mapper, const SequenceResult& sequence, std::string source, std::string config_text) {
+MapDocument make_document(Mapper&& mapper, const SequenceResult& sequence, std::string source,
+                          std::string config_text) {
   MapDocument document;
-  document.instances = summarize_instances(mapper.map(), mapper.registry(), mapper.config().summary);
+  document.instances =
+      summarize_instances(mapper.map(), mapper.registry(), mapper.config().summary);
   document.instance_config = mapper.config().instance;
   document.registry = mapper.registry().state();
   document.frames = sequence.frames;

@@ -21,21 +21,23 @@ struct SkippedFrame {
 struct SequenceResult {
   std::vector<FrameLogEntry> frames;  ///< those fused, in order
   std::vector<SkippedFrame> skipped;
-  PinholeCamera depth_camera;         ///< of the first frame
+  PinholeCamera depth_camera;  ///< of the first frame
   double seconds = 0;
 };
 
-/// Called after every position: how many of how many are done, and the report of the frame when it was
-/// fused. Returning false ends the run early; what was fused stays.
-using SequenceProgress = std::function<bool(std::size_t done, std::size_t total, const FrameReport* report)>;
+/// Called after every position: how many of how many are done, and the report of the frame when it
+/// was fused. Returning false ends the run early; what was fused stays.
+using SequenceProgress =
+    std::function<bool(std::size_t done, std::size_t total, const FrameReport* report)>;
 
-/// Feeds the frames at `positions` to the mapper, decoding the next frame while one is mapped. Bad frames
-/// are skipped and listed. Throws Error when no frame was usable, naming the commonest fault, and what the
-/// mask source throws.
-SequenceResult run_sequence(const FrameSource& source, const std::vector<std::int64_t>& positions, Mapper& mapper,
-                            const SequenceProgress& progress = nullptr);
+/// Feeds the frames at `positions` to the mapper, decoding the next frame while one is mapped. Bad
+/// frames are skipped and listed. Throws Error when no frame was usable, naming the commonest
+/// fault, and what the mask source throws.
+SequenceResult run_sequence(const FrameSource& source, const std::vector<std::int64_t>& positions,
+                            Mapper& mapper, const SequenceProgress& progress = nullptr);
 
 /// Packs a finished mapper for saving. The mapper must not be used afterwards.
-MapDocument make_document(Mapper&& mapper, const SequenceResult& sequence, std::string source, std::string config_text);
+MapDocument make_document(Mapper&& mapper, const SequenceResult& sequence, std::string source,
+                          std::string config_text);
 
 }  // namespace ovimap

@@ -23,8 +23,9 @@ TEST(RunSequence, SkipsListsAndGoesOn) {
 TEST(RunSequence, StopsWhenAskedAndKeepsWhatItHas) {
   const DeskScene scene;
   Mapper mapper({});
-  const SequenceResult result = run_sequence(scene, positions({}, scene.size()), mapper,
-                                             [](std::size_t done, std::size_t, const FrameReport*) { return done < 4; });
+  const SequenceResult result =
+      run_sequence(scene, positions({}, scene.size()), mapper,
+                   [](std::size_t done, std::size_t, const FrameReport*) { return done < 4; });
   EXPECT_EQ(result.frames.size(), 4u);
 }
 

@@ -16,12 +16,14 @@ constexpr std::size_t kRowsPerTask = 16;
 /// Least 1 - cos(angle) that counts as a fold, by depth: a table, as it is asked for every pixel.
 class FoldThreshold {
  public:
-  FoldThreshold(const DepthSurface& surface, const PinholeCamera& camera, const SegmentDepthConfig& config) {
+  FoldThreshold(const DepthSurface& surface, const PinholeCamera& camera,
+                const SegmentDepthConfig& config) {
     for (int i = 0; i < kSteps; ++i) {
       const float depth = (static_cast<float>(i) + 0.5f) * kStep_m;
       const float sigma = normal_sigma_rad(depth, surface.radius_px, camera, config.surface.noise);
       // The angle between two independent normals has sqrt(2) times the deviation of one.
-      const float angle = std::max(config.concave_angle_rad, config.concave_sigmas * std::sqrt(2.f) * sigma);
+      const float angle =
+          std::max(config.concave_angle_rad, config.concave_sigmas * std::sqrt(2.f) * sigma);
       least_[i] = 1.f - std::cos(std::min(angle, 3.f));
     }
   }
@@ -38,7 +40,8 @@ class FoldThreshold {
 /// Fold strength 1 - cos(angle) between two pixels when it is concave and strong enough, else 0.
 class FoldMeasure {
  public:
-  FoldMeasure(const DepthSurface& surface, const PinholeCamera& camera, const SegmentDepthConfig& config)
+  FoldMeasure(const DepthSurface& surface, const PinholeCamera& camera,
+              const SegmentDepthConfig& config)
       : surface_(surface), camera_(camera), threshold_(surface, camera, config) {}
 
   float operator()(int x1, int y1, int x2, int y2) const {
@@ -48,7 +51,8 @@ class FoldMeasure {
     const float depth = surface_.smooth_depth_m.at(x1, y1);
     // A zero normal (no plane) has a dot product of 0 with everything: not a fold.
     if (strength < threshold_(depth) || n1.isZero() || n2.isZero()) return 0.f;
-    const Eigen::Vector3f p1 = point(x1, y1, depth), p2 = point(x2, y2, surface_.smooth_depth_m.at(x2, y2));
+    const Eigen::Vector3f p1 = point(x1, y1, depth),
+                          p2 = point(x2, y2, surface_.smooth_depth_m.at(x2, y2));
     return (p2 - p1).dot(n1 - n2) > 0.f ? strength : 0.f;
   }
 
@@ -79,7 +83,8 @@ int column_arm(const DepthSurface& surface, int x, int y, int direction, int rad
 }
 
 FoldImages measure_folds(const DepthSurface& surface, const FoldMeasure& fold) {
-  const int width = surface.breaks.width(), height = surface.breaks.height(), radius = surface.radius_px;
+  const int width = surface.breaks.width(), height = surface.breaks.height(),
+            radius = surface.radius_px;
   FoldImages folds{Image<float>(width, height), Image<float>(width, height)};
   parallel_for(static_cast<std::size_t>(height), kRowsPerTask, [&](std::size_t row) {
     const int y = static_cast<int>(row);
@@ -87,7 +92,8 @@ FoldImages measure_folds(const DepthSurface& surface, const FoldMeasure& fold) {
       if (surface.smooth_depth_m.at(x, y) <= 0.f) continue;
       const int left = surface.left_px.at(x, y), right = surface.right_px.at(x, y);
       if (left + right >= radius) folds.across.at(x, y) = fold(x - left, y, x + right, y);
-      const int up = column_arm(surface, x, y, -1, radius), down = column_arm(surface, x, y, 1, radius);
+      const int up = column_arm(surface, x, y, -1, radius),
+                down = column_arm(surface, x, y, 1, radius);
       if (up + down >= radius) folds.down.at(x, y) = fold(x, y - up, x, y + down);
     }
   });
@@ -106,7 +112,8 @@ Image<std::uint8_t> find_concave_edges(const DepthSurface& surface, const Pinhol
     const float strength = fold.at(x, y);
     if (strength <= 0.f) return false;
     for (int k = -reach; k <= reach; ++k)
-      if (fold.contains(x + k * dx, y + k * dy) && fold.at(x + k * dx, y + k * dy) > strength) return false;
+      if (fold.contains(x + k * dx, y + k * dy) && fold.at(x + k * dx, y + k * dy) > strength)
+        return false;
     return true;
   };
   parallel_for(static_cast<std::size_t>(height), kRowsPerTask, [&](std::size_t row) {

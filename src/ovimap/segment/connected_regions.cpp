@@ -50,16 +50,20 @@ class Sets {
 Image<std::uint32_t> connected_regions(const Image<std::uint8_t>& mask) {
   const auto rows = static_cast<std::size_t>(mask.height());
   std::vector<std::vector<Run>> runs(rows);
-  parallel_for(rows, 32, [&](std::size_t y) { runs[y] = runs_of_row(mask.row(static_cast<int>(y)), mask.width()); });
+  parallel_for(rows, 32, [&](std::size_t y) {
+    runs[y] = runs_of_row(mask.row(static_cast<int>(y)), mask.width());
+  });
   std::vector<std::uint32_t> first(rows + 1, 0);
-  for (std::size_t y = 0; y < rows; ++y) first[y + 1] = first[y] + static_cast<std::uint32_t>(runs[y].size());
+  for (std::size_t y = 0; y < rows; ++y)
+    first[y + 1] = first[y] + static_cast<std::uint32_t>(runs[y].size());
 
   Sets sets(first[rows]);
   for (std::size_t y = 1; y < rows; ++y) {
     for (std::size_t i = 0, j = 0; i < runs[y].size() && j < runs[y - 1].size();) {
       const Run &below = runs[y][i], &above = runs[y - 1][j];
       if (below.begin < above.end && above.begin < below.end)
-        sets.unite(first[y] + static_cast<std::uint32_t>(i), first[y - 1] + static_cast<std::uint32_t>(j));
+        sets.unite(first[y] + static_cast<std::uint32_t>(i),
+                   first[y - 1] + static_cast<std::uint32_t>(j));
       (below.end < above.end ? i : j) += 1;
     }
   }

@@ -21,7 +21,8 @@ struct SegmentDepthConfig {
 };
 void list_fields(SegmentDepthConfig& config, ConfigFields& fields);
 
-/// The thresholds of Furrer et al. 2018 as the original library ships them, for comparing label maps.
+/// The thresholds of Furrer et al. 2018 as the original library ships them, for comparing label
+/// maps.
 SegmentDepthConfig reference_segment_depth_config();
 
 struct DepthRegion {
@@ -37,8 +38,8 @@ struct DepthRegions {
 };
 
 /// Geometric segmentation of a depth image (metres, 0 = invalid): regions bounded by depth
-/// discontinuities and concave folds (method section 1; Furrer et al. 2018). Pure; the same bits for
-/// every thread count.
+/// discontinuities and concave folds (method section 1; Furrer et al. 2018). Pure; the same bits
+/// for every thread count.
 DepthRegions segment_depth(const DepthImage& depth, const PinholeCamera& camera,
                            const SegmentDepthConfig& config);
 

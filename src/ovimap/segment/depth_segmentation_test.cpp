@@ -26,14 +26,16 @@ struct TableScene {
     for (int y = 0; y < depth.height(); ++y)
       for (int x = 0; x < depth.width(); ++x) {
         set(x, y);
-        if (depth.at(x, y) > 0.f) depth.at(x, y) += noise * model.sigma_m(depth.at(x, y)) * gauss(random);
+        if (depth.at(x, y) > 0.f)
+          depth.at(x, y) += noise * model.sigma_m(depth.at(x, y)) * gauss(random);
       }
   }
 
  private:
   /// World: table at height 0, camera 0.8 m above looking 45 degrees down along +y.
   void set(int x, int y) {
-    const Eigen::Vector3f ray = kCamera.unproject(static_cast<float>(x), static_cast<float>(y), 1.f);
+    const Eigen::Vector3f ray =
+        kCamera.unproject(static_cast<float>(x), static_cast<float>(y), 1.f);
     const float c = std::sqrt(0.5f);
     const Eigen::Vector3f d(ray.x(), c * ray.z() - c * ray.y(), -c * ray.z() - c * ray.y());
     const Eigen::Vector3f eye(0.f, 0.f, 0.8f);
@@ -59,10 +61,13 @@ std::uint16_t majority(const DepthRegions& regions, const IdImage& truth, std::u
   std::map<std::uint16_t, int> counts;
   for (std::size_t i = 0; i < truth.size(); ++i)
     if (truth[i] == id) ++counts[regions.ids[i]];
-  return std::max_element(counts.begin(), counts.end(), [](auto& a, auto& b) { return a.second < b.second; })->first;
+  return std::max_element(counts.begin(), counts.end(),
+                          [](auto& a, auto& b) { return a.second < b.second; })
+      ->first;
 }
 
-double share(const DepthRegions& regions, const IdImage& truth, std::uint16_t id, std::uint16_t region) {
+double share(const DepthRegions& regions, const IdImage& truth, std::uint16_t id,
+             std::uint16_t region) {
   double of_id = 0, both = 0;
   for (std::size_t i = 0; i < truth.size(); ++i)
     if (truth[i] == id) of_id += 1, both += regions.ids[i] == region;
@@ -73,7 +78,8 @@ TEST(SegmentDepth, SeparatesABoxFromItsTableAndKeepsTheBoxWhole) {
   for (const float noise : {0.f, 1.f}) {
     const TableScene scene(noise);
     const DepthRegions regions = segment_depth(scene.depth, kCamera, {});
-    const std::uint16_t table = majority(regions, scene.truth, 1), top = majority(regions, scene.truth, 2);
+    const std::uint16_t table = majority(regions, scene.truth, 1),
+                        top = majority(regions, scene.truth, 2);
     const std::uint16_t front = majority(regions, scene.truth, 3);
     EXPECT_NE(table, 0);
     EXPECT_NE(top, table);
@@ -126,9 +132,11 @@ TEST(ConnectedRegions, MatchesFloodFillOnRandomMasks) {
         while (!open.empty()) {
           const Eigen::Vector2i p = open.back();
           open.pop_back();
-          for (const Eigen::Vector2i& d : {Eigen::Vector2i(1, 0), Eigen::Vector2i(-1, 0), Eigen::Vector2i(0, 1), Eigen::Vector2i(0, -1)}) {
+          for (const Eigen::Vector2i& d : {Eigen::Vector2i(1, 0), Eigen::Vector2i(-1, 0),
+                                           Eigen::Vector2i(0, 1), Eigen::Vector2i(0, -1)}) {
             const Eigen::Vector2i q = p + d;
-            if (!mask.contains(q.x(), q.y()) || !mask.at(q.x(), q.y()) || expected.at(q.x(), q.y())) continue;
+            if (!mask.contains(q.x(), q.y()) || !mask.at(q.x(), q.y()) || expected.at(q.x(), q.y()))
+              continue;
             expected.at(q.x(), q.y()) = next;
             open.push_back(q);
           }

@@ -35,11 +35,11 @@ class InverseDepth {
 };
 
 /// Sets `bit` where the surface breaks between q1[x] and q2[x], neighbours in a line q0 q1 q2 q3 of
-/// inverse depths. On a plane the second differences of inverse depth vanish, so the step counts only
-/// when it agrees with the slope on neither side.
-OVIMAP_VECTORIZE void find_breaks(const float* q0, const float* q1, const float* q2, const float* q3,
-                                  int width, const DepthSurfaceConfig& config, std::uint8_t bit,
-                                  std::uint8_t* breaks) {
+/// inverse depths. On a plane the second differences of inverse depth vanish, so the step counts
+/// only when it agrees with the slope on neither side.
+OVIMAP_VECTORIZE void find_breaks(const float* q0, const float* q1, const float* q2,
+                                  const float* q3, int width, const DepthSurfaceConfig& config,
+                                  std::uint8_t bit, std::uint8_t* breaks) {
   const float base = config.noise.base_m, slope = config.noise.quadratic_per_m;
   const float offset = config.noise.offset_m, sigmas = config.discontinuity_sigmas;
   const float ratio = config.discontinuity_ratio;
@@ -57,7 +57,8 @@ OVIMAP_VECTORIZE void find_breaks(const float* q0, const float* q1, const float*
 }
 
 /// Unbroken pixels to either side of each pixel of a row, at most `radius`.
-void find_arms(const std::uint8_t* breaks, int width, int radius, std::uint8_t* left, std::uint8_t* right) {
+void find_arms(const std::uint8_t* breaks, int width, int radius, std::uint8_t* left,
+               std::uint8_t* right) {
   left[0] = 0;
   for (int x = 1; x < width; ++x) {
     const bool broken = breaks[x - 1] & DepthSurface::kRight;
@@ -76,7 +77,8 @@ struct RowSums {
 };
 
 void sum_row(const float* q, const std::uint8_t* left, const std::uint8_t* right, int width,
-             std::vector<double>& prefix_q, std::vector<double>& prefix_qx, float* sum_q, float* sum_qu) {
+             std::vector<double>& prefix_q, std::vector<double>& prefix_qx, float* sum_q,
+             float* sum_qu) {
   prefix_q.resize(static_cast<std::size_t>(width) + 1);
   prefix_qx.resize(static_cast<std::size_t>(width) + 1);
   prefix_q[0] = prefix_qx[0] = 0;
@@ -86,7 +88,8 @@ void sum_row(const float* q, const std::uint8_t* left, const std::uint8_t* right
     prefix_qx[i + 1] = prefix_qx[i] + static_cast<double>(q[x]) * x;
   }
   for (int x = 0; x < width; ++x) {
-    const auto begin = static_cast<std::size_t>(x - left[x]), end = static_cast<std::size_t>(x + right[x] + 1);
+    const auto begin = static_cast<std::size_t>(x - left[x]),
+               end = static_cast<std::size_t>(x + right[x] + 1);
     const double window_q = prefix_q[end] - prefix_q[begin];
     sum_q[x] = static_cast<float>(window_q);
     sum_qu[x] = static_cast<float>(prefix_qx[end] - prefix_qx[begin] - x * window_q);
@@ -100,22 +103,27 @@ struct Moments {
       sums->resize(static_cast<std::size_t>(width));
   }
   void clear() {
-    for (auto* sums : {&n, &u, &uu, &v, &vv, &uv, &q, &qu, &qv}) std::fill(sums->begin(), sums->end(), 0.f);
+    for (auto* sums : {&n, &u, &uu, &v, &vv, &uv, &q, &qu, &qv})
+      std::fill(sums->begin(), sums->end(), 0.f);
   }
   std::vector<float> active, n, u, uu, v, vv, uv, q, qu, qv;
 };
 
-/// Adds the row sums of the image row `v` rows below each pixel, where the column is still unbroken.
-OVIMAP_VECTORIZE void add_row(const std::uint8_t* left, const std::uint8_t* right, const float* sum_q,
-                              const float* sum_qu, float v, int width, Moments& moments) {
+/// Adds the row sums of the image row `v` rows below each pixel, where the column is still
+/// unbroken.
+OVIMAP_VECTORIZE void add_row(const std::uint8_t* left, const std::uint8_t* right,
+                              const float* sum_q, const float* sum_qu, float v, int width,
+                              Moments& moments) {
   const float* active = moments.active.data();
-  float *n = moments.n.data(), *u = moments.u.data(), *uu = moments.uu.data(), *vs = moments.v.data();
+  float *n = moments.n.data(), *u = moments.u.data(), *uu = moments.uu.data(),
+        *vs = moments.v.data();
   float *vv = moments.vv.data(), *uv = moments.uv.data(), *q = moments.q.data();
   float *qu = moments.qu.data(), *qv = moments.qv.data();
 #pragma GCC ivdep  // the arrays never overlap
   for (int x = 0; x < width; ++x) {
     const float on = active[x];
-    const float l = static_cast<float>(static_cast<int>(left[x])), r = static_cast<float>(static_cast<int>(right[x]));
+    const float l = static_cast<float>(static_cast<int>(left[x])),
+                r = static_cast<float>(static_cast<int>(right[x]));
     const float row_n = on * (l + r + 1.f);
     const float row_u = on * 0.5f * (r * (r + 1.f) - l * (l + 1.f));
     n[x] += row_n;
@@ -131,23 +139,28 @@ OVIMAP_VECTORIZE void add_row(const std::uint8_t* left, const std::uint8_t* righ
 }
 
 /// Least squares q = a u + b v + c from the moments; writes the normal and the smoothed depth.
-OVIMAP_VECTORIZE void solve_planes(const Moments& m, const float* center_q, const PinholeCamera& camera,
-                                   int y, int width, float* __restrict normals, float* __restrict smooth_depth) {
+OVIMAP_VECTORIZE void solve_planes(const Moments& m, const float* center_q,
+                                   const PinholeCamera& camera, int y, int width,
+                                   float* __restrict normals, float* __restrict smooth_depth) {
   constexpr float kFlat = 1e-3f;  // windows thinner than this (pixels^4) hold no plane
-  const float fx = camera.fx, fy = camera.fy, cx = camera.cx, dv = camera.cy - static_cast<float>(y);
-  const float *__restrict ns = m.n.data(), *__restrict us = m.u.data(), *__restrict uus = m.uu.data();
-  const float *__restrict vs = m.v.data(), *__restrict vvs = m.vv.data(), *__restrict uvs = m.uv.data();
-  const float *__restrict qs = m.q.data(), *__restrict qus = m.qu.data(), *__restrict qvs = m.qv.data();
+  const float fx = camera.fx, fy = camera.fy, cx = camera.cx,
+              dv = camera.cy - static_cast<float>(y);
+  const float* __restrict ns = m.n.data(), * __restrict us = m.u.data(), * __restrict uus = m.uu.data();
+  const float* __restrict vs = m.v.data(), * __restrict vvs = m.vv.data(), * __restrict uvs = m.uv.data();
+  const float* __restrict qs = m.q.data(), * __restrict qus = m.qu.data(), * __restrict qvs = m.qv.data();
   for (int x = 0; x < width; ++x) {
     const float inv = 1.f / std::max(ns[x], 1.f), q0 = center_q[x];
     const float mu = us[x] * inv, mv = vs[x] * inv, mq = qs[x] * inv - q0;
-    const float cuu = uus[x] * inv - mu * mu, cvv = vvs[x] * inv - mv * mv, cuv = uvs[x] * inv - mu * mv;
-    const float cuq = (qus[x] - q0 * us[x]) * inv - mu * mq, cvq = (qvs[x] - q0 * vs[x]) * inv - mv * mq;
+    const float cuu = uus[x] * inv - mu * mu, cvv = vvs[x] * inv - mv * mv,
+                cuv = uvs[x] * inv - mu * mv;
+    const float cuq = (qus[x] - q0 * us[x]) * inv - mu * mq,
+                cvq = (qvs[x] - q0 * vs[x]) * inv - mv * mq;
     const float det = cuu * cvv - cuv * cuv;
     const float inv_det = det > kFlat ? 1.f / det : 0.f;
     const float a = (cuq * cvv - cvq * cuv) * inv_det, b = (cvq * cuu - cuq * cuv) * inv_det;
     const float c = q0 + mq - a * mu - b * mv;
-    // n . P = const for all points P on the plane, where n = (a fx, b fy, q at the principal point).
+    // n . P = const for all points P on the plane, where n = (a fx, b fy, q at the principal
+    // point).
     const float nx = a * fx, ny = b * fy, nz = c + a * (cx - static_cast<float>(x)) + b * dv;
     const float norm = std::sqrt(nx * nx + ny * ny + nz * nz);
     const bool valid = (q0 > 0.f) & (det > kFlat) & (norm > 0.f) & (c > 0.f);
@@ -186,16 +199,21 @@ void fit_row(const InverseDepth& inverse, const RowSums& sums, const PinholeCame
 }
 
 DepthSurface allocate(int width, int height, int radius_px) {
-  return {radius_px, Image<std::uint8_t>(width, height), Image<std::uint8_t>(width, height),
-          Image<std::uint8_t>(width, height), Image<float>(width, height),
+  return {radius_px,
+          Image<std::uint8_t>(width, height),
+          Image<std::uint8_t>(width, height),
+          Image<std::uint8_t>(width, height),
+          Image<float>(width, height),
           Image<Eigen::Vector3f>(width, height, Eigen::Vector3f::Zero())};
 }
 
 }  // namespace
 
 void list_fields(DepthNoiseConfig& config, ConfigFields& fields) {
-  fields.add("base_m", config.base_m, 0.f, 1.f, "depth noise at offset_m, standard deviation, metres");
-  fields.add("quadratic_per_m", config.quadratic_per_m, 0.f, 1.f, "growth of the noise with squared range, 1/m");
+  fields.add("base_m", config.base_m, 0.f, 1.f,
+             "depth noise at offset_m, standard deviation, metres");
+  fields.add("quadratic_per_m", config.quadratic_per_m, 0.f, 1.f,
+             "growth of the noise with squared range, 1/m");
   fields.add("offset_m", config.offset_m, 0.f, 10.f, "range at which the noise is least, metres");
 }
 
@@ -212,7 +230,8 @@ void list_fields(DepthSurfaceConfig& config, ConfigFields& fields) {
 DepthSurface fit_depth_surface(const DepthImage& depth, const PinholeCamera& camera,
                                const DepthSurfaceConfig& config) {
   const int width = depth.width(), height = depth.height();
-  const int radius = std::clamp(static_cast<int>(std::lround(config.normal_radius_rad * camera.fx)), 2, 100);
+  const int radius =
+      std::clamp(static_cast<int>(std::lround(config.normal_radius_rad * camera.fx)), 2, 100);
   DepthSurface surface = allocate(width, height, radius);
   const InverseDepth inverse(depth);
   RowSums sums{Image<float>(width, height), Image<float>(width, height)};
@@ -223,8 +242,8 @@ DepthSurface fit_depth_surface(const DepthImage& depth, const PinholeCamera& cam
       const float* q = inverse.row(y);
       std::uint8_t* breaks = surface.breaks.row(y);
       find_breaks(q - 1, q, q + 1, q + 2, width, config, DepthSurface::kRight, breaks);
-      find_breaks(inverse.row(y - 1), q, inverse.row(y + 1), inverse.row(y + 2),
-                  width, config, DepthSurface::kBelow, breaks);
+      find_breaks(inverse.row(y - 1), q, inverse.row(y + 1), inverse.row(y + 2), width, config,
+                  DepthSurface::kBelow, breaks);
       find_arms(breaks, width, radius, surface.left_px.row(y), surface.right_px.row(y));
       sum_row(q, surface.left_px.row(y), surface.right_px.row(y), width, prefix_q, prefix_qx,
               sums.q.row(y), sums.qu.row(y));

@@ -13,7 +13,8 @@ namespace ovimap {
 
 class ConfigFields;
 
-/// Standard deviation of depth along the optical axis, quadratic in range (Nguyen et al. 2012, Kinect).
+/// Standard deviation of depth along the optical axis, quadratic in range (Nguyen et al. 2012,
+/// Kinect).
 struct DepthNoiseConfig {
   float base_m = 0.0012f;
   float quadratic_per_m = 0.0019f;
@@ -28,8 +29,10 @@ void list_fields(DepthNoiseConfig& config, ConfigFields& fields);
 
 struct DepthSurfaceConfig {
   DepthNoiseConfig noise;
-  float discontinuity_sigmas = 5.f;   ///< a depth step this many sigmas off the slope on both sides is an edge
-  float discontinuity_ratio = 0.03f;  ///< a step beyond this share of the depth is an edge whatever the slope
+  float discontinuity_sigmas =
+      5.f;  ///< a depth step this many sigmas off the slope on both sides is an edge
+  float discontinuity_ratio =
+      0.03f;  ///< a step beyond this share of the depth is an edge whatever the slope
   float normal_radius_rad = 0.0105f;  ///< half window of the plane fit: 6 pixels at f = 585
 };
 void list_fields(DepthSurfaceConfig& config, ConfigFields& fields);
@@ -38,24 +41,25 @@ void list_fields(DepthSurfaceConfig& config, ConfigFields& fields);
 struct DepthSurface {
   enum Break : std::uint8_t { kRight = 1, kBelow = 2 };
 
-  int radius_px = 0;              ///< half window of the plane fit
-  Image<std::uint8_t> breaks;     ///< bits: the surface does not go on to the right / lower neighbour
-  Image<std::uint8_t> left_px;    ///< unbroken pixels to the left, at most radius_px
-  Image<std::uint8_t> right_px;   ///< unbroken pixels to the right, at most radius_px
-  Image<float> smooth_depth_m;    ///< depth of the fitted plane; 0 where depth is invalid
-  Image<Eigen::Vector3f> normals; ///< unit, towards the camera, camera frame; 0 where no plane fits
+  int radius_px = 0;            ///< half window of the plane fit
+  Image<std::uint8_t> breaks;   ///< bits: the surface does not go on to the right / lower neighbour
+  Image<std::uint8_t> left_px;  ///< unbroken pixels to the left, at most radius_px
+  Image<std::uint8_t> right_px;  ///< unbroken pixels to the right, at most radius_px
+  Image<float> smooth_depth_m;   ///< depth of the fitted plane; 0 where depth is invalid
+  Image<Eigen::Vector3f>
+      normals;  ///< unit, towards the camera, camera frame; 0 where no plane fits
 };
 
 /// Fits a plane to the unbroken neighbourhood of every pixel of `depth` (metres, 0 = invalid).
 ///
-/// A plane is linear in inverse depth (1/z = a u + b v + c), so its least-squares fit needs only window
-/// sums. The window is cut at depth discontinuities, first along rows, then along columns (cross-based
-/// aggregation, Zhang et al. 2009), which costs a constant per pixel in the row pass.
+/// A plane is linear in inverse depth (1/z = a u + b v + c), so its least-squares fit needs only
+/// window sums. The window is cut at depth discontinuities, first along rows, then along columns
+/// (cross-based aggregation, Zhang et al. 2009), which costs a constant per pixel in the row pass.
 DepthSurface fit_depth_surface(const DepthImage& depth, const PinholeCamera& camera,
                                const DepthSurfaceConfig& config);
 
-/// Standard deviation (radians) of a fitted normal facing the camera at `depth_m`, for a full window of
-/// independent samples.
+/// Standard deviation (radians) of a fitted normal facing the camera at `depth_m`, for a full
+/// window of independent samples.
 float normal_sigma_rad(float depth_m, int radius_px, const PinholeCamera& camera,
                        const DepthNoiseConfig& noise);
 

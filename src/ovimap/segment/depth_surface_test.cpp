@@ -18,11 +18,13 @@ DepthImage plane(const Eigen::Vector3f& normal, float distance_m) {
   DepthImage depth(kCamera.width, kCamera.height);
   for (int y = 0; y < depth.height(); ++y)
     for (int x = 0; x < depth.width(); ++x)
-      depth.at(x, y) = distance_m / normal.dot(kCamera.unproject(static_cast<float>(x), static_cast<float>(y), 1.f));
+      depth.at(x, y) = distance_m / normal.dot(kCamera.unproject(static_cast<float>(x),
+                                                                 static_cast<float>(y), 1.f));
   return depth;
 }
 
-/// The same sums gathered pixel by pixel over the rows' unbroken windows: what the fast path must equal.
+/// The same sums gathered pixel by pixel over the rows' unbroken windows: what the fast path must
+/// equal.
 Eigen::Vector3f naive_normal(const DepthImage& depth, const DepthSurface& surface, int x, int y) {
   Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
@@ -70,7 +72,8 @@ TEST(DepthSurface, MatchesThePixelwiseFitOnNoisyDepthWithHolesAndSteps) {
   for (int y = 0; y < depth.height(); ++y) {
     for (int x = 0; x < depth.width(); ++x) {
       if (surface.normals.at(x, y).isZero()) continue;
-      ASSERT_NEAR(surface.normals.at(x, y).dot(naive_normal(depth, surface, x, y)), 1.f, 2e-4f) << x << "," << y;
+      ASSERT_NEAR(surface.normals.at(x, y).dot(naive_normal(depth, surface, x, y)), 1.f, 2e-4f)
+          << x << "," << y;
       ++compared;
     }
   }
@@ -78,7 +81,8 @@ TEST(DepthSurface, MatchesThePixelwiseFitOnNoisyDepthWithHolesAndSteps) {
 }
 
 TEST(DepthSurface, BreaksAtAStepAndNotOnASteepPlane) {
-  const DepthSurface steep = fit_depth_surface(plane(Eigen::Vector3f(0.94f, 0.f, 0.34f).normalized(), 0.5f), kCamera, {});
+  const DepthSurface steep =
+      fit_depth_surface(plane(Eigen::Vector3f(0.94f, 0.f, 0.34f).normalized(), 0.5f), kCamera, {});
   EXPECT_EQ(steep.breaks.at(70, 60), 0);
   DepthImage depth = plane(Eigen::Vector3f::UnitZ(), 1.f);
   for (int y = 0; y < depth.height(); ++y)

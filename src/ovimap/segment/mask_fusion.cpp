@@ -17,7 +17,8 @@ using RegionEntity = std::pair<std::uint16_t, std::uint16_t>;
 /// Pixels per (region, entity) pair; region 0 holds valid depth outside every region.
 using Overlaps = std::map<RegionEntity, int>;
 
-Overlaps count_overlaps(const DepthRegions& regions, const IdImage& entity_ids, const DepthImage& depth) {
+Overlaps count_overlaps(const DepthRegions& regions, const IdImage& entity_ids,
+                        const DepthImage& depth) {
   Overlaps overlaps;
   for (std::size_t i = 0; i < depth.size();) {  // runs of equal pairs cost one look-up
     const RegionEntity pair{regions.ids[i], entity_ids[i]};
@@ -36,9 +37,11 @@ class Assignment {
       : config_(config), overlaps_(overlaps) {
     for (const auto& [pair, count] : overlaps) entity_area_[pair.second] += count;
     for (std::size_t i = 0; i < regions.regions.size(); ++i)
-      if (regions.regions[i].area_px >= config.min_region_px) assign_region(static_cast<std::uint16_t>(i + 1), regions.regions[i].area_px);
+      if (regions.regions[i].area_px >= config.min_region_px)
+        assign_region(static_cast<std::uint16_t>(i + 1), regions.regions[i].area_px);
     for (auto found = overlaps.begin(); found != overlaps.end() && found->first.first == 0; ++found)
-      if (found->first.second != 0 && found->second >= config.min_entity_px) assign(found->first, found->first.second);
+      if (found->first.second != 0 && found->second >= config.min_entity_px)
+        assign(found->first, found->first.second);
   }
 
   std::uint16_t segment_of(const RegionEntity& pair) const {
@@ -49,7 +52,8 @@ class Assignment {
 
  private:
   bool splits(int count, int entity_area, int region_area) const {
-    return static_cast<float>(count) > config_.split_entity_share * static_cast<float>(entity_area) &&
+    return static_cast<float>(count) >
+               config_.split_entity_share * static_cast<float>(entity_area) &&
            static_cast<float>(count) < config_.split_region_share * static_cast<float>(region_area);
   }
 
@@ -68,7 +72,8 @@ class Assignment {
         best_count = count, best_entity = pair.second;
       }
     }
-    if (static_cast<float>(best_count) < config_.adopt_region_share * static_cast<float>(rest_area)) best_entity = 0;
+    if (static_cast<float>(best_count) < config_.adopt_region_share * static_cast<float>(rest_area))
+      best_entity = 0;
     add_rest(region, best_entity, begin, end);
   }
 
@@ -83,7 +88,9 @@ class Assignment {
     }
   }
 
-  void assign(const RegionEntity& pair, std::uint16_t entity) { segment_of_[pair] = new_segment(entity); }
+  void assign(const RegionEntity& pair, std::uint16_t entity) {
+    segment_of_[pair] = new_segment(entity);
+  }
 
   std::uint16_t new_segment(std::uint16_t entity) {
     segments.push_back({entity, 0});
@@ -99,11 +106,16 @@ class Assignment {
 }  // namespace
 
 void list_fields(MaskFusionConfig& config, ConfigFields& fields) {
-  fields.add("min_region_px", config.min_region_px, 1, 1000000, "smaller geometric regions take no part, pixels");
-  fields.add("min_entity_px", config.min_entity_px, 1, 1000000, "least depth pixels of an entity outside all regions");
-  fields.add("split_entity_share", config.split_entity_share, 0.f, 1.f, "share of an entity inside a region to split it off");
-  fields.add("split_region_share", config.split_region_share, 0.f, 1.f, "largest share of the region that is split off");
-  fields.add("adopt_region_share", config.adopt_region_share, 0.f, 1.f, "share of a region an entity covers to own its rest");
+  fields.add("min_region_px", config.min_region_px, 1, 1000000,
+             "smaller geometric regions take no part, pixels");
+  fields.add("min_entity_px", config.min_entity_px, 1, 1000000,
+             "least depth pixels of an entity outside all regions");
+  fields.add("split_entity_share", config.split_entity_share, 0.f, 1.f,
+             "share of an entity inside a region to split it off");
+  fields.add("split_region_share", config.split_region_share, 0.f, 1.f,
+             "largest share of the region that is split off");
+  fields.add("adopt_region_share", config.adopt_region_share, 0.f, 1.f,
+             "share of a region an entity covers to own its rest");
 }
 
 Segments fuse_masks(const DepthRegions& regions, const IdImage& entity_ids, const DepthImage& depth,

@@ -10,11 +10,13 @@
 namespace ovimap {
 
 struct MaskFusionConfig {
-  int min_region_px = 100;            ///< smaller geometric regions take no part
-  int min_entity_px = 100;            ///< an entity outside all regions needs this many valid depth pixels
-  float split_entity_share = 0.9f;    ///< an entity is split off when more than this share of it lies in the region
-  float split_region_share = 0.5f;    ///< ... and it covers less than this share of the region
-  float adopt_region_share = 0.2f;    ///< the rest of a region takes an entity that covers at least this share
+  int min_region_px = 100;  ///< smaller geometric regions take no part
+  int min_entity_px = 100;  ///< an entity outside all regions needs this many valid depth pixels
+  float split_entity_share =
+      0.9f;  ///< an entity is split off when more than this share of it lies in the region
+  float split_region_share = 0.5f;  ///< ... and it covers less than this share of the region
+  float adopt_region_share =
+      0.2f;  ///< the rest of a region takes an entity that covers at least this share
 };
 void list_fields(MaskFusionConfig& config, ConfigFields& fields);
 
@@ -31,9 +33,10 @@ struct Segments {
 
 /// Cuts geometric regions by 2D entities (MaskFusion, paper section 3.1; method section 3).
 ///
-/// `entity_ids`: entity of each depth pixel (already registered to the depth camera; 0 = none), same
-/// size as `regions.ids`. The result depends only on the sets of pixels, not on how entities are numbered
-/// (two entities that cover exactly as much of a region excepted: the lower id takes the rest).
+/// `entity_ids`: entity of each depth pixel (already registered to the depth camera; 0 = none),
+/// same size as `regions.ids`. The result depends only on the sets of pixels, not on how entities
+/// are numbered (two entities that cover exactly as much of a region excepted: the lower id takes
+/// the rest).
 Segments fuse_masks(const DepthRegions& regions, const IdImage& entity_ids, const DepthImage& depth,
                     const MaskFusionConfig& config);
 

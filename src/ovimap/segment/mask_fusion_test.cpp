@@ -39,7 +39,8 @@ TEST(FuseMasks, SplitsSmallEntitiesOffAndTheRestTakesTheLargest) {
 }
 
 TEST(FuseMasks, KeepsARegionWithoutEnoughEntityAsBackground) {
-  // Entity 1 is mostly in region 2, so it is not split off region 1, of which it covers 10 of 60 columns.
+  // Entity 1 is mostly in region 2, so it is not split off region 1, of which it covers 10 of 60
+  // columns.
   const Segments result = fuse_masks(regions_of(columns({{0, 60, 1}, {60, 100, 2}}), 2),
                                      columns({{50, 100, 1}}), kDepth, {});
   ASSERT_EQ(result.segments.size(), 2u);
@@ -49,14 +50,20 @@ TEST(FuseMasks, KeepsARegionWithoutEnoughEntityAsBackground) {
 
 TEST(FuseMasks, DoesNotDependOnEntityNumbers) {
   const DepthRegions regions = regions_of(columns({{0, 100, 1}}), 1);
-  const Segments a = fuse_masks(regions, columns({{0, 45, 1}, {45, 90, 2}, {90, 100, 3}}), kDepth, {});
-  const Segments b = fuse_masks(regions, columns({{0, 45, 9}, {45, 90, 4}, {90, 100, 2}}), kDepth, {});
-  const auto same_cut = [](const IdImage& ids, int x1, int x2) { return ids.at(x1, 0) == ids.at(x2, 0); };
-  for (int x = 1; x < 100; ++x) EXPECT_EQ(same_cut(a.ids, x - 1, x), same_cut(b.ids, x - 1, x)) << x;
+  const Segments a =
+      fuse_masks(regions, columns({{0, 45, 1}, {45, 90, 2}, {90, 100, 3}}), kDepth, {});
+  const Segments b =
+      fuse_masks(regions, columns({{0, 45, 9}, {45, 90, 4}, {90, 100, 2}}), kDepth, {});
+  const auto same_cut = [](const IdImage& ids, int x1, int x2) {
+    return ids.at(x1, 0) == ids.at(x2, 0);
+  };
+  for (int x = 1; x < 100; ++x)
+    EXPECT_EQ(same_cut(a.ids, x - 1, x), same_cut(b.ids, x - 1, x)) << x;
 }
 
 TEST(FuseMasks, FoundsASegmentForAnEntityOutsideEveryRegion) {
-  const Segments result = fuse_masks(regions_of(columns({{0, 50, 1}}), 1), columns({{70, 90, 5}}), kDepth, {});
+  const Segments result =
+      fuse_masks(regions_of(columns({{0, 50, 1}}), 1), columns({{70, 90, 5}}), kDepth, {});
   ASSERT_EQ(result.segments.size(), 2u);
   EXPECT_EQ(result.segments[result.ids.at(80, 0) - 1u].entity, 5);
   EXPECT_EQ(result.ids.at(60, 0), 0);

@@ -120,7 +120,9 @@ std::optional<FurnitureEntry> entry_of(const Properties& properties, const Prope
 
 }  // namespace
 
-std::filesystem::path default_furniture_folder() { return "/usr/share/sweethome3d/furniture"; }
+std::filesystem::path default_furniture_folder() {
+  return "/usr/share/sweethome3d/furniture";
+}
 
 std::vector<FurnitureEntry> parse_furniture_properties(const std::string& text,
                                                        const std::filesystem::path& archive) {

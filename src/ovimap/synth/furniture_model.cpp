@@ -7,13 +7,13 @@
 #include <map>
 #include <optional>
 
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
 #include <Eigen/Geometry>
 #include <assimp/IOStream.hpp>
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
-#include <assimp/config.h>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
 
 #include "ovimap/base/error.h"
 #include "ovimap/image/codec.h"
@@ -74,7 +74,9 @@ class ArchiveFiles final : public Assimp::IOSystem {
   const ZipArchive& archive_;
 };
 
-Eigen::Vector3f vector_of(const aiVector3D& v) { return {v.x, v.y, v.z}; }
+Eigen::Vector3f vector_of(const aiVector3D& v) {
+  return {v.x, v.y, v.z};
+}
 
 class MaterialLoader {
  public:

@@ -28,7 +28,9 @@ constexpr double kTurnCost = 0.25;    // of a turn by the full reach
 constexpr double kBeyondReach = 1e3;  // cost of a turn by more than that
 constexpr int kSweeps = 12;
 
-double wrapped(double angle) { return std::remainder(angle, 2 * kPi); }
+double wrapped(double angle) {
+  return std::remainder(angle, 2 * kPi);
+}
 
 /// Something worth looking at.
 struct Sight {

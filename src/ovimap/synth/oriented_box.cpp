@@ -8,8 +8,12 @@
 
 namespace ovimap {
 
-Eigen::Vector2f OrientedBox::x_axis() const { return {std::cos(yaw_rad), std::sin(yaw_rad)}; }
-Eigen::Vector2f OrientedBox::y_axis() const { return {-std::sin(yaw_rad), std::cos(yaw_rad)}; }
+Eigen::Vector2f OrientedBox::x_axis() const {
+  return {std::cos(yaw_rad), std::sin(yaw_rad)};
+}
+Eigen::Vector2f OrientedBox::y_axis() const {
+  return {-std::sin(yaw_rad), std::cos(yaw_rad)};
+}
 
 Eigen::Vector2f OrientedBox::world_from_box(const Eigen::Vector2f& point) const {
   return center_m + point.x() * x_axis() + point.y() * y_axis();

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Geometry>
 #include <embree3/rtcore.h>
+#include <Eigen/Geometry>
 
 namespace ovimap {
 namespace {

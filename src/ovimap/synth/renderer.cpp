@@ -135,6 +135,8 @@ RenderedView Renderer::render(const PinholeCamera& camera, const Pose& world_fro
   return view;
 }
 
-const RayScene& Renderer::scene() const { return state_->tracer.scene(); }
+const RayScene& Renderer::scene() const {
+  return state_->tracer.scene();
+}
 
 }  // namespace ovimap

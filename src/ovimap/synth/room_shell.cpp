@@ -18,7 +18,9 @@ const Eigen::Vector3f kCeilingColor(0.82f, 0.81f, 0.79f);
 
 enum ShellStream : std::uint64_t { kFloorStream = 101, kWallStream = 102 };
 
-Eigen::Vector3f at_height(const Eigen::Vector2f& plan, float z) { return {plan.x(), plan.y(), z}; }
+Eigen::Vector3f at_height(const Eigen::Vector2f& plan, float z) {
+  return {plan.x(), plan.y(), z};
+}
 
 SurfaceMaterial textured(const SurfacePattern& pattern) {
   SurfaceMaterial material;

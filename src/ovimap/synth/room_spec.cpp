@@ -53,7 +53,9 @@ RoomSpec tiny_spec() {
 
 }  // namespace
 
-std::vector<std::string> room_names() { return {"bare", "tiny"}; }
+std::vector<std::string> room_names() {
+  return {"bare", "tiny"};
+}
 
 RoomSpec room_spec(const std::string& name, std::uint64_t seed) {
   RoomSpec spec;

@@ -55,10 +55,18 @@ SynthSequence::~SynthSequence() = default;
 SynthSequence::SynthSequence(SynthSequence&&) noexcept = default;
 SynthSequence& SynthSequence::operator=(SynthSequence&&) noexcept = default;
 
-std::int64_t SynthSequence::size() const { return static_cast<std::int64_t>(state_->poses.size()); }
-const SynthRoom& SynthSequence::room() const { return state_->room; }
-const PinholeCamera& SynthSequence::camera() const { return state_->camera; }
-const std::vector<Pose>& SynthSequence::true_poses() const { return state_->poses; }
+std::int64_t SynthSequence::size() const {
+  return static_cast<std::int64_t>(state_->poses.size());
+}
+const SynthRoom& SynthSequence::room() const {
+  return state_->room;
+}
+const PinholeCamera& SynthSequence::camera() const {
+  return state_->camera;
+}
+const std::vector<Pose>& SynthSequence::true_poses() const {
+  return state_->poses;
+}
 
 FrameRead SynthSequence::read(std::int64_t position) const {
   if (position < 0 || position >= size())

@@ -17,7 +17,9 @@ namespace {
 
 const PinholeCamera kSmall{64, 48, 48, 48, 31.5f, 23.5f};
 
-bool furniture_installed() { return std::filesystem::is_directory(default_furniture_folder()); }
+bool furniture_installed() {
+  return std::filesystem::is_directory(default_furniture_folder());
+}
 
 std::string error_of(const RoomSpec& spec, const std::filesystem::path& folder) {
   try {

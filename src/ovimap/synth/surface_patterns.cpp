@@ -26,7 +26,9 @@ float smooth_step(float low, float high, float x) {
   return t * t * (3 - 2 * t);
 }
 
-Color mixed(const Color& a, const Color& b, float share_of_b) { return a + (b - a) * share_of_b; }
+Color mixed(const Color& a, const Color& b, float share_of_b) {
+  return a + (b - a) * share_of_b;
+}
 
 /// Smooth random values in [0, 1] on a lattice that repeats after `period` cells.
 class LatticeNoise {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Geometry>
 #include <tsl/robin_map.h>
+#include <Eigen/Geometry>
 
 #include "ovimap/base/config.h"
 #include "ovimap/base/parallel.h"

@@ -111,7 +111,9 @@ float WalkMap::cost(const Eigen::Vector2f& point_m) const {
   return cell < 0 ? kBlocked : costs_[static_cast<std::size_t>(cell)];
 }
 
-bool WalkMap::blocked(const Eigen::Vector2f& point_m) const { return cost(point_m) == kBlocked; }
+bool WalkMap::blocked(const Eigen::Vector2f& point_m) const {
+  return cost(point_m) == kBlocked;
+}
 
 std::vector<Eigen::Vector2f> WalkMap::way(const Eigen::Vector2f& from_m,
                                           const Eigen::Vector2f& to_m) const {
