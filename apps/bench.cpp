@@ -30,10 +30,20 @@ std::string processor_name() {
   return "unknown";
 }
 
+/// Removes the file when it goes out of scope, whatever happened meanwhile.
+struct RemoveLater {
+  std::filesystem::path path;
+  ~RemoveLater() {
+    std::error_code ignored;
+    std::filesystem::remove(path, ignored);
+  }
+};
+
 /// Saves the map beside other temporary files and returns its size, removing it again.
 std::uintmax_t saved_bytes(const MapDocument& document, StageTimers& timers) {
   const auto path = std::filesystem::temp_directory_path() /
                     ("ovimap-bench-" + std::to_string(getpid()) + ".ovimap");
+  const RemoveLater removal{path};
   {
     auto t = timers.measure("save");
     save_map(path, document);
@@ -43,13 +53,13 @@ std::uintmax_t saved_bytes(const MapDocument& document, StageTimers& timers) {
     load_map(path);
   }
   const std::uintmax_t bytes = std::filesystem::file_size(path);
-  std::filesystem::remove(path);
   return bytes;
 }
 
 int bench(const BenchOptions& options) {
   const ThreadLimit limit(options.mapping.threads);
-  const ProgramConfig config = read_program_config(options.mapping);
+  ProgramConfig config = read_program_config(options.mapping);
+  config.masks.runtime.threads = network_threads(config, options.mapping);
   const auto source = open_frame_source(options.mapping.source, config.source);
   const auto range = positions(parse_frame_range(options.mapping.frames), source->size());
   Mapper mapper(config.mapper, make_mask_source(options.mapping.masks, config.masks,

@@ -56,6 +56,9 @@ void list_fields(ProgramConfig& config, ConfigFields& fields);
 /// Preset, then file, then settings. Throws Error for what is unknown.
 ProgramConfig read_program_config(const MappingOptions& options);
 
+/// Threads of a network run: what the config says, else what --threads says.
+int network_threads(const ProgramConfig& config, const MappingOptions& options);
+
 /// One line on stderr, rewritten as work goes on; silent when stderr is no terminal.
 class Progress {
  public:

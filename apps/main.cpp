@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 #include <exception>
+#include <iostream>
 #include <map>
 
 #include "command.h"
@@ -24,7 +25,9 @@ constexpr Entry kCommands[] = {
     {"export", "write a map as mesh, JSON or picture", add_export},
     {"eval", "score maps against the truth", add_eval},
     {"bench", "measure speed and memory on a recording", add_bench},
+#ifdef OVIMAP_SYNTH
     {"synth", "render a furnished room with exact truth", add_synth},
+#endif
     {"models", "list, verify and find networks", add_models},
     {"config", "list every setting with its default", add_config},
 };
@@ -48,12 +51,18 @@ int main(int argc, char** argv) {
   }
   try {
     app.parse(argc, argv);
-    return actions.at(app.get_subcommands().front())();
+    const int code = actions.at(app.get_subcommands().front())();
+    std::cout.flush();
+    if (std::fflush(stdout) != 0 || !std::cout)
+      return complain("cannot write to standard output; is the disk full?", kUserCanMend);
+    return code;
   } catch (const CLI::Success& success) {
     return app.exit(success);  // --help and --version
   } catch (const CLI::ParseError& error) {
     return complain((std::string(error.what()) + "; see ovimap --help").c_str(), kUserCanMend);
   } catch (const ovimap::Error& error) {
+    return complain(error.what(), kUserCanMend);
+  } catch (const std::filesystem::filesystem_error& error) {
     return complain(error.what(), kUserCanMend);
   } catch (const std::bad_alloc&) {
     return complain(

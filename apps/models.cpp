@@ -43,8 +43,12 @@ int verify(const ModelsOptions& options) {
 }
 
 int path(const ModelsOptions& options) {
-  for (const std::filesystem::path& folder : model_search_path(options.model_dirs))
-    std::printf("%s\n", folder.c_str());
+  nlohmann::json folders = nlohmann::json::array();
+  for (const std::filesystem::path& folder : model_search_path(options.model_dirs)) {
+    folders.push_back(folder.string());
+    if (!options.json) std::printf("%s\n", folder.c_str());
+  }
+  if (options.json) print_json({{"path", folders}});
   return kDone;
 }
 

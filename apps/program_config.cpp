@@ -46,13 +46,29 @@ ProgramConfig read_program_config(const MappingOptions& options) {
   return config;
 }
 
+int network_threads(const ProgramConfig& config, const MappingOptions& options) {
+  return config.masks.runtime.threads > 0 ? config.masks.runtime.threads : options.threads;
+}
+
 Action add_config(CLI::App& command) {
   auto markdown = std::make_shared<bool>(false);
+  auto json = std::make_shared<bool>(false);
+  command.add_flag("--json", *json, "print one JSON object");
   command.add_flag("--markdown", *markdown, "as the reference page");
-  return [markdown] {
+  return [markdown, json] {
     ProgramConfig config;
     ConfigFields fields;
     list_fields(config, fields);
+    if (*json) {
+      nlohmann::json settings = nlohmann::json::array();
+      for (const ConfigField& field : fields.fields())
+        settings.push_back({{"name", field.name},
+                            {"default", field.get()},
+                            {"accepts", field.accepts},
+                            {"help", field.help}});
+      print_json({{"settings", settings}});
+      return int{kDone};
+    }
     if (!*markdown) {
       std::fputs(fields.dump().c_str(), stdout);
       return int{kDone};

@@ -20,22 +20,30 @@ struct RunOptions {
 };
 
 void report_skipped(const SequenceResult& result) {
-  std::map<std::string, std::pair<int, std::int64_t>> faults;
-  for (const SkippedFrame& frame : result.skipped) {
-    auto& [count, first] = faults.try_emplace(frame.fault, 0, frame.position).first->second;
-    ++count;
-  }
-  for (const auto& [fault, where] : faults)
-    std::fprintf(stderr, "ovimap: skipped %d frame(s), first at %lld: %s\n", where.first,
-                 static_cast<long long>(where.second), fault.c_str());
+  std::vector<std::string> faults;
+  for (const SkippedFrame& frame : result.skipped) faults.push_back(frame.fault);
+  for (const FaultCount& fault : count_faults(faults))
+    std::fprintf(stderr, "ovimap: skipped %lld frame(s), the first: %s\n",
+                 static_cast<long long>(fault.frames), fault.example.c_str());
+  if (interrupted()) std::fprintf(stderr, "ovimap: interrupted; saving what was mapped so far\n");
+}
+
+/// The settings that made the map, with what the command line chose beside them.
+std::string effective_config(ProgramConfig config, const MappingOptions& options,
+                             const Mapper& mapper) {
+  config.mapper = mapper.config();
+  ConfigFields fields;
+  list_fields(config, fields);
+  return concat("# preset ", options.preset, ", masks ", options.masks, ", frames ", options.frames,
+                "\n", fields.dump());
 }
 
 int run(const RunOptions& options) {
   const ThreadLimit limit(options.mapping.threads);
   ProgramConfig config = read_program_config(options.mapping);
-  ConfigFields fields;
-  list_fields(config, fields);
+  config.masks.runtime.threads = network_threads(config, options.mapping);
   check_map_target(options.map);
+  if (!options.pictures.empty()) make_folder(options.pictures);
   const auto source = open_frame_source(options.mapping.source, config.source);
   const auto range = positions(parse_frame_range(options.mapping.frames), source->size());
   auto masks = make_mask_source(options.mapping.masks, config.masks,
@@ -60,9 +68,11 @@ int run(const RunOptions& options) {
                             {"fps", static_cast<double>(result.frames.size()) / result.seconds},
                             {"mask_frames", mapper.mask_frames()},
                             {"embedding_queries", 0},
+                            {"interrupted", interrupted()},
                             {"stages", stages_json(mapper.timers())}};
+  const std::string config_text = effective_config(config, options.mapping, mapper);
   const MapDocument document = make_document(
-      std::move(mapper), result, source->kind() + ":" + options.mapping.source, fields.dump());
+      std::move(mapper), result, source->kind() + ":" + options.mapping.source, config_text);
   save_map(options.map, document);
   if (!options.pictures.empty()) write_map_pictures(options.pictures, document, *source);
   summary["instances"] = document.instances.size();

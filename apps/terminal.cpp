@@ -34,7 +34,8 @@ void Progress::show(std::size_t done, std::size_t total, const std::string& deta
 }
 
 void print_json(const nlohmann::json& value) {
-  std::cout << value.dump(2) << std::endl;
+  // Paths may hold bytes that are no UTF-8; the rest of the answer is worth printing all the same.
+  std::cout << value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << std::endl;
 }
 
 nlohmann::json stages_json(const StageTimers& timers) {
@@ -58,6 +59,7 @@ bool interrupted() {
 }
 void watch_for_interrupt() {
   std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
 }
 
 }  // namespace ovimap::apps

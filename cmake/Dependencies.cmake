@@ -17,9 +17,9 @@ pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd)
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 
 find_path(ONNXRUNTIME_INCLUDE_DIR onnxruntime_cxx_api.h
-  HINTS "${PROJECT_SOURCE_DIR}/.deps/onnxruntime/include"
+  PATHS "${PROJECT_SOURCE_DIR}/.deps/onnxruntime/include"
   PATH_SUFFIXES onnxruntime onnxruntime/core/session)
-find_library(ONNXRUNTIME_LIBRARY onnxruntime HINTS "${PROJECT_SOURCE_DIR}/.deps/onnxruntime/lib")
+find_library(ONNXRUNTIME_LIBRARY onnxruntime PATHS "${PROJECT_SOURCE_DIR}/.deps/onnxruntime/lib")
 if(NOT ONNXRUNTIME_INCLUDE_DIR OR NOT ONNXRUNTIME_LIBRARY)
   message(FATAL_ERROR "ONNX Runtime was not found. Run tools/setup.sh, or set "
     "ONNXRUNTIME_INCLUDE_DIR and ONNXRUNTIME_LIBRARY.")

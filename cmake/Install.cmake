@@ -1,12 +1,17 @@
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
-include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 get_property(modules GLOBAL PROPERTY OVIMAP_MODULES)
 install(TARGETS ${modules} EXPORT ovimapTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/src/ovimap" DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
   FILES_MATCHING PATTERN "*.h" PATTERN "*_fixture.h" EXCLUDE PATTERN "test_support.h" EXCLUDE PATTERN "testdata" EXCLUDE)
+# ONNX Runtime travels along when it is no system library.
+file(REAL_PATH "${ONNXRUNTIME_LIBRARY}" onnxruntime_file)
+cmake_path(IS_PREFIX PROJECT_SOURCE_DIR "${onnxruntime_file}" NORMALIZE onnxruntime_is_ours)
+if(onnxruntime_is_ours)
+  install(FILES "${onnxruntime_file}" DESTINATION ${CMAKE_INSTALL_LIBDIR} RENAME libonnxruntime.so.1)
+endif()
 install(EXPORT ovimapTargets NAMESPACE ovimap:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/ovimap)
 configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/ovimapConfig.cmake.in"
   "${PROJECT_BINARY_DIR}/ovimapConfig.cmake" INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/ovimap)

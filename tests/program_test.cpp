@@ -25,12 +25,15 @@ TEST_F(ProgramTest, MapsARecordingAndTellsWhatIsInIt) {
 }
 
 TEST_F(ProgramTest, SameMapForEveryRunAndThreadCount) {
-  std::set<std::string> hashes;
+  std::set<std::string> hashes, objects;
   for (const char* options : {"--threads 1", "--threads 2", "--threads 2"}) {
-    run(std::string("run recording -o room.ovimap ") + options);
-    hashes.insert(run_json("info room.ovimap --json")["content_hash"].get<std::string>());
+    run(std::string("run replica/scene --masks gt -o room.ovimap ") + options);
+    const auto info = run_json("info room.ovimap --json");
+    hashes.insert(info["content_hash"].get<std::string>());
+    objects.insert(info["instances"].dump());
   }
   EXPECT_EQ(hashes.size(), 1u);
+  EXPECT_EQ(objects.size(), 1u);
 }
 
 TEST_F(ProgramTest, TruthMasksGiveTheTrueObjects) {
@@ -49,6 +52,10 @@ TEST_F(ProgramTest, ExportsMeshObjectsAndPicture) {
   EXPECT_EQ(slurp(path("a.ply")).substr(0, 3), "ply");
   for (const char* file : {"top_view.png", "contact_sheet.png"})
     EXPECT_TRUE(std::filesystem::exists(path("pictures") / file));
+}
+
+TEST_F(ProgramTest, TheReferencePresetMapsToo) {
+  EXPECT_GT(run_json("run recording -o room.ovimap --preset reference --json")["instances"], 0);
 }
 
 TEST_F(ProgramTest, SkipsAndCountsBadFrames) {
@@ -76,6 +83,7 @@ TEST_F(ProgramTest, SaysWhatIsWrongWithTheCommandLine) {
   expect_complaint("run recording", {"output"});
   expect_complaint("run recording -o a.ovimap --set map.voxel=1", {"map.voxel_size_m"});
   expect_complaint("run recording -o a.ovimap --set map.voxel_size_m=-1", {"0.001 to 1"});
+  expect_complaint("run recording -o a.ovimap --config .", {"is a folder"});
   expect_complaint("run recording -o a.ovimap --preset best", {"default or reference"});
   expect_complaint("run recording -o a.ovimap --masks nothing_such", {"nothing_such"});
   expect_complaint("run recording -o a.ovimap --masks gt", {"gt"});

@@ -82,8 +82,10 @@ void assign_trajectory(const Trajectory& trajectory, double max_gap_s,
   const PoseTimeline timeline(trajectory);
   const auto lines = static_cast<double>(trajectory.size());
   std::vector<std::int64_t> numbers;
-  bool any_near = false, numbered = true;
-  for (RecordedFrame& frame : frames) {
+  std::size_t near = 0;
+  bool numbered = true;
+  std::vector<RecordedFrame> by_time = frames;
+  for (RecordedFrame& frame : by_time) {
     const auto stem = parse_numbers(frame.name);
     const double number = stem && stem->size() == 1 ? stem->front() : -1;
     numbered &= number >= 0 && number < lines;
@@ -93,10 +95,16 @@ void assign_trajectory(const Trajectory& trajectory, double max_gap_s,
       frame.timestamp_s = number;
       frame.pose = pose->matrix;
       frame.pose_origin = pose->origin;
-      any_near = true;
+      ++near;
     }
   }
-  if (any_near) return;
+  // Names that count 0, 1, 2 ... hit a time by chance now and then. They are times when nearly all
+  // hit, or when most do and the lines are not one for each image.
+  const bool as_many = trajectory.size() == frames.size();
+  if (near * 10 >= frames.size() * 9 || (!as_many && near * 2 > frames.size())) {
+    frames = std::move(by_time);
+    return;
+  }
   if (trajectory.size() != frames.size() && (!numbered || !timeline.empty()))
     throw Error(concat(frames.front().color.parent_path().string(), " has ", frames.size(),
                        " images, but the pose file ", trajectory.size(),

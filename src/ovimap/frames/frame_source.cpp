@@ -60,4 +60,22 @@ std::vector<std::int64_t> positions(const FrameRange& range, std::int64_t size) 
   return result;
 }
 
+std::vector<FaultCount> count_faults(const std::vector<std::string>& faults) {
+  std::vector<FaultCount> counts;
+  for (const std::string& fault : faults) {
+    const std::size_t colon = fault.find(": ");
+    const std::string phrase = colon == std::string::npos ? fault : fault.substr(colon + 2);
+    const auto known = std::find_if(counts.begin(), counts.end(), [&](const FaultCount& count) {
+      return count.phrase == phrase;
+    });
+    if (known == counts.end())
+      counts.push_back({phrase, fault, 1});
+    else
+      ++known->frames;
+  }
+  std::stable_sort(counts.begin(), counts.end(),
+                   [](const FaultCount& a, const FaultCount& b) { return a.frames > b.frames; });
+  return counts;
+}
+
 }  // namespace ovimap

@@ -29,6 +29,16 @@ struct FrameRead {
   std::string fault;  ///< "FILE: PHRASE", as "frame-000005.depth.png: is 320x240, expected 640x480"
 };
 
+/// Frames that cannot be used for one and the same reason.
+struct FaultCount {
+  std::string phrase;   ///< without the file name
+  std::string example;  ///< FrameRead::fault of the first
+  std::int64_t frames = 0;
+};
+
+/// Groups faults ("FILE: PHRASE") by their phrase, the most frequent first.
+std::vector<FaultCount> count_faults(const std::vector<std::string>& faults);
+
 /// A recorded sequence of frames. Reading is thread-safe and never throws for a bad frame.
 class FrameSource {
  public:

@@ -31,28 +31,12 @@ void add(CheckReport& report, Severity severity, const char* name, std::string m
   report.findings.push_back({severity, name, std::move(message), std::move(remedy)});
 }
 
-std::vector<FaultCount> count_faults(const CheckSample& sample) {
-  std::vector<FaultCount> counts;
-  for (const auto& [position, fault] : sample.faults) {
-    const std::size_t colon = fault.find(": ");
-    const std::string phrase = colon == std::string::npos ? fault : fault.substr(colon + 2);
-    const auto known = std::find_if(counts.begin(), counts.end(), [&](const FaultCount& count) {
-      return count.phrase == phrase;
-    });
-    if (known == counts.end())
-      counts.push_back({phrase, fault, 1});
-    else
-      ++known->frames;
-  }
-  std::stable_sort(counts.begin(), counts.end(),
-                   [](const FaultCount& a, const FaultCount& b) { return a.frames > b.frames; });
-  return counts;
-}
-
 void check_frames(const CheckSample& sample, const SourceCheckConfig& config, CheckReport& report) {
   report.checked = static_cast<std::int64_t>(sample.frames.size());
   report.usable = report.checked - static_cast<std::int64_t>(sample.faults.size());
-  report.faults = count_faults(sample);
+  std::vector<std::string> faults;
+  for (const auto& [position, fault] : sample.faults) faults.push_back(fault);
+  report.faults = count_faults(faults);
   const double faulty = report.checked > 0 ? 1 - double(report.usable) / double(report.checked) : 1;
   const Severity severity = faulty == 0                        ? Severity::kOk
                             : faulty > config.max_faulty_share ? Severity::kFault
@@ -239,7 +223,7 @@ void check_registration(const CheckSample& sample, CheckReport& report) {
       suspicious ? "7-Scenes records colour and depth with two cameras, here they are taken as one"
       : sample.registered ? "colour and depth share one camera"
                           : "colour and depth are two cameras of known offset",
-      suspicious ? "run 'ovimap calibrate' on the source, which writes calibration.yaml" : "");
+      suspicious ? "put a calibration.yaml beside the recording (docs/sources.md shows one)" : "");
 }
 
 }  // namespace

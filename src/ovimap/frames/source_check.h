@@ -39,13 +39,6 @@ struct Finding {
   std::string remedy;   ///< what to do; empty when ok
 };
 
-/// Frames that cannot be used for one and the same reason.
-struct FaultCount {
-  std::string phrase;   ///< without the file name
-  std::string example;  ///< FrameRead::fault of the first
-  std::int64_t frames = 0;
-};
-
 struct CheckReport {
   std::string kind;                ///< of the source
   std::int64_t frames = 0;         ///< in the source

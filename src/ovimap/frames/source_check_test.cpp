@@ -189,7 +189,7 @@ TEST(SourceCheck, UnregisteredLayoutTakenAsOneCameraIsAWarning) {
   sequence.frames = 6;
   const CheckReport report = check_written(sequence);
   EXPECT_EQ(find(report, "registration")->severity, Severity::kWarning);
-  EXPECT_NE(find(report, "registration")->remedy.find("ovimap calibrate"), std::string::npos);
+  EXPECT_NE(find(report, "registration")->remedy.find("calibration.yaml"), std::string::npos);
 }
 
 TEST(SourceCheck, OneFrameIsEnoughToReport) {

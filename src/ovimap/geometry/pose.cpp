@@ -5,7 +5,7 @@
 namespace ovimap {
 
 std::string pose_fault(const Eigen::Matrix4d& matrix) {
-  constexpr double kTolerance = 1e-3;
+  constexpr double kTolerance = 1e-3, kFarthest_m = 1e4;
   if (!matrix.allFinite()) return "not finite";
   if ((matrix.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() > kTolerance)
     return "last row is not 0 0 0 1";
@@ -14,6 +14,8 @@ std::string pose_fault(const Eigen::Matrix4d& matrix) {
   if ((gram - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > kTolerance)
     return "rotation not orthonormal";
   if (rotation.determinant() < 0) return "rotation is a reflection";
+  if (matrix.topRightCorner<3, 1>().cwiseAbs().maxCoeff() > kFarthest_m)
+    return "more than 10 km from the origin; subtract an offset from all poses";
   return {};
 }
 

@@ -13,8 +13,9 @@ namespace ovimap {
 using Pose = Eigen::Isometry3d;
 
 /// What makes a 4x4 matrix no rigid transform: "not finite", "rotation not orthonormal",
-/// "rotation is a reflection", "last row is not 0 0 0 1". Empty when it is one (tolerance 1e-3,
-/// as text files carry few digits).
+/// "rotation is a reflection", "last row is not 0 0 0 1", "more than 10 km from the origin ..."
+/// (maps are kept in single precision). Empty when it is one (tolerance 1e-3, as text files carry
+/// few digits).
 std::string pose_fault(const Eigen::Matrix4d& matrix);
 
 /// The nearest rigid transform to a matrix without pose_fault: the rotation is re-orthonormalised.

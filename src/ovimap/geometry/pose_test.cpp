@@ -30,6 +30,9 @@ TEST(PoseFault, NamesEachFault) {
   matrix(2, 2) = -1;
   EXPECT_EQ(pose_fault(matrix), "rotation is a reflection");
   matrix = Eigen::Matrix4d::Identity();
+  matrix(1, 3) = 5e6;
+  EXPECT_NE(pose_fault(matrix).find("10 km"), std::string::npos);
+  matrix = Eigen::Matrix4d::Identity();
   matrix(3, 0) = 1;
   EXPECT_EQ(pose_fault(matrix), "last row is not 0 0 0 1");
 }

@@ -41,11 +41,12 @@ std::unique_ptr<MaskSource> make_mask_source(const std::string& spec,
     if (!context.frames) throw Error("masks 'gt' need a recorded source of frames; name one");
     return std::make_unique<GtMaskSource>(*context.frames);
   }
+  const std::vector<fs::path> search_path = model_search_path(context.model_dirs);
+  if (spec == "sam") return open_model(find_model(kDefaultSamModel, search_path), config);
   const fs::path path(spec);
   if (fs::is_regular_file(path / "model.yaml")) return open_model(path, config);
   if (fs::is_directory(path)) return std::make_unique<DirMaskSource>(path, context.frames);
-  const std::string name = spec == "sam" ? kDefaultSamModel : spec;
-  return open_model(find_model(name, model_search_path(context.model_dirs)), config);
+  return open_model(find_model(spec, search_path), config);
 }
 
 }  // namespace ovimap

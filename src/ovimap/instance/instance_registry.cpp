@@ -40,15 +40,7 @@ void InstanceRegistry::observe(const Segments& segments,
   const bool by_votes = has_entities && config_.instances == InstanceReading::kEntityVotes;
   if (by_votes) vote(segments, associations, forest);
   for (const auto& [keep, drop] : merging_.observe(associations, forest)) merge(keep, drop);
-  if (!by_votes) {
-    for (const SegmentAssociation& segment : associations) {
-      SuperPoint& point = super_points_[forest.root(segment.label)];
-      ++point.frames_seen;
-      const InstanceId own =
-          point.votes.empty() ? ++last_id_ : instance_of(forest.root(segment.label));
-      ++point.votes[own];
-    }
-  }
+  if (!by_votes) see_super_points(associations, forest);
   count_views(associations, frame_index, forest);
 }
 
@@ -57,21 +49,45 @@ void InstanceRegistry::vote(const Segments& segments,
                             const LabelForest& forest) {
   std::map<std::uint16_t, InstanceId> instance_of_entity;
   std::set<InstanceId> used;
+  std::set<Label> seen;
+  std::set<std::pair<Label, InstanceId>> voted;  // pieces that share a super-point are one voice
   for (std::size_t i : by_area(segments)) {
-    SuperPoint& point = super_points_[forest.root(associations[i].label)];
-    ++point.frames_seen;
+    const Label root = forest.root(associations[i].label);
+    SuperPoint& point = super_points_[root];
+    if (seen.insert(root).second) ++point.frames_seen;
     const std::uint16_t entity = segments.segments[i].entity;
     if (entity == 0) continue;
     auto known = instance_of_entity.find(entity);
     if (known == instance_of_entity.end()) {
-      InstanceId best = 0;
-      for (const auto& [id, votes] : point.votes)
-        if (!used.contains(id) && (best == 0 || votes > point.votes.at(best))) best = id;
-      if (best == 0) best = ++last_id_;
+      const InstanceId best = best_free_instance(point, used);
       used.insert(best);
       known = instance_of_entity.emplace(entity, best).first;
     }
-    ++point.votes[known->second];
+    if (voted.emplace(root, known->second).second) ++point.votes[known->second];
+  }
+}
+
+/// The instance with most votes that no other entity of the frame has taken; a new one when there
+/// is none.
+InstanceId InstanceRegistry::best_free_instance(const SuperPoint& point,
+                                                const std::set<InstanceId>& used) {
+  InstanceId best = 0;
+  for (const auto& [id, votes] : point.votes)
+    if (!used.contains(id) && (best == 0 || votes > point.votes.at(best))) best = id;
+  return best == 0 ? ++last_id_ : best;
+}
+
+/// Every super-point an instance of its own: the frame had no 2D masks, or the paper's reading is
+/// chosen.
+void InstanceRegistry::see_super_points(std::span<const SegmentAssociation> associations,
+                                        const LabelForest& forest) {
+  std::set<Label> roots;
+  for (const SegmentAssociation& segment : associations) roots.insert(forest.root(segment.label));
+  for (Label root : roots) {
+    SuperPoint& point = super_points_[root];
+    ++point.frames_seen;
+    const InstanceId own = point.votes.empty() ? ++last_id_ : instance_of(root);
+    ++point.votes[own];
   }
 }
 
@@ -79,7 +95,7 @@ void InstanceRegistry::merge(Label keep, Label drop) {
   const InstanceId kept_instance = instance_of(keep), dropped_instance = instance_of(drop);
   SuperPoint& into = super_points_[keep];
   const SuperPoint& from = super_points_[drop];
-  into.frames_seen = std::max(into.frames_seen, from.frames_seen);
+  into.frames_seen += from.frames_seen;  // as the votes, so that their ratio keeps its meaning
   for (const auto& [id, votes] : from.votes) into.votes[id] += votes;
   super_points_.erase(drop);
   if (kept_instance == 0 || dropped_instance == 0 || kept_instance == dropped_instance) return;

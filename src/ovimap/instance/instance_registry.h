@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -83,6 +84,9 @@ class InstanceRegistry {
  private:
   void vote(const Segments& segments, std::span<const SegmentAssociation> associations,
             const LabelForest& forest);
+  InstanceId best_free_instance(const SuperPoint& point, const std::set<InstanceId>& used);
+  void see_super_points(std::span<const SegmentAssociation> associations,
+                        const LabelForest& forest);
   void merge(Label keep, Label drop);
   void unify(InstanceId a, InstanceId b);
   bool owns_super_point(InstanceId id) const;

@@ -61,6 +61,13 @@ TEST_F(RegistryTest, TwoEntitiesOfAFrameNeverShareAnInstance) {
   EXPECT_NE(registry.instance_of(1), registry.instance_of(2));
 }
 
+TEST_F(RegistryTest, PiecesThatShareASuperPointCountOnce) {
+  InstanceRegistry registry;
+  see(registry, {{1, 7, 500}, {1, 7, 300}, {1, 0, 200}});
+  EXPECT_EQ(registry.super_points().at(1).frames_seen, 1);
+  EXPECT_EQ(registry.super_points().at(1).votes.at(registry.instance_of(1)), 1);
+}
+
 TEST_F(RegistryTest, RareVotesAreNoInstance) {
   InstanceRegistry registry;
   see(registry, {{1, 7, 500}});

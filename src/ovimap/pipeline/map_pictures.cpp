@@ -66,11 +66,15 @@ RgbImage contact_sheet_picture(const MapDocument& document, const FrameSource& s
   return contact_sheet(sheet, config);
 }
 
-void write_map_pictures(const std::filesystem::path& folder, const MapDocument& document,
-                        const FrameSource& source) {
+void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw Error(concat("folder ", folder.string(), " cannot be made: ", error.message()));
+}
+
+void write_map_pictures(const std::filesystem::path& folder, const MapDocument& document,
+                        const FrameSource& source) {
+  make_folder(folder);
   write_file(folder / "top_view.png",
              encode_png(top_down_picture(document, MeshColoring::kInstances)));
   write_file(folder / "top_view_color.png",

@@ -17,6 +17,9 @@ RgbImage top_down_picture(const MapDocument& document, MeshColoring coloring);
 /// its camera sees them.
 RgbImage contact_sheet_picture(const MapDocument& document, const FrameSource& source, int frames);
 
+/// Creates `folder` and those above it. Throws Error when that cannot be.
+void make_folder(const std::filesystem::path& folder);
+
 /// Writes top_view.png, top_view_color.png and contact_sheet.png into `folder`, which is created.
 void write_map_pictures(const std::filesystem::path& folder, const MapDocument& document,
                         const FrameSource& source);

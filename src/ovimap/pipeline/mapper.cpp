@@ -46,9 +46,8 @@ std::vector<Label> labels_of(std::span<const SegmentAssociation> associations) {
 
 Mapper::Mapper(const MapperConfig& config, std::shared_ptr<MaskSource> masks)
     : config_(config), masks_(std::move(masks)), map_(config.map), registry_(config.instance) {
-  constexpr int kNetworkInterval = 5;
   if (config_.mask_interval == 0)
-    config_.mask_interval = masks_ && masks_->is_slow() ? kNetworkInterval : 1;
+    config_.mask_interval = masks_ && masks_->is_slow() ? config_.network_mask_interval : 1;
 }
 
 FrameReport Mapper::process(const Frame& frame) {
@@ -56,7 +55,7 @@ FrameReport Mapper::process(const Frame& frame) {
   const bool labelled = frames_ % config_.mask_interval == 0;
   const Registration registration = [&] {
     auto t = timers_.measure("registration");
-    return Registration(frame);
+    return Registration(frame, config_.occlusion_margin_m);
   }();
   const DepthSurface surface = [&] {
     auto t = timers_.measure("surface");

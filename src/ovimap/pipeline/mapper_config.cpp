@@ -4,6 +4,8 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include "ovimap/image/codec.h"
+
 namespace ovimap {
 
 namespace {
@@ -29,8 +31,13 @@ void list_fields(MapperConfig& config, ConfigFields& fields) {
   fields.group("instance", [&](ConfigFields& f) { list_fields(config.instance, f); });
   fields.group("summary", [&](ConfigFields& f) { list_fields(config.summary, f); });
   fields.group("map", [&](ConfigFields& f) { list_fields(config.map, f); });
-  fields.add("mask_interval", config.mask_interval, 0, 1000000,
-             "2D masks every n-th frame; 0: every 5th for networks, every frame otherwise");
+  fields.add(
+      "mask_interval", config.mask_interval, 0, 1000000,
+      "2D masks every n-th frame; 0: by network_mask_interval for networks, every frame otherwise");
+  fields.add("network_mask_interval", config.network_mask_interval, 1, 1000000,
+             "what mask_interval 0 means for networks, frames");
+  fields.add("occlusion_margin_m", config.occlusion_margin_m, 0.f, 10.f,
+             "how much nearer a surface hides a point from the colour camera, metres");
   fields.add("max_range_m", config.max_range_m, 0.1f, 1000.f,
              "how far the map is projected back, metres");
 }
@@ -50,9 +57,11 @@ MapperConfig mapper_preset(const std::string& name) {
 
 void load_config(const std::filesystem::path& path, ConfigFields& fields) {
   try {
-    set_fields(YAML::LoadFile(path.string()), "", fields);
-  } catch (const YAML::BadFile&) {
-    throw Error(concat("config file ", path.string(), " cannot be read; check the path"));
+    const Bytes text = read_file(path);
+    const YAML::Node root = YAML::Load(std::string(text.begin(), text.end()));
+    if (!root.IsMap() && !root.IsNull())
+      throw Error(concat("config file ", path.string(), " must hold 'name: value' lines"));
+    set_fields(root, "", fields);
   } catch (const YAML::Exception& error) {
     throw Error(concat("config file ", path.string(), " is not valid YAML: ", error.what()));
   }

@@ -26,6 +26,9 @@ struct MapperConfig {
   int mask_interval =
       0;  ///< 2D masks are asked for every n-th frame, the frames between add geometry and
           ///< colour; 0: every 5th frame for networks, every frame otherwise
+  int network_mask_interval = 5;  ///< what mask_interval 0 means for a mask source that is slow
+  float occlusion_margin_m =
+      0.05f;  ///< how much nearer a surface must be to hide a point from the colour camera
   float max_range_m = 10.f;  ///< how far the map is projected back
 };
 void list_fields(MapperConfig& config, ConfigFields& fields);

@@ -2,10 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/pipeline/sequence_run.h"
 
-#include <algorithm>
 #include <chrono>
 #include <future>
-#include <map>
 
 #include "ovimap/base/error.h"
 #include "ovimap/base/version.h"
@@ -15,12 +13,9 @@ namespace ovimap {
 namespace {
 
 std::string commonest_fault(const std::vector<SkippedFrame>& skipped) {
-  std::map<std::string, int> counts;
-  for (const SkippedFrame& frame : skipped) ++counts[frame.fault];
-  const auto most =
-      std::max_element(counts.begin(), counts.end(),
-                       [](const auto& a, const auto& b) { return a.second < b.second; });
-  return most == counts.end() ? "no frame was chosen" : most->first;
+  std::vector<std::string> faults;
+  for (const SkippedFrame& frame : skipped) faults.push_back(frame.fault);
+  return faults.empty() ? "no frame was chosen" : count_faults(faults).front().example;
 }
 
 }  // namespace

@@ -89,6 +89,17 @@ TEST(SegmentDepth, SeparatesABoxFromItsTableAndKeepsTheBoxWhole) {
   }
 }
 
+TEST(SegmentDepth, TheReferencePresetKeepsAQuantisedPlaneWhole) {
+  TableScene scene;
+  for (float& depth : scene.depth) depth = std::round(depth * 1000.f) / 1000.f;
+  const DepthRegions regions =
+      segment_depth(scene.depth, kCamera, reference_segment_depth_config());
+  const std::uint16_t table = majority(regions, scene.truth, 1);
+  EXPECT_NE(table, 0);
+  EXPECT_GT(share(regions, scene.truth, 1, table), 0.8);
+  EXPECT_NE(majority(regions, scene.truth, 2), table);
+}
+
 TEST(SegmentDepth, SameBitsForOneAndTwoThreads) {
   const TableScene scene(1.f, 3);
   const auto run = [&](int threads) {

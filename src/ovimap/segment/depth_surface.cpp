@@ -51,7 +51,8 @@ OVIMAP_VECTORIZE void find_breaks(const float* q0, const float* q1, const float*
     const float far_q = std::min(q1[x], q2[x]);
     const float range = 1.f / (far_q + 1e-9f) - offset;
     const float noise_q = sigmas * (base + slope * range * range) * far_q * far_q;
-    const bool broken = (far_q <= 0.f) | (size > ratio * far_q) | (std::min(left, right) > noise_q);
+    const bool off_slope = (sigmas > 0.f) & (std::min(left, right) > noise_q);
+    const bool broken = (far_q <= 0.f) | (size > ratio * far_q) | off_slope;
     breaks[x] = static_cast<std::uint8_t>(breaks[x] | (broken ? bit : 0));
   }
 }
@@ -220,7 +221,7 @@ void list_fields(DepthNoiseConfig& config, ConfigFields& fields) {
 void list_fields(DepthSurfaceConfig& config, ConfigFields& fields) {
   fields.group("noise", [&](ConfigFields& f) { list_fields(config.noise, f); });
   fields.add("discontinuity_sigmas", config.discontinuity_sigmas, 0.f, 100.f,
-             "depth step off the slope that makes an edge, in noise sigmas");
+             "depth step off the slope that makes an edge, in noise sigmas; 0: no such edges");
   fields.add("discontinuity_ratio", config.discontinuity_ratio, 0.f, 1.f,
              "depth step between neighbours that is always an edge, as a share of depth");
   fields.add("normal_radius_rad", config.normal_radius_rad, 0.001f, 0.1f,

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+// Whole recordings through the program, held to thresholds: a rendered room with exact truth and a
+// real kitchen. Each skips, saying why, when its data is absent.
+#include "program_fixture.h"
+
+namespace ovimap {
+namespace {
+
+const std::filesystem::path kFurniture = "/usr/share/sweethome3d/furniture";
+const std::filesystem::path kKitchen = OVIMAP_SOURCE_DIR "/../shared/data/kitchen";
+
+class EndToEndTest : public ProgramTest {
+ protected:
+  nlohmann::json scores(const std::string& masks) {
+    EXPECT_EQ(run("run room/room -o room.ovimap --masks " + masks).code, 0);
+    return run_json("eval room.ovimap --gt room/room --json");
+  }
+};
+
+TEST_F(EndToEndTest, TrueMasksRebuildTheFurnishedRoom) {
+  if (!std::filesystem::is_directory(kFurniture))
+    GTEST_SKIP() << "package sweethome3d-furniture is not installed";
+  ASSERT_EQ(run("synth room --room tiny").code, 0);
+  const auto truth_masks = scores("gt");
+  const auto& agnostic = truth_masks["standard"]["class_agnostic"];
+  EXPECT_GE(agnostic["ap50"].get<double>(), 0.85);
+  EXPECT_GE(agnostic["miou"].get<double>(), 0.80);
+  EXPECT_LE(truth_masks["standard"]["geometry"]["accuracy_m"].get<double>(), 0.005);
+  EXPECT_GE(truth_masks["standard"]["geometry"]["completeness"].get<double>(), 0.98);
+
+  const auto depth_alone = scores("none");
+  EXPECT_GE(depth_alone["standard"]["class_agnostic"]["ap25"].get<double>(), 0.50);
+  EXPECT_LT(depth_alone["standard"]["class_agnostic"]["ap50"].get<double>(),
+            agnostic["ap50"].get<double>());
+}
+
+TEST_F(EndToEndTest, MapsTheRealKitchen) {
+  if (!std::filesystem::is_directory(kKitchen))
+    GTEST_SKIP() << "the kitchen recording is not beside the checkout";
+  const auto report =
+      run_json("run '" + kKitchen.string() + "' -o kitchen.ovimap --frames ::8 --json");
+  EXPECT_EQ(report["frames"], 25);
+  EXPECT_EQ(report["frames_skipped"], 0);
+  EXPECT_LT(report["peak_rss_mb"].get<double>(), 600.0);
+  const auto info = run_json("info kitchen.ovimap --json");
+  // The table top is about 2.3 by 0.9 m: the object with most surface of about that size must be
+  // there.
+  const auto is_table = [](const nlohmann::json& instance) {
+    const auto &low = instance["box"]["min"], &high = instance["box"]["max"];
+    double longest = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      longest = std::max(longest, high[axis].get<double>() - low[axis].get<double>());
+    return longest > 1.5 && longest < 3.2 && instance["points"].get<int>() > 8000;
+  };
+  EXPECT_TRUE(std::any_of(info["instances"].begin(), info["instances"].end(), is_table));
+}
+
+}  // namespace
+}  // namespace ovimap
