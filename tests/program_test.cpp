@@ -102,6 +102,14 @@ TEST_F(ProgramTest, SaysWhatIsWrongWithTheRecording) {
   EXPECT_FALSE(std::filesystem::exists(path("a.ovimap")));
 }
 
+TEST_F(ProgramTest, RefusesPosesThatNeverChangeUnlessTold) {
+  for (int i = 0; i < sequence_.frames; ++i)
+    fixture::write_text(path("recording/frame-" + fixture::padded(i, 6) + ".pose.txt"),
+                        "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1");
+  expect_complaint("run recording -o a.ovimap", {"same pose", "allow_still_camera"});
+  EXPECT_EQ(run("run recording -o a.ovimap --set allow_still_camera=true").code, 0);
+}
+
 TEST_F(ProgramTest, SaysWhatIsWrongWithTheMap) {
   fixture::write_text(path("text.ovimap"), "not a database at all");
   expect_complaint("info text.ovimap", {"text.ovimap"});

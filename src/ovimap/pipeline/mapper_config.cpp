@@ -38,6 +38,8 @@ void list_fields(MapperConfig& config, ConfigFields& fields) {
              "what mask_interval 0 means for networks, frames");
   fields.add("occlusion_margin_m", config.occlusion_margin_m, 0.f, 10.f,
              "how much nearer a surface hides a point from the colour camera, metres");
+  fields.add("allow_still_camera", config.allow_still_camera,
+             "a recording in which every pose is the same is no mistake");
   fields.add("max_range_m", config.max_range_m, 0.1f, 1000.f,
              "how far the map is projected back, metres");
 }

@@ -29,7 +29,8 @@ struct MapperConfig {
   int network_mask_interval = 5;  ///< what mask_interval 0 means for a mask source that is slow
   float occlusion_margin_m =
       0.05f;  ///< how much nearer a surface must be to hide a point from the colour camera
-  float max_range_m = 10.f;  ///< how far the map is projected back
+  bool allow_still_camera = false;  ///< a recording in which every pose is the same is no mistake
+  float max_range_m = 10.f;         ///< how far the map is projected back
 };
 void list_fields(MapperConfig& config, ConfigFields& fields);
 

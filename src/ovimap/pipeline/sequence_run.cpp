@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/pipeline/sequence_run.h"
 
+#include <algorithm>
 #include <chrono>
 #include <future>
 
@@ -12,10 +13,25 @@ namespace ovimap {
 
 namespace {
 
+constexpr std::size_t kFramesUntilMotion = 30;  // tell early, not after an hour
+
 std::string commonest_fault(const std::vector<SkippedFrame>& skipped) {
   std::vector<std::string> faults;
   for (const SkippedFrame& frame : skipped) faults.push_back(frame.fault);
   return faults.empty() ? "no frame was chosen" : count_faults(faults).front().example;
+}
+
+/// Poses that never change mean missing tracking far more often than a camera on a tripod.
+void require_motion(const SequenceResult& result, const MapperConfig& config) {
+  const auto& frames = result.frames;
+  if (config.allow_still_camera || frames.size() < 2) return;
+  const bool still = std::all_of(frames.begin(), frames.end(), [&](const FrameLogEntry& frame) {
+    return frame.world_from_camera.matrix() == frames.front().world_from_camera.matrix();
+  });
+  if (still)
+    throw Error(concat("all ", frames.size(),
+                       " frames have the same pose; give the camera's real poses, or, if it stood "
+                       "still, --set allow_still_camera=true"));
 }
 
 }  // namespace
@@ -45,12 +61,14 @@ SequenceResult run_sequence(const FrameSource& source, const std::vector<std::in
     } else {
       result.skipped.push_back({positions[i], current.fault});
     }
+    if (result.frames.size() == kFramesUntilMotion) require_motion(result, mapper.config());
     if (progress && !progress(i + 1, positions.size(), current.frame ? &report : nullptr)) break;
   }
   if (next.valid()) next.wait();
   if (result.frames.empty())
     throw Error(concat("none of the ", result.skipped.size(), " frames is usable: ",
                        commonest_fault(result.skipped), "; `ovimap check` tells more"));
+  require_motion(result, mapper.config());
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }

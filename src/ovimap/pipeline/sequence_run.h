@@ -33,6 +33,8 @@ using SequenceProgress =
 /// Feeds the frames at `positions` to the mapper, decoding the next frame while one is mapped. Bad
 /// frames are skipped and listed. Throws Error when no frame was usable, naming the commonest
 /// fault, and what the mask source throws.
+/// Throws Error as well when every frame has the same pose (unless
+/// MapperConfig::allow_still_camera).
 SequenceResult run_sequence(const FrameSource& source, const std::vector<std::int64_t>& positions,
                             Mapper& mapper, const SequenceProgress& progress = nullptr);
 
