@@ -13,8 +13,8 @@ namespace ovimap {
 /// Bins of directions: rows of the polar angle from +z, columns of the azimuth from -pi (paper
 /// section 3.2; both angles are clamped into the grid).
 struct SphereGrid {
-  int rows = 60;
-  int columns = 80;
+  int rows = 24;
+  int columns = 32;
 
   int bins() const { return rows * columns; }
   bool operator==(const SphereGrid&) const = default;

@@ -1,0 +1,275 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/semantics/view_selection.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ovimap/base/config.h"
+#include "ovimap/base/parallel.h"
+
+namespace ovimap {
+
+/// One object of the frame.
+struct ViewSelector::Candidate {
+  InstanceId id = 0;
+  int visible_px = 0;
+  int depth_px = 0;  ///< of these, with measured depth
+  Eigen::AlignedBox2i box_px;
+  std::vector<float> x, y, z;  ///< sampled surface points in the world
+  ViewCoverage coverage;       ///< of the object, with this view's extent
+  BinSet bins;                 ///< of this view
+};
+
+namespace {
+
+void gather_points(const SeenObjects& seen, InstanceId id, int step,
+                   const Eigen::AlignedBox2i& box_px, std::vector<float>& x, std::vector<float>& y,
+                   std::vector<float>& z) {
+  const Eigen::Matrix3f rotation = seen.world_from_camera.linear().cast<float>();
+  const Eigen::Vector3f position = seen.world_from_camera.translation().cast<float>();
+  for (int v = box_px.min().y(); v <= box_px.max().y(); v += step) {
+    const InstanceId* ids = seen.instances.row(v);
+    const float* depth = seen.depth.row(v);
+    for (int u = box_px.min().x(); u <= box_px.max().x(); u += step) {
+      if (ids[u] != id) continue;
+      const Eigen::Vector3f point =
+          rotation * seen.camera.unproject(static_cast<float>(u), static_cast<float>(v), depth[u]) +
+          position;
+      x.push_back(point.x()), y.push_back(point.y()), z.push_back(point.z());
+    }
+  }
+}
+
+Eigen::AlignedBox3f box_of(const std::vector<float>& x, const std::vector<float>& y,
+                           const std::vector<float>& z) {
+  Eigen::AlignedBox3f box;
+  for (std::size_t i = 0; i < x.size(); ++i) box.extend(Eigen::Vector3f(x[i], y[i], z[i]));
+  return box;
+}
+
+/// A well-mixed number from three (the finaliser of SplitMix64 over their combination).
+std::uint64_t mixed(std::uint64_t seed, std::uint64_t id, std::uint64_t count) {
+  std::uint64_t z = seed * 0x9e3779b97f4a7c15u + id * 0xd1b54a32d192ed03u + count;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return z ^ (z >> 31);
+}
+
+std::vector<ObjectView>::iterator smallest(std::vector<ObjectView>& views) {
+  return std::min_element(views.begin(), views.end(),
+                          [](const auto& a, const auto& b) { return a.visible_px < b.visible_px; });
+}
+
+bool among_largest(Appearance& appearance, int visible_px, int top_views) {
+  return appearance.views.size() < static_cast<std::size_t>(top_views) ||
+         visible_px > smallest(appearance.views)->visible_px;
+}
+
+/// Drops the smallest view when there are `limit`.
+void make_room(Appearance& appearance, int limit) {
+  if (appearance.views.size() >= static_cast<std::size_t>(limit))
+    appearance.views.erase(smallest(appearance.views));
+}
+
+}  // namespace
+
+std::vector<ViewSelector::Candidate> ViewSelector::find_candidates(const SeenObjects& seen,
+                                                                   const InstanceRegistry& registry,
+                                                                   const Appearances& appearances) {
+  std::vector<Candidate> objects;
+  for (int v = 0; v < seen.instances.height(); ++v) {
+    const InstanceId* ids = seen.instances.row(v);
+    const float* sensor = seen.sensor_depth.row(v);
+    for (int u = 0; u < seen.instances.width();) {
+      // Neighbouring pixels mostly show one object: count them as a run.
+      const InstanceId id = ids[u];
+      const int begin = u;
+      int measured = 0;
+      for (; u < seen.instances.width() && ids[u] == id; ++u) measured += sensor[u] > 0.f;
+      if (id == 0) continue;
+      if (id >= slot_of_id_.size()) slot_of_id_.resize(id + 1, -1);
+      std::int32_t& slot = slot_of_id_[id];
+      if (slot < 0) {
+        slot = static_cast<std::int32_t>(objects.size());
+        objects.emplace_back().id = id;
+      }
+      Candidate& object = objects[static_cast<std::size_t>(slot)];
+      object.visible_px += u - begin;
+      object.depth_px += measured;
+      object.box_px.extend(Eigen::Vector2i(begin, v));
+      object.box_px.extend(Eigen::Vector2i(u - 1, v));
+    }
+  }
+  for (const Candidate& object : objects) slot_of_id_[object.id] = -1;
+  std::erase_if(objects, [&](const Candidate& object) {
+    const auto record = registry.records().find(object.id);
+    const bool known = appearances.contains(object.id);
+    return object.visible_px < config_.min_mask_px ||
+           object.depth_px < (known ? config_.min_depth_px : config_.min_first_depth_px) ||
+           record == registry.records().end() || record->second.views < config_.min_frames_seen;
+  });
+  std::sort(objects.begin(), objects.end(),
+            [](const Candidate& a, const Candidate& b) { return a.id < b.id; });
+  return objects;
+}
+
+int ViewSelector::sample_step(int visible_px) const {
+  return std::max(1, static_cast<int>(std::sqrt(visible_px / config_.max_samples)));
+}
+
+void ViewSelector::cover(const SeenObjects& seen, const Appearances& appearances,
+                         Candidate& object) const {
+  gather_points(seen, object.id, sample_step(object.visible_px), object.box_px, object.x, object.y,
+                object.z);
+  if (object.x.empty()) return;
+  const auto known = appearances.find(object.id);
+  if (known != appearances.end()) object.coverage = known->second.coverage;
+  ViewCoverage& coverage = object.coverage;
+  coverage.seen_in_world.extend(box_of(object.x, object.y, object.z));
+  const SphereGrid grid{config_.grid_rows, config_.grid_columns};
+  const Eigen::Vector3f center = coverage.seen_in_world.center();
+  const float moved = (center - coverage.center_in_world).norm();
+  const float limit = config_.recentre_share * coverage.seen_in_world.diagonal().norm();
+  if (coverage.bins.empty() || (config_.recentre_share > 0.f && moved > limit)) {
+    coverage.center_in_world = center;
+    coverage.bins = BinSet(grid.bins());
+  }
+  for (std::size_t i = 0; i < object.x.size(); ++i) {
+    object.x[i] -= coverage.center_in_world.x();
+    object.y[i] -= coverage.center_in_world.y();
+    object.z[i] -= coverage.center_in_world.z();
+  }
+  object.bins = BinSet(grid.bins());
+  mark_directions(grid, {object.x, object.y, object.z}, object.bins);
+}
+
+std::vector<ChosenView> ViewSelector::select(const SeenObjects& seen,
+                                             const InstanceRegistry& registry,
+                                             Appearances& appearances) {
+  OVIMAP_ASSERT(seen.depth.same_size(seen.instances) && seen.depth.same_size(seen.sensor_depth));
+  std::vector<Candidate> candidates = find_candidates(seen, registry, appearances);
+  parallel_for(candidates.size(), 1,
+               [&](std::size_t i) { cover(seen, appearances, candidates[i]); });
+  std::vector<ChosenView> chosen;
+  for (Candidate& object : candidates) {
+    if (object.x.empty()) continue;
+    Appearance& appearance = appearances[object.id];
+    ++appearance.offered;
+    appearance.coverage = std::move(object.coverage);
+    if (!decide(object, seen.frame, appearance)) continue;
+    // Only views that are really used count as seen (method section 9).
+    appearance.coverage.bins |= object.bins;
+    appearance.coverage.largest_px = std::max(appearance.coverage.largest_px, object.visible_px);
+    ++appearance.queries;
+    appearance.views.push_back({seen.frame, object.visible_px, {}, {}, ++last_ticket_});
+    chosen.push_back({object.id, object.box_px, object.visible_px, last_ticket_});
+  }
+  return chosen;
+}
+
+bool ViewSelector::decide(const Candidate& candidate, std::int64_t frame,
+                          Appearance& appearance) const {
+  const ViewCoverage& coverage = appearance.coverage;
+  const auto is_new = [&] {
+    const float occupied = static_cast<float>(candidate.bins.count());
+    const float found = static_cast<float>(candidate.bins.count_outside(coverage.bins));
+    return found > config_.theta_novel * occupied ||
+           (config_.better_ratio > 0.f &&
+            static_cast<float>(candidate.visible_px) >
+                config_.better_ratio * static_cast<float>(coverage.largest_px));
+  };
+  switch (config_.strategy) {
+    case ViewStrategy::kAll:
+      return true;
+    case ViewStrategy::kCoverage:
+      return is_new();
+    case ViewStrategy::kCombine:
+      return is_new() && among_largest(appearance, candidate.visible_px, config_.top_views);
+    case ViewStrategy::kPixels:
+      if (!among_largest(appearance, candidate.visible_px, config_.top_views)) return false;
+      make_room(appearance, config_.top_views);
+      return true;
+    case ViewStrategy::kRandom: {
+      // Reservoir sampling: after n views each is kept with the same chance.
+      const auto wanted = static_cast<std::size_t>(config_.random_views);
+      if (appearance.views.size() < wanted) return true;
+      const std::uint64_t drawn = mixed(static_cast<std::uint64_t>(config_.random_seed),
+                                        candidate.id, static_cast<std::uint64_t>(frame)) %
+                                  static_cast<std::uint64_t>(appearance.offered);
+      if (drawn >= wanted) return false;
+      appearance.views.erase(appearance.views.begin() + static_cast<std::ptrdiff_t>(drawn));
+      return true;
+    }
+  }
+  return false;
+}
+
+void list_fields(ViewSelectionConfig& config, ConfigFields& fields) {
+  fields.add_choice<ViewStrategy>("strategy", config.strategy,
+                                  {{"coverage", ViewStrategy::kCoverage},
+                                   {"combine", ViewStrategy::kCombine},
+                                   {"pixels", ViewStrategy::kPixels},
+                                   {"random", ViewStrategy::kRandom},
+                                   {"all", ViewStrategy::kAll}},
+                                  "which views of an object are embedded");
+  fields.add("grid_rows", config.grid_rows, 1, 2000, "bins of the polar angle");
+  fields.add("grid_columns", config.grid_columns, 1, 4000, "bins of the azimuth");
+  fields.add("theta_novel", config.theta_novel, 0.f, 1.f,
+             "share of a view's bins that must be new");
+  fields.add("better_ratio", config.better_ratio, 0.f, 1e6f,
+             "a view this many times larger than any before counts as new; 0: none does");
+  fields.add("recentre_share", config.recentre_share, 0.f, 10.f,
+             "coverage starts anew when the object's centre moved by this share of its diagonal; "
+             "0: never");
+  fields.add("min_mask_px", config.min_mask_px, 1, 100000000, "smaller views show too little");
+  fields.add("min_first_depth_px", config.min_first_depth_px, 0, 100000000,
+             "measured depth pixels an object's first view needs");
+  fields.add("min_depth_px", config.min_depth_px, 0, 100000000,
+             "measured depth pixels every later view needs");
+  fields.add("min_frames_seen", config.min_frames_seen, 0, 1000000,
+             "frames an object must have been seen in");
+  fields.add("top_views", config.top_views, 1, 100000,
+             "how many views count as the largest (combine, pixels)");
+  fields.add("random_views", config.random_views, 1, 100000, "how many views are drawn (random)");
+  fields.add("random_seed", config.random_seed, 0, 1 << 30, "what decides the drawing (random)");
+  fields.add("max_samples", config.max_samples, 16, 100000000,
+             "coverage looks at about so many of a view's pixels");
+  fields.add_choice<FeatureFusion>("fusion", config.fusion,
+                                   {{"pixel_weighted", FeatureFusion::kPixelWeighted},
+                                    {"mean", FeatureFusion::kMean},
+                                    {"max_cosine", FeatureFusion::kMaxCosine},
+                                    {"min_l1", FeatureFusion::kMinL1}},
+                                   "how an object's views become one embedding");
+}
+
+ViewSelectionConfig view_preset(const std::string& name) {
+  ViewSelectionConfig config;
+  if (name == "default") return config;
+  // As published: nothing of our own besides the strategy.
+  config.better_ratio = 0.f;
+  config.recentre_share = 0.f;
+  config.min_mask_px = 1000;
+  config.min_first_depth_px = 500;
+  config.min_depth_px = 100;
+  config.min_frames_seen = 0;
+  config.max_samples = 100000000;
+  config.grid_rows = 60, config.grid_columns = 80;
+  if (name == "paper") {
+    config.grid_rows = 180, config.grid_columns = 240;
+  } else if (name == "combine") {
+    config.strategy = ViewStrategy::kCombine, config.theta_novel = 0.1f;
+  } else if (name == "vis") {
+    config.strategy = ViewStrategy::kPixels;
+  } else if (name == "random") {
+    config.strategy = ViewStrategy::kRandom;
+  } else if (name == "all") {
+    config.strategy = ViewStrategy::kAll;
+  } else if (name != "viewcov") {
+    throw Error(concat("there is no view preset '", name,
+                       "'; accepted is default, paper, viewcov, combine, vis, random or all"));
+  }
+  return config;
+}
+
+}  // namespace ovimap
