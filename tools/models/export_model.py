@@ -24,9 +24,10 @@ def parse_arguments(arguments):
     parser.add_argument("folder", type=pathlib.Path, help="model folder to write; must be new")
     parser.add_argument("--name", help="name of the model; default: the checkpoint's")
     parser.add_argument(
-        "--license",
-        default="",
-        help="licence of the weights, for model.yaml; default: what the checkpoint's card says",
+        "--license", help="licence of the weights, for model.yaml; default: what the card says"
+    )
+    parser.add_argument(
+        "--input-px", type=int, help="Mask2Former only: side of the square input, a multiple of 32"
     )
     return parser.parse_args(arguments)
 
@@ -34,7 +35,7 @@ def parse_arguments(arguments):
 def main(arguments=None) -> int:
     args = parse_arguments(arguments)
     try:
-        from export.checkpoint import export_checkpoint
+        from export.checkpoint import Options, export_checkpoint
         from export.errors import ExportError
     except ModuleNotFoundError as missing:
         print(
@@ -44,7 +45,8 @@ def main(arguments=None) -> int:
         )
         return 1
     try:
-        description = export_checkpoint(args.checkpoint, args.folder, args.name, args.license)
+        options = Options(name=args.name, license=args.license, input_px=args.input_px)
+        description = export_checkpoint(args.checkpoint, args.folder, options)
     except ExportError as error:
         print(f"export_model: {error}", file=sys.stderr)
         return 1

@@ -22,7 +22,6 @@ from PIL import Image
 from transformers import (
     AutoImageProcessor,
     AutoModel,
-    AutoTokenizer,
     CLIPConfig,
     CLIPImageProcessorPil,
     CLIPModel,
@@ -31,8 +30,8 @@ from transformers import (
     SiglipModel,
 )
 
-from export.checkpoint import export_checkpoint
-from export.dual_encoder import image_features, text_features, tokenize
+from export.checkpoint import Options, export_checkpoint
+from export.dual_encoder import image_features, load_tokenizer, text_features, tokenize
 from golden import tiny_tokenizers
 from golden.corpus import texts
 from golden.minilm import write_minilm
@@ -41,7 +40,7 @@ from golden.tiny_models import TOWER, fill, set_scalar
 SOURCE = "tools/models/make_golden_encoders.py"
 EMBEDDED_TEXTS = 8
 IMAGE_PX, PATCH_PX = 32, 8
-MAX_COSINE = 0.95  # of different texts' or images' embeddings: else agreement shows nothing
+MAX_COSINE = 0.97  # of different texts' or images' embeddings: else agreement shows nothing
 CONTEXT = {"siglip": 64, "siglip2": 64, "clip": 77}
 
 
@@ -134,13 +133,12 @@ def write_encoder(kind: str, folder: pathlib.Path) -> None:
     with tempfile.TemporaryDirectory() as scratch:
         checkpoint = pathlib.Path(scratch)
         save_checkpoint(kind, checkpoint)
-        export_checkpoint(scratch, folder, f"golden {kind}", "Apache-2.0", SOURCE)
+        export_checkpoint(scratch, folder, Options(f"golden {kind}", "Apache-2.0", SOURCE))
         model = AutoModel.from_pretrained(checkpoint, attn_implementation="eager").eval()
-        tokenizer = AutoTokenizer.from_pretrained(checkpoint)
+        tokenizer = load_tokenizer(scratch, kind.rstrip("2"))
         processor = AutoImageProcessor.from_pretrained(checkpoint, backend="pil")
-        ids, mask = tokenize(tokenizer, texts(), CONTEXT[kind])
-        first_mask = None if mask is None else mask[:EMBEDDED_TEXTS]
-        text_rows = text_features(model, ids[:EMBEDDED_TEXTS], first_mask)
+        ids = tokenize(tokenizer, texts(), CONTEXT[kind])
+        text_rows = text_features(model, ids[:EMBEDDED_TEXTS])
         images = [textured_image(seed) for seed in range(4)]
         pixels = processor([Image.fromarray(i) for i in images], return_tensors="pt")
         image_rows = image_features(model, pixels["pixel_values"])

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Finds out what a checkpoint is and exports it."""
 
+import dataclasses
 import pathlib
 import re
 
@@ -10,10 +11,14 @@ from transformers import AutoConfig
 from .dual_encoder import export_dual_encoder, refuse_naflex
 from .errors import ExportError
 from .folder import FolderWriter
+from .mask2former import export_mask2former
+from .sam import export_sam
 
 EXPORTERS = {
     "siglip": export_dual_encoder,
     "clip": export_dual_encoder,
+    "mask2former": export_mask2former,
+    "sam": export_sam,
 }
 UNKNOWN_LICENSE = "unknown; see the checkpoint's model card"
 
@@ -49,9 +54,17 @@ def hub_name(checkpoint: str) -> str:
     return "a local folder" if pathlib.Path(checkpoint).is_dir() else checkpoint
 
 
-def export_checkpoint(checkpoint: str, folder, name=None, license_name="", source=None) -> dict:
-    """Writes `folder` and gives model.yaml's keys. Throws ExportError. `source` is what model.yaml
-    says of the weights' origin; default: the name on the hub."""
+@dataclasses.dataclass
+class Options:
+    """What the user may say besides; None: as the checkpoint has it."""
+
+    name: str | None = None
+    license: str | None = None
+    source: str | None = None  # of the weights; default: the name on the hub
+    input_px: int | None = None  # side of the network's input, where it is free to choose
+
+
+def run_exporter(checkpoint: str, writer, options: Options) -> dict:
     config = load_config(checkpoint)
     refuse_naflex(config)
     exporter = EXPORTERS.get(config.model_type)
@@ -60,14 +73,24 @@ def export_checkpoint(checkpoint: str, folder, name=None, license_name="", sourc
             f"{checkpoint} is of type '{config.model_type}'; accepted are siglip (also SigLIP 2), "
             "clip, mask2former and sam"
         )
+    if exporter is export_mask2former:
+        return exporter(checkpoint, config, writer, options.input_px)
+    if options.input_px:
+        raise ExportError(f"--input-px is for mask2former; a {config.model_type} has a size of its own")
+    return exporter(checkpoint, config, writer)
+
+
+def export_checkpoint(checkpoint: str, folder, options: Options | None = None) -> dict:
+    """Writes `folder` and gives model.yaml's keys. Throws ExportError."""
+    options = options or Options()
     writer = FolderWriter(pathlib.Path(folder))
     try:
-        description = exporter(checkpoint, config, writer)
+        description = run_exporter(checkpoint, writer, options)
         head = {
             "kind": description.pop("kind"),
-            "name": name or pathlib.PurePath(checkpoint).name,
-            "license": license_name or card_license(checkpoint),
-            "source": source or hub_name(checkpoint),
+            "name": options.name or pathlib.PurePath(checkpoint).name,
+            "license": options.license or card_license(checkpoint),
+            "source": options.source or hub_name(checkpoint),
         }
         writer.finish(head | description)
         return head | description

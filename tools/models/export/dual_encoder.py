@@ -5,12 +5,12 @@
 import math
 
 import torch
-from transformers import AutoImageProcessor, AutoModel, AutoTokenizer
+from transformers import AutoImageProcessor, AutoModel, AutoTokenizer, SiglipTokenizer
 
 from .errors import ExportError
 from .image_input import encoder_input
 from .network import Wrapped, check_same, export_network, pooled, run_onnx
-from .tokenizer import PROBES, clip_tokenizer, gemma_tokenizer, siglip_tokenizer
+from .tokenizer import PROBES, backend_json, clip_tokenizer, gemma_tokenizer, siglip_tokenizer
 
 IMAGE, TEXT = "image.onnx", "text.onnx"
 TEMPLATES = {"siglip": "This is a photo of {}.", "clip": "a photo of a {}."}
@@ -20,8 +20,20 @@ def image_features(model, pixels):
     return pooled(model.get_image_features(pixel_values=pixels))
 
 
-def text_features(model, ids, mask=None):
-    return pooled(model.get_text_features(input_ids=ids, attention_mask=mask))
+def text_features(model, ids):
+    """Without an attention mask: SigLIP's towers were trained to read the padding too, and CLIP's
+    looks back only, from the end token, so that it never sees what is behind."""
+    return pooled(model.get_text_features(input_ids=ids))
+
+
+def load_tokenizer(checkpoint: str, kind: str):
+    """Padding goes behind the text, as these models were trained, whatever the tokenizer's default
+    is (Gemma's is to put it before)."""
+    tokenizer = AutoTokenizer.from_pretrained(checkpoint, padding_side="right")
+    if kind == "siglip" and not hasattr(tokenizer, "sp_model"):
+        if backend_json(tokenizer)["model"]["type"] == "Unigram":
+            tokenizer = SiglipTokenizer.from_pretrained(checkpoint, padding_side="right")
+    return tokenizer
 
 
 def tokenizer_files(kind: str, tokenizer, writer, context_length: int) -> dict:
@@ -33,15 +45,14 @@ def tokenizer_files(kind: str, tokenizer, writer, context_length: int) -> dict:
 
 
 def tokenize(tokenizer, texts, context_length: int):
-    """The ids and the mask as the model's own pipeline makes them; no mask where it makes none."""
-    encoded = tokenizer(
+    """The ids as the model's own pipeline makes them."""
+    return tokenizer(
         list(texts),
         padding="max_length",
         truncation=True,
         max_length=context_length,
         return_tensors="pt",
-    )
-    return encoded["input_ids"], encoded.get("attention_mask")
+    )["input_ids"]
 
 
 def export_image_tower(model, writer, side: int) -> None:
@@ -55,25 +66,14 @@ def export_image_tower(model, writer, side: int) -> None:
         check_same("image tower", module(batch), found)
 
 
-def export_text_tower(model, writer, ids, mask) -> dict:
-    """`mask` is None where the network is not to see one. The roles of the inputs."""
-    feeds = {"input_ids": ids} | ({} if mask is None else {"attention_mask": mask})
-    axes = {name: {0: "texts"} for name in [*feeds, "text_embeds"]}
+def export_text_tower(model, writer, ids) -> None:
     module = Wrapped(model, text_features)
+    axes = {"input_ids": {0: "texts"}, "text_embeds": {0: "texts"}}
     path = writer.path(TEXT)
-    example = [tensor[:2] for tensor in feeds.values()]
-    export_network(module, example, path, list(feeds), ["text_embeds"], axes)
-    roles = {"input_ids": "ids", "attention_mask": "mask"}
-    return {roles[name]: name for name in feeds}
-
-
-def check_text_tower(model, writer, ids, mask, wanted) -> None:
-    expected = text_features(model, ids, mask)  # as the checkpoint's own pipeline calls it
-    for count in (1, len(ids)):
-        feeds = {"input_ids": ids[:count], "attention_mask": mask}
-        feeds = {name: feeds[name][:count] for name in wanted}
-        (found,) = run_onnx(writer.path(TEXT), feeds)
-        check_same("text tower", expected[:count], found)
+    export_network(module, [ids[:2]], path, ["input_ids"], ["text_embeds"], axes)
+    for batch in (ids[:1], ids):
+        (found,) = run_onnx(path, {"input_ids": batch})
+        check_same("text tower", module(batch), found)
 
 
 @torch.no_grad()
@@ -82,17 +82,15 @@ def export_dual_encoder(checkpoint: str, config, writer) -> dict:
     model = AutoModel.from_pretrained(checkpoint, dtype=torch.float32, attn_implementation="eager")
     model.eval()
     processor = AutoImageProcessor.from_pretrained(checkpoint, backend="pil")
-    tokenizer = AutoTokenizer.from_pretrained(checkpoint)
+    tokenizer = load_tokenizer(checkpoint, kind)
     side = config.vision_config.image_size
     context_length = config.text_config.max_position_embeddings
 
     image = encoder_input(processor, side)
     export_image_tower(model, writer, side)
     tokenizer_keys = tokenizer_files(kind, tokenizer, writer, context_length)
-    ids, mask = tokenize(tokenizer, PROBES, context_length)
-    # CLIP's text tower looks back only, from the end token: it never sees the padding behind that.
-    inputs = export_text_tower(model, writer, ids, None if kind == "clip" else mask)
-    check_text_tower(model, writer, ids, mask, list(inputs.values()))
+    ids = tokenize(tokenizer, PROBES, context_length)
+    export_text_tower(model, writer, ids)
     return {
         "kind": "dual_encoder",
         "input": image,
@@ -102,9 +100,13 @@ def export_dual_encoder(checkpoint: str, config, writer) -> dict:
                 "inputs": {"image": "pixel_values"},
                 "outputs": {"embedding": "image_embeds"},
             },
-            "text": {"file": TEXT, "inputs": inputs, "outputs": {"embedding": "text_embeds"}},
+            "text": {
+                "file": TEXT,
+                "inputs": {"ids": "input_ids"},
+                "outputs": {"embedding": "text_embeds"},
+            },
         },
-        "embedding_dim": int(text_features(model, ids[:1], None).shape[1]),
+        "embedding_dim": int(text_features(model, ids[:1]).shape[1]),
         **tokenizer_keys,
         **calibration(model),
         "prompt_template": TEMPLATES[kind],

@@ -39,8 +39,6 @@ def special_ids(tokenizer) -> dict:
 def common_keys(tokenizer, context_length: int) -> dict:
     keys = {"context_length": context_length, "pad_to_context": True}
     keys["pad_id"] = int(tokenizer.pad_token_id)
-    if tokenizer.padding_side != "right":
-        keys["pad_side"] = tokenizer.padding_side
     return keys | special_ids(tokenizer)
 
 

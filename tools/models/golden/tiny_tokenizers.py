@@ -2,20 +2,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tokenizers of the checkpoints' formats with vocabularies of a few hundred entries."""
 
+import collections
 import io
-import json
+import itertools
 import pathlib
 import unicodedata
 
 import sentencepiece
 from sentencepiece import sentencepiece_model_pb2 as model_proto
 from tokenizers import AddedToken, Tokenizer, models, normalizers, pre_tokenizers, processors
-from tokenizers import trainers
 from transformers import BertTokenizer, CLIPTokenizer, Siglip2Tokenizer, SiglipTokenizer
 
 from .corpus import training_sentences
 
-UNIGRAM_PIECES, GEMMA_PIECES, CLIP_PIECES, WORD_PIECES = 320, 640, 660, 360
+UNIGRAM_PIECES, GEMMA_PIECES, CLIP_MERGES, WORD_PARTS = 320, 640, 300, 220
+WHOLE_WORD_WEIGHT = 4  # against a part of a word
 # Pieces that Gemma's vocabulary lists as they are: runs of blanks and line ends, some tags.
 GEMMA_SYMBOLS = ["<mask>", "\n", "\n\n", "▁▁", "▁▁▁", "▁▁▁▁", "<table>", "<tr>"]
 
@@ -56,8 +57,11 @@ def train_sentencepiece(folder: pathlib.Path, **options) -> pathlib.Path:
         minloglevel=2,
         **options,
     )
+    trained = model_proto.ModelProto.FromString(data.getvalue())
+    trained.normalizer_spec.normalization_rule_tsv = ""  # a path of this run
+    trained.trainer_spec.ClearField("input")
     path = folder / "spiece.model"
-    path.write_bytes(data.getvalue())
+    path.write_bytes(trained.SerializeToString(deterministic=True))
     return path
 
 
@@ -140,48 +144,68 @@ def gemma_backend(path: pathlib.Path) -> Tokenizer:
     return tokenizer
 
 
-def byte_pairs(end_of_word: str) -> dict:
-    """Vocabulary and merges of a byte-level encoding in CLIP's order: the bytes, the bytes at the
-    end of a word, the merged pieces."""
-    tokenizer = Tokenizer(models.BPE(end_of_word_suffix=end_of_word))
-    tokenizer.normalizer = normalizers.Sequence([normalizers.NFC(), normalizers.Lowercase()])
-    tokenizer.pre_tokenizer = pre_tokenizers.ByteLevel(add_prefix_space=False)
-    alphabet = sorted(pre_tokenizers.ByteLevel.alphabet())
-    trainer = trainers.BpeTrainer(
-        vocab_size=CLIP_PIECES,
-        initial_alphabet=alphabet,
-        end_of_word_suffix=end_of_word,
-        show_progress=False,
+def words_of(normalizer, pre_tokenizer) -> collections.Counter:
+    return collections.Counter(
+        word
+        for sentence in training_sentences()
+        for word, _ in pre_tokenizer.pre_tokenize_str(normalizer.normalize_str(sentence))
     )
-    # Without the blanks between the words, which CLIP's pre-tokenizer drops.
-    tokenizer.train_from_iterator((w for s in training_sentences() for w in s.split()), trainer)
+
+
+def learned_merges(words: dict, count: int) -> list:
+    """Byte-pair encoding's training: again and again the most frequent pair of neighbours becomes
+    one piece. `words`: tuple of pieces -> how often. (The tokenizers library's own trainer breaks
+    ties by chance, so its vocabularies cannot be made again.)"""
     merges = []
-    model = json.loads(tokenizer.to_str())["model"]
-    for pair in model["merges"]:
-        merges.append(tuple(pair.split(" ")) if isinstance(pair, str) else tuple(pair))
-    pieces = alphabet + [b + end_of_word for b in alphabet]
-    pieces += [p for p in dict.fromkeys("".join(m) for m in merges) if p not in set(pieces)]
-    return {"pieces": pieces, "merges": merges}
+    while len(merges) < count:
+        pairs = collections.Counter()
+        for word, times in words.items():
+            for pair in itertools.pairwise(word):
+                pairs[pair] += times
+        best = min(pairs, key=lambda pair: (-pairs[pair], pair))
+        merges.append(best)
+        merged = collections.Counter()
+        for word, times in words.items():
+            merged[merge_pair(word, best)] += times
+        words = merged
+    return merges
+
+
+def merge_pair(word: tuple, pair: tuple) -> tuple:
+    pieces, at = [], 0
+    while at < len(word):
+        both = word[at : at + 2] == pair
+        pieces.append("".join(pair) if both else word[at])
+        at += 2 if both else 1
+    return tuple(pieces)
 
 
 def clip(_folder: pathlib.Path) -> CLIPTokenizer:
-    trained = byte_pairs("</w>")
-    pieces = [*trained["pieces"], "<|startoftext|>", "<|endoftext|>"]
+    """CLIP's order of pieces: the bytes, the bytes at the end of a word, the merges, two marks."""
+    empty = CLIPTokenizer().backend_tokenizer
+    words = words_of(empty.normalizer, empty.pre_tokenizer)
+    split = {(*word[:-1], word[-1] + "</w>"): times for word, times in words.items()}
+    merges = learned_merges(split, CLIP_MERGES)
+    alphabet = sorted(pre_tokenizers.ByteLevel.alphabet())
+    pieces = alphabet + [b + "</w>" for b in alphabet] + ["".join(m) for m in merges]
+    pieces += ["<|startoftext|>", "<|endoftext|>"]
     vocab = {piece: index for index, piece in enumerate(pieces)}
-    return CLIPTokenizer(vocab=vocab, merges=trained["merges"], model_max_length=77)
+    return CLIPTokenizer(vocab=vocab, merges=merges, model_max_length=77)
 
 
 def minilm(folder: pathlib.Path) -> BertTokenizer:
-    tokenizer = Tokenizer(models.WordPiece(unk_token="[UNK]"))
-    tokenizer.normalizer = normalizers.BertNormalizer()
-    tokenizer.pre_tokenizer = pre_tokenizers.BertPreTokenizer()
-    special = ["[PAD]", "[UNK]", "[CLS]", "[SEP]", "[MASK]"]
-    trainer = trainers.WordPieceTrainer(
-        vocab_size=WORD_PIECES, special_tokens=special, show_progress=False
-    )
-    tokenizer.train_from_iterator(training_sentences(), trainer)
-    vocab = tokenizer.get_vocab()
-    by_id = sorted(vocab, key=vocab.get)
-    path = folder / "vocab.txt"
-    path.write_text("".join(piece + "\n" for piece in by_id), encoding="utf-8")
-    return BertTokenizer(vocab=vocab)
+    """The letters, alone and inside a word, and the most frequent words, their heads and tails."""
+    words = words_of(normalizers.BertNormalizer(), pre_tokenizers.BertPreTokenizer())
+    letters, parts = set(), collections.Counter()
+    for word, times in words.items():
+        letters |= {word[0], *word[1:]} | {"##" + letter for letter in word[1:]}
+        for cut in range(2, len(word)):
+            parts[word[:cut]] += times
+            parts["##" + word[-cut:]] += times
+        parts[word] += times * WHOLE_WORD_WEIGHT
+    frequent = sorted(parts, key=lambda part: (-parts[part], part))[:WORD_PARTS]
+    pieces = ["[PAD]", "[UNK]", "[CLS]", "[SEP]", "[MASK]", *sorted(letters)]
+    pieces += [part for part in frequent if part not in letters]
+    text = "".join(piece + "\n" for piece in pieces)
+    (folder / "vocab.txt").write_text(text, encoding="utf-8")
+    return BertTokenizer(vocab={piece: index for index, piece in enumerate(pieces)})
