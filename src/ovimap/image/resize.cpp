@@ -5,78 +5,115 @@
 #include <cmath>
 
 #include "ovimap/base/parallel.h"
+#include "ovimap/base/vectorize.h"
 
 namespace ovimap {
 
 namespace {
 
 constexpr std::size_t kRowsPerTask = 16;
+constexpr int kWeightBits = 22;  // 255 * the largest weight sum still fits 32 bits
+constexpr std::int32_t kHalf = 1 << (kWeightBits - 1);
 
-/// For each output position the first input position it draws from, and its weights (their sum is
-/// 1).
+double triangle(double x) {
+  return std::max(0.0, 1.0 - std::abs(x));
+}
+
+/// Keys' cubic with a = -1/2.
+double cubic(double x) {
+  constexpr double kA = -0.5;
+  x = std::abs(x);
+  if (x < 1.0) return ((kA + 2.0) * x - (kA + 3.0)) * x * x + 1;
+  if (x < 2.0) return (((x - 5) * x + 8) * x - 4) * kA;
+  return 0.0;
+}
+
+struct Kernel {
+  double (*weight)(double);
+  double radius;
+};
+
+Kernel kernel_of(ResizeFilter filter) {
+  return filter == ResizeFilter::kBicubic ? Kernel{cubic, 2.0} : Kernel{triangle, 1.0};
+}
+
+/// For each output position the first input position it draws from, and its weights in fixed point
+/// (their sum is 2^kWeightBits but for rounding).
 struct FilterTaps {
   std::vector<int> first;
-  std::vector<float> weights;  ///< `width` for each output position, zero beyond the triangle
+  std::vector<std::int32_t> weights;  ///< `width` for each output position, zero beyond the kernel
   int width = 0;
 };
 
-FilterTaps triangle_taps(int from, int to) {
+std::int32_t fixed_point(double weight) {
+  return static_cast<std::int32_t>((weight < 0 ? -0.5 : 0.5) + weight * (1 << kWeightBits));
+}
+
+FilterTaps filter_taps(int from, int to, const Kernel& kernel) {
   const double scale = static_cast<double>(from) / to;
-  const double radius = std::max(scale, 1.0);
+  const double stretch = std::max(scale, 1.0);
+  const double shrink = 1.0 / stretch;
+  const double radius = kernel.radius * stretch;
   FilterTaps taps;
   taps.width = std::min(from, static_cast<int>(std::ceil(radius)) * 2 + 1);
+  const auto width = static_cast<std::size_t>(taps.width);
   taps.first.resize(static_cast<std::size_t>(to));
-  taps.weights.assign(static_cast<std::size_t>(to) * static_cast<std::size_t>(taps.width), 0.f);
-  std::vector<double> raw(static_cast<std::size_t>(taps.width));
+  taps.weights.assign(static_cast<std::size_t>(to) * width, 0);
+  std::vector<double> raw(width);
   for (int out = 0; out < to; ++out) {
-    const double center = (out + 0.5) * scale - 0.5;
-    const int lowest = static_cast<int>(std::floor(center - radius)) + 1;
-    const int first = std::clamp(lowest, 0, from - taps.width);
+    const double center = (out + 0.5) * scale;
+    const int lowest = std::max(0, static_cast<int>(center - radius + 0.5));
+    const int count = std::min(from, static_cast<int>(center + radius + 0.5)) - lowest;
     double sum = 0;
-    for (int k = 0; k < taps.width; ++k) {
-      const double weight = std::max(0.0, 1.0 - std::abs(first + k - center) / radius);
-      raw[static_cast<std::size_t>(k)] = weight;
-      sum += weight;
+    for (int k = 0; k < count; ++k) {
+      raw[static_cast<std::size_t>(k)] = kernel.weight((k + lowest - center + 0.5) * shrink);
+      sum += raw[static_cast<std::size_t>(k)];
     }
+    const int first = std::min(lowest, from - taps.width);
     taps.first[static_cast<std::size_t>(out)] = first;
-    float* weights =
-        &taps.weights[static_cast<std::size_t>(out) * static_cast<std::size_t>(taps.width)];
-    for (int k = 0; k < taps.width; ++k)
-      weights[k] = static_cast<float>(raw[static_cast<std::size_t>(k)] / sum);
+    std::int32_t* weights = &taps.weights[static_cast<std::size_t>(out) * width];
+    for (int k = 0; k < count; ++k)
+      weights[lowest - first + k] = fixed_point(raw[static_cast<std::size_t>(k)] / sum);
   }
   return taps;
 }
 
-/// One input row shrunk or stretched to the output width, as floats.
-void resize_row(const Rgb8* row, const FilterTaps& taps, float* out) {
-  const float* weights = taps.weights.data();
+std::uint8_t to_byte(std::int32_t sum) {
+  return static_cast<std::uint8_t>(std::clamp(sum >> kWeightBits, 0, 255));
+}
+
+/// One input row shrunk or stretched to the output width.
+void resize_row(const Rgb8* row, const FilterTaps& taps, Rgb8* out) {
+  const std::int32_t* weights = taps.weights.data();
   for (const int first : taps.first) {
-    float r = 0, g = 0, b = 0;
+    std::int32_t r = kHalf, g = kHalf, b = kHalf;
     for (int k = 0; k < taps.width; ++k) {
       const Rgb8 pixel = row[first + k];
-      r += weights[k] * static_cast<float>(pixel.r);
-      g += weights[k] * static_cast<float>(pixel.g);
-      b += weights[k] * static_cast<float>(pixel.b);
+      r += weights[k] * pixel.r;
+      g += weights[k] * pixel.g;
+      b += weights[k] * pixel.b;
     }
-    *out++ = r;
-    *out++ = g;
-    *out++ = b;
+    *out++ = {to_byte(r), to_byte(g), to_byte(b)};
     weights += taps.width;
   }
 }
 
-/// The weighted sum of `taps.width` consecutive rows of `values`, rounded.
-void blend_rows(const std::vector<float>& rows, std::size_t values, const FilterTaps& taps,
-                std::size_t y, std::vector<float>& sum, std::uint8_t* out) {
-  const float* weights = &taps.weights[y * static_cast<std::size_t>(taps.width)];
-  std::fill(sum.begin(), sum.end(), 0.5f);  // rounds to nearest when truncated
-  for (int k = 0; k < taps.width; ++k) {
-    const float* row = &rows[static_cast<std::size_t>(taps.first[y] + k) * values];
-    const float weight = weights[k];
-    for (std::size_t i = 0; i < values; ++i) sum[i] += weight * row[i];
-  }
-  for (std::size_t i = 0; i < values; ++i)
-    out[i] = static_cast<std::uint8_t>(static_cast<int>(std::min(sum[i], 255.f)));
+OVIMAP_VECTORIZE void add_weighted(const std::uint8_t* row, std::int32_t weight, std::size_t count,
+                                   std::int32_t* sum) {
+  for (std::size_t i = 0; i < count; ++i) sum[i] += weight * row[i];
+}
+
+/// The weighted sum of `taps.width` consecutive rows.
+void blend_rows(const RgbImage& rows, const FilterTaps& taps, int y, std::vector<std::int32_t>& sum,
+                Rgb8* out) {
+  const auto at = static_cast<std::size_t>(y);
+  const std::int32_t* weights = &taps.weights[at * static_cast<std::size_t>(taps.width)];
+  std::fill(sum.begin(), sum.end(), kHalf);
+  for (int k = 0; k < taps.width; ++k)
+    add_weighted(reinterpret_cast<const std::uint8_t*>(rows.row(taps.first[at] + k)), weights[k],
+                 sum.size(), sum.data());
+  auto* bytes = reinterpret_cast<std::uint8_t*>(out);
+  for (const std::int32_t value : sum) *bytes++ = to_byte(value);
 }
 
 void check_target(int width, int height) {
@@ -87,23 +124,22 @@ void check_target(int width, int height) {
 
 }  // namespace
 
-RgbImage resize_bilinear(const RgbImage& image, int width, int height) {
+RgbImage resize_filtered(const RgbImage& image, int width, int height, ResizeFilter filter) {
   check_target(width, height);
   if (image.empty()) throw Error("cannot resize an image without pixels");
-  const FilterTaps across = triangle_taps(image.width(), width);
-  const FilterTaps down = triangle_taps(image.height(), height);
-  const std::size_t values = static_cast<std::size_t>(width) * 3;
-  std::vector<float> rows(values * static_cast<std::size_t>(image.height()));
+  const Kernel kernel = kernel_of(filter);
+  const FilterTaps across = filter_taps(image.width(), width, kernel);
+  const FilterTaps down = filter_taps(image.height(), height, kernel);
+  RgbImage rows(width, image.height());
   parallel_for(static_cast<std::size_t>(image.height()), kRowsPerTask, [&](std::size_t y) {
-    resize_row(image.row(static_cast<int>(y)), across, &rows[y * values]);
+    resize_row(image.row(static_cast<int>(y)), across, rows.row(static_cast<int>(y)));
   });
   RgbImage result(width, height);
   parallel_for_ranges(
       static_cast<std::size_t>(height), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
-        std::vector<float> sum(values);
+        std::vector<std::int32_t> sum(static_cast<std::size_t>(width) * 3);
         for (std::size_t y = begin; y < end; ++y)
-          blend_rows(rows, values, down, y, sum,
-                     reinterpret_cast<std::uint8_t*>(result.row(static_cast<int>(y))));
+          blend_rows(rows, down, static_cast<int>(y), sum, result.row(static_cast<int>(y)));
       });
   return result;
 }

@@ -6,9 +6,19 @@
 
 namespace ovimap {
 
-/// Bilinear with antialiasing when shrinking (a triangle filter as wide as the scale), edges
-/// clamped.
-RgbImage resize_bilinear(const RgbImage& image, int width, int height);
+enum class ResizeFilter {
+  kBilinear,  ///< triangle
+  kBicubic    ///< Keys' cubic with a = -1/2
+};
+
+/// Antialiased: when shrinking, the filter is as wide as the scale. Edges are clamped. Across
+/// first, then down, each rounded to bytes with weights of 22 bits, as Pillow does: networks were
+/// trained on its pixels, and this gives the same ones.
+RgbImage resize_filtered(const RgbImage& image, int width, int height, ResizeFilter filter);
+
+inline RgbImage resize_bilinear(const RgbImage& image, int width, int height) {
+  return resize_filtered(image, width, height, ResizeFilter::kBilinear);
+}
 
 /// Nearest neighbour, for ids and masks: never invents a value.
 IdImage resize_nearest(const IdImage& image, int width, int height);

@@ -26,32 +26,128 @@ double triangle(double distance) {
   return std::max(0.0, 1.0 - std::abs(distance));
 }
 
+double cubic(double distance) {
+  const double x = std::abs(distance);
+  if (x >= 2) return 0;
+  return x < 1 ? 1.5 * x * x * x - 2.5 * x * x + 1 : -0.5 * x * x * x + 2.5 * x * x - 4 * x + 2;
+}
+
 /// The definition, in two dimensions at once and in double precision.
-double naive_red(const RgbImage& image, int width, int height, int x, int y) {
+double naive_red(const RgbImage& image, int width, int height, int x, int y,
+                 double (*kernel)(double)) {
   const double sx = double(image.width()) / width, sy = double(image.height()) / height;
   const double cx = (x + 0.5) * sx - 0.5, cy = (y + 0.5) * sy - 0.5;
   double sum = 0, weights = 0;
   for (int v = 0; v < image.height(); ++v)
     for (int u = 0; u < image.width(); ++u) {
       const double weight =
-          triangle((u - cx) / std::max(sx, 1.0)) * triangle((v - cy) / std::max(sy, 1.0));
+          kernel((u - cx) / std::max(sx, 1.0)) * kernel((v - cy) / std::max(sy, 1.0));
       sum += weight * image.at(u, v).r;
       weights += weight;
     }
   return sum / weights;
 }
 
-TEST(ResizeBilinear, AgreesWithTheDefinition) {
-  const RgbImage image = random_rgb(41, 23);
+TEST(Resize, AgreesWithTheDefinition) {
+  RgbImage image = random_rgb(41, 23);
+  for (Rgb8& pixel : image) pixel.r = static_cast<std::uint8_t>(64 + pixel.r / 2);  // no clipping
   for (const auto& [width, height] :
        {std::pair{13, 9}, {80, 47}, {41, 7}, {3, 40}, {1, 1}, {41, 23}}) {
-    const RgbImage result = resize_bilinear(image, width, height);
-    ASSERT_EQ(result.width(), width);
-    ASSERT_EQ(result.height(), height);
+    const RgbImage linear = resize_bilinear(image, width, height);
+    const RgbImage smooth = resize_filtered(image, width, height, ResizeFilter::kBicubic);
+    ASSERT_EQ(linear.width(), width);
+    ASSERT_EQ(linear.height(), height);
     for (int y = 0; y < height; ++y)
-      for (int x = 0; x < width; ++x)
-        ASSERT_NEAR(result.at(x, y).r, naive_red(image, width, height, x, y), 0.501)
+      for (int x = 0; x < width; ++x) {
+        // Rounded twice; the cubic's weights amplify the first rounding to at most 5/4.
+        ASSERT_NEAR(linear.at(x, y).r, naive_red(image, width, height, x, y, triangle), 1.001)
             << width << "x" << height << " at " << x << "," << y;
+        ASSERT_NEAR(smooth.at(x, y).r, naive_red(image, width, height, x, y, cubic), 1.126)
+            << width << "x" << height << " at " << x << "," << y;
+      }
+  }
+}
+
+/// The image the expected pixels below were made from.
+RgbImage formula_image(int width, int height) {
+  RgbImage image(width, height);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      image.at(x, y) = {static_cast<std::uint8_t>(x * 37 + y * 91 + x * y * 5),
+                        static_cast<std::uint8_t>(x * x * 11 + y * 53),
+                        static_cast<std::uint8_t>((x ^ y) * 29 + (x + y) % 2 * 200)};
+  return image;
+}
+
+// Image.fromarray(formula).resize((width, height), Image.BILINEAR / BICUBIC) of Pillow 12.2.
+struct PillowCase {
+  int from_width, from_height, width, height;
+  ResizeFilter filter;
+  std::vector<Rgb8> pixels;
+};
+
+std::vector<PillowCase> pillow_cases() {
+  return {
+      {13, 9, 5, 4, ResizeFilter::kBilinear, {{104, 65, 83},   {114, 126, 89},  {127, 129, 141},
+                                              {128, 147, 149}, {141, 105, 77},  {117, 142, 83},
+                                              {122, 108, 123}, {137, 139, 109}, {141, 128, 84},
+                                              {130, 143, 166}, {108, 83, 127},  {135, 121, 121},
+                                              {149, 136, 72},  {144, 141, 101}, {116, 84, 126},
+                                              {119, 139, 149}, {118, 128, 68},  {139, 148, 103},
+                                              {121, 149, 111}, {118, 179, 69}}},
+      {13, 9, 5, 4, ResizeFilter::kBicubic, {{100, 55, 81},   {116, 133, 83},  {124, 121, 147},
+                                             {127, 154, 159}, {145, 102, 65},  {121, 153, 76},
+                                             {118, 101, 132}, {141, 147, 110}, {143, 123, 70},
+                                             {131, 148, 183}, {105, 74, 131},  {137, 125, 123},
+                                             {155, 136, 63},  {144, 147, 102}, {111, 68, 128},
+                                             {118, 142, 157}, {114, 127, 60},  {143, 147, 103},
+                                             {118, 148, 116}, {119, 190, 61}}},
+      {5,
+       4,
+       9,
+       7,
+       ResizeFilter::kBilinear,
+       {{0, 0, 0},       {12, 4, 76},    {33, 10, 204},  {53, 26, 153},   {74, 44, 58},
+        {95, 75, 43},    {115, 108, 40}, {136, 150, 88}, {148, 176, 116}, {33, 19, 82},
+        {45, 23, 104},   {67, 29, 140},  {88, 45, 103},  {110, 63, 48},   {132, 94, 44},
+        {143, 127, 48},  {114, 169, 85}, {96, 195, 106}, {85, 49, 213},   {98, 53, 148},
+        {121, 59, 38},   {145, 75, 24},  {168, 93, 33},  {191, 124, 46},  {187, 157, 60},
+        {78, 199, 80},   {13, 225, 91},  {137, 80, 144}, {152, 84, 101},  {176, 90, 30},
+        {144, 106, 16},  {98, 124, 16},  {122, 155, 87}, {133, 173, 142}, {86, 145, 136},
+        {59, 128, 132},  {170, 110, 56}, {186, 114, 48}, {213, 120, 35},  {133, 136, 25},
+        {27, 154, 16},   {53, 175, 125}, {80, 173, 208}, {106, 84, 185},  {122, 30, 172},
+        {76, 140, 41},   {93, 144, 43},  {121, 150, 47}, {108, 166, 92},  {85, 184, 147},
+        {113, 123, 111}, {141, 73, 90},  {169, 65, 132}, {185, 60, 157},  {17, 159, 31},
+        {34, 163, 40},   {63, 169, 55},  {92, 185, 134}, {121, 203, 229}, {150, 91, 102},
+        {179, 11, 16},   {208, 53, 98},  {225, 79, 147}}},
+      {5,
+       4,
+       9,
+       7,
+       ResizeFilter::kBicubic,
+       {{0, 0, 0},       {2, 0, 61},     {25, 5, 235},    {45, 19, 187},   {66, 40, 60},
+        {85, 68, 25},    {108, 103, 34}, {145, 153, 93},  {163, 178, 125}, {23, 14, 82},
+        {33, 16, 102},   {58, 23, 157},  {83, 37, 121},   {110, 58, 51},   {139, 85, 29},
+        {146, 122, 37},  {115, 178, 84}, {101, 207, 111}, {81, 48, 243},   {94, 51, 164},
+        {120, 58, 25},   {148, 72, 8},   {175, 93, 33},   {216, 120, 42},  {202, 157, 56},
+        {65, 212, 78},   {3, 239, 91},   {149, 78, 171},  {168, 82, 116},  {198, 89, 11},
+        {155, 102, 0},   {98, 124, 0},   {124, 170, 92},  {136, 192, 165}, {71, 148, 144},
+        {43, 122, 130},  {173, 109, 53}, {197, 112, 48},  {230, 119, 35},  {137, 134, 10},
+        {20, 154, 9},    {32, 192, 133}, {74, 185, 230},  {109, 72, 196},  {127, 7, 172},
+        {66, 144, 31},   {86, 147, 34},  {119, 154, 44},  {106, 178, 103}, {85, 189, 159},
+        {107, 121, 112}, {142, 60, 78},  {181, 54, 133},  {200, 54, 165},  {0, 162, 27},
+        {16, 165, 31},   {49, 172, 49},  {88, 201, 157},  {129, 207, 247}, {159, 76, 95},
+        {187, 0, 0},     {221, 49, 91},  {238, 91, 158}}},
+  };
+}
+
+TEST(Resize, GivesThePixelsOfPillow) {
+  for (const PillowCase& expected : pillow_cases()) {
+    const RgbImage result =
+        resize_filtered(formula_image(expected.from_width, expected.from_height), expected.width,
+                        expected.height, expected.filter);
+    EXPECT_EQ(std::vector<Rgb8>(result.begin(), result.end()), expected.pixels)
+        << expected.width << "x" << expected.height;
   }
 }
 
