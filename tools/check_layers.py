@@ -8,6 +8,7 @@ import sys
 
 ROW = re.compile(r"^\| (\d+) \| (\w+) \| [^|]* \| ([^|]*) \|$")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]')
+HEADERS = {"unzip": "minizip", "sentencepiece_processor": "sentencepiece"}  # where it is not the library's name
 TEST_LIBRARIES = {"gtest"}
 SYSTEM = {"unistd.h", "sys", "fcntl.h", "dirent.h"}  # POSIX
 
@@ -29,7 +30,7 @@ def offence(module, include, table, is_test):
             return f"{module} (layer {layer}) may not include {other} (layer {table[other][0]})"
         return None
     name = parts[0].removesuffix(".h").removesuffix(".hpp")
-    name = {"unzip": "minizip"}.get(name, "onnxruntime" if name.startswith("onnxruntime") else name)
+    name = HEADERS.get(name, "onnxruntime" if name.startswith("onnxruntime") else name)
     known = libraries | (TEST_LIBRARIES if is_test else set())
     if "." not in parts[0] and len(parts) == 1 or parts[0] in SYSTEM or name in known:
         return None  # the standard library, POSIX, or listed

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
+
 #include <Eigen/Core>
 
 #include "ovimap/image/image.h"
@@ -17,10 +19,14 @@ struct InputFrame {
   Eigen::Vector2f scale = {1, 1};   ///< input_from_image, per axis
 };
 
+/// For ResizeRule::kLongSide and kStretch, which keep the whole image.
 InputFrame input_frame(int image_width_px, int image_height_px, const ImageInputSpec& spec);
 
-/// The image resized (bilinear with antialiasing), normalised and zero-padded to [1, 3, size,
-/// size].
+/// The image resized (antialiased), cut or zero-padded, normalised: 3 * size * size values, the
+/// three channels one after another.
+void write_image_tensor(const RgbImage& image, const ImageInputSpec& spec, std::span<float> values);
+
+/// The same as a tensor [1, 3, size, size].
 FloatTensor image_tensor(const RgbImage& image, const ImageInputSpec& spec);
 
 }  // namespace ovimap

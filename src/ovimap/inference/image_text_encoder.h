@@ -42,6 +42,8 @@ class ImageTextEncoder {
   virtual const EncoderIdentity& identity() const = 0;
   /// Absent where the model was not trained with a sigmoid loss.
   virtual std::optional<MatchCalibration> calibration() const = 0;
+  /// What names and short queries are put into before they are encoded; {} stands for them.
+  virtual std::string prompt_template() const { return "{}"; }
 
   /// [images, dimension]. The images may have any size. Throws Error when the network fails; a row
   /// that is not finite comes back as zeros, so that it cannot enter a map.

@@ -5,6 +5,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <optional>
 #include <set>
 
 #include "ovimap/base/error.h"
@@ -42,14 +43,32 @@ std::array<float, 3> three_numbers(const YAML::Node& node, const char* key,
   return {values[0].as<float>(), values[1].as<float>(), values[2].as<float>()};
 }
 
-ImageInputSpec parse_input(const YAML::Node& node, const fs::path& folder) {
+/// The value of `key` in `words`; `otherwise` where the key is absent.
+template <class Value>
+Value word_of(const YAML::Node& node, const char* key, const std::map<std::string, Value>& words,
+              std::optional<Value> otherwise, const fs::path& folder) {
+  if (otherwise && !node[key]) return *otherwise;
+  const std::string given = required_text(node, key, folder);
+  const auto found = words.find(given);
+  if (found != words.end()) return found->second;
+  std::string accepted;
+  for (const auto& [word, value] : words) accepted += (accepted.empty() ? "" : " or ") + word;
+  fault(folder, concat("'input.", key, "' is '", given, "'; accepted is ", accepted));
+}
+
+ImageInputSpec parse_input(const YAML::Node& node, const std::string& kind,
+                           const fs::path& folder) {
+  // Masks are mapped back onto the whole image, so only encoders may cut parts of it off.
+  std::map<std::string, ResizeRule> rules = {{"long_side", ResizeRule::kLongSide},
+                                             {"stretch", ResizeRule::kStretch}};
+  if (kind == "dual_encoder") rules["short_side"] = ResizeRule::kShortSide;
+  static const std::map<std::string, ResizeFilter> filters = {{"bilinear", ResizeFilter::kBilinear},
+                                                              {"bicubic", ResizeFilter::kBicubic}};
   ImageInputSpec spec;
   spec.size_px = node["size"] ? node["size"].as<int>() : 0;
   if (spec.size_px < 1) fault(folder, "'input.size' must be the side of the input in pixels");
-  const std::string resize = required_text(node, "resize", folder);
-  if (resize != "long_side" && resize != "stretch")
-    fault(folder, concat("'input.resize' is '", resize, "'; accepted is long_side or stretch"));
-  spec.resize = resize == "stretch" ? ResizeRule::kStretch : ResizeRule::kLongSide;
+  spec.resize = word_of<ResizeRule>(node, "resize", rules, {}, folder);
+  spec.filter = word_of<ResizeFilter>(node, "filter", filters, ResizeFilter::kBilinear, folder);
   spec.mean = three_numbers(node, "mean", folder);
   spec.std = three_numbers(node, "std", folder);
   if (*std::min_element(spec.std.begin(), spec.std.end()) <= 0)
@@ -73,7 +92,7 @@ ModelFolder parse(const YAML::Node& root, const fs::path& folder) {
   model.name = required_text(root, "name", folder);
   model.license = required_text(root, "license", folder);
   model.source = required_text(root, "source", folder);
-  if (root["input"]) model.input = parse_input(root["input"], folder);
+  if (root["input"]) model.input = parse_input(root["input"], model.kind, folder);
   for (const auto& entry : root["networks"])
     model.networks[entry.first.as<std::string>()] = parse_network(entry.second, folder);
   model.sha256 = text_map(root["sha256"]);

@@ -8,18 +8,22 @@
 #include <string>
 #include <vector>
 
+#include "ovimap/image/resize.h"
+
 namespace ovimap {
 
 /// How an image becomes the network's square input.
 enum class ResizeRule {
   kLongSide,  ///< the long side fills it, the rest is zero at the right and bottom
-  kStretch    ///< both sides fill it, the aspect ratio changes
+  kStretch,   ///< both sides fill it, the aspect ratio changes
+  kShortSide  ///< the short side fills it, the long one is cut at both ends alike
 };
 
 /// The image input: value = (pixel - mean) / std with pixels from 0 to 255, channels R, G, B.
 struct ImageInputSpec {
   int size_px = 0;  ///< side of the square input; 0: this model takes no image
   ResizeRule resize = ResizeRule::kLongSide;
+  ResizeFilter filter = ResizeFilter::kBilinear;
   std::array<float, 3> mean = {0, 0, 0};
   std::array<float, 3> std = {255, 255, 255};
 };
