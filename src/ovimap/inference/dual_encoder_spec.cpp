@@ -83,7 +83,9 @@ TextSpec read_text_spec(const ModelFolder& model) {
                                    {"siglip", TextRule::kSiglip},
                                    {"clip", TextRule::kClip},
                                    {"bert", TextRule::kBert}});
-  spec.lowercase = find_flag(model, "lowercase");
+  spec.lowercase = find_flag(model, "lowercase") && spec.rule == TextRule::kNone;
+  if (spec.lowercase && spec.tokenizer != "sentencepiece")
+    fault(model, "'lowercase' without 'text_rule' is for the tokenizer sentencepiece only");
   spec.context_length = require_count(model, "context_length");
   spec.pad_to_context = find_flag(model, "pad_to_context");
   spec.pad_left = find_word<bool>(model, "pad_side", {{"right", false}, {"left", true}});
@@ -126,10 +128,9 @@ DualEncoderSpec read_dual_encoder_spec(const ModelFolder& model) {
 
 std::unique_ptr<Tokenizer> open_tokenizer(const ModelFolder& model, const TextSpec& spec) {
   if (spec.tokenizer == "sentencepiece")
-    return make_sentencepiece_tokenizer(tokenizer_file(model, "tokenizer_model"),
-                                        spec.rule == TextRule::kSiglip
-                                            ? SentencePieceStart::kAsGiven
-                                            : SentencePieceStart::kAsModelSays);
+    return make_sentencepiece_tokenizer(
+        tokenizer_file(model, "tokenizer_model"),
+        {.keep_start = spec.rule == TextRule::kSiglip, .lowercase = spec.lowercase});
   if (spec.tokenizer == "clip_bpe")
     return make_clip_tokenizer(tokenizer_file(model, "tokenizer_vocab"),
                                tokenizer_file(model, "tokenizer_merges"));

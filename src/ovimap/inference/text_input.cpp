@@ -8,10 +8,7 @@ namespace ovimap {
 
 std::vector<std::int64_t> text_ids(std::string_view text, const TextSpec& spec,
                                    const Tokenizer& tokenizer) {
-  // The other rules have their own ways to lower, which must see the text as it was.
-  const bool lower = spec.lowercase && spec.rule == TextRule::kNone;
-  std::vector<std::int64_t> ids =
-      tokenizer.encode(lower ? lower_text(text) : apply_text_rule(spec.rule, text));
+  std::vector<std::int64_t> ids = tokenizer.encode(apply_text_rule(spec.rule, text));
   const std::size_t around = spec.begin_id.has_value() + spec.end_id.has_value();
   const std::size_t room = static_cast<std::size_t>(spec.context_length) - around;
   ids.resize(std::min(ids.size(), room));

@@ -19,7 +19,7 @@ namespace ovimap {
 struct TextSpec {
   std::string tokenizer;  ///< "sentencepiece", "clip_bpe" or "wordpiece"
   TextRule rule = TextRule::kNone;
-  bool lowercase = false;       ///< with TextRule::kNone; the others include it
+  bool lowercase = false;       ///< by the tokenizer; the rules but kNone include it
   int context_length = 0;       ///< longest sequence of ids, begin and end included
   bool pad_to_context = false;  ///< every sequence gets this length
   bool pad_left = false;        ///< else padded on the right

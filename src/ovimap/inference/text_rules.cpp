@@ -84,8 +84,4 @@ std::string apply_text_rule(TextRule rule, std::string_view utf8) {
   return encode_utf8(text);
 }
 
-std::string lower_text(std::string_view utf8) {
-  return encode_utf8(lowered(decode_utf8(utf8)));
-}
-
 }  // namespace ovimap

@@ -18,7 +18,4 @@ enum class TextRule {
 /// The text after `rule`, valid UTF-8 whatever the input was.
 std::string apply_text_rule(TextRule rule, std::string_view utf8);
 
-/// The text in lower case, character by character; valid UTF-8 whatever the input was.
-std::string lower_text(std::string_view utf8);
-
 }  // namespace ovimap

@@ -19,15 +19,17 @@ class Tokenizer {
   virtual std::vector<std::int64_t> encode(std::string_view utf8) const = 0;
 };
 
-enum class SentencePieceStart {
-  kAsModelSays,  ///< a space in front of the first word when the model was trained with one
-  kAsGiven       ///< the text begins with its own U+2581 (TextRule::kSiglip)
+struct SentencePieceOptions {
+  /// The text begins with its own U+2581 (TextRule::kSiglip); else the model's own rule for spaces
+  /// at the start holds.
+  bool keep_start = false;
+  bool lowercase = false;  ///< character by character, but for pieces the model has as they are
 };
 
 /// A SentencePiece model (unigram or byte-pair), run by its own library. Throws Error when `model`
 /// is none.
 std::unique_ptr<Tokenizer> make_sentencepiece_tokenizer(const std::filesystem::path& model,
-                                                        SentencePieceStart start);
+                                                        const SentencePieceOptions& options);
 
 /// CLIP's byte-level byte-pair encoding (Radford et al. 2021): `vocabulary` maps tokens to ids
 /// (JSON), `merges` lists the pairs that are joined, most frequent first. Takes text after
