@@ -7,6 +7,7 @@
 #include "ovimap/io/replica_pack.h"
 #include "ovimap/synth/room_builder.h"
 #include "ovimap/synth/sequence.h"
+#include "synth_catalog.h"
 
 namespace ovimap::apps {
 
@@ -18,12 +19,17 @@ struct SynthOptions {
   int frames = 0;
   std::uint64_t seed = 1;
   bool noise = false;
+  bool catalog = false;
+  int views = PortraitConfig{}.views;
   int threads = 0;
   bool json = false;
 };
 
 int synth(const SynthOptions& options) {
   const ThreadLimit limit(options.threads);
+  if (options.catalog)
+    return synth_catalog(
+        {options.out, options.furniture, options.views, options.seed, options.json});
   const RoomSpec spec = room_spec(options.room, options.seed);
   SynthSequenceConfig config;
   config.noise = options.noise;
@@ -67,6 +73,13 @@ Action add_synth(CLI::App& command) {
       ->capture_default_str();
   command.add_flag("--noise", options->noise,
                    "as a depth camera sees it: noise, quantisation, holes");
+  auto* catalog = command.add_flag(
+      "--catalog", options->catalog,
+      "instead of a room: pictures of every furniture model by itself, OUT/crops and crops.csv");
+  command.add_option("--views", options->views, "with --catalog: pictures of a model")
+      ->check(CLI::Range(1, 10000))
+      ->needs(catalog)
+      ->capture_default_str();
   command.add_option("--furniture", options->furniture, "folder of .sh3f furniture catalogues")
       ->capture_default_str();
   command.add_option("--threads", options->threads, "threads to use; 0: all cores")

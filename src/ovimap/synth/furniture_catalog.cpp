@@ -114,6 +114,8 @@ std::optional<FurnitureEntry> entry_of(const Properties& properties, const Prope
   entry.creator = text_of(properties, "creator");
   entry.license = text_of(file.library, "license");
   entry.archive = archive;
+  entry.elevation_m = number(properties, "elevation").value_or(0.f) * kMetresPerCentimetre;
+  entry.door_or_window = text_of(properties, "doorOrWindow") == "true";
   entry.model_rotation = rotation_of(text_of(properties, "modelRotation"));
   return entry;
 }

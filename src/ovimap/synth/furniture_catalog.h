@@ -20,6 +20,8 @@ struct FurnitureEntry {
   std::filesystem::path archive;
   std::string model;                                             ///< the OBJ file in the archive
   Eigen::Vector3f size_m = Eigen::Vector3f::Zero();              ///< width, depth, height
+  float elevation_m = 0;                                         ///< of its base above the floor
+  bool door_or_window = false;                                   ///< stands in a wall
   Eigen::Matrix3f model_rotation = Eigen::Matrix3f::Identity();  ///< in the model's own axes, y up
 };
 
