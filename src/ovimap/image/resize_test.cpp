@@ -176,7 +176,24 @@ TEST(ResizeBilinear, ThreadsDoNotChangeTheBits) {
   EXPECT_EQ(resize_bilinear(image, 64, 90), many);
 }
 
+TEST(Resize, AWindowIsAPartOfTheWhole) {
+  const RgbImage image = random_rgb(61, 47);
+  for (const auto& [width, height] : {std::pair{20, 90}, {133, 31}}) {
+    const RgbImage whole = resize_filtered(image, width, height, ResizeFilter::kBicubic);
+    const ImageWindow window = {width - 13, 3, 13, height - 4};
+    const RgbImage part = resize_window(image, width, height, window, ResizeFilter::kBicubic);
+    ASSERT_EQ(part.width(), window.width_px);
+    ASSERT_EQ(part.height(), window.height_px);
+    for (int y = 0; y < part.height(); ++y)
+      for (int x = 0; x < part.width(); ++x)
+        ASSERT_EQ(part.at(x, y), whole.at(x + window.left_px, y + window.top_px));
+  }
+}
+
 TEST(Resize, ImpossibleSizesAreRefused) {
+  for (const ImageWindow& window :
+       {ImageWindow{-1, 0, 2, 2}, {0, 0, 5, 2}, {3, 0, 2, 2}, {0, 0, 0, 2}, {0, 3, 1, 2}})
+    EXPECT_THROW(resize_window(random_rgb(4, 4), 4, 4, window, ResizeFilter::kBilinear), Error);
   EXPECT_THROW(resize_bilinear(random_rgb(4, 4), 0, 3), Error);
   EXPECT_THROW(resize_bilinear(RgbImage(), 3, 3), Error);
   EXPECT_THROW(resize_nearest(IdImage(4, 4), 3, -1), Error);

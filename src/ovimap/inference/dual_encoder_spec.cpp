@@ -131,10 +131,10 @@ std::unique_ptr<Tokenizer> open_tokenizer(const ModelFolder& model, const TextSp
     return make_sentencepiece_tokenizer(
         tokenizer_file(model, "tokenizer_model"),
         {.keep_start = spec.rule == TextRule::kSiglip, .lowercase = spec.lowercase});
+  const std::filesystem::path vocabulary = tokenizer_file(model, "tokenizer_vocab");
   if (spec.tokenizer == "clip_bpe")
-    return make_clip_tokenizer(tokenizer_file(model, "tokenizer_vocab"),
-                               tokenizer_file(model, "tokenizer_merges"));
-  return make_wordpiece_tokenizer(tokenizer_file(model, "tokenizer_vocab"));
+    return make_clip_tokenizer(vocabulary, tokenizer_file(model, "tokenizer_merges"));
+  return make_wordpiece_tokenizer(vocabulary);
 }
 
 }  // namespace ovimap

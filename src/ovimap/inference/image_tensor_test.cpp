@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "ovimap/image/resize.h"
+
 namespace ovimap {
 namespace {
 
@@ -52,6 +54,43 @@ TEST(ImageTensor, NormalisesByChannelAndPadsWithZero) {
     EXPECT_EQ(at(channel, 32, 0), 0.f);
     EXPECT_EQ(at(channel, 63, 63), 0.f);
   }
+}
+
+/// A horizontal ramp: the red value of a pixel is its column.
+RgbImage ramp(int width, int height) {
+  RgbImage image(width, height);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) image.at(x, y).r = static_cast<std::uint8_t>(x);
+  return image;
+}
+
+TEST(ImageTensor, ShortSideCutsTheLongOneAtBothEnds) {
+  ImageInputSpec spec;
+  spec.size_px = 10;
+  spec.resize = ResizeRule::kShortSide;
+  spec.std = {1, 1, 1};
+  const FloatTensor same = image_tensor(ramp(17, 10), spec);  // no resize, 7 columns too many
+  ASSERT_EQ(same.values.size(), 300u);
+  for (std::size_t y = 0; y < 10; ++y)
+    for (std::size_t x = 0; x < 10; ++x)
+      ASSERT_EQ(same.values[y * 10 + x], static_cast<float>(x + 3));  // floor(7 / 2)
+  const RgbImage tall = ramp(20, 45);  // becomes 10 x 22, cut from row 6 on
+  const RgbImage small = resize_filtered(tall, 10, 22, ResizeFilter::kBicubic);
+  spec.filter = ResizeFilter::kBicubic;
+  const FloatTensor cut = image_tensor(tall, spec);
+  for (int y = 0; y < 10; ++y)
+    for (int x = 0; x < 10; ++x)
+      ASSERT_EQ(cut.values[static_cast<std::size_t>(y * 10 + x)],
+                static_cast<float>(small.at(x, y + 6).r));
+}
+
+TEST(ImageTensor, ShortSideTakesVeryLongImages) {
+  ImageInputSpec spec;
+  spec.size_px = 32;
+  spec.resize = ResizeRule::kShortSide;
+  const FloatTensor tensor = image_tensor(RgbImage(100000, 1, Rgb8{255, 0, 255}), spec);
+  EXPECT_NEAR(tensor.values.front(), 1.f, 1e-6);
+  EXPECT_NEAR(tensor.values[32 * 32], 0.f, 1e-6);
 }
 
 }  // namespace

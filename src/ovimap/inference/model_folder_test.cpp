@@ -39,6 +39,7 @@ TEST(ModelFolder, ReadsEveryPart) {
   EXPECT_EQ(model.name, "test model");
   EXPECT_EQ(model.input.size_px, 64);
   EXPECT_EQ(model.input.resize, ResizeRule::kStretch);
+  EXPECT_EQ(model.input.filter, ResizeFilter::kBilinear);
   EXPECT_EQ(model.input.mean, (std::array<float, 3>{1, 2, 3}));
   EXPECT_EQ(model.input.std, (std::array<float, 3>{4, 5, 6}));
   EXPECT_EQ(model.input_of("encoder", "image"), "input");
@@ -63,6 +64,22 @@ TEST(ModelFolder, SaysWhatIsWrong) {
   EXPECT_TRUE(contains(message("kind: [unclosed"), "line "));
   for (const std::string& text : {std::string("- a"), std::string("text")})
     EXPECT_TRUE(contains(message(text), "key: value"));
+}
+
+TEST(ModelFolder, OnlyEncodersMayCutImages) {
+  const ScratchFolder scratch("model_resize");
+  std::string text = edited("kind: sam", "kind: dual_encoder");
+  text.replace(text.find("stretch"), 7, "short_side, filter: bicubic");
+  scratch.write("model.yaml", text);
+  const ModelFolder model = read_model_folder(scratch.path());
+  EXPECT_EQ(model.input.resize, ResizeRule::kShortSide);
+  EXPECT_EQ(model.input.filter, ResizeFilter::kBicubic);
+  scratch.write("model.yaml", edited("stretch", "short_side"));
+  EXPECT_TRUE(contains(error_of([&] { read_model_folder(scratch.path()); }),
+                       "'short_side'; accepted is long_side or stretch"));
+  scratch.write("model.yaml", edited("stretch", "stretch, filter: lanczos"));
+  EXPECT_TRUE(contains(error_of([&] { read_model_folder(scratch.path()); }),
+                       "accepted is bicubic or bilinear"));
 }
 
 TEST(ModelFolder, NamesMissingRoles) {
