@@ -35,6 +35,7 @@ from export.dual_encoder import image_features, load_tokenizer, text_features, t
 from golden import tiny_tokenizers
 from golden.corpus import texts
 from golden.minilm import write_minilm
+from golden.textures import textured_image
 from golden.tiny_models import TOWER, fill, set_scalar
 
 SOURCE = "tools/models/make_golden_encoders.py"
@@ -42,19 +43,6 @@ EMBEDDED_TEXTS = 8
 IMAGE_PX, PATCH_PX = 32, 8
 MAX_COSINE = 0.97  # of different texts' or images' embeddings: else agreement shows nothing
 CONTEXT = {"siglip": 64, "siglip2": 64, "clip": 77}
-
-
-def textured_image(seed: int, width: int = 61, height: int = 47) -> np.ndarray:
-    """Waves and noise: edges and fine texture, so that the resize filter matters."""
-    rng = np.random.default_rng(seed)
-    y, x = np.mgrid[0:height, 0:width]
-    waves = [
-        np.sin(x * rng.uniform(0.1, 0.9) + y * rng.uniform(-0.6, 0.6) + rng.uniform(0, 6))
-        for _ in range(3)
-    ]
-    image = 127 + 80 * np.stack(waves, axis=2) + rng.normal(0, 25, (height, width, 3))
-    image[height // 3 : height // 2, width // 4 : width // 2] = rng.integers(0, 256, 3)
-    return np.clip(image, 0, 255).astype(np.uint8)
 
 
 def siglip_checkpoint(kind: str, folder: pathlib.Path):

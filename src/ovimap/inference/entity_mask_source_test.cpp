@@ -19,19 +19,19 @@ std::filesystem::path golden_folder() {
 
 EntityConfig golden_config() {
   EntityConfig config;
-  config.min_mask_px = 40;  // as in tools/models/make_golden_entity.py
+  config.min_mask_px = 40;  // as in tools/models/make_golden_{entity,masks}.py
   return config;
 }
 
-// NumPy's answer, computed by tools/models/make_golden_entity.py without this code or the runtime.
-TEST(EntityMaskSource, AgreesWithNumPy) {
-  EntityMaskSource source(read_model_folder(golden_folder()), golden_config(), {});
+/// `folder`'s network must make of image.png the ids and scores that lie beside it.
+void expect_golden(const std::filesystem::path& folder) {
+  EntityMaskSource source(read_model_folder(folder), golden_config(), {});
   EXPECT_EQ(source.kind(), "entity");
   Frame frame;
-  frame.color = read_rgb(golden_folder() / "image.png");
+  frame.color = read_rgb(folder / "image.png");
   const Entities entities = source.entities(frame, {});
-  EXPECT_EQ(entities.ids, read_gray(golden_folder() / "ids.png").values);
-  std::ifstream expected(golden_folder() / "scores.txt");
+  EXPECT_EQ(entities.ids, read_gray(folder / "ids.png").values);
+  std::ifstream expected(folder / "scores.txt");
   for (const float score : entities.scores) {
     float wanted = -1;
     expected >> wanted;
@@ -39,6 +39,17 @@ TEST(EntityMaskSource, AgreesWithNumPy) {
   }
   float more = 0;
   EXPECT_FALSE(expected >> more);
+}
+
+// NumPy's answer, computed by tools/models/make_golden_entity.py without this code or the runtime.
+TEST(EntityMaskSource, AgreesWithNumPy) {
+  expect_golden(golden_folder());
+}
+
+// A tiny Mask2Former written by tools/models/export_model.py; the answer comes from Hugging Face's
+// image processor and network in torch. The image is resized on the way in.
+TEST(EntityMaskSource, AgreesWithHuggingFace) {
+  expect_golden(inference_testdata() / "golden_mask2former");
 }
 
 /// A 4 x 4 grid over an image of 4 x 4 pixels.

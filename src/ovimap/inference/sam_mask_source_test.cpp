@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <set>
 
 #include "ovimap/image/codec.h"
@@ -85,6 +87,42 @@ TEST_P(SamSignature, FindsThePatches) {
 INSTANTIATE_TEST_SUITE_P(Signatures, SamSignature,
                          testing::Values("batched", "sam", "sam2", "efficient"),
                          [](const auto& signature) { return std::string(signature.param); });
+
+std::vector<float> numbers_of(const fs::path& file) {
+  std::ifstream stream(file);
+  return {std::istream_iterator<float>(stream), {}};
+}
+
+/// Logits and scores must be near, and no logit may change its side.
+void expect_near(const MaskProposals& proposals, const std::string& prompt) {
+  const fs::path folder = inference_testdata() / "golden_sam_hf";
+  const std::vector<float> masks = numbers_of(folder / (prompt + "_masks.txt"));
+  const std::vector<float> scores = numbers_of(folder / (prompt + "_scores.txt"));
+  ASSERT_EQ(proposals.logits.size(), masks.size());
+  ASSERT_EQ(proposals.predicted_iou.size(), scores.size());
+  for (std::size_t i = 0; i < masks.size(); ++i) {
+    EXPECT_NEAR(proposals.logits[i], masks[i], 1e-3) << i;
+    EXPECT_EQ(proposals.logits[i] > 0, masks[i] > 0) << i;
+  }
+  for (std::size_t i = 0; i < scores.size(); ++i)
+    EXPECT_NEAR(proposals.predicted_iou[i], scores[i], 1e-4) << i;
+}
+
+// A tiny SAM written by tools/models/export_model.py; the answers come from Hugging Face's image
+// processor and network in torch. The image is resized on the way in.
+TEST(SamNetwork, AgreesWithHuggingFace) {
+  const SamNetwork network(read_model_folder(inference_testdata() / "golden_sam_hf"), {});
+  const RgbImage image = read_rgb(inference_testdata() / "golden_sam_hf/image.png");
+  const ImageFeatures features = network.encode(image);
+  // The prompts of tools/models/make_golden_masks.py.
+  const PromptPoint point{{41, 30}, PointLabel::kForeground}, padding{{0, 0}, PointLabel::kPadding},
+      box_min{{20, 12}, PointLabel::kBoxMin}, box_max{{70, 52}, PointLabel::kBoxMax};
+  const std::vector<PromptPoints> by_point(2, {point, padding});
+  for (const MaskProposals& proposals : network.decode(features, by_point))
+    expect_near(proposals, "point");
+  const std::vector<PromptPoints> by_box = {{point, box_min, box_max}};
+  expect_near(network.decode(features, by_box).front(), "point_and_box");
+}
 
 TEST(SamMaskSource, AsksNoMoreThanItsBudget) {
   SamConfig config = small_image_config();

@@ -52,30 +52,50 @@ def export_network(module, examples, path: pathlib.Path, inputs, outputs, open_a
             dynamo=False,
         )
         model = onnx.load(str(raw))
-    drop_remarks(model.graph)
+    shorten(model.graph)
     save(model, path)
 
 
-def drop_remarks(graph):
-    """Shortens what only a debugger would read: node names, remarks, names between the nodes."""
+def shorten(graph):
+    """Drops what only a debugger would read (remarks, long names of nodes and between them) and
+    constants that are there already."""
     kept = {tensor.name for tensor in [*graph.input, *graph.output, *graph.initializer]}
-    rename_tensors(graph, kept, {"": ""})
+    rename_tensors(graph, kept, {"": ""}, {})
 
 
-def rename_tensors(graph, kept: set, names: dict):
-    """Gives every tensor but the `kept` ones a short name; `names` is what has been given yet."""
+def rename_tensors(graph, kept: set, names: dict, constants: dict):
+    """Gives every tensor but the `kept` ones a short name. `names` is what has been given yet,
+    `constants` the names of the constants that can be seen, by their value."""
     del graph.value_info[:]
     kept |= {tensor.name for tensor in graph.initializer}
+    nodes = []
     for node in graph.node:
-        node.doc_string = node.name = ""
+        node.doc_string = ""
         for attribute in node.attribute:
             if attribute.type == onnx.AttributeProto.GRAPH:
-                rename_tensors(attribute.g, kept, names)
+                rename_tensors(attribute.g, kept, names, dict(constants))
+        if is_repeated(node, kept, names, constants):
+            continue
         for tensors in (node.input, node.output):
             for i, name in enumerate(tensors):
                 tensors[i] = name if name in kept else names.setdefault(name, f"t{len(names)}")
+        # Names must differ: ONNX Runtime's optimiser makes new ones from them.
+        node.name = "n_" + node.output[0]
+        nodes.append(node)
     for output in graph.output:
         output.name = names.get(output.name, output.name)
+    del graph.node[:]
+    graph.node.extend(nodes)
+
+
+def is_repeated(node, kept: set, names: dict, constants: dict) -> bool:
+    """Whether the node is a constant that another one gives already, whose name it then takes."""
+    if node.op_type != "Constant" or node.output[0] in kept:
+        return False
+    name = names.setdefault(node.output[0], f"t{len(names)}")
+    value = b"".join(a.SerializeToString(deterministic=True) for a in node.attribute)
+    names[node.output[0]] = constants.setdefault(value, name)
+    return names[node.output[0]] != name
 
 
 def save(model, path: pathlib.Path, max_bytes: int = MAX_FILE_BYTES):

@@ -12,6 +12,7 @@ from export.folder import FolderWriter
 from export.network import Wrapped, check_same, export_network, run_onnx
 
 from . import tiny_tokenizers
+from .textures import textured_image
 from .tiny_models import TOWER, fill
 
 CONTEXT = 48
@@ -87,8 +88,6 @@ def description(tokenizer, source: str) -> dict:
 def write_minilm(folder, texts, embedded_texts: int, source: str):
     """Writes the model. Gives the ids of `texts` (each as long as it is, special tokens included),
     the embeddings of the first ones, an image, and embeddings of that and of other images."""
-    from make_golden_encoders import textured_image
-
     writer = FolderWriter(folder)
     tokenizer = tiny_tokenizers.minilm(writer.partial)
     config = BertConfig(
