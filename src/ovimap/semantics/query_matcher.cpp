@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/semantics/query_matcher.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ovimap/base/error.h"
+#include "ovimap/semantics/query_text.h"
+#include "ovimap/semantics/word_lists.h"
+
+namespace ovimap {
+
+namespace {
+
+void require_length(Eigen::Index length, const SearchIndex& index, const std::string& whose) {
+  if (length == index.dimension()) return;
+  throw Error(concat("the map's embeddings have ", index.dimension(), " numbers, those of ", whose,
+                     " have ", length,
+                     "; name the encoder that the map was made with, or run `ovimap reembed`"));
+}
+
+/// Takes over the object's scores where `other` is better (any) or worse (all).
+void join(MatchScores& scores, const MatchScores& other, TermRule rule) {
+  for (Eigen::Index i = 0; i < scores.standard.size(); ++i) {
+    const bool better = other.standard[i] > scores.standard[i];
+    if (better != (rule == TermRule::kAny)) continue;
+    scores.standard[i] = other.standard[i];
+    scores.cosines[i] = other.cosines[i];
+  }
+}
+
+}  // namespace
+
+void require_embeddings(const SearchIndex& index) {
+  if (index.embedded() == 0)
+    throw Error(concat("none of the map's ", index.size(),
+                       " objects has an embedding; map with "
+                       "--encoder, or run `ovimap reembed` on it"));
+}
+
+TextMatcher::TextMatcher(const SearchIndex& index, ImageTextEncoder& encoder,
+                         const QueryConfig& config, Embeddings vocabulary)
+    : index_(index),
+      encoder_(encoder),
+      config_(config),
+      prompts_(split_prompts(config.prompts.empty() ? encoder.prompt_template() : config.prompts)),
+      vocabulary_(std::move(vocabulary)) {
+  require_embeddings(index);
+  require_length(encoder.identity().dimension, index, "encoder '" + encoder.identity().name + "'");
+  if (vocabulary_.rows() == 0) vocabulary_ = encode_prompted(encoder, vocabulary_texts(), prompts_);
+  require_length(vocabulary_.cols(), index, "the vocabulary");
+  calibration_.emplace(index, vocabulary_, config.verdict);
+}
+
+std::vector<std::string> TextMatcher::vocabulary_texts() {
+  return list_entries(builtin_word_list("vocabulary"));
+}
+
+MatchScores TextMatcher::match(const std::vector<std::string>& terms,
+                               const std::vector<std::string>& negatives) const {
+  OVIMAP_ASSERT(!terms.empty());
+  std::vector<std::string> texts = terms;
+  texts.insert(texts.end(), negatives.begin(), negatives.end());
+  const Embeddings rows = encode_prompted(encoder_, texts, prompts_);
+  const auto count = static_cast<Eigen::Index>(terms.size());
+  MatchScores scores = joined(rows, 0, count, config_.terms);
+  if (!negatives.empty())
+    apply_negatives(joined(rows, count, rows.rows() - count, TermRule::kAny), scores);
+  return scores;
+}
+
+MatchScores TextMatcher::joined(const Embeddings& rows, Eigen::Index first, Eigen::Index count,
+                                TermRule rule) const {
+  MatchScores scores;
+  for (Eigen::Index row = first; row < first + count; ++row) {
+    MatchScores term;
+    term.cosines = index_.cosines(rows.row(row).transpose());
+    term.standard = calibration_->standard_scores(term.cosines);
+    if (row == first)
+      scores = std::move(term);
+    else
+      join(scores, term, rule);
+  }
+  scores.excluded.assign(index_.size(), false);
+  scores.alternatives = rule == TermRule::kAny ? static_cast<int>(count) : 1;
+  return scores;
+}
+
+void TextMatcher::apply_negatives(const MatchScores& negative, MatchScores& scores) const {
+  for (Eigen::Index i = 0; i < scores.standard.size(); ++i) {
+    const float excess = negative.standard[i] - scores.standard[i];
+    if (excess <= 0.f) continue;
+    if (config_.negatives == NegativeRule::kExclude)
+      scores.excluded[static_cast<std::size_t>(i)] = true;
+    else
+      scores.standard[i] -= excess;
+  }
+}
+
+double TextMatcher::p_value(const MatchScores& scores, float standard_score) const {
+  // The best of several terms has several chances to score high (Sidak 1967).
+  const double single = calibration_->null_distribution().p_value(double{standard_score});
+  return -std::expm1(scores.alternatives * std::log1p(-single));
+}
+
+}  // namespace ovimap
