@@ -128,17 +128,20 @@ class SentencePieceTokenizer : public Tokenizer {
     return 0;
   }
 
-  /// The text in lower case but for fixed pieces, which are found before. Cut where the library
-  /// would take for a fixed piece what only looks like one in lower case.
+  /// The text in lower case, cut around fixed pieces, which are found before it is lowered, and
+  /// where the library would take for one what only looks like it afterwards.
   std::vector<std::u32string> lowered_stretches(std::u32string_view text) const {
     const std::size_t longest = fixed_.empty() ? 0 : fixed_.front().size();
     std::vector<std::u32string> stretches(1);
     for (std::size_t at = 0; at < text.size();) {
       const std::size_t length = fixed_length(text.substr(at));
-      stretches.back() +=
-          length > 0 ? std::u32string(text.substr(at, length)) : lowered(text.substr(at, 1));
-      if (length == 0 && fixed_length(lowered(text.substr(at, longest))) > 0)
+      if (length > 0) {
+        stretches.emplace_back(text.substr(at, length));
         stretches.emplace_back();
+      } else {
+        stretches.back() += lowered(text.substr(at, 1));
+        if (fixed_length(lowered(text.substr(at, longest))) > 0) stretches.emplace_back();
+      }
       at += std::max<std::size_t>(length, 1);
     }
     return stretches;
