@@ -96,7 +96,9 @@ def check_telling(name: str, what: str, rows: np.ndarray) -> None:
     """Different inputs must have clearly different embeddings."""
     cosines = rows @ rows.T - 2 * np.eye(len(rows))
     if cosines.max() > MAX_COSINE:
-        raise SystemExit(f"{name}: two {what} embeddings have cosine {cosines.max():.3f}; scale the weights")
+        raise SystemExit(
+            f"{name}: two {what} embeddings have cosine {cosines.max():.3f}; scale the weights"
+        )
 
 
 def write_rows(path: pathlib.Path, rows) -> None:

@@ -76,7 +76,9 @@ def run_exporter(checkpoint: str, writer, options: Options) -> dict:
     if exporter is export_mask2former:
         return exporter(checkpoint, config, writer, options.input_px)
     if options.input_px:
-        raise ExportError(f"--input-px is for mask2former; a {config.model_type} has a size of its own")
+        raise ExportError(
+            f"--input-px is for mask2former; a {config.model_type} has a size of its own"
+        )
     return exporter(checkpoint, config, writer)
 
 

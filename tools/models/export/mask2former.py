@@ -23,7 +23,8 @@ def query_logits(model, pixels):
 
 def square_input(processor, input_px) -> tuple:
     """Resize rule and side. A processor that scales by its short and long edge gives images of any
-    shape; ovimap's network has one square input, whose long side a 4:3 image fills at that scale."""
+    shape; ovimap's network has one square input, whose long side a 4:3 image fills at that
+    scale."""
     size = dict(processor.size)
     if size.get("height"):
         rule, side = "stretch", max(size["height"], size["width"])
@@ -32,7 +33,9 @@ def square_input(processor, input_px) -> tuple:
         rule, side = "long_side", min(size["shortest_edge"] * CAMERA_ASPECT, size["longest_edge"])
         side = int(side) // STRIDE * STRIDE
     else:
-        raise ExportError(f"the image processor's size is {size}; ovimap cannot make a square of it")
+        raise ExportError(
+            f"the image processor's size is {size}; ovimap cannot make a square of it"
+        )
     side = input_px or side
     if side % STRIDE or side < STRIDE:
         raise ExportError(f"--input-px is {side}; Mask2Former takes multiples of {STRIDE}")

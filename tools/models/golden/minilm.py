@@ -96,7 +96,8 @@ def write_minilm(folder, texts, embedded_texts: int, source: str):
         max_position_embeddings=CONTEXT,
         attn_implementation="eager",
     )
-    text = Wrapped(fill(BertModel(config, add_pooling_layer=False), attention_gain=2.0), masked_mean).eval()
+    bert = fill(BertModel(config, add_pooling_layer=False), attention_gain=2.0)
+    text = Wrapped(bert, masked_mean).eval()
     image_tower = fill(ImageTower())
     arguments = encode(tokenizer, texts[:embedded_texts], True)
     axes = {name: {0: "texts", 1: "length"} for name in INPUTS} | {"text_embeds": {0: "texts"}}

@@ -140,7 +140,9 @@ def gemma_backend(path: pathlib.Path) -> Tokenizer:
     tokenizer.pre_tokenizer = pre_tokenizers.Split(" ", "merged_with_previous")
     tokenizer.add_special_tokens([AddedToken(p, normalized=False) for p in sorted(special)])
     tokenizer.add_tokens([AddedToken(p, normalized=False) for p in listed])
-    tokenizer.post_processor = processors.TemplateProcessing("$A <eos>", special_tokens=[("<eos>", 1)])
+    tokenizer.post_processor = processors.TemplateProcessing(
+        "$A <eos>", special_tokens=[("<eos>", vocab["<eos>"])]
+    )
     return tokenizer
 
 
