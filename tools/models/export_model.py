@@ -10,6 +10,7 @@ runs the written networks with ONNX Runtime and compares them with torch.
 """
 
 import argparse
+import os
 import pathlib
 import sys
 
@@ -34,6 +35,7 @@ def parse_arguments(arguments):
 
 def main(arguments=None) -> int:
     args = parse_arguments(arguments)
+    os.environ.setdefault("TRANSFORMERS_VERBOSITY", "error")
     try:
         from export.checkpoint import Options, export_checkpoint
         from export.errors import ExportError

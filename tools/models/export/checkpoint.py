@@ -96,6 +96,9 @@ def export_checkpoint(checkpoint: str, folder, options: Options | None = None) -
         }
         writer.finish(head | description)
         return head | description
+    except OSError as error:  # what transformers throws for a file that is missing or broken
+        writer.discard()
+        raise ExportError(f"{checkpoint}: {str(error).strip().splitlines()[0]}") from error
     except BaseException:
         writer.discard()
         raise

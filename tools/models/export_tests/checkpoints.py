@@ -121,6 +121,11 @@ class Refusals(InScratch):
         self.assertIn("exists already", self.refusal())
         self.assertEqual((self.model / "notes.txt").read_text(), "mine")
 
+    def test_missing_weights(self):
+        make_golden_encoders.save_checkpoint("siglip", self.checkpoint)
+        (self.checkpoint / "model.safetensors").unlink()
+        self.assertIn("model.safetensors", self.refusal())
+
     def test_input_size_of_a_network_that_has_one(self):
         tiny_sam(0)[0].save_pretrained(self.checkpoint)
         self.assertIn("--input-px is for mask2former", self.refusal("--input-px", "512"))
