@@ -13,13 +13,6 @@ namespace ovimap {
 
 namespace {
 
-void require_length(Eigen::Index length, const SearchIndex& index, const std::string& whose) {
-  if (length == index.dimension()) return;
-  throw Error(concat("the map's embeddings have ", index.dimension(), " numbers, those of ", whose,
-                     " have ", length,
-                     "; name the encoder that the map was made with, or run `ovimap reembed`"));
-}
-
 /// Takes over the object's scores where `other` is better (any) or worse (all).
 void join(MatchScores& scores, const MatchScores& other, TermRule rule) {
   for (Eigen::Index i = 0; i < scores.standard.size(); ++i) {
@@ -39,6 +32,14 @@ void require_embeddings(const SearchIndex& index) {
                        "--encoder, or run `ovimap reembed` on it"));
 }
 
+void require_embedding_length(const SearchIndex& index, Eigen::Index length,
+                              const std::string& whose) {
+  if (length == index.dimension()) return;
+  throw Error(concat("the map's embeddings have ", index.dimension(), " numbers, those of ", whose,
+                     " have ", length,
+                     "; name the encoder that the map was made with, or run `ovimap reembed`"));
+}
+
 TextMatcher::TextMatcher(const SearchIndex& index, ImageTextEncoder& encoder,
                          const QueryConfig& config, Embeddings vocabulary)
     : index_(index),
@@ -47,9 +48,10 @@ TextMatcher::TextMatcher(const SearchIndex& index, ImageTextEncoder& encoder,
       prompts_(split_prompts(config.prompts.empty() ? encoder.prompt_template() : config.prompts)),
       vocabulary_(std::move(vocabulary)) {
   require_embeddings(index);
-  require_length(encoder.identity().dimension, index, "encoder '" + encoder.identity().name + "'");
+  require_embedding_length(index, encoder.identity().dimension,
+                           "encoder '" + encoder.identity().name + "'");
   if (vocabulary_.rows() == 0) vocabulary_ = encode_prompted(encoder, vocabulary_texts(), prompts_);
-  require_length(vocabulary_.cols(), index, "the vocabulary");
+  require_embedding_length(index, vocabulary_.cols(), "the vocabulary");
   calibration_.emplace(index, vocabulary_, config.verdict);
 }
 

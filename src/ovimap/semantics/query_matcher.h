@@ -59,4 +59,9 @@ class TextMatcher {
 /// Throws Error when no object of the index has an embedding.
 void require_embeddings(const SearchIndex& index);
 
+/// Throws Error when the index's embeddings cannot be of that encoder: `length` numbers against
+/// those of `whose`.
+void require_embedding_length(const SearchIndex& index, Eigen::Index length,
+                              const std::string& whose);
+
 }  // namespace ovimap
