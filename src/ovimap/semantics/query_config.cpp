@@ -23,6 +23,15 @@ void list_fields(QueryConfig& config, ConfigFields& fields) {
              "queries of more characters are refused");
   fields.add("max_like_references", config.max_like_references, 1, kMost,
              "objects that calibrate the search for look-alikes");
+  fields.add("grammar", config.grammar, "read relations and superlatives; false: all is free text");
+  fields.add("candidate_rate", config.candidate_rate, 1e-6f, 1.f,
+             "relations are tried on objects with at most this p-value");
+  fields.add("candidate_share", config.candidate_share, 0.f, 1.f,
+             "... and at least this share of the best standard score");
+  fields.add("max_anchors", config.max_anchors, 1, kMost,
+             "objects that an anchor of a relation may be");
+  fields.group("relations", [&](ConfigFields& inner) { list_fields(config.relations, inner); });
+  fields.group("shapes", [&](ConfigFields& inner) { list_fields(config.shapes, inner); });
   fields.group("verdict", [&](ConfigFields& inner) { list_fields(config.verdict, inner); });
 }
 

@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "ovimap/semantics/object_shape.h"
+#include "ovimap/semantics/relations.h"
 #include "ovimap/semantics/verdict.h"
 
 namespace ovimap {
@@ -23,6 +25,13 @@ struct QueryConfig {
   int max_text_chars = 2000;                        ///< longer queries are refused
   int max_like_references = 300;  ///< objects that calibrate the search for look-alikes
   VerdictConfig verdict;
+
+  bool grammar = true;           ///< "mug on the table" is a relation; false: all is free text
+  float candidate_rate = 0.2f;   ///< relations are tried on objects with at most this p-value
+  float candidate_share = 0.5f;  ///< ... and at least this share of the best standard score
+  int max_anchors = 16;          ///< objects that an anchor such as "the table" may be
+  RelationConfig relations;
+  ObjectShapeConfig shapes;
 };
 void list_fields(QueryConfig& config, ConfigFields& fields);
 

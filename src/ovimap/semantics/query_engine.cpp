@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "ovimap/base/error.h"
 #include "ovimap/semantics/query_text.h"
@@ -32,27 +33,79 @@ std::vector<std::size_t> some_embedded(const SearchIndex& index, std::size_t mos
 }  // namespace
 
 QueryEngine::QueryEngine(const SearchIndex& index, ImageTextEncoder* encoder,
-                         const QueryConfig& config, Embeddings vocabulary)
-    : index_(index), encoder_(encoder), config_(config) {
+                         const QueryConfig& config, Embeddings vocabulary, QueryScene scene)
+    : index_(index), encoder_(encoder), config_(config), scene_(std::move(scene)) {
   require_embeddings(index);
+  if (scene_.shapes.empty())
+    scene_.shapes = scene_of_boxes(index, Eigen::Vector3f::UnitZ(), config.shapes).shapes;
   if (encoder) matcher_.emplace(index, *encoder, config, std::move(vocabulary));
 }
 
 QueryAnswer QueryEngine::find(const Query& query) const {
   const std::string text = checked_query_text(query.text, config_.max_text_chars);
-  const std::vector<std::string> terms = split_terms(text);
-  if (terms.empty())
-    throw Error(concat("the query '", text, "' names nothing; say what to look for"));
   std::vector<std::string> negatives;
   for (const std::string& negative : query.not_texts)
     for (std::string& term : split_terms(checked_query_text(negative, config_.max_text_chars)))
       negatives.push_back(std::move(term));
+  if (config_.grammar) {
+    const QueryPhrase phrase = parse_query(text);
+    if (!phrase.free_text()) {
+      QueryAnswer result = find_phrase(phrase, negatives, query.relevance);
+      result.query = text;
+      return result;
+    }
+  }
+  const std::vector<std::string> terms = split_terms(text);
+  if (terms.empty())
+    throw Error(concat("the query '", text, "' names nothing; say what to look for"));
   const auto model = encoder().calibration();
   const MatchScores scores = matcher_->match(terms, negatives);
   const PValue p_value = [&](float score) { return matcher_->p_value(scores, score); };
   QueryAnswer result = answer(scores, p_value, model, query.relevance);
   result.query = text;
   return result;
+}
+
+QueryAnswer QueryEngine::find_phrase(const QueryPhrase& phrase,
+                                     const std::vector<std::string>& negatives,
+                                     bool relevance) const {
+  const PhraseSearch search(index_, matcher(), scene_, config_);
+  const PhraseMatch found = search.match(phrase, negatives);
+  QueryAnswer result;
+  result.reading = describe(phrase);
+  std::vector<std::size_t> order;
+  bool any_holds = false;
+  for (std::size_t i = 0; i < index_.size(); ++i)
+    if (found.scores[static_cast<Eigen::Index>(i)] > 0.f) {
+      order.push_back(i);
+      any_holds = any_holds || found.holds[i];
+    }
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::tuple(-found.scores[static_cast<Eigen::Index>(a)], index_.object(a).id) <
+           std::tuple(-found.scores[static_cast<Eigen::Index>(b)], index_.object(b).id);
+  });
+  order.resize(std::min(order.size(), static_cast<std::size_t>(config_.top_k)));
+  for (const std::size_t position : order) result.matches.push_back(phrase_match(found, position));
+  if (found.missing.empty() && any_holds) result.verdict = Verdict::kFound;
+  for (const std::string& things : found.missing)
+    result.reason += concat(result.reason.empty() ? "" : ", ", "no [", things, "] in the map");
+  if (found.missing.empty() && !any_holds) result.reason = "for nothing in the map is this true";
+  if (relevance) result.relevance = found.scores;
+  return result;
+}
+
+QueryMatch QueryEngine::phrase_match(const PhraseMatch& found, std::size_t position) const {
+  const auto row = static_cast<Eigen::Index>(position);
+  QueryMatch match;
+  match.position = position;
+  match.id = index_.object(position).id;
+  match.probability = double{found.scores[row]};
+  match.evidence = found.evidence[position];
+  if (found.things.standard.size() == 0) return match;  // "anything"
+  match.score = found.things.cosines[row];
+  match.standard_score = found.things.standard[row];
+  match.p_value = matcher_->p_value(found.things, match.standard_score);
+  return match;
 }
 
 QueryAnswer QueryEngine::find_like(const RgbImage& image, const std::string& name,
@@ -110,8 +163,13 @@ std::vector<QueryMatch> QueryEngine::best_matches(const MatchScores& scores, Ran
   for (const std::size_t position : index_.best(ranked, count)) {
     if (scores.excluded[position]) break;
     const auto row = static_cast<Eigen::Index>(position);
-    matches.push_back(
-        {position, index_.object(position).id, scores.cosines[row], scores.standard[row], {}, {}});
+    matches.push_back({position,
+                       index_.object(position).id,
+                       scores.cosines[row],
+                       scores.standard[row],
+                       {},
+                       {},
+                       {}});
   }
   return matches;
 }

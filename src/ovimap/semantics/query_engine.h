@@ -9,11 +9,12 @@
 
 #include "ovimap/image/image.h"
 #include "ovimap/semantics/query_matcher.h"
+#include "ovimap/semantics/query_scene.h"
 
 namespace ovimap {
 
 struct Query {
-  std::string text;                    ///< terms separated by commas
+  std::string text;  ///< free text, terms separated by commas, or a phrase of query_grammar.h
   std::vector<std::string> not_texts;  ///< what it must not be
   bool relevance = false;              ///< whether the answer shall rate every object
 };
@@ -24,11 +25,15 @@ struct QueryMatch {
   float score = 0;                    ///< cosine
   float standard_score = 0;           ///< standard deviations above unrelated things
   std::optional<double> p_value;      ///< chance that an absent thing's best object scores as high
-  std::optional<double> probability;  ///< the model's own where it has one, else from p_value
+  std::optional<double> probability;  ///< the model's own where it has one, else from p_value; of
+                                      ///< the whole phrase where there is a relation
+  std::string evidence;               ///< why a relation holds: "0.02 m above the top of #12"
 };
 
 struct QueryAnswer {
   std::string query;
+  std::string reading;  ///< how a phrase was understood: "[mug] on [table]"; empty for free text
+  std::string reason;   ///< why a phrase was not found: "no [table] in the map"
   Verdict verdict = Verdict::kNotInMap;
   std::vector<QueryMatch> matches;  ///< best first, also when the verdict is kNotInMap
   Eigen::VectorXf relevance;        ///< [objects] in [0, 1], for heat maps; empty unless asked for
@@ -40,9 +45,10 @@ class QueryEngine {
  public:
   /// `encoder` may be null: then only objects can be asked for. `vocabulary`: embeddings of
   /// TextMatcher::vocabulary_texts() where they are known already. Throws Error when the map has no
-  /// embeddings, or of another length than the encoder's.
+  /// embeddings, or of another length than the encoder's. `scene`: geometry of relations; without
+  /// shapes the objects' boxes are taken, with +z up.
   QueryEngine(const SearchIndex& index, ImageTextEncoder* encoder, const QueryConfig& config = {},
-              Embeddings vocabulary = {});
+              Embeddings vocabulary = {}, QueryScene scene = {});
 
   /// Throws Error for an empty or overlong text, or without encoder.
   QueryAnswer find(const Query& query) const;
@@ -62,6 +68,9 @@ class QueryEngine {
  private:
   using PValue = std::function<double(float standard_score)>;  // empty: no calibration
 
+  QueryAnswer find_phrase(const QueryPhrase& phrase, const std::vector<std::string>& negatives,
+                          bool relevance) const;
+  QueryMatch phrase_match(const PhraseMatch& found, std::size_t position) const;
   QueryAnswer answer(const MatchScores& scores, const PValue& p_value,
                      std::optional<MatchCalibration> model, bool relevance) const;
   QueryAnswer answer_like(const Eigen::VectorXf& embedding, std::size_t itself,
@@ -75,6 +84,7 @@ class QueryEngine {
   ImageTextEncoder* encoder_;
   QueryConfig config_;
   std::optional<TextMatcher> matcher_;
+  QueryScene scene_;
 };
 
 }  // namespace ovimap

@@ -13,8 +13,9 @@
 
 namespace ovimap {
 
-/// An encoder without a network: every word is a random direction of its own, a text is the sum of
-/// its words, and the picture of a thing, made by picture_of, is the text of it.
+/// An encoder without a network: every word is a random direction of its own (a plural that of its
+/// singular), a text is the sum of its words, and the picture of a thing, made by picture_of, is
+/// the text of it.
 class WordEncoder : public ImageTextEncoder {
  public:
   static constexpr int kDimension = 128;
@@ -46,6 +47,7 @@ class WordEncoder : public ImageTextEncoder {
     Eigen::VectorXf sum = Eigen::VectorXf::Zero(kDimension);
     std::istringstream words(text);
     for (std::string word; words >> word;) {
+      if (word.size() > 1 && word.back() == 's') word.pop_back();
       std::seed_seq seed(word.begin(), word.end());
       std::mt19937 engine(seed);
       std::normal_distribution<float> normal;

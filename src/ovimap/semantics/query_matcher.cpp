@@ -106,4 +106,9 @@ double TextMatcher::p_value(const MatchScores& scores, float standard_score) con
   return -std::expm1(scores.alternatives * std::log1p(-single));
 }
 
+float TextMatcher::score_at(const MatchScores& scores, double p) const {
+  const double single = -std::expm1(std::log1p(-p) / scores.alternatives);
+  return static_cast<float>(calibration_->null_distribution().score_at(single));
+}
+
 }  // namespace ovimap

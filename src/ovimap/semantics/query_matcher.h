@@ -39,6 +39,8 @@ class TextMatcher {
 
   /// Chance that a thing not in the map scores this high with its best object.
   double p_value(const MatchScores& scores, float standard_score) const;
+  /// The standard score with that p-value, in (0, 1).
+  float score_at(const MatchScores& scores, double p) const;
 
   const Embeddings& vocabulary() const { return vocabulary_; }
   const ScoreCalibration& calibration() const { return *calibration_; }
