@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ovimap/frames/frame_source.h"
+#include "ovimap/inference/image_text_encoder.h"
 #include "ovimap/inference/mask_source_factory.h"
 #include "ovimap/pipeline/mapper.h"
 
@@ -36,6 +37,7 @@ Action add_config(CLI::App& command);
 struct MappingOptions {
   std::string source;
   std::string masks = "none";
+  std::string encoder = "auto";
   std::string preset = "default";
   std::filesystem::path config_file;
   std::vector<std::string> settings;  ///< "a.b=c"
@@ -50,11 +52,17 @@ struct ProgramConfig {
   MapperConfig mapper;
   FrameSourceConfig source;
   MaskSourceConfig masks;
+  RuntimeConfig encoder;
 };
 void list_fields(ProgramConfig& config, ConfigFields& fields);
 
 /// Preset, then file, then settings. Throws Error for what is unknown.
 ProgramConfig read_program_config(const MappingOptions& options);
+
+/// The encoder that --encoder names; "auto" is the default one where there are 2D masks. Null:
+/// none.
+std::shared_ptr<ImageTextEncoder> make_encoder(const MappingOptions& options,
+                                               const ProgramConfig& config);
 
 /// Threads of a network run: what the config says, else what --threads says.
 int network_threads(const ProgramConfig& config, const MappingOptions& options);

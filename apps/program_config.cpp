@@ -13,6 +13,11 @@ void add_mapping_options(CLI::App& command, MappingOptions& options) {
       .add_option("--masks", options.masks, "2D masks: none, sam, gt, a folder of PNGs or a model")
       ->capture_default_str();
   command
+      .add_option("--encoder", options.encoder,
+                  "what makes objects searchable: none, default, a model, or auto (default where "
+                  "there are 2D masks)")
+      ->capture_default_str();
+  command
       .add_option("--preset", options.preset,
                   "default or reference (thresholds as the paper's code ships them)")
       ->capture_default_str();
@@ -29,6 +34,7 @@ void list_fields(ProgramConfig& config, ConfigFields& fields) {
   list_fields(config.mapper, fields);
   fields.group("source", [&](ConfigFields& f) { list_fields(config.source, f); });
   fields.group("masks", [&](ConfigFields& f) { list_fields(config.masks, f); });
+  fields.group("encoder.runtime", [&](ConfigFields& f) { list_fields(config.encoder, f); });
 }
 
 ProgramConfig read_program_config(const MappingOptions& options) {
@@ -48,6 +54,15 @@ ProgramConfig read_program_config(const MappingOptions& options) {
 
 int network_threads(const ProgramConfig& config, const MappingOptions& options) {
   return config.masks.runtime.threads > 0 ? config.masks.runtime.threads : options.threads;
+}
+
+std::shared_ptr<ImageTextEncoder> make_encoder(const MappingOptions& options,
+                                               const ProgramConfig& config) {
+  const bool masks = options.masks != "none";
+  const std::string spec = options.encoder != "auto" ? options.encoder : masks ? "default" : "none";
+  RuntimeConfig runtime = config.encoder;
+  if (runtime.threads == 0) runtime.threads = options.threads;
+  return make_image_text_encoder(spec, runtime, options.model_dirs);
 }
 
 Action add_config(CLI::App& command) {

@@ -28,14 +28,22 @@ void report_skipped(const SequenceResult& result) {
   if (interrupted()) std::fprintf(stderr, "ovimap: interrupted; saving what was mapped so far\n");
 }
 
+int embedding_queries(const SemanticRecord& semantics) {
+  int queries = 0;
+  if (semantics.encoder.name.empty()) return 0;
+  for (const auto& [id, appearance] : semantics.appearances) queries += appearance.queries;
+  return queries;
+}
+
 /// The settings that made the map, with what the command line chose beside them.
 std::string effective_config(ProgramConfig config, const MappingOptions& options,
                              const Mapper& mapper) {
   config.mapper = mapper.config();
   ConfigFields fields;
   list_fields(config, fields);
-  return concat("# preset ", options.preset, ", masks ", options.masks, ", frames ", options.frames,
-                "\n", fields.dump());
+  return concat("# preset ", options.preset, ", masks ", options.masks, ", encoder ",
+                mapper.encoder() ? mapper.encoder()->identity().name : "none", ", frames ",
+                options.frames, "\n", fields.dump());
 }
 
 int run(const RunOptions& options) {
@@ -49,7 +57,7 @@ int run(const RunOptions& options) {
   auto masks = make_mask_source(options.mapping.masks, config.masks,
                                 {source.get(), options.mapping.model_dirs});
 
-  Mapper mapper(config.mapper, std::move(masks));
+  Mapper mapper(config.mapper, std::move(masks), make_encoder(options.mapping, config));
   watch_for_interrupt();
   SequenceResult result;
   {
@@ -67,14 +75,15 @@ int run(const RunOptions& options) {
                             {"seconds", result.seconds},
                             {"fps", static_cast<double>(result.frames.size()) / result.seconds},
                             {"mask_frames", mapper.mask_frames()},
-                            {"embedding_queries", 0},
-                            {"interrupted", interrupted()},
-                            {"stages", stages_json(mapper.timers())}};
+                            {"interrupted", interrupted()}};
   const std::string config_text = effective_config(config, options.mapping, mapper);
+  mapper.finish();
+  summary["stages"] = stages_json(mapper.timers());
   const MapDocument document = make_document(
       std::move(mapper), result, source->kind() + ":" + options.mapping.source, config_text);
   save_map(options.map, document);
   if (!options.pictures.empty()) write_map_pictures(options.pictures, document, *source);
+  summary["embedding_queries"] = embedding_queries(document.semantics);
   summary["instances"] = document.instances.size();
   summary["peak_rss_mb"] = peak_rss_mb();
   if (options.json)

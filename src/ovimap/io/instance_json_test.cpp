@@ -66,7 +66,7 @@ TEST(InstanceJson, DescribesAMap) {
   info.source = "kitchen";
   const auto document = nlohmann::json::parse(info_json("a b.ovimap", info));
   EXPECT_EQ(document.at("map"), "a b.ovimap");
-  EXPECT_EQ(document.at("schema"), 1);
+  EXPECT_EQ(document.at("schema"), kMapSchema);
   EXPECT_EQ(document.at("frames"), 200);
   EXPECT_EQ(document.at("mask_frames"), 20);
   EXPECT_EQ(document.at("instances").at(0).at("id"), 7);

@@ -12,6 +12,7 @@
 #include "ovimap/instance/instance_registry.h"
 #include "ovimap/instance/instance_summary.h"
 #include "ovimap/map/voxel_map.h"
+#include "ovimap/semantics/view_selection.h"
 
 namespace ovimap {
 
@@ -24,13 +25,22 @@ struct FrameLogEntry {
   bool labelled = false;                      ///< voted for labels, not only geometry and colour
 };
 
+/// What the map knows of its objects' looks.
+struct SemanticRecord {
+  EncoderIdentity encoder;  ///< whose space the embeddings are in; no name: there are none
+  ViewSelectionConfig views;
+  CropConfig crops;
+  Appearances appearances;
+};
+
 /// Everything a saved map holds besides its voxels.
 struct MapRecord {
   InstanceConfig instance_config;
   InstanceRegistry::State registry;
   std::vector<InstanceSummary> instances;   ///< as summarised when the map was saved
   std::map<InstanceId, std::string> names;  ///< given by people or queries; none for most instances
-  std::vector<FrameLogEntry> frames;        ///< in the order they were fused
+  SemanticRecord semantics;
+  std::vector<FrameLogEntry> frames;  ///< in the order they were fused
   PinholeCamera depth_camera;
   std::string config_text;  ///< effective configuration, "name: value" lines (ConfigFields::dump)
   std::string source;       ///< where the frames came from

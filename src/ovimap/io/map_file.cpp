@@ -10,6 +10,7 @@
 #include "ovimap/io/map_file_blocks.h"
 #include "ovimap/io/map_file_record.h"
 #include "ovimap/io/map_file_rows.h"
+#include "ovimap/io/map_file_semantics.h"
 
 namespace ovimap {
 
@@ -21,6 +22,9 @@ using map_tables::kLabelForest;
 // Tiles in memory at a time between voxels and file, and how many a thread takes at once.
 constexpr std::size_t kTilesPerBatch = 256;
 constexpr std::size_t kTilesPerTask = 4;
+
+/// Maps of the first schema know nothing of looks.
+constexpr int kSchemaWithSemantics = 2;
 
 /// VoxelRef counts voxels in 32 bits.
 constexpr std::size_t kMostBlocks = VoxelRef::kNone / kBlockVoxels;
@@ -122,6 +126,28 @@ VoxelMap read_voxels(SQLite::Database& database, const MapMeta& meta) {
   return map;
 }
 
+MapInfo read_info(SQLite::Database& database, const OpenMap& file) {
+  MapRecord record;
+  const MapMeta meta = read_meta(database, record);
+  read_instances(database, record);
+  MapInfo info;
+  info.schema = file.schema();
+  info.version = std::move(record.version);
+  info.source = std::move(record.source);
+  info.config_text = std::move(record.config_text);
+  info.frames = meta.frames;
+  info.mask_frames = record.mask_frames;
+  info.instances = std::move(record.instances);
+  info.names = std::move(record.names);
+  info.encoder = std::move(record.semantics.encoder);
+  info.depth_camera = record.depth_camera;
+  info.voxel_size_m = meta.map_config.voxel_size_m;
+  info.blocks = meta.blocks;
+  info.size_bytes = file.size_bytes();
+  info.content_hash = meta.content_hash;
+  return info;
+}
+
 }  // namespace
 
 void save_map(const std::filesystem::path& path, const VoxelMap& map, const MapRecord& record) {
@@ -130,6 +156,7 @@ void save_map(const std::filesystem::path& path, const VoxelMap& map, const MapR
                      map.block_count(), map.content_hash()};
   pending.write([&](SQLite::Database& database) {
     write_record(database, record, meta);
+    write_semantics(database, record);
     write_forest(database, map.labels());
     write_blocks(database, map);
   });
@@ -153,6 +180,8 @@ MapDocument load_map(const std::filesystem::path& path) {
     read_registry(database, document.map.labels(), document);
     read_instances(database, document);
     read_frames(database, document);
+    if (file.schema() >= kSchemaWithSemantics)
+      document.semantics.appearances = read_appearances(database, document.semantics.encoder);
     if (static_cast<std::int64_t>(document.frames.size()) != meta.frames)
       throw Error("its frame log is not complete");
   });
@@ -160,28 +189,28 @@ MapDocument load_map(const std::filesystem::path& path) {
 }
 
 MapInfo read_map_info(const std::filesystem::path& path) {
-  MapRecord record;
-  MapMeta meta;
   OpenMap file(path);
-  file.read([&](SQLite::Database& database) {
-    meta = read_meta(database, record);
-    read_instances(database, record);
-  });
   MapInfo info;
-  info.schema = file.schema();
-  info.version = std::move(record.version);
-  info.source = std::move(record.source);
-  info.config_text = std::move(record.config_text);
-  info.frames = meta.frames;
-  info.mask_frames = record.mask_frames;
-  info.instances = std::move(record.instances);
-  info.names = std::move(record.names);
-  info.depth_camera = record.depth_camera;
-  info.voxel_size_m = meta.map_config.voxel_size_m;
-  info.blocks = meta.blocks;
-  info.size_bytes = file.size_bytes();
-  info.content_hash = meta.content_hash;
+  file.read([&](SQLite::Database& database) { info = read_info(database, file); });
   return info;
+}
+
+SearchableMap read_searchable_map(const std::filesystem::path& path) {
+  OpenMap file(path);
+  SearchableMap map;
+  file.read([&](SQLite::Database& database) {
+    map.info = read_info(database, file);
+    std::map<InstanceId, Eigen::VectorXf> embeddings;
+    if (file.schema() >= kSchemaWithSemantics)
+      embeddings = read_embeddings(database, map.info.encoder);
+    map.embeddings = Embeddings::Zero(static_cast<Eigen::Index>(map.info.instances.size()),
+                                      map.info.encoder.dimension);
+    for (std::size_t i = 0; i < map.info.instances.size(); ++i)
+      if (const auto known = embeddings.find(map.info.instances[i].id);
+          known != embeddings.end() && known->second.size() > 0)
+        map.embeddings.row(static_cast<Eigen::Index>(i)) = known->second;
+  });
+  return map;
 }
 
 }  // namespace ovimap

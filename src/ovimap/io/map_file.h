@@ -9,7 +9,7 @@
 namespace ovimap {
 
 /// The newest file layout this program writes and reads; docs/map-format.md describes it.
-inline constexpr int kMapSchema = 1;
+inline constexpr int kMapSchema = 2;
 
 /// What a map file tells without its voxels.
 struct MapInfo {
@@ -19,6 +19,7 @@ struct MapInfo {
   int mask_frames = 0;
   std::vector<InstanceSummary> instances;
   std::map<InstanceId, std::string> names;
+  EncoderIdentity encoder;  ///< of the embeddings; no name: there are none
   PinholeCamera depth_camera;
   float voxel_size_m = 0;
   std::uint64_t blocks = 0;
@@ -43,5 +44,14 @@ MapDocument load_map(const std::filesystem::path& path);
 /// Reads what needs no voxels (milliseconds), verified likewise; a damaged voxel goes unnoticed
 /// here.
 MapInfo read_map_info(const std::filesystem::path& path);
+
+/// What a search in a map needs.
+struct SearchableMap {
+  MapInfo info;
+  Embeddings embeddings;  ///< row i belongs to info.instances[i]; zeros: it has none
+};
+
+/// Reads it without the voxels, verified likewise.
+SearchableMap read_searchable_map(const std::filesystem::path& path);
 
 }  // namespace ovimap

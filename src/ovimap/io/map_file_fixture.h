@@ -113,6 +113,22 @@ inline MapDocument random_document(int block_count, std::uint32_t seed) {
   table.views = 800;
   document.instances = {cup, table};
   document.names = {{1, "Tasse \xc3\xa4 'x'\n\"y\""}, {2, ""}};
+  document.semantics.encoder = {"colours", 3, std::string(64, 'a')};
+  document.semantics.views.theta_novel = 0.21f;
+  document.semantics.crops.kept_views = 7;
+  Appearance& look = document.semantics.appearances[1];
+  look.coverage.center_in_world = {1.f / 3, 2, -3};
+  look.coverage.seen_in_world = cup.box;
+  look.coverage.bins = BinSet(130);
+  for (const int bin : {0, 77, 129}) look.coverage.bins.set(bin);
+  look.coverage.largest_px = 900;
+  look.offered = 12;
+  look.queries = 3;
+  look.views.resize(2);
+  look.views[0] = {5, 900, Eigen::Vector3f(0, 0.6f, -0.8f), {{1, 2}, {3}, {}}, 0};
+  look.views[0].crop.object_px = {Eigen::Vector2i(0, 1), Eigen::Vector2i(2, 3)};
+  look.views[1].frame = std::int64_t{1} << 40;
+  document.semantics.appearances[9].queries = 1;  // of an object too small to be listed
   document.depth_camera = {640, 480, 585.1f, 585.2f, 319.5f, 239.25f};
   document.config_text = "map.voxel_size_m: 0.0213\nrun.name: \"a: b\"\n";
   document.source = "/data/some where";
@@ -179,6 +195,31 @@ inline bool same_registry(const InstanceRegistry::State& a, const InstanceRegist
          a.aliases == b.aliases && a.pair_counts == b.pair_counts && a.last_id == b.last_id;
 }
 
+inline bool same_view(const ObjectView& a, const ObjectView& b) {
+  return a.frame == b.frame && a.visible_px == b.visible_px && a.embedding == b.embedding &&
+         a.crop.image_jpeg == b.crop.image_jpeg && a.crop.mask_png == b.crop.mask_png &&
+         (a.crop.empty() || (a.crop.object_px.min() == b.crop.object_px.min() &&
+                             a.crop.object_px.max() == b.crop.object_px.max()));
+}
+
+inline bool same_appearance(const Appearance& a, const Appearance& b) {
+  const ViewCoverage &x = a.coverage, &y = b.coverage;
+  return x.center_in_world == y.center_in_world && x.seen_in_world.min() == y.seen_in_world.min() &&
+         x.seen_in_world.max() == y.seen_in_world.max() && x.bins == y.bins &&
+         x.largest_px == y.largest_px && a.offered == b.offered && a.queries == b.queries &&
+         std::equal(a.views.begin(), a.views.end(), b.views.begin(), b.views.end(), same_view);
+}
+
+inline bool same_semantics(const SemanticRecord& a, const SemanticRecord& b) {
+  const auto same_entry = [](const auto& x, const auto& y) {
+    return x.first == y.first && same_appearance(x.second, y.second);
+  };
+  return a.encoder == b.encoder && a.views.theta_novel == b.views.theta_novel &&
+         a.crops.kept_views == b.crops.kept_views &&
+         std::equal(a.appearances.begin(), a.appearances.end(), b.appearances.begin(),
+                    b.appearances.end(), same_entry);
+}
+
 /// What two documents differ in; empty when in nothing.
 inline std::string difference(const MapDocument& a, const MapDocument& b) {
   if (!same_voxels(a.map, b.map)) return "voxels";
@@ -190,6 +231,7 @@ inline std::string difference(const MapDocument& a, const MapDocument& b) {
   if (!same_registry(a.registry, b.registry)) return "registry";
   if (!same_instances(a.instances, b.instances)) return "instances";
   if (a.names != b.names) return "names";
+  if (!same_semantics(a.semantics, b.semantics)) return "semantics";
   if (!std::equal(a.frames.begin(), a.frames.end(), b.frames.begin(), b.frames.end(), same_frame))
     return "frames";
   if (a.depth_camera != b.depth_camera) return "camera";

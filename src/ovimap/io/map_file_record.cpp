@@ -34,6 +34,15 @@ void list_meta(MapRecord& record, VoxelMapConfig& map_config, ConfigFields& fiel
     camera.add("cx", record.depth_camera.cx, -kMostFocalPixels, kMostFocalPixels, "pixels");
     camera.add("cy", record.depth_camera.cy, -kMostFocalPixels, kMostFocalPixels, "pixels");
   });
+  fields.group("encoder", [&](ConfigFields& encoder) {
+    constexpr int kMostDimensions = 1 << 16;
+    encoder.add("name", record.semantics.encoder.name, "model whose embeddings these are");
+    encoder.add("dimension", record.semantics.encoder.dimension, 0, kMostDimensions,
+                "numbers of an embedding");
+    encoder.add("digest", record.semantics.encoder.digest, "SHA-256 over the model's files");
+  });
+  fields.group("views", [&](ConfigFields& views) { list_fields(record.semantics.views, views); });
+  fields.group("crops", [&](ConfigFields& crops) { list_fields(record.semantics.crops, crops); });
   fields.group("map", [&](ConfigFields& map) { list_fields(map_config, map); });
   fields.group("instance",
                [&](ConfigFields& instance) { list_fields(record.instance_config, instance); });
@@ -59,6 +68,9 @@ void write_meta(SQLite::Database& database, const MapRecord& record, const MapMe
   plain.mask_frames = record.mask_frames;
   plain.depth_camera = record.depth_camera;
   plain.instance_config = record.instance_config;
+  plain.semantics.encoder = record.semantics.encoder;
+  plain.semantics.views = record.semantics.views;
+  plain.semantics.crops = record.semantics.crops;
   VoxelMapConfig map_config = meta.map_config;
   ConfigFields fields;
   list_meta(plain, map_config, fields);

@@ -67,6 +67,24 @@ inline constexpr MapTable kFrames{
     "position INTEGER PRIMARY KEY, source_index INTEGER NOT NULL, timestamp_s REAL, name TEXT NOT "
     "NULL, "
     "world_from_camera BLOB NOT NULL, labelled INTEGER NOT NULL"};
+inline constexpr MapTable kAppearances{
+    "appearances",
+    "instance, center_x, center_y, center_z, seen_min_x, seen_min_y, seen_min_z, seen_max_x, "
+    "seen_max_y, seen_max_z, bins, largest_px, offered, queries",
+    "instance INTEGER PRIMARY KEY, center_x REAL, center_y REAL, center_z REAL, seen_min_x REAL, "
+    "seen_min_y REAL, seen_min_z REAL, seen_max_x REAL, seen_max_y REAL, seen_max_z REAL, bins "
+    "BLOB NOT NULL, largest_px INTEGER NOT NULL, offered INTEGER NOT NULL, queries INTEGER NOT "
+    "NULL"};
+inline constexpr MapTable kViews{
+    "views",
+    "instance, ordinal, frame, visible_px, embedding, crop_jpeg, crop_mask_png, min_x, min_y, "
+    "max_x, max_y",
+    "instance INTEGER NOT NULL, ordinal INTEGER NOT NULL, frame INTEGER NOT NULL, visible_px "
+    "INTEGER NOT NULL, embedding BLOB NOT NULL, crop_jpeg BLOB NOT NULL, crop_mask_png BLOB NOT "
+    "NULL, min_x INTEGER NOT NULL, min_y INTEGER NOT NULL, max_x INTEGER NOT NULL, max_y INTEGER "
+    "NOT NULL, PRIMARY KEY (instance, ordinal)"};
+inline constexpr MapTable kEmbeddings{"embeddings", "instance, embedding",
+                                      "instance INTEGER PRIMARY KEY, embedding BLOB NOT NULL"};
 inline constexpr MapTable kBlocks{"blocks", "tile, present, hash, data",
                                   "tile INTEGER PRIMARY KEY, present INTEGER NOT NULL, hash "
                                   "INTEGER NOT NULL, data BLOB NOT NULL"};

@@ -44,8 +44,12 @@ std::vector<Label> labels_of(std::span<const SegmentAssociation> associations) {
 
 }  // namespace
 
-Mapper::Mapper(const MapperConfig& config, std::shared_ptr<MaskSource> masks)
+Mapper::Mapper(const MapperConfig& config, std::shared_ptr<MaskSource> masks,
+               std::shared_ptr<ImageTextEncoder> encoder)
     : config_(config), masks_(std::move(masks)), map_(config.map), registry_(config.instance) {
+  if (config_.view_interval == 0)
+    config_.view_interval = encoder ? 1 : config_.stored_view_interval;
+  builder_ = std::make_unique<AppearanceBuilder>(config_.semantics, std::move(encoder));
   if (config_.mask_interval == 0)
     config_.mask_interval = masks_ && masks_->is_slow() ? config_.network_mask_interval : 1;
 }
@@ -91,6 +95,7 @@ FrameReport Mapper::process(const Frame& frame) {
     auto t = timers_.measure("registry");
     registry_.observe(segments, associations, frame.index, masks_ != nullptr, map_.labels());
   }
+  if ((frames_ + 1) % config_.view_interval == 0) report.views = look_at_objects(frame);
   ++frames_;
   report.labelled = labelled;
   report.segments = static_cast<int>(segments.segments.size());
@@ -112,6 +117,35 @@ Segments Mapper::cut_segments(const Frame& frame, const DepthRegions& regions,
   auto t = timers_.measure("mask_fusion");
   return fuse_masks(regions, registration.ids_at_depth(entities.ids), frame.depth,
                     config_.mask_fusion);
+}
+
+int Mapper::look_at_objects(const Frame& frame) {
+  const InstanceView view = project(frame);
+  int chosen = 0;
+  {
+    auto t = timers_.measure("views");
+    chosen = builder_->choose(frame,
+                              {.depth = view.depth,
+                               .instances = view.instances,
+                               .sensor_depth = frame.depth,
+                               .camera = frame.depth_camera,
+                               .world_from_camera = frame.world_from_camera,
+                               .frame = frame.index},
+                              registry_);
+  }
+  auto t = timers_.measure("await_encoder");
+  builder_->submit();
+  return chosen;
+}
+
+void Mapper::finish() {
+  auto t = timers_.measure("await_encoder");
+  builder_->finish(registry_);
+}
+
+Appearances Mapper::take_appearances() {
+  finish();
+  return builder_->take();
 }
 
 InstanceView Mapper::project(const Frame& frame) {

@@ -10,6 +10,7 @@
 #include "ovimap/instance/instance_registry.h"
 #include "ovimap/map/ray_cast.h"
 #include "ovimap/map/voxel_map.h"
+#include "ovimap/pipeline/appearance_builder.h"
 #include "ovimap/pipeline/mapper_config.h"
 
 namespace ovimap {
@@ -20,6 +21,7 @@ struct FrameReport {
   int entities = 0;       ///< 2D entities; 0 when the frame had no masks
   int segments = 0;       ///< pieces lifted to 3D
   int founded = 0;        ///< new super-points
+  int views = 0;          ///< views of objects chosen for embedding
   bool labelled = false;  ///< the frame voted for labels (else it added geometry and colour alone)
 };
 
@@ -35,16 +37,25 @@ struct InstanceView {
 class Mapper {
  public:
   /// `masks` may be null: then every geometric region is an entity of its own (depth alone).
-  explicit Mapper(const MapperConfig& config, std::shared_ptr<MaskSource> masks = nullptr);
+  /// `encoder` may be null: then objects keep crops of their best views, but no embeddings.
+  explicit Mapper(const MapperConfig& config, std::shared_ptr<MaskSource> masks = nullptr,
+                  std::shared_ptr<ImageTextEncoder> encoder = nullptr);
 
   /// Fuses one frame. Throws what the mask source throws; the map is then as it was before the
-  /// frame.
+  /// frame. Throws what the encoder threw on views of earlier frames.
   FrameReport process(const Frame& frame);
 
   /// The map seen from a frame's depth camera, guided by its depth (method section 8).
   InstanceView project(const Frame& frame);
 
+  /// Waits until every chosen view is embedded. Throws what the encoder threw.
+  void finish();
+  /// What the objects look like; waits likewise. Call once, after the last frame.
+  Appearances take_appearances();
+
   const MapperConfig& config() const { return config_; }
+  /// Null when there is none.
+  const std::shared_ptr<ImageTextEncoder>& encoder() const { return builder_->encoder(); }
   const VoxelMap& map() const { return map_; }
   VoxelMap take_map() && { return std::move(map_); }
   const InstanceRegistry& registry() const { return registry_; }
@@ -56,11 +67,13 @@ class Mapper {
  private:
   Segments cut_segments(const Frame& frame, const DepthRegions& regions,
                         const class Registration& registration, FrameReport& report);
+  int look_at_objects(const Frame& frame);
 
   MapperConfig config_;
   std::shared_ptr<MaskSource> masks_;
   VoxelMap map_;
   InstanceRegistry registry_;
+  std::unique_ptr<AppearanceBuilder> builder_;
   StageTimers timers_;
   int frames_ = 0, mask_frames_ = 0;
 };

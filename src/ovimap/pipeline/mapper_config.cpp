@@ -31,6 +31,12 @@ void list_fields(MapperConfig& config, ConfigFields& fields) {
   fields.group("instance", [&](ConfigFields& f) { list_fields(config.instance, f); });
   fields.group("summary", [&](ConfigFields& f) { list_fields(config.summary, f); });
   fields.group("map", [&](ConfigFields& f) { list_fields(config.map, f); });
+  list_fields(config.semantics, fields);
+  fields.add("view_interval", config.view_interval, 0, 1000000,
+             "objects are looked at in every n-th frame; 0: every frame with an encoder, by "
+             "stored_view_interval without");
+  fields.add("stored_view_interval", config.stored_view_interval, 1, 1000000,
+             "what view_interval 0 means when crops are only kept, frames");
   fields.add(
       "mask_interval", config.mask_interval, 0, 1000000,
       "2D masks every n-th frame; 0: by network_mask_interval for networks, every frame otherwise");

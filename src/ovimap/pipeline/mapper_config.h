@@ -10,6 +10,7 @@
 #include "ovimap/instance/instance_registry.h"
 #include "ovimap/instance/instance_summary.h"
 #include "ovimap/map/voxel_map.h"
+#include "ovimap/pipeline/appearance_builder.h"
 #include "ovimap/segment/depth_segmentation.h"
 #include "ovimap/segment/mask_fusion.h"
 
@@ -23,6 +24,10 @@ struct MapperConfig {
   InstanceConfig instance;
   InstanceSummaryConfig summary;
   VoxelMapConfig map;
+  SemanticsConfig semantics;
+  int view_interval = 0;  ///< objects are looked at in every n-th frame; 0: in every frame with an
+                          ///< encoder, in every stored_view_interval-th without
+  int stored_view_interval = 5;  ///< what view_interval 0 means when crops are only kept
   int mask_interval =
       0;  ///< 2D masks are asked for every n-th frame, the frames between add geometry and
           ///< colour; 0: every 5th frame for networks, every frame otherwise

@@ -76,6 +76,10 @@ SequenceResult run_sequence(const FrameSource& source, const std::vector<std::in
 MapDocument make_document(Mapper&& mapper, const SequenceResult& sequence, std::string source,
                           std::string config_text) {
   MapDocument document;
+  document.semantics.views = mapper.config().semantics.views;
+  document.semantics.crops = mapper.config().semantics.crops;
+  document.semantics.appearances = mapper.take_appearances();
+  if (mapper.encoder()) document.semantics.encoder = mapper.encoder()->identity();
   document.instances =
       summarize_instances(mapper.map(), mapper.registry(), mapper.config().summary);
   document.instance_config = mapper.config().instance;

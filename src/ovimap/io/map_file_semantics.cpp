@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/io/map_file_semantics.h"
+
+#include <bit>
+#include <cmath>
+
+#include "ovimap/io/map_file_rows.h"
+
+namespace ovimap {
+
+namespace {
+
+using namespace map_tables;
+
+/// Numbers as bytes, little-endian.
+template <class Word>
+void append_word(Bytes& bytes, Word word) {
+  for (std::size_t i = 0; i < sizeof(Word); ++i)
+    bytes.push_back(static_cast<std::uint8_t>(word >> 8 * i));
+}
+
+template <class Word>
+std::vector<Word> words_of(std::span<const std::uint8_t> bytes, const RowReader& rows) {
+  if (bytes.size() % sizeof(Word) != 0) rows.fail(concat("has a list of ", bytes.size(), " bytes"));
+  std::vector<Word> words(bytes.size() / sizeof(Word));
+  for (std::size_t i = 0; i < bytes.size(); ++i)
+    words[i / sizeof(Word)] |= static_cast<Word>(Word{bytes[i]} << 8 * (i % sizeof(Word)));
+  return words;
+}
+
+Bytes embedding_bytes(const Eigen::VectorXf& embedding) {
+  Bytes bytes;
+  for (const float value : embedding) append_word(bytes, std::bit_cast<std::uint32_t>(value));
+  return bytes;
+}
+
+/// An embedding in the encoder's space, or none.
+Eigen::VectorXf take_embedding(RowReader& rows, const EncoderIdentity& encoder) {
+  const auto words = words_of<std::uint32_t>(rows.blob(), rows);
+  if (!words.empty() && words.size() != static_cast<std::size_t>(encoder.dimension))
+    rows.fail(concat("has an embedding of ", words.size(), " numbers"));
+  Eigen::VectorXf embedding(static_cast<Eigen::Index>(words.size()));
+  for (std::size_t i = 0; i < words.size(); ++i)
+    embedding[static_cast<Eigen::Index>(i)] = std::bit_cast<float>(words[i]);
+  if (!embedding.allFinite()) rows.fail("has an embedding that is not finite");
+  return embedding;
+}
+
+void insert_appearance(RowWriter& rows, InstanceId id, const Appearance& appearance) {
+  const ViewCoverage& coverage = appearance.coverage;
+  const auto &center = coverage.center_in_world, &low = coverage.seen_in_world.min(),
+             &high = coverage.seen_in_world.max();
+  Bytes bins;
+  for (const std::uint64_t word : coverage.bins.words()) append_word(bins, word);
+  rows.insert(id, center.x(), center.y(), center.z(), low.x(), low.y(), low.z(), high.x(), high.y(),
+              high.z(), std::span<const std::uint8_t>(bins), coverage.largest_px,
+              appearance.offered, appearance.queries);
+}
+
+void insert_view(RowWriter& rows, InstanceId id, std::size_t ordinal, const ObjectView& view) {
+  const Bytes embedding = embedding_bytes(view.embedding);
+  const auto &low = view.crop.object_px.min(), &high = view.crop.object_px.max();
+  const bool crop = !view.crop.empty();
+  rows.insert(id, ordinal, view.frame, view.visible_px, std::span<const std::uint8_t>(embedding),
+              std::span<const std::uint8_t>(view.crop.image_jpeg),
+              std::span<const std::uint8_t>(view.crop.mask_png), crop ? low.x() : 0,
+              crop ? low.y() : 0, crop ? high.x() : 0, crop ? high.y() : 0);
+}
+
+Appearance take_appearance(RowReader& rows) {
+  Appearance appearance;
+  ViewCoverage& coverage = appearance.coverage;
+  for (Eigen::Vector3f* point :
+       {&coverage.center_in_world, &coverage.seen_in_world.min(), &coverage.seen_in_world.max()})
+    for (float& coordinate : *point) coordinate = static_cast<float>(rows.real());
+  coverage.bins = BinSet(words_of<std::uint64_t>(rows.blob(), rows));
+  coverage.largest_px = rows.integer<int>();
+  appearance.offered = rows.integer<int>();
+  appearance.queries = rows.integer<int>();
+  return appearance;
+}
+
+ObjectView take_view(RowReader& rows, const EncoderIdentity& encoder) {
+  ObjectView view;
+  view.frame = rows.integer<std::int64_t>();
+  view.visible_px = rows.integer<int>();
+  view.embedding = take_embedding(rows, encoder);
+  const std::span<const std::uint8_t> image = rows.blob();
+  view.crop.image_jpeg.assign(image.begin(), image.end());
+  const std::span<const std::uint8_t> mask = rows.blob();
+  view.crop.mask_png.assign(mask.begin(), mask.end());
+  Eigen::Vector2i corners[2];
+  for (Eigen::Vector2i& corner : corners)
+    for (int& coordinate : corner) coordinate = rows.integer<int>();
+  if (!view.crop.empty()) view.crop.object_px = {corners[0], corners[1]};
+  return view;
+}
+
+}  // namespace
+
+void write_semantics(SQLite::Database& database, const MapRecord& record) {
+  const SemanticRecord& semantics = record.semantics;
+  RowWriter appearances(database, kAppearances);
+  for (const auto& [id, appearance] : semantics.appearances)
+    insert_appearance(appearances, id, appearance);
+  appearances.finish();
+  RowWriter views(database, kViews);
+  for (const auto& [id, appearance] : semantics.appearances)
+    for (std::size_t i = 0; i < appearance.views.size(); ++i)
+      insert_view(views, id, i, appearance.views[i]);
+  views.finish();
+  RowWriter embeddings(database, kEmbeddings);
+  for (const InstanceSummary& instance : record.instances) {
+    const auto known = semantics.appearances.find(instance.id);
+    if (known == semantics.appearances.end()) continue;
+    const Eigen::VectorXf fused = fuse_views(known->second.views, semantics.views.fusion);
+    if (fused.size() == 0) continue;
+    const Bytes bytes = embedding_bytes(fused);
+    embeddings.insert(instance.id, std::span<const std::uint8_t>(bytes));
+  }
+  embeddings.finish();
+}
+
+Appearances read_appearances(SQLite::Database& database, const EncoderIdentity& encoder) {
+  Appearances result;
+  RowReader appearances(database, kAppearances);
+  while (appearances.next()) {
+    const auto id = appearances.integer<InstanceId>();
+    result.emplace(id, take_appearance(appearances));
+  }
+  RowReader views(database, kViews);
+  while (views.next()) {
+    const auto owner = result.find(views.integer<InstanceId>());
+    const auto ordinal = views.integer<std::size_t>();
+    if (owner == result.end() || ordinal != owner->second.views.size())
+      views.fail("has a view out of place");
+    owner->second.views.push_back(take_view(views, encoder));
+  }
+  return result;
+}
+
+std::map<InstanceId, Eigen::VectorXf> read_embeddings(SQLite::Database& database,
+                                                      const EncoderIdentity& encoder) {
+  std::map<InstanceId, Eigen::VectorXf> result;
+  RowReader rows(database, kEmbeddings);
+  while (rows.next()) {
+    const auto id = rows.integer<InstanceId>();
+    result.emplace(id, take_embedding(rows, encoder));
+  }
+  return result;
+}
+
+}  // namespace ovimap

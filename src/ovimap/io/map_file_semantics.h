@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+
+#include "ovimap/io/map_document.h"
+
+namespace SQLite {
+class Database;
+}
+
+namespace ovimap {
+
+/// Writes the looks of the objects: their views, crops and coverage, and for each instance that has
+/// one its fused embedding, so that a search reads nothing else.
+void write_semantics(SQLite::Database& database, const MapRecord& record);
+
+/// The way back, without the fused embeddings. Throws Error with a phrase when the file does not
+/// hold what was written.
+Appearances read_appearances(SQLite::Database& database, const EncoderIdentity& encoder);
+
+/// The fused embeddings by instance.
+std::map<InstanceId, Eigen::VectorXf> read_embeddings(SQLite::Database& database,
+                                                      const EncoderIdentity& encoder);
+
+}  // namespace ovimap

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <unordered_map>
+
+#include "ovimap/frames/frame.h"
+#include "ovimap/pipeline/embedding_queue.h"
+#include "ovimap/semantics/view_selection.h"
+
+namespace ovimap {
+
+/// Everything about how objects get their embeddings.
+struct SemanticsConfig {
+  ViewSelectionConfig views;
+  CropConfig crops;
+  EmbeddingQueueConfig queue;
+};
+void list_fields(SemanticsConfig& config, ConfigFields& fields);
+
+/// Gathers what objects look like while a map is built: chooses views, cuts them out, has them
+/// embedded beside the mapping, and follows the registry's merges. What comes out does not depend
+/// on how fast the encoder is.
+class AppearanceBuilder {
+ public:
+  /// `encoder` may be null: then only crops are kept, which can be embedded later.
+  AppearanceBuilder(const SemanticsConfig& config, std::shared_ptr<ImageTextEncoder> encoder);
+
+  /// Chooses and cuts out views of one frame; returns how many. Throws what the encoder threw.
+  int choose(const Frame& frame, const SeenObjects& seen, const InstanceRegistry& registry);
+  /// Hands the chosen views to the encoder; waits while it is too far behind.
+  void submit();
+
+  /// Waits until every chosen view is embedded. Throws what the encoder threw.
+  void finish(const InstanceRegistry& registry);
+  /// All that was gathered; call finish() first.
+  Appearances take() { return std::move(appearances_); }
+
+  const std::shared_ptr<ImageTextEncoder>& encoder() const { return encoder_; }
+  const SemanticsConfig& config() const { return config_; }
+
+ private:
+  void apply(std::vector<EmbeddingAnswer> answers, const InstanceRegistry& registry);
+
+  SemanticsConfig config_;
+  std::shared_ptr<ImageTextEncoder> encoder_;
+  ViewSelector selector_;
+  Appearances appearances_;
+  std::vector<EmbeddingRequest> chosen_;
+  std::unordered_map<std::uint64_t, InstanceId> asked_for_;  ///< open tickets
+  std::size_t merges_followed_ = 0;
+  EmbeddingQueue queue_;
+};
+
+}  // namespace ovimap

@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/pipeline/embedding_queue.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "ovimap/base/config.h"
+#include "ovimap/semantics/object_embedding.h"
+
+namespace ovimap {
+
+void list_fields(EmbeddingQueueConfig& config, ConfigFields& fields) {
+  fields.add("capacity", config.capacity, 1, 1000000,
+             "views that wait for the encoder at most; then the mapper waits");
+  fields.add("batch", config.batch, 1, 1024, "views embedded at once");
+}
+
+EmbeddingQueue::EmbeddingQueue(const EmbeddingQueueConfig& config, const CropConfig& crops,
+                               std::shared_ptr<ImageTextEncoder> encoder)
+    : config_(config), crops_(crops), encoder_(std::move(encoder)), worker_([this] { work(); }) {}
+
+EmbeddingQueue::~EmbeddingQueue() {
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
+  }
+  changed_.notify_all();
+  worker_.join();
+}
+
+void EmbeddingQueue::submit(std::vector<EmbeddingRequest> requests) {
+  for (EmbeddingRequest& request : requests) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] {
+      return failure_ || waiting_.size() < static_cast<std::size_t>(config_.capacity);
+    });
+    rethrow_failure();
+    waiting_.push_back(std::move(request));
+    lock.unlock();
+    changed_.notify_all();
+  }
+}
+
+std::vector<EmbeddingAnswer> EmbeddingQueue::take() {
+  const std::lock_guard lock(mutex_);
+  rethrow_failure();
+  return std::exchange(answered_, {});
+}
+
+std::vector<EmbeddingAnswer> EmbeddingQueue::finish() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [&] { return failure_ || (waiting_.empty() && under_way_ == 0); });
+  rethrow_failure();
+  return std::exchange(answered_, {});
+}
+
+void EmbeddingQueue::rethrow_failure() {
+  if (failure_) std::rethrow_exception(failure_);
+}
+
+void EmbeddingQueue::work() {
+  while (true) {
+    std::vector<EmbeddingRequest> batch;
+    {
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [&] { return stop_ || !waiting_.empty(); });
+      if (stop_) return;
+      under_way_ = std::min(waiting_.size(), static_cast<std::size_t>(config_.batch));
+      for (std::size_t i = 0; i < under_way_; ++i) {
+        batch.push_back(std::move(waiting_.front()));
+        waiting_.pop_front();
+      }
+    }
+    changed_.notify_all();
+    std::vector<EmbeddingAnswer> answers;
+    std::exception_ptr failure;
+    try {
+      answers = answer(batch);
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    {
+      const std::lock_guard lock(mutex_);
+      std::move(answers.begin(), answers.end(), std::back_inserter(answered_));
+      under_way_ = 0;
+      failure_ = failure;
+    }
+    changed_.notify_all();
+    if (failure) return;
+  }
+}
+
+std::vector<EmbeddingAnswer> EmbeddingQueue::answer(
+    const std::vector<EmbeddingRequest>& batch) const {
+  std::vector<const ObjectCrop*> objects;
+  for (const EmbeddingRequest& request : batch) objects.push_back(&request.crop);
+  std::vector<Eigen::VectorXf> embeddings(batch.size());
+  if (encoder_) embeddings = embed_objects(*encoder_, objects, crops_);
+  std::vector<EmbeddingAnswer> answers;
+  for (std::size_t i = 0; i < batch.size(); ++i)
+    answers.push_back({batch[i].ticket, std::move(embeddings[i]),
+                       crops_.kept_views > 0 ? store_crop(batch[i].crop, crops_) : StoredCrop{}});
+  return answers;
+}
+
+}  // namespace ovimap

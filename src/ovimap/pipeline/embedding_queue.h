@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "ovimap/inference/image_text_encoder.h"
+#include "ovimap/semantics/object_crop.h"
+
+namespace ovimap {
+
+class ConfigFields;
+
+struct EmbeddingQueueConfig {
+  int capacity = 64;  ///< views that wait at most; a mapper that is faster waits for the encoder
+  int batch = 4;      ///< views embedded at once, whatever object they show
+};
+void list_fields(EmbeddingQueueConfig& config, ConfigFields& fields);
+
+/// A view to be embedded. It owns its pixels: however late the encoder comes to it, no other frame
+/// can be seen.
+struct EmbeddingRequest {
+  std::uint64_t ticket = 0;
+  ObjectCrop crop;
+};
+
+struct EmbeddingAnswer {
+  std::uint64_t ticket = 0;
+  Eigen::VectorXf embedding;  ///< empty without an encoder, or when it gave nothing finite
+  StoredCrop crop;            ///< empty when CropConfig::kept_views is 0
+};
+
+/// Embeds views on a thread of its own, beside the mapper, in the order they come.
+class EmbeddingQueue {
+ public:
+  /// Without an encoder, crops are only packed for the map.
+  EmbeddingQueue(const EmbeddingQueueConfig& config, const CropConfig& crops,
+                 std::shared_ptr<ImageTextEncoder> encoder);
+  /// What still waits is dropped.
+  ~EmbeddingQueue();
+
+  /// Blocks while the queue is full. Throws what the encoder threw on an earlier view.
+  void submit(std::vector<EmbeddingRequest> requests);
+  /// What has been answered since the last call, in the order of submission.
+  std::vector<EmbeddingAnswer> take();
+  /// Waits for everything, then the same. Throws what the encoder threw.
+  std::vector<EmbeddingAnswer> finish();
+
+ private:
+  void work();
+  std::vector<EmbeddingAnswer> answer(const std::vector<EmbeddingRequest>& batch) const;
+  void rethrow_failure();
+
+  EmbeddingQueueConfig config_;
+  CropConfig crops_;
+  std::shared_ptr<ImageTextEncoder> encoder_;
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<EmbeddingRequest> waiting_;
+  std::vector<EmbeddingAnswer> answered_;
+  std::size_t under_way_ = 0;
+  bool stop_ = false;
+  std::exception_ptr failure_;
+  std::thread worker_;  // last: it starts when everything else is there
+};
+
+}  // namespace ovimap
