@@ -5,12 +5,13 @@
 
 #include <benchmark/benchmark.h>
 
-#include "ovimap/semantics/search_index.h"
+#include "ovimap/semantics/verdict.h"
 
 namespace ovimap::bench {
 namespace {
 
 constexpr std::size_t kTop = 10;
+constexpr std::int64_t kVocabulary = 372;
 
 SearchIndex random_index(std::int64_t count, std::int64_t dimension) {
   std::minstd_rand engine(1);
@@ -33,6 +34,37 @@ BENCHMARK(search_objects)
     ->UseRealTime()
     ->ArgsProduct({{1000, 10000, 100000}, {384, 768}})
     ->Args({1000000, 384});
+
+/// All that follows the encoding of a text: cosines, standard scores, ranking, verdict.
+void answer_query(benchmark::State& state) {
+  const SearchIndex index = random_index(state.range(0), state.range(1));
+  const SearchIndex vocabulary = random_index(kVocabulary, state.range(1));
+  const ScoreCalibration calibration(index, vocabulary.embeddings(), {});
+  const Eigen::VectorXf query = index.embeddings().row(0).transpose();
+  for (auto _ : state) {
+    const Eigen::VectorXf scores = calibration.standard_scores(index.cosines(query));
+    const auto best = index.best(scores, kTop);
+    for (const std::size_t position : best)
+      benchmark::DoNotOptimize(calibration.null_distribution().p_value(
+          double{scores[static_cast<Eigen::Index>(position)]}));
+  }
+}
+BENCHMARK(answer_query)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->ArgsProduct({{100, 1000, 10000, 100000}, {384, 768}});
+
+/// Once per map and encoder.
+void calibrate(benchmark::State& state) {
+  const SearchIndex index = random_index(state.range(0), state.range(1));
+  const SearchIndex vocabulary = random_index(kVocabulary, state.range(1));
+  for (auto _ : state)
+    benchmark::DoNotOptimize(ScoreCalibration(index, vocabulary.embeddings(), {}));
+}
+BENCHMARK(calibrate)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->ArgsProduct({{100, 1000, 10000}, {384}});
 
 }  // namespace
 }  // namespace ovimap::bench

@@ -65,6 +65,10 @@ MatchScores TextMatcher::match(const std::vector<std::string>& terms,
   std::vector<std::string> texts = terms;
   texts.insert(texts.end(), negatives.begin(), negatives.end());
   const Embeddings rows = encode_prompted(encoder_, texts, prompts_);
+  for (std::size_t i = 0; i < texts.size(); ++i)
+    if (rows.row(static_cast<Eigen::Index>(i)).isZero(0.f))
+      throw Error(concat("encoder '", encoder_.identity().name, "' gave no embedding of '",
+                         texts[i], "'; try other words"));
   const auto count = static_cast<Eigen::Index>(terms.size());
   MatchScores scores = joined(rows, 0, count, config_.terms);
   if (!negatives.empty())

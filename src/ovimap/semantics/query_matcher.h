@@ -33,7 +33,7 @@ class TextMatcher {
   static std::vector<std::string> vocabulary_texts();
 
   /// Matches with `terms` joined by the config's rule (at least one), less what `negatives` match
-  /// better.
+  /// better. Throws Error when the encoder has no embedding of a text.
   MatchScores match(const std::vector<std::string>& terms,
                     const std::vector<std::string>& negatives) const;
 
