@@ -27,5 +27,17 @@ TEST(ExtractInstanceMesh, LabelsVerticesByListedInstancesOnly) {
   EXPECT_EQ(labels({}), std::set<std::uint32_t>{0});
 }
 
+TEST(SampleSurfaces, KeepsOneVertexPerCube) {
+  Mesh mesh;
+  mesh.vertices = {{0.11f, 0.f, 0.f}, {0.f, 0.f, 0.f}, {0.05f, 0.f, 0.f},
+                   {0.05f, 0.f, 0.f}, {0.f, 0.f, 0.f}, {-0.05f, 0.f, 0.f}};
+  mesh.labels = {1, 1, 1, 2, 0, 1};
+  const InstanceSurfaces surfaces = sample_surfaces(mesh, 0.1f);
+  ASSERT_EQ(surfaces.size(), 2u);
+  EXPECT_EQ(surfaces.at(1),
+            (std::vector<Eigen::Vector3f>{mesh.vertices[0], mesh.vertices[1], mesh.vertices[5]}));
+  EXPECT_EQ(surfaces.at(2), std::vector<Eigen::Vector3f>{mesh.vertices[3]});
+}
+
 }  // namespace
 }  // namespace ovimap

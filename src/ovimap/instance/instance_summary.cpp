@@ -48,6 +48,8 @@ void list_fields(InstanceSummaryConfig& config, ConfigFields& fields) {
              "instances with fewer surface voxels are left out");
   fields.add("min_instance_views", config.min_instance_views, 0, 1000000,
              "instances seen in fewer frames are left out");
+  fields.add("surface_spacing_m", config.surface_spacing_m, 0.001f, 10.f,
+             "between the points of an instance that a map keeps apart from its voxels, metres");
 }
 
 std::vector<InstanceSummary> summarize_instances(const VoxelMap& map,

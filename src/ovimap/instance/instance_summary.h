@@ -15,7 +15,9 @@ namespace ovimap {
 
 struct InstanceSummaryConfig {
   int min_instance_voxels = 50;  ///< instances with fewer surface voxels are left out
-  int min_instance_views = 2;    ///< instances seen in fewer frames are left out
+  float surface_spacing_m =
+      0.02f;  ///< between the points of an instance that a map keeps apart from its voxels
+  int min_instance_views = 2;  ///< instances seen in fewer frames are left out
 };
 void list_fields(InstanceSummaryConfig& config, ConfigFields& fields);
 

@@ -9,6 +9,7 @@
 
 #include "ovimap/geometry/camera.h"
 #include "ovimap/geometry/pose.h"
+#include "ovimap/instance/instance_mesh.h"
 #include "ovimap/instance/instance_registry.h"
 #include "ovimap/instance/instance_summary.h"
 #include "ovimap/map/voxel_map.h"
@@ -37,7 +38,9 @@ struct SemanticRecord {
 struct MapRecord {
   InstanceConfig instance_config;
   InstanceRegistry::State registry;
-  std::vector<InstanceSummary> instances;   ///< as summarised when the map was saved
+  std::vector<InstanceSummary> instances;  ///< as summarised when the map was saved
+  InstanceSurfaces surfaces;  ///< of `instances`, thinned: what relations are judged by
+  Eigen::Vector3f up = Eigen::Vector3f::UnitZ();  ///< in the world
   std::map<InstanceId, std::string> names;  ///< given by people or queries; none for most instances
   SemanticRecord semantics;
   std::vector<FrameLogEntry> frames;  ///< in the order they were fused

@@ -140,6 +140,7 @@ MapInfo read_info(SQLite::Database& database, const OpenMap& file) {
   info.instances = std::move(record.instances);
   info.names = std::move(record.names);
   info.encoder = std::move(record.semantics.encoder);
+  info.up = record.up;
   info.depth_camera = record.depth_camera;
   info.voxel_size_m = meta.map_config.voxel_size_m;
   info.blocks = meta.blocks;
@@ -157,6 +158,7 @@ void save_map(const std::filesystem::path& path, const VoxelMap& map, const MapR
   pending.write([&](SQLite::Database& database) {
     write_record(database, record, meta);
     write_semantics(database, record);
+    write_surfaces(database, record.surfaces);
     write_forest(database, map.labels());
     write_blocks(database, map);
   });
@@ -180,8 +182,10 @@ MapDocument load_map(const std::filesystem::path& path) {
     read_registry(database, document.map.labels(), document);
     read_instances(database, document);
     read_frames(database, document);
-    if (file.schema() >= kSchemaWithSemantics)
+    if (file.schema() >= kSchemaWithSemantics) {
       document.semantics.appearances = read_appearances(database, document.semantics.encoder);
+      document.surfaces = read_surfaces(database);
+    }
     if (static_cast<std::int64_t>(document.frames.size()) != meta.frames)
       throw Error("its frame log is not complete");
   });
@@ -201,8 +205,13 @@ SearchableMap read_searchable_map(const std::filesystem::path& path) {
   file.read([&](SQLite::Database& database) {
     map.info = read_info(database, file);
     std::map<InstanceId, Eigen::VectorXf> embeddings;
-    if (file.schema() >= kSchemaWithSemantics)
+    if (file.schema() >= kSchemaWithSemantics) {
       embeddings = read_embeddings(database, map.info.encoder);
+      map.surfaces = read_surfaces(database);
+    }
+    MapRecord record;
+    read_frames(database, record);
+    map.frames = std::move(record.frames);
     map.embeddings = Embeddings::Zero(static_cast<Eigen::Index>(map.info.instances.size()),
                                       map.info.encoder.dimension);
     for (std::size_t i = 0; i < map.info.instances.size(); ++i)

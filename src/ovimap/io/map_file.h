@@ -19,7 +19,8 @@ struct MapInfo {
   int mask_frames = 0;
   std::vector<InstanceSummary> instances;
   std::map<InstanceId, std::string> names;
-  EncoderIdentity encoder;  ///< of the embeddings; no name: there are none
+  EncoderIdentity encoder;                        ///< of the embeddings; no name: there are none
+  Eigen::Vector3f up = Eigen::Vector3f::UnitZ();  ///< in the world
   PinholeCamera depth_camera;
   float voxel_size_m = 0;
   std::uint64_t blocks = 0;
@@ -48,7 +49,9 @@ MapInfo read_map_info(const std::filesystem::path& path);
 /// What a search in a map needs.
 struct SearchableMap {
   MapInfo info;
-  Embeddings embeddings;  ///< row i belongs to info.instances[i]; zeros: it has none
+  Embeddings embeddings;      ///< row i belongs to info.instances[i]; zeros: it has none
+  InstanceSurfaces surfaces;  ///< of the instances
+  std::vector<FrameLogEntry> frames;
 };
 
 /// Reads it without the voxels, verified likewise.

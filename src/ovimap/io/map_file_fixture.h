@@ -129,6 +129,9 @@ inline MapDocument random_document(int block_count, std::uint32_t seed) {
   look.views[0].crop.object_px = {Eigen::Vector2i(0, 1), Eigen::Vector2i(2, 3)};
   look.views[1].frame = std::int64_t{1} << 40;
   document.semantics.appearances[9].queries = 1;  // of an object too small to be listed
+  document.up = {0.f, -1.f, 0.f};
+  document.surfaces[1] = {{-0.1f, 0.2f, 0.f},
+                          {0.3f, 0.4f, 0.1f}};  // its box's corners: kept exactly
   document.depth_camera = {640, 480, 585.1f, 585.2f, 319.5f, 239.25f};
   document.config_text = "map.voxel_size_m: 0.0213\nrun.name: \"a: b\"\n";
   document.source = "/data/some where";
@@ -231,6 +234,7 @@ inline std::string difference(const MapDocument& a, const MapDocument& b) {
   if (!same_registry(a.registry, b.registry)) return "registry";
   if (!same_instances(a.instances, b.instances)) return "instances";
   if (a.names != b.names) return "names";
+  if (a.up != b.up || a.surfaces != b.surfaces) return "geometry";
   if (!same_semantics(a.semantics, b.semantics)) return "semantics";
   if (!std::equal(a.frames.begin(), a.frames.end(), b.frames.begin(), b.frames.end(), same_frame))
     return "frames";

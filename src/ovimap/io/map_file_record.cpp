@@ -26,6 +26,11 @@ void list_meta(MapRecord& record, VoxelMapConfig& map_config, ConfigFields& fiel
   fields.add("config", record.config_text, "effective configuration");
   fields.add("mask_frames", record.mask_frames, 0, std::numeric_limits<int>::max(),
              "frames with 2D masks");
+  fields.group("up", [&](ConfigFields& up) {
+    up.add("x", record.up.x(), -1.f, 1.f, "away from the ground, in the world");
+    up.add("y", record.up.y(), -1.f, 1.f, "away from the ground, in the world");
+    up.add("z", record.up.z(), -1.f, 1.f, "away from the ground, in the world");
+  });
   fields.group("depth_camera", [&](ConfigFields& camera) {
     camera.add("width", record.depth_camera.width, 0, kMostPixels, "pixels");
     camera.add("height", record.depth_camera.height, 0, kMostPixels, "pixels");
@@ -66,6 +71,7 @@ void write_meta(SQLite::Database& database, const MapRecord& record, const MapMe
   plain.source = record.source;
   plain.config_text = record.config_text;
   plain.mask_frames = record.mask_frames;
+  plain.up = record.up;
   plain.depth_camera = record.depth_camera;
   plain.instance_config = record.instance_config;
   plain.semantics.encoder = record.semantics.encoder;

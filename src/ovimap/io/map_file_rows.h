@@ -85,6 +85,8 @@ inline constexpr MapTable kViews{
     "NOT NULL, PRIMARY KEY (instance, ordinal)"};
 inline constexpr MapTable kEmbeddings{"embeddings", "instance, embedding",
                                       "instance INTEGER PRIMARY KEY, embedding BLOB NOT NULL"};
+inline constexpr MapTable kSurfaces{"surfaces", "instance, points",
+                                    "instance INTEGER PRIMARY KEY, points BLOB NOT NULL"};
 inline constexpr MapTable kBlocks{"blocks", "tile, present, hash, data",
                                   "tile INTEGER PRIMARY KEY, present INTEGER NOT NULL, hash "
                                   "INTEGER NOT NULL, data BLOB NOT NULL"};

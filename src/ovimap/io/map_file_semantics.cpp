@@ -97,7 +97,63 @@ ObjectView take_view(RowReader& rows, const EncoderIdentity& encoder) {
   return view;
 }
 
+constexpr float kSteps = 65535.f;
+constexpr std::size_t kPointBytes = 6;
+
+/// The box's corners as six floats, then three 16-bit numbers a point.
+Bytes surface_bytes(const std::vector<Eigen::Vector3f>& points) {
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector3f& point : points) box.extend(point);
+  Bytes bytes;
+  for (const Eigen::Vector3f& corner : {box.min(), box.max()})
+    for (const float value : corner) append_word(bytes, std::bit_cast<std::uint32_t>(value));
+  const Eigen::Array3f scale = kSteps / box.sizes().array().max(1e-6f);
+  for (const Eigen::Vector3f& point : points)
+    for (const float value : (point - box.min()).array() * scale + 0.5f)
+      append_word(bytes, static_cast<std::uint16_t>(value));
+  return bytes;
+}
+
+std::vector<Eigen::Vector3f> take_surface(RowReader& rows) {
+  constexpr std::size_t kHead = 24;
+  const std::span<const std::uint8_t> bytes = rows.blob();
+  if (bytes.size() < kHead || (bytes.size() - kHead) % kPointBytes != 0)
+    rows.fail(concat("has a surface of ", bytes.size(), " bytes"));
+  Eigen::Vector3f corners[2];
+  const auto head = words_of<std::uint32_t>(bytes.first(kHead), rows);
+  for (std::size_t i = 0; i < 6; ++i)
+    corners[i / 3][static_cast<Eigen::Index>(i % 3)] = std::bit_cast<float>(head[i]);
+  const auto steps = words_of<std::uint16_t>(bytes.subspan(kHead), rows);
+  const Eigen::Array3f scale = (corners[1] - corners[0]).array().max(1e-6f) / kSteps;
+  std::vector<Eigen::Vector3f> points(steps.size() / 3);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Array3f step(steps[3 * i], steps[3 * i + 1], steps[3 * i + 2]);
+    points[i] = corners[0] + (step * scale).matrix();
+  }
+  return points;
+}
+
 }  // namespace
+
+void write_surfaces(SQLite::Database& database, const InstanceSurfaces& surfaces) {
+  RowWriter rows(database, kSurfaces);
+  for (const auto& [id, points] : surfaces) {
+    if (points.empty()) continue;
+    const Bytes bytes = surface_bytes(points);
+    rows.insert(id, std::span<const std::uint8_t>(bytes));
+  }
+  rows.finish();
+}
+
+InstanceSurfaces read_surfaces(SQLite::Database& database) {
+  InstanceSurfaces surfaces;
+  RowReader rows(database, kSurfaces);
+  while (rows.next()) {
+    const auto id = rows.integer<InstanceId>();
+    surfaces.emplace(id, take_surface(rows));
+  }
+  return surfaces;
+}
 
 void write_semantics(SQLite::Database& database, const MapRecord& record) {
   const SemanticRecord& semantics = record.semantics;

@@ -24,4 +24,8 @@ Appearances read_appearances(SQLite::Database& database, const EncoderIdentity& 
 std::map<InstanceId, Eigen::VectorXf> read_embeddings(SQLite::Database& database,
                                                       const EncoderIdentity& encoder);
 
+/// Points of the objects' surfaces, in steps of 1/65535 of their boxes.
+void write_surfaces(SQLite::Database& database, const InstanceSurfaces& surfaces);
+InstanceSurfaces read_surfaces(SQLite::Database& database);
+
 }  // namespace ovimap

@@ -7,7 +7,6 @@
 #include "ovimap/base/error.h"
 #include "ovimap/image/codec.h"
 #include "ovimap/instance/instance_mesh.h"
-#include "ovimap/io/scene_axes.h"
 #include "ovimap/map/ray_cast.h"
 #include "ovimap/map/surface_lookup.h"
 
@@ -17,12 +16,6 @@ namespace {
 
 constexpr int kSheetFrames = 12;
 constexpr float kSheetRange_m = 10.f;
-
-std::vector<Pose> camera_poses(const MapDocument& document) {
-  std::vector<Pose> poses;
-  for (const FrameLogEntry& frame : document.frames) poses.push_back(frame.world_from_camera);
-  return poses;
-}
 
 /// Instance ids of the map in the frame's colour image: looked up through depth where there is
 /// some.
@@ -41,10 +34,9 @@ IdImage project_instances(const MapDocument& document, const Frame& frame,
 
 RgbImage top_down_picture(const MapDocument& document, MeshColoring coloring) {
   const Mesh mesh = extract_instance_mesh(document.map, document.instances);
-  const std::vector<Pose> poses = camera_poses(document);
   PictureConfig config;
   config.coloring = coloring;
-  return top_down(mesh, guess_up(mesh, poses), config);
+  return top_down(mesh, document.up, config);
 }
 
 RgbImage contact_sheet_picture(const MapDocument& document, const FrameSource& source, int frames) {

@@ -8,6 +8,8 @@
 
 #include "ovimap/base/error.h"
 #include "ovimap/base/version.h"
+#include "ovimap/instance/instance_mesh.h"
+#include "ovimap/io/scene_axes.h"
 
 namespace ovimap {
 
@@ -32,6 +34,12 @@ void require_motion(const SequenceResult& result, const MapperConfig& config) {
     throw Error(concat("all ", frames.size(),
                        " frames have the same pose; give the camera's real poses, or, if it stood "
                        "still, --set allow_still_camera=true"));
+}
+
+std::vector<Pose> poses_of(const std::vector<FrameLogEntry>& frames) {
+  std::vector<Pose> poses;
+  for (const FrameLogEntry& frame : frames) poses.push_back(frame.world_from_camera);
+  return poses;
 }
 
 }  // namespace
@@ -83,6 +91,9 @@ MapDocument make_document(Mapper&& mapper, const SequenceResult& sequence, std::
   document.instances =
       summarize_instances(mapper.map(), mapper.registry(), mapper.config().summary);
   document.instance_config = mapper.config().instance;
+  const Mesh mesh = extract_instance_mesh(mapper.map(), document.instances);
+  document.surfaces = sample_surfaces(mesh, mapper.config().summary.surface_spacing_m);
+  document.up = guess_up(mesh, poses_of(sequence.frames));
   document.registry = mapper.registry().state();
   document.frames = sequence.frames;
   document.depth_camera = sequence.depth_camera;
