@@ -36,13 +36,13 @@ void require_motion(const SequenceResult& result, const MapperConfig& config) {
                        "still, --set allow_still_camera=true"));
 }
 
+}  // namespace
+
 std::vector<Pose> poses_of(const std::vector<FrameLogEntry>& frames) {
   std::vector<Pose> poses;
   for (const FrameLogEntry& frame : frames) poses.push_back(frame.world_from_camera);
   return poses;
 }
-
-}  // namespace
 
 SequenceResult run_sequence(const FrameSource& source, const std::vector<std::int64_t>& positions,
                             Mapper& mapper, const SequenceProgress& progress) {

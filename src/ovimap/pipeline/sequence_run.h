@@ -38,6 +38,9 @@ using SequenceProgress =
 SequenceResult run_sequence(const FrameSource& source, const std::vector<std::int64_t>& positions,
                             Mapper& mapper, const SequenceProgress& progress = nullptr);
 
+/// The poses of the depth camera, world_from_camera, in order.
+std::vector<Pose> poses_of(const std::vector<FrameLogEntry>& frames);
+
 /// Packs a finished mapper for saving. The mapper must not be used afterwards.
 MapDocument make_document(Mapper&& mapper, const SequenceResult& sequence, std::string source,
                           std::string config_text);

@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/pipeline/geometry_embedding.h"
+
+#include <algorithm>
+#include <map>
+
+#include "ovimap/base/parallel.h"
+#include "ovimap/base/version.h"
+#include "ovimap/instance/instance_mesh.h"
+#include "ovimap/io/pictures_raster.h"
+#include "ovimap/io/scene_axes.h"
+
+namespace ovimap {
+
+namespace {
+
+void require_labels(const Mesh& mesh) {
+  if (mesh.triangles.empty())
+    throw Error("the geometry has no triangles; give a mesh, not a point cloud");
+  if (mesh.labels.size() != mesh.vertices.size() ||
+      std::none_of(mesh.labels.begin(), mesh.labels.end(), [](auto id) { return id != 0; }))
+    throw Error(
+        "the geometry has no instance ids; give a PLY with a vertex property 'label', or a file "
+        "with one id a line");
+}
+
+/// A registry in which every object is known: nothing of given geometry is ever merged.
+InstanceRegistry registry_of(const std::vector<InstanceSummary>& objects) {
+  constexpr int kSeenOften = 1 << 20;
+  InstanceRegistry::State state;
+  for (const InstanceSummary& object : objects) {
+    state.records[object.id].views = kSeenOften;
+    state.last_id = object.id;
+  }
+  InstanceRegistry registry;
+  registry.restore(std::move(state));
+  return registry;
+}
+
+struct MeshView {
+  DepthImage depth;
+  Image<InstanceId> instances;
+};
+
+/// The mesh as the frame's depth camera sees it, without what the measured depth hides.
+MeshView look_at_mesh(const Mesh& mesh, const Frame& frame, const GeometryEmbeddingConfig& config) {
+  RasterView view;
+  view.camera = frame.depth_camera;
+  view.world_from_camera = frame.world_from_camera;
+  view.near_m = config.near_m;
+  RasterResult drawn = rasterize(mesh, view);
+  MeshView seen{std::move(drawn.depth_m),
+                Image<InstanceId>(frame.depth.width(), frame.depth.height())};
+  constexpr std::size_t kPixelsPerTask = 1 << 14;
+  parallel_for(seen.depth.size(), kPixelsPerTask, [&](std::size_t i) {
+    if (drawn.triangle[i] == RasterResult::kNoTriangle) return;
+    const float measured = frame.depth[i];
+    if (measured > 0.f && measured < seen.depth[i] - config.occlusion_margin_m) {
+      seen.depth[i] = 0.f;
+      return;
+    }
+    const auto& corners = mesh.triangles[drawn.triangle[i]];
+    seen.instances[i] = mesh.labels[corners[0]];
+  });
+  return seen;
+}
+
+/// Feeds every usable frame to the builder.
+void look_at_frames(const Mesh& mesh, const FrameSource& source,
+                    const std::vector<std::int64_t>& positions,
+                    const GeometryEmbeddingConfig& config, const InstanceRegistry& registry,
+                    AppearanceBuilder& builder, SequenceResult& sequence,
+                    const SequenceProgress& progress) {
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    FrameRead read = source.read(positions[i]);
+    if (read.frame) {
+      const Frame& frame = *read.frame;
+      const MeshView seen = look_at_mesh(mesh, frame, config);
+      builder.choose(frame,
+                     {.depth = seen.depth,
+                      .instances = seen.instances,
+                      .sensor_depth = frame.depth,
+                      .camera = frame.depth_camera,
+                      .world_from_camera = frame.world_from_camera,
+                      .frame = frame.index},
+                     registry);
+      builder.submit();
+      if (sequence.frames.empty()) sequence.depth_camera = frame.depth_camera;
+      sequence.frames.push_back(
+          {frame.index, frame.timestamp_s, frame.name, frame.world_from_camera, true});
+    } else {
+      sequence.skipped.push_back({positions[i], read.fault});
+    }
+    if (progress && !progress(i + 1, positions.size(), nullptr)) break;
+  }
+  if (sequence.frames.empty())
+    throw Error(concat("none of the ", sequence.skipped.size(), " frames is usable",
+                       sequence.skipped.empty() ? "" : ": " + sequence.skipped.front().fault));
+  builder.finish(registry);
+}
+
+}  // namespace
+
+std::vector<InstanceSummary> summarize_mesh(const Mesh& mesh) {
+  std::map<InstanceId, std::pair<InstanceSummary, Eigen::Vector3d>> objects;
+  for (std::size_t i = 0; i < mesh.labels.size(); ++i) {
+    if (mesh.labels[i] == 0) continue;
+    auto& [object, sum] =
+        objects.try_emplace(mesh.labels[i], InstanceSummary{}, Eigen::Vector3d::Zero())
+            .first->second;
+    object.box.extend(mesh.vertices[i]);
+    sum += mesh.vertices[i].cast<double>();
+    ++object.points;
+  }
+  std::vector<InstanceSummary> result;
+  for (auto& [id, entry] : objects) {
+    entry.first.id = id;
+    entry.first.centroid = (entry.second / static_cast<double>(entry.first.points)).cast<float>();
+    result.push_back(std::move(entry.first));
+  }
+  return result;
+}
+
+MapDocument embed_geometry(const Mesh& mesh, const FrameSource& source,
+                           const std::vector<std::int64_t>& positions,
+                           const GeometryEmbeddingConfig& config,
+                           std::shared_ptr<ImageTextEncoder> encoder, SequenceResult& sequence,
+                           const SequenceProgress& progress) {
+  require_labels(mesh);
+  MapDocument document;
+  document.instances = summarize_mesh(mesh);
+  const InstanceRegistry registry = registry_of(document.instances);
+  AppearanceBuilder builder(config.semantics, std::move(encoder));
+  look_at_frames(mesh, source, positions, config, registry, builder, sequence, progress);
+  document.semantics = {builder.encoder() ? builder.encoder()->identity() : EncoderIdentity{},
+                        config.semantics.views, config.semantics.crops, builder.take()};
+  for (InstanceSummary& object : document.instances)
+    if (const auto look = document.semantics.appearances.find(object.id);
+        look != document.semantics.appearances.end())
+      object.views = look->second.offered;
+  document.registry = registry.state();
+  document.surfaces = sample_surfaces(mesh, config.surface_spacing_m);
+  document.up = guess_up(mesh, poses_of(sequence.frames));
+  document.frames = sequence.frames;
+  document.depth_camera = sequence.depth_camera;
+  document.version = concat(version(), " (", commit(), ")");
+  return document;
+}
+
+}  // namespace ovimap
