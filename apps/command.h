@@ -13,6 +13,7 @@
 #include "ovimap/frames/frame_source.h"
 #include "ovimap/inference/image_text_encoder.h"
 #include "ovimap/inference/mask_source_factory.h"
+#include "ovimap/io/map_document.h"
 #include "ovimap/pipeline/mapper.h"
 
 namespace ovimap::apps {
@@ -31,6 +32,8 @@ Action add_eval(CLI::App& command);
 Action add_bench(CLI::App& command);
 Action add_synth(CLI::App& command);
 Action add_models(CLI::App& command);
+Action add_reembed(CLI::App& command);
+Action add_embed(CLI::App& command);
 Action add_config(CLI::App& command);
 
 /// Options that several commands share.
@@ -66,6 +69,9 @@ std::shared_ptr<ImageTextEncoder> make_encoder(const MappingOptions& options,
 
 /// Threads of a network run: what the config says, else what --threads says.
 int network_threads(const ProgramConfig& config, const MappingOptions& options);
+
+/// Views that an encoder was asked about; 0 without one.
+int embedding_queries(const SemanticRecord& semantics);
 
 /// One line on stderr, rewritten as work goes on; silent when stderr is no terminal.
 class Progress {

@@ -28,6 +28,8 @@ constexpr Entry kCommands[] = {
 #ifdef OVIMAP_SYNTH
     {"synth", "render a furnished room with exact truth", add_synth},
 #endif
+    {"reembed", "give a map's objects the embeddings of another encoder", add_reembed},
+    {"embed", "embeddings for a finished mesh with instance ids", add_embed},
     {"models", "list, verify and find networks", add_models},
     {"config", "list every setting with its default", add_config},
 };

@@ -65,6 +65,13 @@ std::shared_ptr<ImageTextEncoder> make_encoder(const MappingOptions& options,
   return make_image_text_encoder(spec, runtime, options.model_dirs);
 }
 
+int embedding_queries(const SemanticRecord& semantics) {
+  int queries = 0;
+  if (semantics.encoder.name.empty()) return 0;
+  for (const auto& [id, appearance] : semantics.appearances) queries += appearance.queries;
+  return queries;
+}
+
 Action add_config(CLI::App& command) {
   auto markdown = std::make_shared<bool>(false);
   auto json = std::make_shared<bool>(false);

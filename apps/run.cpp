@@ -28,13 +28,6 @@ void report_skipped(const SequenceResult& result) {
   if (interrupted()) std::fprintf(stderr, "ovimap: interrupted; saving what was mapped so far\n");
 }
 
-int embedding_queries(const SemanticRecord& semantics) {
-  int queries = 0;
-  if (semantics.encoder.name.empty()) return 0;
-  for (const auto& [id, appearance] : semantics.appearances) queries += appearance.queries;
-  return queries;
-}
-
 /// The settings that made the map, with what the command line chose beside them.
 std::string effective_config(ProgramConfig config, const MappingOptions& options,
                              const Mapper& mapper) {
