@@ -46,6 +46,7 @@ struct MapRecord {
   std::vector<FrameLogEntry> frames;  ///< in the order they were fused
   PinholeCamera depth_camera;
   std::string config_text;  ///< effective configuration, "name: value" lines (ConfigFields::dump)
+  std::string timings;      ///< of the run, a line "stage p50_ms p95_ms count" each; may be empty
   std::string source;       ///< where the frames came from
   int mask_frames = 0;      ///< frames with 2D masks
   std::string version;      ///< of the program that wrote the map

@@ -134,6 +134,7 @@ inline MapDocument random_document(int block_count, std::uint32_t seed) {
                           {0.3f, 0.4f, 0.1f}};  // its box's corners: kept exactly
   document.depth_camera = {640, 480, 585.1f, 585.2f, 319.5f, 239.25f};
   document.config_text = "map.voxel_size_m: 0.0213\nrun.name: \"a: b\"\n";
+  document.timings = "integrate 12.500 40.000 3\n";
   document.source = "/data/some where";
   document.mask_frames = 2;
   document.version = "0.1.0";
@@ -239,7 +240,8 @@ inline std::string difference(const MapDocument& a, const MapDocument& b) {
   if (!std::equal(a.frames.begin(), a.frames.end(), b.frames.begin(), b.frames.end(), same_frame))
     return "frames";
   if (a.depth_camera != b.depth_camera) return "camera";
-  if (a.config_text != b.config_text || a.source != b.source || a.version != b.version)
+  if (a.config_text != b.config_text || a.timings != b.timings || a.source != b.source ||
+      a.version != b.version)
     return "texts";
   return a.mask_frames == b.mask_frames ? "" : "mask frames";
 }

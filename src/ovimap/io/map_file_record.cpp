@@ -24,6 +24,7 @@ void list_meta(MapRecord& record, VoxelMapConfig& map_config, ConfigFields& fiel
   fields.add("version", record.version, "of the program that wrote the map");
   fields.add("source", record.source, "where the frames came from");
   fields.add("config", record.config_text, "effective configuration");
+  fields.add("timings", record.timings, "how long the stages of a frame took");
   fields.add("mask_frames", record.mask_frames, 0, std::numeric_limits<int>::max(),
              "frames with 2D masks");
   fields.group("up", [&](ConfigFields& up) {
@@ -70,6 +71,7 @@ void write_meta(SQLite::Database& database, const MapRecord& record, const MapMe
   plain.version = record.version;
   plain.source = record.source;
   plain.config_text = record.config_text;
+  plain.timings = record.timings;
   plain.mask_frames = record.mask_frames;
   plain.up = record.up;
   plain.depth_camera = record.depth_camera;

@@ -10,6 +10,7 @@
 #include "ovimap/base/version.h"
 #include "ovimap/instance/instance_mesh.h"
 #include "ovimap/io/scene_axes.h"
+#include "ovimap/pipeline/timings_text.h"
 
 namespace ovimap {
 
@@ -100,6 +101,7 @@ MapDocument make_document(Mapper&& mapper, const SequenceResult& sequence, std::
   document.mask_frames = mapper.mask_frames();
   document.source = std::move(source);
   document.config_text = std::move(config_text);
+  document.timings = timings_text(mapper.timers().summary());
   document.version = concat(version(), " (", commit(), ")");
   document.content_hash = mapper.map().content_hash();
   document.map = std::move(mapper).take_map();

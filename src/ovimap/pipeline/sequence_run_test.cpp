@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "ovimap/pipeline/desk_fixture.h"
+#include "ovimap/pipeline/timings_text.h"
 
 namespace ovimap {
 namespace {
@@ -52,6 +53,8 @@ TEST(MakeDocument, HoldsTheMapAndItsInstances) {
   EXPECT_EQ(document.instances.size(), 3u);
   EXPECT_EQ(document.frames.size(), static_cast<std::size_t>(DeskScene::kFrames));
   EXPECT_EQ(document.mask_frames, DeskScene::kFrames);
+  EXPECT_EQ(parse_timings(document.timings).at("integrate").count,
+            static_cast<std::size_t>(DeskScene::kFrames));
 }
 
 }  // namespace
