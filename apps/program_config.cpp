@@ -21,6 +21,11 @@ void add_mapping_options(CLI::App& command, MappingOptions& options) {
       .add_option("--preset", options.preset,
                   "default or reference (thresholds as the paper's code ships them)")
       ->capture_default_str();
+  command
+      .add_option("--views", options.views,
+                  "which views of an object are embedded: default, paper, viewcov, combine, vis, "
+                  "random or all")
+      ->capture_default_str();
   command.add_option("--config", options.config_file, "YAML file of settings");
   command.add_option("--set", options.settings, "one setting, a.b=c; may be repeated");
   command.add_option("--model-dir", options.model_dirs, "folder to look for models in first");
@@ -40,6 +45,7 @@ void list_fields(ProgramConfig& config, ConfigFields& fields) {
 ProgramConfig read_program_config(const MappingOptions& options) {
   ProgramConfig config;
   config.mapper = mapper_preset(options.preset);
+  config.mapper.semantics.views = view_preset(options.views);
   ConfigFields fields;
   list_fields(config, fields);
   if (!options.config_file.empty()) load_config(options.config_file, fields);

@@ -13,11 +13,14 @@ echo "== mapping it: MobileSAM masks on every second frame"
 "$ovimap" export demo/tiny.ovimap demo/tiny.json
 echo "== objects in the map"
 "$ovimap" info demo/tiny.ovimap
+echo "== finding objects by name"
+"$ovimap" query demo/tiny.ovimap "bed" "lamp" "chair" "elephant" --top 1 || true
 echo "== how good it is (exact truth comes with the rendered room)"
 "$ovimap" eval demo/tiny.ovimap --gt demo/tiny/room
 cat <<EOT
 
 Look at   demo/pictures/top_view.png, demo/pictures/contact_sheet.png
+Ask       $ovimap query demo/tiny.ovimap "something to sit on" "largest cabinet"
 Open      demo/tiny.ply in any mesh viewer; demo/tiny.json in any editor
 Go on     $ovimap run YOUR_RECORDING -o my.ovimap        depth alone, real time
           $ovimap run YOUR_RECORDING --masks sam -o my.ovimap --pictures pictures

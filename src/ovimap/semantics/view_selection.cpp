@@ -23,22 +23,37 @@ struct ViewSelector::Candidate {
 
 namespace {
 
+/// Coordinates of surface points in the world.
+struct PointLists {
+  std::vector<float>&x, &y, &z;
+};
+
+/// The object's pixels on every `step`-th column and row of its box, in the world.
 void gather_points(const SeenObjects& seen, InstanceId id, int step,
-                   const Eigen::AlignedBox2i& box_px, std::vector<float>& x, std::vector<float>& y,
-                   std::vector<float>& z) {
+                   const Eigen::AlignedBox2i& box_px, const PointLists& points) {
   const Eigen::Matrix3f rotation = seen.world_from_camera.linear().cast<float>();
   const Eigen::Vector3f position = seen.world_from_camera.translation().cast<float>();
+  const Eigen::Vector3f per_column = rotation.col(0) / seen.camera.fx;
+  const auto samples = static_cast<std::size_t>(box_px.sizes().x() / step + 1);
+  std::size_t count = 0;
   for (int v = box_px.min().y(); v <= box_px.max().y(); v += step) {
     const InstanceId* ids = seen.instances.row(v);
     const float* depth = seen.depth.row(v);
+    const Eigen::Vector3f at_column_0 =
+        rotation * seen.camera.unproject(0.f, static_cast<float>(v), 1.f);
+    // Every sample is written, but only the object's own move on: no branch to mispredict.
+    for (std::vector<float>* list : {&points.x, &points.y, &points.z})
+      if (list->size() < count + samples) list->resize(2 * (count + samples));
+    float *x = points.x.data(), *y = points.y.data(), *z = points.z.data();
     for (int u = box_px.min().x(); u <= box_px.max().x(); u += step) {
-      if (ids[u] != id) continue;
-      const Eigen::Vector3f point =
-          rotation * seen.camera.unproject(static_cast<float>(u), static_cast<float>(v), depth[u]) +
-          position;
-      x.push_back(point.x()), y.push_back(point.y()), z.push_back(point.z());
+      const Eigen::Vector3f ray = at_column_0 + static_cast<float>(u) * per_column;
+      x[count] = depth[u] * ray.x() + position.x();
+      y[count] = depth[u] * ray.y() + position.y();
+      z[count] = depth[u] * ray.z() + position.z();
+      count += ids[u] == id;
     }
   }
+  for (std::vector<float>* list : {&points.x, &points.y, &points.z}) list->resize(count);
 }
 
 Eigen::AlignedBox3f box_of(const std::vector<float>& x, const std::vector<float>& y,
@@ -115,13 +130,15 @@ std::vector<ViewSelector::Candidate> ViewSelector::find_candidates(const SeenObj
 }
 
 int ViewSelector::sample_step(int visible_px) const {
-  return std::max(1, static_cast<int>(std::sqrt(visible_px / config_.max_samples)));
+  return std::max(
+      1, static_cast<int>(std::ceil(
+             std::sqrt(static_cast<float>(visible_px) / static_cast<float>(config_.max_samples)))));
 }
 
 void ViewSelector::cover(const SeenObjects& seen, const Appearances& appearances,
                          Candidate& object) const {
-  gather_points(seen, object.id, sample_step(object.visible_px), object.box_px, object.x, object.y,
-                object.z);
+  gather_points(seen, object.id, sample_step(object.visible_px), object.box_px,
+                {object.x, object.y, object.z});
   if (object.x.empty()) return;
   const auto known = appearances.find(object.id);
   if (known != appearances.end()) object.coverage = known->second.coverage;

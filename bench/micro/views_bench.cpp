@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include <benchmark/benchmark.h>
+
+#include "ovimap/semantics/view_selection.h"
+#include "room_scene.h"
+
+namespace ovimap::bench {
+namespace {
+
+/// The room's image cut into a grid of that many objects, all known to the registry.
+Image<InstanceId> grid_of_objects(int width, int height, int objects) {
+  const int columns = static_cast<int>(std::ceil(std::sqrt(objects * 4. / 3)));
+  const int rows = (objects + columns - 1) / columns;
+  Image<InstanceId> ids(width, height);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const int id = y * rows / height * columns + x * columns / width + 1;
+      ids.at(x, y) = id <= objects ? static_cast<InstanceId>(id) : 0;
+    }
+  return ids;
+}
+
+InstanceRegistry registry_of(int objects) {
+  InstanceRegistry::State state;
+  for (int id = 1; id <= objects; ++id) state.records[static_cast<InstanceId>(id)].views = 100;
+  state.last_id = static_cast<InstanceId>(objects);
+  InstanceRegistry registry;
+  registry.restore(std::move(state));
+  return registry;
+}
+
+/// One 640x480 frame in which every pixel shows one of state.range(0) objects.
+void select_views(benchmark::State& state) {
+  const RoomScene scene(3);
+  const int objects = static_cast<int>(state.range(0));
+  const Image<InstanceId> ids = grid_of_objects(scene.depth.width(), scene.depth.height(), objects);
+  const InstanceRegistry registry = registry_of(objects);
+  ViewSelector selector(view_preset(state.range(1) != 0 ? "paper" : "default"));
+  Appearances appearances;
+  std::int64_t frame = 0;
+  for (auto _ : state)
+    benchmark::DoNotOptimize(selector.select(
+        {scene.depth, ids, scene.depth, scene.camera, scene.pose, frame++}, registry, appearances));
+}
+BENCHMARK(select_views)
+    ->ArgNames({"objects", "paper"})
+    ->Args({10, 0})
+    ->Args({100, 0})
+    ->Args({100, 1})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+}  // namespace
+}  // namespace ovimap::bench
