@@ -54,6 +54,28 @@ TEST_F(ProgramTest, ExportsMeshObjectsAndPicture) {
     EXPECT_TRUE(std::filesystem::exists(path("pictures") / file));
 }
 
+TEST_F(ProgramTest, ReportsOnAMap) {
+  ASSERT_EQ(run("run replica/scene --masks gt --encoder none -o room.ovimap "
+                "--set summary.min_instance_views=1")
+                .code,
+            0);
+  const auto report = run_json("report room.ovimap room.html --title 'My <room>' --json");
+  EXPECT_EQ(report["named"], 0);
+  const std::string html = slurp(path("room.html"));
+  EXPECT_EQ(report["bytes"], html.size());
+  for (const auto& instance : run_json("info room.ovimap --json")["instances"])
+    EXPECT_NE(html.find("id=\"object-" + instance["id"].dump() + "\""), std::string::npos);
+  for (const char* text : {"My &lt;room&gt;", "data:image/png", "this map has no embeddings",
+                           "<th scope=\"row\">integrate</th>", "map.voxel_size_m: 0.01"})
+    EXPECT_NE(html.find(text), std::string::npos) << text;
+
+  expect_complaint("report room.ovimap room.pdf", {"room.pdf", ".html"});
+  expect_complaint("report missing.ovimap a.html", {"missing.ovimap"});
+  expect_complaint("report room.ovimap nowhere/a.html", {"nowhere/a.html"});
+  expect_complaint("report room.ovimap a.html --classes birds", {"birds", "scannet200"});
+  EXPECT_FALSE(std::filesystem::exists(path("a.html")));
+}
+
 TEST_F(ProgramTest, TheReferencePresetMapsToo) {
   EXPECT_GT(run_json("run recording -o room.ovimap --preset reference --json")["instances"], 0);
 }
