@@ -22,6 +22,7 @@ constexpr Entry kCommands[] = {
     {"run", "map a recording: SOURCE in, MAP out", add_run},
     {"check", "look for what commonly is wrong with a recording", add_check},
     {"info", "what a map holds", add_info},
+    {"query", "find objects in words: MAP \"mug on the table\"", add_query},
     {"export", "write a map as mesh, JSON or picture", add_export},
     {"eval", "score maps against the truth", add_eval},
     {"bench", "measure speed and memory on a recording", add_bench},

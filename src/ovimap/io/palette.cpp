@@ -82,6 +82,19 @@ std::vector<std::array<std::uint8_t, 3>> instance_colors(std::span<const std::ui
   return colors;
 }
 
+Rgb8 heat_color(float share) {
+  constexpr std::array<std::array<float, 3>, 5> kStops{
+      {{38, 40, 74}, {98, 44, 122}, {186, 58, 104}, {243, 128, 60}, {252, 232, 140}}};
+  const float at = std::clamp(share, 0.f, 1.f) * (kStops.size() - 1);
+  const auto below = std::min(static_cast<std::size_t>(at), kStops.size() - 2);
+  const float weight = at - static_cast<float>(below);
+  const auto channel = [&](std::size_t c) {
+    const float value = kStops[below][c] + weight * (kStops[below + 1][c] - kStops[below][c]);
+    return static_cast<std::uint8_t>(std::lround(value));
+  };
+  return {channel(0), channel(1), channel(2)};
+}
+
 Eigen::Vector3d oklab_of(Rgb8 color) {
   const Eigen::Vector3d rgb(decoded(color.r / 255.0), decoded(color.g / 255.0),
                             decoded(color.b / 255.0));

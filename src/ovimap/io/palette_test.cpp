@@ -40,5 +40,16 @@ TEST(Palette, ColoursAVertexLikeItsId) {
   }
 }
 
+TEST(HeatColor, GetsLighterAllTheWay) {
+  double before = -1;
+  for (int i = 0; i <= 100; ++i) {
+    const double lightness = oklab_of(heat_color(static_cast<float>(i) / 100.f))[0];
+    EXPECT_GT(lightness, before - 1e-3) << i;
+    before = lightness;
+  }
+  EXPECT_EQ(heat_color(-1.f), heat_color(0.f));
+  EXPECT_EQ(heat_color(2.f), heat_color(1.f));
+}
+
 }  // namespace
 }  // namespace ovimap

@@ -1,0 +1,191 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+
+#include "command.h"
+#include "ovimap/base/parallel.h"
+#include "ovimap/image/codec.h"
+#include "ovimap/instance/instance_mesh.h"
+#include "ovimap/io/pictures.h"
+#include "ovimap/io/ply.h"
+#include "ovimap/pipeline/map_search.h"
+#include "ovimap/semantics/query_engine.h"
+#include "ovimap/semantics/query_text.h"
+
+namespace ovimap::apps {
+
+namespace {
+
+struct QueryOptions {
+  std::filesystem::path map, heat_map;
+  std::vector<std::string> texts, negatives, settings;
+  std::string near, encoder = "auto";
+  std::vector<std::filesystem::path> images, model_dirs;
+  std::vector<InstanceId> like;
+  int top = 0, threads = 0;  // 0: as configured
+  bool json = false;
+};
+
+QueryConfig query_config(const QueryOptions& options) {
+  QueryConfig config;
+  ConfigFields fields;
+  fields.group("query", [&](ConfigFields& inner) { list_fields(config, inner); });
+  for (const std::string& setting : options.settings) {
+    const std::size_t equals = setting.find('=');
+    if (equals == std::string::npos) throw Error("--set takes name=value, not '" + setting + "'");
+    fields.set(setting.substr(0, equals), setting.substr(equals + 1));
+  }
+  if (options.top > 0) config.top_k = options.top;
+  return config;
+}
+
+nlohmann::json point_json(const Eigen::Vector3f& point) {
+  return {point.x(), point.y(), point.z()};
+}
+
+nlohmann::json match_json(const QueryMatch& match, const SearchObject& object) {
+  const auto number = [](const std::optional<double>& value) {
+    return value ? nlohmann::json(*value) : nlohmann::json();
+  };
+  return {{"id", match.id},
+          {"name", object.name},
+          {"score", match.score},
+          {"standard_score", match.standard_score},
+          {"p_value", number(match.p_value)},
+          {"probability", number(match.probability)},
+          {"evidence", match.evidence},
+          {"box", {{"min", point_json(object.box.min())}, {"max", point_json(object.box.max())}}},
+          {"centroid", point_json(object.centroid)}};
+}
+
+nlohmann::json answer_json(const QueryAnswer& answer, const SearchIndex& index) {
+  nlohmann::json instances = nlohmann::json::array();
+  for (const QueryMatch& match : answer.matches)
+    instances.push_back(match_json(match, index.object(match.position)));
+  return {{"query", answer.query},
+          {"verdict", verdict_name(answer.verdict)},
+          {"reading", answer.reading},
+          {"reason", answer.reason},
+          {"instances", instances}};
+}
+
+void print_answer(const QueryAnswer& answer, const SearchIndex& index) {
+  std::printf("%s: %s", answer.query.c_str(),
+              answer.verdict == Verdict::kFound ? "found" : "not in the map");
+  if (!answer.reading.empty()) std::printf(", read as %s", answer.reading.c_str());
+  if (!answer.reason.empty()) std::printf(" (%s)", answer.reason.c_str());
+  std::printf("\n");
+  for (const QueryMatch& match : answer.matches) {
+    const SearchObject& object = index.object(match.position);
+    std::printf("  #%-5u %6.3f", match.id, double{match.score});
+    if (match.probability) std::printf("  %3.0f %%", 100.0 * *match.probability);
+    std::printf("  at %6.2f %6.2f %6.2f", double{object.centroid.x()}, double{object.centroid.y()},
+                double{object.centroid.z()});
+    if (!object.name.empty()) std::printf("  %s", object.name.c_str());
+    if (!match.evidence.empty()) std::printf("  %s", match.evidence.c_str());
+    std::printf("\n");
+  }
+}
+
+void write_heat_map(const QueryOptions& options, const MapSearch& search,
+                    const QueryAnswer& answer) {
+  const std::string kind = options.heat_map.extension().string();
+  const MapDocument document = load_map(options.map);
+  Mesh mesh = extract_instance_mesh(document.map, document.instances);
+  color_by_relevance(mesh, search.index, answer.relevance);
+  if (kind == ".ply") return write_ply(options.heat_map, mesh);
+  PictureConfig picture;
+  picture.coloring = MeshColoring::kColors;
+  write_file(options.heat_map, encode_png(top_down(mesh, search.info.up, picture)));
+}
+
+void check_options(const QueryOptions& options) {
+  const std::size_t queries = options.texts.size() + options.images.size() + options.like.size();
+  if (queries == 0) throw Error("nothing is asked; give a TEXT, --image FILE or --like ID");
+  if (options.heat_map.empty()) return;
+  if (queries > 1)
+    throw Error(concat("--heatmap shows one query, ", queries, " were given; ask one at a time"));
+  const std::string kind = options.heat_map.extension().string();
+  if (kind != ".ply" && kind != ".png")
+    throw Error(concat("cannot draw a heat map into '", options.heat_map.string(),
+                       "'; the name must end in .ply or .png"));
+}
+
+std::vector<QueryAnswer> ask(const QueryOptions& options, const QueryEngine& engine) {
+  const bool relevance = !options.heat_map.empty();
+  std::vector<QueryAnswer> answers;
+  for (const std::string& text : options.texts) {
+    const std::string near = options.near.empty() ? "" : " near " + options.near;
+    answers.push_back(engine.find({text + near, options.negatives, relevance}));
+  }
+  for (const std::filesystem::path& image : options.images)
+    answers.push_back(engine.find_like(read_rgb(image), image.string(), relevance));
+  for (const InstanceId id : options.like) answers.push_back(engine.find_like(id, relevance));
+  return answers;
+}
+
+int query(const QueryOptions& options) {
+  const ThreadLimit limit(options.threads);
+  check_options(options);
+  const QueryConfig config = query_config(options);
+  for (const std::string& text : options.texts)  // before anything slow
+    checked_query_text(text, config.max_text_chars);
+  const MapSearch search = open_map_search(options.map, config.shapes);
+  require_embeddings(search.index);
+  const bool words = !options.texts.empty() || !options.images.empty();
+  RuntimeConfig runtime;
+  runtime.threads = options.threads;
+  const auto encoder =
+      words ? encoder_of_map(search.info, options.encoder, runtime, options.model_dirs) : nullptr;
+  const QueryEngine engine(search.index, encoder.get(), config, {}, search.scene);
+
+  bool found = false;
+  nlohmann::json results = nlohmann::json::array();
+  for (const QueryAnswer& answer : ask(options, engine)) {
+    found = found || answer.verdict == Verdict::kFound;
+    if (!options.heat_map.empty()) write_heat_map(options, search, answer);
+    if (options.json)
+      results.push_back(answer_json(answer, search.index));
+    else
+      print_answer(answer, search.index);
+  }
+  if (options.json) print_json({{"results", results}});
+  return found ? kDone : kAnswerIsNo;
+}
+
+}  // namespace
+
+Action add_query(CLI::App& command) {
+  auto options = std::make_shared<QueryOptions>();
+  command.add_option("MAP", options->map, "map file")->required();
+  command.add_option("TEXT", options->texts,
+                     "what to look for: \"mug\", \"red chair, armchair\", \"mug on the table\"");
+  command.add_option("--top", options->top, "instances shown for each query")
+      ->check(CLI::Range(1, 1000000));
+  command.add_option("--not", options->negatives, "what it must not be; commas separate")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  command.add_option("--near", options->near, "only near this: as \"TEXT near THIS\"");
+  command.add_option("--image", options->images, "what looks like this picture")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  command.add_option("--like", options->like, "what looks like the object with this id")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  command.add_option("--heatmap", options->heat_map,
+                     "draw how well objects match: .ply (mesh) or .png (from above)");
+  command
+      .add_option("--encoder", options->encoder,
+                  "default, a model, or auto: the one that the map was made with")
+      ->capture_default_str();
+  command.add_option("--model-dir", options->model_dirs, "folder to look for models in first");
+  command.add_option("--set", options->settings, "one setting, query.a=b; may be repeated")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  command.add_option("--threads", options->threads, "threads to use; 0: all cores")
+      ->check(CLI::Range(0, 1024));
+  command.add_flag("--json", options->json, "print one JSON object");
+  return [options] { return query(*options); };
+}
+
+}  // namespace ovimap::apps

@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/pipeline/map_search.h"
+
+#include <unordered_map>
+
+#include "ovimap/base/error.h"
+#include "ovimap/inference/model_folder.h"
+#include "ovimap/io/palette.h"
+
+namespace ovimap {
+
+namespace {
+
+SearchIndex index_of(const SearchableMap& map) {
+  std::vector<SearchObject> objects;
+  for (const InstanceSummary& instance : map.info.instances) {
+    const auto name = map.info.names.find(instance.id);
+    objects.push_back({instance.id, instance.box, instance.centroid, instance.points,
+                       name == map.info.names.end() ? "" : name->second});
+  }
+  return SearchIndex(std::move(objects), map.embeddings);
+}
+
+QueryScene scene_of(const SearchableMap& map, const SearchIndex& index,
+                    const ObjectShapeConfig& config) {
+  const Eigen::Matrix3f ground = ground_from_world(map.info.up);
+  QueryScene scene = scene_of_boxes(index, map.info.up, config);
+  for (std::size_t i = 0; i < index.size(); ++i) {
+    const auto surface = map.surfaces.find(index.object(i).id);
+    if (surface != map.surfaces.end() && !surface->second.empty())
+      scene.shapes[i] = shape_of_points(ground, surface->second, config);
+  }
+  std::vector<Pose> cameras;
+  for (const FrameLogEntry& frame : map.frames) cameras.push_back(frame.world_from_camera);
+  if (!cameras.empty()) scene.viewpoint = mean_viewpoint(ground, cameras);
+  return scene;
+}
+
+/// The folder of the model that the map names; "default" when no model on the search path is it.
+std::string model_named_by(const MapInfo& map,
+                           const std::vector<std::filesystem::path>& model_dirs) {
+  for (const ModelListing& model : list_models(model_search_path(model_dirs)))
+    if (model.kind == "dual_encoder" && read_model_folder(model.folder).name == map.encoder.name)
+      return model.folder.string();
+  return "default";
+}
+
+}  // namespace
+
+MapSearch open_map_search(const std::filesystem::path& map, const ObjectShapeConfig& config) {
+  SearchableMap stored = read_searchable_map(map);
+  MapSearch search;
+  search.index = index_of(stored);
+  search.scene = scene_of(stored, search.index, config);
+  search.info = std::move(stored.info);
+  return search;
+}
+
+std::unique_ptr<ImageTextEncoder> encoder_of_map(
+    const MapInfo& map, const std::string& spec, const RuntimeConfig& runtime,
+    const std::vector<std::filesystem::path>& model_dirs) {
+  auto encoder = make_image_text_encoder(spec == "auto" ? model_named_by(map, model_dirs) : spec,
+                                         runtime, model_dirs);
+  if (!encoder || map.encoder.name.empty() || encoder->identity() == map.encoder) return encoder;
+  throw Error(concat(
+      "the map's embeddings are of encoder '", map.encoder.name, "' (", map.encoder.dimension,
+      " numbers), not of '", encoder->identity().name, "' (", encoder->identity().dimension,
+      " numbers, other files); name that one with --encoder, or run `ovimap reembed`"));
+}
+
+void color_by_relevance(Mesh& mesh, const SearchIndex& index, const Eigen::VectorXf& relevance) {
+  OVIMAP_ASSERT(static_cast<std::size_t>(relevance.size()) == index.size());
+  std::unordered_map<std::uint32_t, Rgb8> colors;
+  for (std::size_t i = 0; i < index.size(); ++i)
+    colors[index.object(i).id] = heat_color(relevance[static_cast<Eigen::Index>(i)]);
+  const Rgb8 cold = heat_color(0.f);
+  mesh.colors.resize(mesh.vertices.size());
+  for (std::size_t v = 0; v < mesh.labels.size(); ++v) {
+    const auto known = colors.find(mesh.labels[v]);
+    const Rgb8 color = known == colors.end() ? cold : known->second;
+    mesh.colors[v] = {color.r, color.g, color.b};
+  }
+}
+
+}  // namespace ovimap
