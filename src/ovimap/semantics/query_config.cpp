@@ -26,8 +26,9 @@ void list_fields(QueryConfig& config, ConfigFields& fields) {
   fields.add("grammar", config.grammar, "read relations and superlatives; false: all is free text");
   fields.add("candidate_rate", config.candidate_rate, 1e-6f, 1.f,
              "relations are tried on objects with at most this p-value");
-  fields.add("candidate_share", config.candidate_share, 0.f, 1.f,
-             "... and at least this share of the best standard score");
+  fields.add(
+      "rival_share", config.rival_share, 0.f, 1.f,
+      "\"nearest\" and \"largest\" compare objects with this share of the best score or more");
   fields.add("max_anchors", config.max_anchors, 1, kMost,
              "objects that an anchor of a relation may be");
   fields.group("relations", [&](ConfigFields& inner) { list_fields(config.relations, inner); });

@@ -27,8 +27,9 @@ struct QueryConfig {
   VerdictConfig verdict;
 
   bool grammar = true;           ///< "mug on the table" is a relation; false: all is free text
-  float candidate_rate = 0.2f;   ///< relations are tried on objects with at most this p-value
-  float candidate_share = 0.5f;  ///< ... and at least this share of the best standard score
+  float candidate_rate = 0.35f;  ///< relations are tried on objects with at most this p-value
+  float rival_share = 0.65f;     ///< for "nearest" and "largest" compete objects with at least this
+                                 ///< share of the best standard score
   int max_anchors = 16;          ///< objects that an anchor such as "the table" may be
   RelationConfig relations;
   ObjectShapeConfig shapes;

@@ -123,11 +123,11 @@ PhraseMatch PhraseSearch::match_things(const QueryPhrase& phrase,
                        "' needs an encoder, none was given; name one with "
                        "--encoder"));
   result.things = matcher_->match(terms, negatives);
-  rate_by_text(result, phrase.things);
+  rate_by_text(phrase, result);
   return result;
 }
 
-void PhraseSearch::rate_by_text(PhraseMatch& result, const std::string& things) const {
+void PhraseSearch::rate_by_text(const QueryPhrase& phrase, PhraseMatch& result) const {
   const MatchScores& text = result.things;
   result.scores.setZero();
   std::optional<std::size_t> best;
@@ -136,11 +136,14 @@ void PhraseSearch::rate_by_text(PhraseMatch& result, const std::string& things) 
         (!best || at(text.standard, i) > at(text.standard, *best)))
       best = i;
   const double best_p = best ? matcher_->p_value(text, at(text.standard, *best)) : 1.0;
-  if (best_p > double{config_.verdict.false_positive_rate}) result.missing.push_back(things);
+  if (best_p > double{config_.verdict.false_positive_rate}) result.missing.push_back(phrase.things);
   if (!best) return;
   at(result.scores, *best) = static_cast<float>(match_probability(best_p));  // if only as a guess
-  const float level = std::max(config_.candidate_share * at(text.standard, *best),
-                               matcher_->score_at(text, double{config_.candidate_rate}));
+  // A weak candidate can win a comparison of places; it cannot make a relation true.
+  const bool compares = phrase.superlative || phrase.relation == Relation::kNearest ||
+                        phrase.relation == Relation::kFarthest;
+  float level = matcher_->score_at(text, double{config_.candidate_rate});
+  if (compares) level = std::max(level, config_.rival_share * at(text.standard, *best));
   for (std::size_t i = 0; i < index_.size(); ++i)
     if (index_.has_embedding(i) && !text.excluded[i] && at(text.standard, i) >= level)
       at(result.scores, i) =

@@ -51,7 +51,7 @@ class PhraseSearch {
  private:
   PhraseMatch match_things(const QueryPhrase& phrase,
                            const std::vector<std::string>& negatives) const;
-  void rate_by_text(PhraseMatch& result, const std::string& things) const;
+  void rate_by_text(const QueryPhrase& phrase, PhraseMatch& result) const;
   void apply_pairs(const QueryPhrase& phrase, const PhraseMatch& anchors,
                    PhraseMatch& result) const;
   void apply_order(const QueryPhrase& phrase, const PhraseMatch& anchors,
