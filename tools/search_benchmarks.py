@@ -1,0 +1,185 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The ovimap authors
+# SPDX-License-Identifier: Apache-2.0
+"""Measures how well words find objects, and writes docs/search-benchmarks.md.
+
+Usage: tools/search_benchmarks.py PROGRAM [--kitchen FOLDER] [--out docs/search-benchmarks.md]
+FOLDER is 7-Scenes "red kitchen" (every 5th frame); without it only the rendered room is measured.
+"""
+import argparse
+import datetime
+import json
+import pathlib
+import subprocess
+import tempfile
+
+DATA = pathlib.Path(__file__).parent / "data"
+EVERYTHING = 1000
+STUFF = {"floor", "wall", "ceiling"}
+
+
+def run_json(*command, accepted=(0,)):
+    command = [str(word) for word in command] + ["--json"]
+    done = subprocess.run(command, stdout=subprocess.PIPE, text=True)
+    if done.returncode not in accepted:
+        raise SystemExit(f"{' '.join(command)} ended with exit code {done.returncode}")
+    return json.loads(done.stdout)
+
+
+def query(program, map_file, texts, *options, top=EVERYTHING):
+    """The answers to all texts in one run; exit code 1 means that some were not found."""
+    return run_json(program, "query", map_file, *texts, "--top", top, *options, accepted=(0, 1))["results"]
+
+
+def rows_of(name):
+    for line in (DATA / name).read_text().splitlines():
+        if line and not line.startswith("#"):
+            yield line.split(";")
+
+
+# --------------------------------------------------------------------------------------------- the kitchen
+
+def object_at(instances, point, margin=0.05):
+    """The smallest object whose box holds the point."""
+    def volume(box):
+        return (box["max"][0] - box["min"][0]) * (box["max"][1] - box["min"][1]) * (box["max"][2] - box["min"][2])
+
+    holding = [instance for instance in instances
+               if all(low - margin <= x <= high + margin
+                      for x, low, high in zip(point, instance["box"]["min"], instance["box"]["max"]))]
+    return min(holding, key=lambda instance: volume(instance["box"]), default={"id": None})["id"]
+
+
+def kitchen_ranks(program, map_file, *options):
+    """By phrase: the rank of the first right object, None when the map has none, and the verdict."""
+    instances = run_json(program, "info", map_file)["instances"]
+    phrases = [(row[0], {object_at(instances, [float(x) for x in point.split()]) for point in row[1:]} - {None})
+               for row in rows_of("kitchen_phrases.csv")]
+    answers = query(program, map_file, [phrase for phrase, _ in phrases], "--set", "query.grammar=false", *options)
+    for (phrase, right), answer in zip(phrases, answers):
+        ranks = [rank for rank, found in enumerate(answer["instances"], 1) if found["id"] in right]
+        yield phrase, min(ranks, default=None), answer["verdict"], answer["instances"][0]["id"] if answer["instances"] else 0
+
+
+def verdict_rates(program, map_file, *options):
+    words = list(rows_of("kitchen_words.csv"))
+    answers = query(program, map_file, [word for _, word in words], "--set", "query.grammar=false", *options, top=1)
+    wrong = {"present": [], "absent": []}
+    for (kind, word), answer in zip(words, answers):
+        if (answer["verdict"] == "found") != (kind == "present"):
+            wrong[kind].append(word)
+    return wrong
+
+
+def recall(ranks, k):
+    return sum(1 for rank in ranks if rank is not None and rank <= k) / len(ranks)
+
+
+def kitchen_section(program, kitchen, work):
+    made, plain = work / "kitchen.ovimap", work / "kitchen_conse.ovimap"
+    summary = run_json(program, "run", kitchen, "--masks", "sam", "-o", made)
+    encoders = [("with head", made, [])]
+    before = pathlib.Path(".models/default-encoder-conse")
+    if before.exists():
+        run_json(program, "reembed", made, "--encoder", before, "-o", plain)
+        encoders.insert(0, ("classifier alone", plain, ["--encoder", before]))
+    columns = {name: list(kitchen_ranks(program, map_file, *options)) for name, map_file, options in encoders}
+    text = ["## A real kitchen", "", "    ovimap run KITCHEN --masks sam -o kitchen.ovimap", "",
+            f"{summary['instances']} objects, {summary['embedding_queries']} embedding queries "
+            f"({summary['embedding_queries'] / summary['instances']:.1f} an object), {summary['seconds']:.0f} s. "
+            "Rank of the first right object among all; a dash: the map has no such object of its own.", "",
+            "| phrase | " + " | ".join(f"{name}: rank | verdict" for name in columns) + " |",
+            "| --- |" + " --- | --- |" * len(columns)]
+    for entries in zip(*columns.values()):
+        text.append(f"| {entries[0][0]} | " + " | ".join(
+            f"{rank if rank else '-'} | {verdict.replace('_', ' ')}" for _, rank, verdict, _ in entries) + " |")
+    for name, entries in columns.items():
+        ranks = [rank for _, rank, _, _ in entries]
+        text += ["", f"{name.capitalize()}: right object first for {recall(ranks, 1):.0%} of the phrases, among the first "
+                     f"five for {recall(ranks, 5):.0%}."]
+    text += ["", "### Not in the map", "", "50 words for things in the kitchen, 50 for things that are not "
+             "(tools/data/kitchen_words.csv).", "", "| encoder | absent, yet found | present, yet not found |", "| --- | --- | --- |"]
+    for name, map_file, options in encoders:
+        wrong = verdict_rates(program, map_file, *options)
+        text.append(f"| {name} | {len(wrong['absent']) / 50:.0%} ({', '.join(wrong['absent']) or 'none'}) "
+                    f"| {len(wrong['present']) / 50:.0%} ({', '.join(wrong['present'])}) |")
+    return text + [""] + relation_section(program, made)
+
+
+def relation_section(program, map_file):
+    phrases = ["mug on the table", "chair nearest to the television", "largest cabinet", "plastic box on the table"]
+    text = ["### Relations", "", "| query | reading | verdict | best object | because |", "| --- | --- | --- | --- | --- |"]
+    for answer in query(program, map_file, phrases, top=1):
+        best = answer["instances"][0] if answer["instances"] else None
+        place = ", ".join(f"{x:.2f}" for x in best["centroid"]) if best else ""
+        text.append(f"| {answer['query']} | {answer['reading']} | {answer['verdict'].replace('_', ' ')} "
+                    f"| {'at (' + place + ')' if best else '-'} | {best['evidence'] if best else answer['reason']} |")
+    return text
+
+
+# -------------------------------------------------------------------------------------------- rendered rooms
+
+def room_recall(program, room, map_file):
+    """Share of truth classes whose query is answered by an object of that class first, and among three."""
+    names = json.loads((room / "labels.json").read_text())["instances"]
+    classes = sorted(set(names.values()) - STUFF)
+    answers = query(program, map_file, classes, "--set", "query.grammar=false")
+    ranks = []
+    for name, answer in zip(classes, answers):
+        right = [rank for rank, found in enumerate(answer["instances"], 1) if names.get(str(found["id"])) == name]
+        ranks.append(min(right, default=None))
+    return recall(ranks, 1), recall(ranks, 3), sum(1 / rank for rank in ranks if rank) / len(ranks)
+
+
+def views_section(program, work):
+    """Truth geometry, so that nothing but the choice of views differs."""
+    text = ["## Which views to embed", "", "    ovimap embed gt ROOM --views PRESET -o room.ovimap", "",
+            "The rendered `tiny` rooms of three seeds with sensor noise, true instances; mean over rooms. AQ: embedding queries "
+            "an object. Words: the classes in the room; reciprocal rank, right object first, among three.", "",
+            "| views | AQ | MRR | first | first three |", "| --- | --- | --- | --- | --- |"]
+    rooms = []
+    for seed in (1, 2, 3):
+        folder = work / f"room{seed}"
+        run_json(program, "synth", folder, "--room", "tiny", "--noise", "--seed", seed)
+        rooms.append(folder / "room")
+    for preset in ("default", "viewcov", "paper", "combine", "vis", "random", "all"):
+        scores, queries = [], []
+        for room in rooms:
+            map_file = work / "views.ovimap"
+            # The published presets' sizes are meant for 640x480; these rooms have a quarter of its pixels.
+            small = ["--set", "views.min_mask_px=250", "--set", "views.min_first_depth_px=125"]
+            summary = run_json(program, "embed", "gt", room, "--views", preset, *small, "-o", map_file)
+            queries.append(summary["embedding_queries"] / summary["instances"])
+            scores.append(room_recall(program, room, map_file))
+        first, three, mrr = (sum(column) / len(rooms) for column in zip(*scores))
+        text.append(f"| {preset} | {sum(queries) / len(rooms):.1f} | {mrr:.3f} | {first:.3f} | {three:.3f} |")
+    return text
+
+
+def machine():
+    for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines():
+        if line.startswith("model name"):
+            return line.split(":", 1)[1].strip()
+    return "unknown processor"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("program")
+    parser.add_argument("--kitchen", type=pathlib.Path)
+    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("docs/search-benchmarks.md"))
+    options = parser.parse_args()
+    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], stdout=subprocess.PIPE, text=True).stdout.strip()
+    text = ["<!-- SPDX-FileCopyrightText: 2026 The ovimap authors -->", "<!-- SPDX-License-Identifier: Apache-2.0 -->",
+            "<!-- Written by tools/search_benchmarks.py; do not edit. -->", "# Search benchmarks", "",
+            f"Default encoder. {machine()}, commit {commit}, {datetime.date.today()}.", ""]
+    with tempfile.TemporaryDirectory() as folder:
+        work = pathlib.Path(folder)
+        text += views_section(options.program, work) + [""]
+        if options.kitchen:
+            text += kitchen_section(options.program, options.kitchen, work)
+    options.out.write_text("\n".join(text) + "\n")
+
+
+if __name__ == "__main__":
+    main()
