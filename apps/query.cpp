@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
+#include <cctype>
 #include <cstdio>
 
 #include "command.h"
@@ -87,24 +88,48 @@ void print_answer(const QueryAnswer& answer, const SearchIndex& index) {
   }
 }
 
-void write_heat_map(const QueryOptions& options, const MapSearch& search,
-                    const QueryAnswer& answer) {
-  const std::string kind = options.heat_map.extension().string();
+/// The query as part of a file name: "mug on the table" becomes "mug-on-the-table".
+std::string slug(const std::string& query) {
+  constexpr std::size_t kLongest = 40;
+  std::string result;
+  for (const char letter : query) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(letter)) != 0;
+    if (plain || (!result.empty() && result.back() != '-')) result += plain ? letter : '-';
+    if (result.size() == kLongest) break;
+  }
+  while (!result.empty() && result.back() == '-') result.pop_back();
+  return result.empty() ? "query" : result;
+}
+
+/// OUT.png for one query; OUT-1-mug.png, OUT-2-chair.png ... for several.
+std::filesystem::path heat_map_path(const std::filesystem::path& out, std::size_t number,
+                                    std::size_t count, const std::string& query) {
+  if (count == 1) return out;
+  return out.parent_path() /
+         concat(out.stem().string(), "-", number, "-", slug(query), out.extension().string());
+}
+
+void write_heat_maps(const QueryOptions& options, const MapSearch& search,
+                     const std::vector<QueryAnswer>& answers) {
   const MapDocument document = load_map(options.map);
   Mesh mesh = extract_instance_mesh(document.map, document.instances);
-  color_by_relevance(mesh, search.index, answer.relevance);
-  if (kind == ".ply") return write_ply(options.heat_map, mesh);
-  PictureConfig picture;
-  picture.coloring = MeshColoring::kColors;
-  write_file(options.heat_map, encode_png(top_down(mesh, search.info.up, picture)));
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    const auto path = heat_map_path(options.heat_map, i + 1, answers.size(), answers[i].query);
+    color_by_relevance(mesh, search.index, answers[i].relevance);
+    if (path.extension() == ".ply") {
+      write_ply(path, mesh);
+      continue;
+    }
+    PictureConfig picture;
+    picture.coloring = MeshColoring::kColors;
+    write_file(path, encode_png(top_down(mesh, search.info.up, picture)));
+  }
 }
 
 void check_options(const QueryOptions& options) {
   const std::size_t queries = options.texts.size() + options.images.size() + options.like.size();
   if (queries == 0) throw Error("nothing is asked; give a TEXT, --image FILE or --like ID");
   if (options.heat_map.empty()) return;
-  if (queries > 1)
-    throw Error(concat("--heatmap shows one query, ", queries, " were given; ask one at a time"));
   const std::string kind = options.heat_map.extension().string();
   if (kind != ".ply" && kind != ".png")
     throw Error(concat("cannot draw a heat map into '", options.heat_map.string(),
@@ -141,9 +166,10 @@ int query(const QueryOptions& options) {
 
   bool found = false;
   nlohmann::json results = nlohmann::json::array();
-  for (const QueryAnswer& answer : ask(options, engine)) {
+  const std::vector<QueryAnswer> answers = ask(options, engine);
+  if (!options.heat_map.empty()) write_heat_maps(options, search, answers);
+  for (const QueryAnswer& answer : answers) {
     found = found || answer.verdict == Verdict::kFound;
-    if (!options.heat_map.empty()) write_heat_map(options, search, answer);
     if (options.json)
       results.push_back(answer_json(answer, search.index));
     else
@@ -172,8 +198,10 @@ Action add_query(CLI::App& command) {
   command.add_option("--like", options->like, "what looks like the object with this id")
       ->type_size(1)
       ->allow_extra_args(false);
-  command.add_option("--heatmap", options->heat_map,
-                     "draw how well objects match: .ply (mesh) or .png (from above)");
+  command.add_option(
+      "--heatmap", options->heat_map,
+      "draw how well objects match: .ply (mesh) or .png (from above); one numbered file "
+      "per query where there are several");
   command
       .add_option("--encoder", options->encoder,
                   "default, a model, or auto: the one that the map was made with")
