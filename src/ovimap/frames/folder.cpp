@@ -1,10 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
-#include <map>
-
 #include "ovimap/base/error.h"
-#include "ovimap/frames/natural_order.h"
+#include "ovimap/frames/folder_parts.h"
 #include "ovimap/frames/number_text.h"
 #include "ovimap/frames/readers.h"
 #include "ovimap/frames/trajectory.h"
@@ -14,7 +11,6 @@ namespace ovimap {
 namespace {
 
 namespace fs = std::filesystem;
-using Names = std::vector<const char*>;
 
 const Names kColorFolders = {"color", "rgb", "image", "images", "colour"};
 const Names kDepthFolders = {"depth", "depths"};
@@ -25,53 +21,9 @@ const Names kDepthIntrinsics = {
     "camera-intrinsics.txt",         "camera_intrinsics.txt", "K.txt"};
 const Names kColorIntrinsics = {"intrinsic/intrinsic_color.txt"};
 
-/// The first of `names` that exists in `folder`, as a folder or as a file; empty when none does.
-fs::path find_one(const fs::path& folder, const Names& names, bool as_folder) {
-  for (const char* name : names) {
-    const fs::path path = folder / name;
-    if (as_folder ? fs::is_directory(path) : fs::is_regular_file(path)) return path;
-  }
-  return {};
-}
-
 bool recognises(const fs::path& folder) {
   return !find_one(folder, kColorFolders, true).empty() &&
          !find_one(folder, kDepthFolders, true).empty();
-}
-
-std::vector<fs::path> list_files(const fs::path& folder, const Names& extensions) {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    const std::string extension = entry.path().extension().string();
-    if (std::find(extensions.begin(), extensions.end(), extension) != extensions.end())
-      files.push_back(entry.path());
-  }
-  std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
-    return natural_less(a.filename().string(), b.filename().string());
-  });
-  return files;
-}
-
-/// For each colour file its partner in `folder`: of equal stem or, when no stem agrees, of equal
-/// rank. A colour file whose partner is missing gets the path where it should be.
-std::vector<fs::path> partners(const std::vector<fs::path>& colors, const fs::path& folder,
-                               const std::string& extension) {
-  const std::vector<fs::path> files = list_files(folder, {extension.c_str()});
-  std::map<std::string, fs::path> by_stem;
-  for (const fs::path& file : files) by_stem[file.stem().string()] = file;
-  std::vector<fs::path> found;
-  bool any_equal = false;
-  for (const fs::path& color : colors) {
-    const auto partner = by_stem.find(color.stem().string());
-    any_equal |= partner != by_stem.end();
-    found.push_back(partner != by_stem.end() ? partner->second
-                                             : folder / (color.stem().string() + extension));
-  }
-  if (any_equal) return found;
-  if (files.size() == colors.size()) return files;
-  throw Error(
-      concat(folder.string(), " has ", files.size(), " ", extension, " files for ", colors.size(),
-             " colour images and no name in common; name them alike (color/12.jpg, depth/12.png)"));
 }
 
 /// With times a line belongs to the frame whose file name is that time; without, to the frame of
@@ -113,34 +65,10 @@ void assign_trajectory(const Trajectory& trajectory, double max_gap_s,
   assign_by_line(trajectory, numbers, frames);
 }
 
-void read_text_intrinsics(const fs::path& file, PinholeCamera& camera) {
-  const auto numbers = read_numbers(file);
-  const std::size_t count = numbers ? numbers->size() : 0;
-  if (count == 4) {
-    camera = {0,
-              0,
-              float((*numbers)[0]),
-              float((*numbers)[1]),
-              float((*numbers)[2]),
-              float((*numbers)[3])};
-  } else if (count == 9 || count == 16) {
-    const std::size_t row = count == 9 ? 3 : 4;
-    camera = {0,
-              0,
-              float((*numbers)[0]),
-              float((*numbers)[row + 1]),
-              float((*numbers)[2]),
-              float((*numbers)[row + 2])};
-  } else {
-    throw Error(concat(file.string(),
-                       " holds no intrinsics; accepted are 'fx fy cx cy' or a 3x3 or 4x4 matrix"));
-  }
-}
-
 void find_poses(const fs::path& folder, const FrameSourceConfig& config,
                 const std::vector<fs::path>& colors, std::vector<RecordedFrame>& frames) {
   if (const fs::path pose_folder = find_one(folder, kPoseFolders, true); !pose_folder.empty()) {
-    const std::vector<fs::path> files = partners(colors, pose_folder, ".txt");
+    const std::vector<fs::path> files = partner_files(colors, pose_folder, ".txt");
     for (std::size_t i = 0; i < frames.size(); ++i) frames[i].pose_file = files[i];
   } else if (const fs::path pose_file = find_one(folder, kPoseFiles, false); !pose_file.empty()) {
     assign_trajectory(read_trajectory(pose_file), config.max_time_gap_s, frames);
@@ -160,7 +88,7 @@ Recording list_frames(const fs::path& folder, const FrameSourceConfig& config) {
   const std::vector<fs::path> colors = list_files(color_folder, {".jpg", ".jpeg", ".png"});
   if (colors.empty()) throw Error(concat(color_folder.string(), " holds no .jpg or .png image"));
   const std::vector<fs::path> depths =
-      partners(colors, find_one(folder, kDepthFolders, true), ".png");
+      partner_files(colors, find_one(folder, kDepthFolders, true), ".png");
   for (std::size_t i = 0; i < colors.size(); ++i) {
     RecordedFrame frame;
     frame.name = colors[i].stem().string();

@@ -44,7 +44,7 @@ class FrameSource {
  public:
   virtual ~FrameSource() = default;
 
-  /// The layout: "replica", "7scenes", "tum", "folder".
+  /// The layout: "replica", "7scenes", "tum", "scannet", "sens", "folder".
   virtual std::string kind() const = 0;
   virtual std::int64_t size() const = 0;
 

@@ -9,7 +9,7 @@ namespace {
 
 /// Most particular layout first.
 const Reader* const kReaders[] = {&kReplicaReader, &kSevenScenesReader, &kTumReader,
-                                  &kFolderReader};
+                                  &kScanNetReader, &kSensReader,        &kFolderReader};
 
 const Reader& find_reader(const std::filesystem::path& folder) {
   for (const Reader* reader : kReaders)
@@ -28,15 +28,19 @@ std::unique_ptr<FrameSource> open_frame_source(const std::filesystem::path& path
   const auto status = std::filesystem::status(path, unreadable);
   if (!std::filesystem::exists(status))
     throw Error(concat(path.string(), " does not exist; give a folder of frames"));
-  if (!std::filesystem::is_directory(status))
-    throw Error(concat(path.string(), " is a file; give the folder that holds the frames"));
+  const bool is_folder = std::filesystem::is_directory(status);
+  if (!is_folder && !kSensReader.recognises(path))
+    throw Error(concat(path.string(),
+                       " is a file; give the folder that holds the frames, or a .sens file"));
+  const std::filesystem::path folder = is_folder ? path : path.parent_path();
   if (!(config.min_depth_m < config.max_depth_m))
     throw Error(concat("min_depth_m is ", config.min_depth_m, " and max_depth_m ",
                        config.max_depth_m, "; the first must be smaller"));
   try {
-    Recording recording = find_reader(path).list_frames(path, config);
+    const Reader& reader = is_folder ? find_reader(path) : kSensReader;
+    Recording recording = reader.list_frames(path, config);
     for (const char* name : {"camera.yaml", "calibration.yaml"})
-      if (std::filesystem::exists(path / name)) apply_calibration(path / name, recording.rig);
+      if (std::filesystem::exists(folder / name)) apply_calibration(folder / name, recording.rig);
     return open_recording(std::move(recording), config);
   } catch (const std::filesystem::filesystem_error& fault) {
     throw Error(concat(path.string(), " cannot be listed: ", fault.code().message()));

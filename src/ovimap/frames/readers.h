@@ -13,14 +13,17 @@ namespace ovimap {
 struct Reader {
   const char* kind;
   const char* looks_for;  ///< for the message when nothing fits
-  bool (*recognises)(const std::filesystem::path& folder);
+  /// Both take SOURCE: a folder or, for a layout of one file, that file.
+  bool (*recognises)(const std::filesystem::path& source);
   /// Throws Error when the layout's own description is broken.
-  Recording (*list_frames)(const std::filesystem::path& folder, const FrameSourceConfig& config);
+  Recording (*list_frames)(const std::filesystem::path& source, const FrameSourceConfig& config);
 };
 
 extern const Reader kReplicaReader;
 extern const Reader kSevenScenesReader;
 extern const Reader kTumReader;
+extern const Reader kScanNetReader;
+extern const Reader kSensReader;
 extern const Reader kFolderReader;
 
 }  // namespace ovimap

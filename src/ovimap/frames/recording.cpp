@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/frames/recording.h"
 
+#include <fstream>
+
+#include "ovimap/frames/depth_decoding.h"
 #include "ovimap/frames/number_text.h"
 #include "ovimap/frames/rig_completion.h"
 #include "ovimap/image/codec.h"
@@ -21,15 +24,33 @@ struct FrameFault {
   throw FrameFault{thing + ": " + phrase};
 }
 
-/// Runs `decode` on the file's bytes; whatever is wrong becomes a fault that names the file.
-template <class Decode>
-auto load(const std::filesystem::path& file, Decode&& decode) {
+/// What a fault calls the file of a frame.
+std::string label(const std::filesystem::path& file, const std::optional<FilePart>& part,
+                  const RecordedFrame& record) {
   const std::string name = file.filename().string();
+  return part ? concat(name, " frame ", record.name) : name;
+}
+
+Bytes read_part(const std::filesystem::path& file, const std::optional<FilePart>& part) {
+  if (!part) return read_file(file);
+  // A handle of its own for each read: sources are read from several threads.
+  std::ifstream stream(file, std::ios::binary);
+  Bytes bytes(part->size);
+  stream.seekg(static_cast<std::streamoff>(part->offset));
+  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  if (!stream) throw Error("cut off");
+  return bytes;
+}
+
+/// Runs `decode` on the bytes; whatever is wrong becomes a fault that begins with `name`.
+template <class Decode>
+auto load(const std::string& name, const std::filesystem::path& file,
+          const std::optional<FilePart>& part, Decode&& decode) {
   std::error_code unreadable;
   if (!std::filesystem::exists(file, unreadable)) fail(name, "is missing");
   Bytes bytes;
   try {
-    bytes = read_file(file);
+    bytes = read_part(file, part);
   } catch (const Error&) {
     fail(name, "cannot be read");
   }
@@ -41,11 +62,10 @@ auto load(const std::filesystem::path& file, Decode&& decode) {
 }
 
 template <class Pixel>
-void check_size(const std::filesystem::path& file, const Image<Pixel>& image,
-                const PinholeCamera& camera) {
+void check_size(const std::string& name, const Image<Pixel>& image, const PinholeCamera& camera) {
   if (image.width() != camera.width || image.height() != camera.height)
-    fail(file.filename().string(), concat("is ", image.width(), "x", image.height(), ", expected ",
-                                          camera.width, "x", camera.height));
+    fail(name, concat("is ", image.width(), "x", image.height(), ", expected ", camera.width, "x",
+                      camera.height));
 }
 
 class RecordingSource : public FrameSource {
@@ -94,6 +114,7 @@ class RecordingSource : public FrameSource {
   }
 
   Frame load_frame(const RecordedFrame& record, std::int64_t position) const {
+    if (!record.fault.empty()) throw FrameFault{record.fault};
     Frame frame;
     frame.index = position;
     frame.name = record.name;
@@ -102,9 +123,11 @@ class RecordingSource : public FrameSource {
     frame.depth_camera = recording_.rig.depth_camera;
     frame.color_from_depth = recording_.rig.color_from_depth;
     frame.world_from_camera = recording_.rig.world_from_depth_camera(stored_pose(record));
-    frame.depth = load_depth(record.depth);
-    frame.color = load(record.color, [](const Bytes& bytes) { return decode_rgb(bytes); });
-    check_size(record.color, frame.color, frame.color_camera);
+    frame.depth = load_depth(record);
+    const std::string name = label(record.color, record.color_part, record);
+    frame.color = load(name, record.color, record.color_part,
+                       [](const Bytes& bytes) { return decode_rgb(bytes); });
+    check_size(name, frame.color, frame.color_camera);
     return frame;
   }
 
@@ -113,7 +136,7 @@ class RecordingSource : public FrameSource {
     std::optional<Eigen::Matrix4d> pose = record.pose;
     if (!record.pose_file.empty()) {
       origin = record.pose_file.filename().string();
-      pose = load(record.pose_file, [](const Bytes& bytes) {
+      pose = load(origin, record.pose_file, {}, [](const Bytes& bytes) {
         const auto numbers =
             parse_numbers({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
         if (!numbers || numbers->size() != 16) throw Error("does not hold a 4x4 matrix");
@@ -127,15 +150,30 @@ class RecordingSource : public FrameSource {
     return *pose;
   }
 
-  DepthImage load_depth(const std::filesystem::path& file) const {
-    const GrayPng png = load(file, [](const Bytes& bytes) { return decode_gray(bytes); });
-    const std::string name = file.filename().string();
+  Image<std::uint16_t> load_depth_units(const RecordedFrame& record,
+                                        const std::string& name) const {
+    const PinholeCamera& camera = recording_.rig.depth_camera;
+    if (recording_.depth_encoding != DepthEncoding::kPng) {
+      const bool compressed = recording_.depth_encoding == DepthEncoding::kZlibUnits;
+      return load(name, record.depth, record.depth_part, [&](const Bytes& bytes) {
+        return compressed ? decode_zlib_depth(bytes, camera.width, camera.height)
+                          : decode_raw_depth(bytes, camera.width, camera.height);
+      });
+    }
+    GrayPng png = load(name, record.depth, record.depth_part,
+                       [](const Bytes& bytes) { return decode_gray(bytes); });
     if (png.bits != 16) fail(name, concat("depth has ", png.bits, " bits, expected 16"));
-    check_size(file, png.values, recording_.rig.depth_camera);
-    DepthImage depth(png.values.width(), png.values.height());
+    check_size(name, png.values, camera);
+    return std::move(png.values);
+  }
+
+  DepthImage load_depth(const RecordedFrame& record) const {
+    const std::string name = label(record.depth, record.depth_part, record);
+    const Image<std::uint16_t> units = load_depth_units(record, name);
+    DepthImage depth(units.width(), units.height());
     bool any_valid = false;
     for (std::size_t i = 0; i < depth.size(); ++i) {
-      depth[i] = depth_m_[png.values[i]];
+      depth[i] = depth_m_[units[i]];
       any_valid |= depth[i] > 0;
     }
     if (!any_valid)
@@ -150,6 +188,7 @@ class RecordingSource : public FrameSource {
 };
 
 std::string missing_part(const RecordedFrame& frame) {
+  if (!frame.fault.empty()) return frame.fault;
   std::error_code unreadable;
   const auto absent = [&](const std::filesystem::path& file) {
     return !std::filesystem::exists(file, unreadable);

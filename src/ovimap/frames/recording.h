@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -15,16 +16,30 @@
 
 namespace ovimap {
 
+/// Where an image lies in a file that holds many.
+struct FilePart {
+  std::uint64_t offset = 0, size = 0;  ///< bytes
+};
+
+/// How a recording stores depth.
+enum class DepthEncoding {
+  kPng,        ///< 16-bit grey PNG, CameraRig::depth_units_per_m
+  kZlibUnits,  ///< the same units as rows of little-endian 16-bit numbers, zlib-compressed
+  kRawUnits,   ///< the same uncompressed
+};
+
 /// The files of one frame. A path may name a file that does not exist: that is a fault of this
 /// frame.
 struct RecordedFrame {
   std::string name;  ///< stem of the colour image
   double timestamp_s = 0;
   std::filesystem::path color, depth;
+  std::optional<FilePart> color_part, depth_part;  ///< absent: the whole file
   std::filesystem::path pose_file;      ///< 4x4 text read with the frame; empty: `pose` holds it
   std::optional<Eigen::Matrix4d> pose;  ///< as stored, unchecked
   std::string pose_origin;              ///< "traj.txt line 7"; names the pose in a fault
   std::filesystem::path truth;          ///< true instance ids, 16-bit PNG; empty: none
+  std::string fault;                    ///< "FILE: PHRASE" when listing already found one
 };
 
 /// Where a layout gives no times, frames are taken to be this far apart; times only inform.
@@ -35,6 +50,7 @@ struct Recording {
   std::string kind;
   std::filesystem::path folder;
   CameraRig rig;
+  DepthEncoding depth_encoding = DepthEncoding::kPng;
   std::vector<RecordedFrame> frames;
 };
 
