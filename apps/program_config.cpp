@@ -68,7 +68,7 @@ std::shared_ptr<ImageTextEncoder> make_encoder(const MappingOptions& options,
   const std::string spec = options.encoder != "auto" ? options.encoder : masks ? "default" : "none";
   RuntimeConfig runtime = config.encoder;
   if (runtime.threads == 0) runtime.threads = options.threads;
-  return make_image_text_encoder(spec, runtime, options.model_dirs);
+  return make_image_text_encoder(spec, runtime, options.model_dirs, EncoderUse::kImages);
 }
 
 int embedding_queries(const SemanticRecord& semantics) {

@@ -27,7 +27,8 @@ int reembed_map(const ReembedOptions& options) {
   check_map_target(out);
   RuntimeConfig runtime;
   runtime.threads = options.threads;
-  const auto encoder = make_image_text_encoder(options.encoder, runtime, options.model_dirs);
+  const auto encoder =
+      make_image_text_encoder(options.encoder, runtime, options.model_dirs, EncoderUse::kImages);
   ReembedSummary summary;
   {
     Progress progress("embedding");

@@ -20,10 +20,9 @@ constexpr const char* kText = "text";
 constexpr const char* kEmbedding = "embedding";
 constexpr std::size_t kItemsAtOnce = 8;  // keeps a GPU busy; a CPU gains nothing from more
 
-DualEncoderSpec checked_spec(const ModelFolder& model) {
-  DualEncoderSpec spec = read_dual_encoder_spec(model);
-  verify_model_files(model);
-  return spec;
+/// The image network and the weights beside it; all other files belong to the text.
+bool is_image_file(const ModelFolder& model, const std::string& file) {
+  return file.starts_with(model.network(kImage).file);
 }
 
 /// SHA-256 over the lines "file digest" in the order of the files' names.
@@ -133,27 +132,45 @@ Embeddings in_batches(std::span<const Item> items, std::size_t at_once, int dime
 
 }  // namespace
 
-DualEncoder::DualEncoder(const ModelFolder& model, const RuntimeConfig& runtime)
+DualEncoder::DualEncoder(const ModelFolder& model, const RuntimeConfig& runtime, EncoderUse use)
     : model_(model),
-      spec_(checked_spec(model)),
+      spec_(read_dual_encoder_spec(model)),
       identity_{model.name, spec_.dimension, digest_of(model)},
-      tokenizer_(open_tokenizer(model, spec_.text)),
-      image_session_(open_network(model, kImage, runtime)),
-      text_session_(open_network(model, kText, runtime)),
-      images_at_once_(check_image_network(model, image_session_, spec_.dimension)),
-      texts_at_once_(check_text_network(model, text_session_, spec_)) {}
+      runtime_(runtime) {
+  if (use != EncoderUse::kTexts) images();
+  if (use != EncoderUse::kImages) texts();
+}
+
+DualEncoder::Network& DualEncoder::images() {
+  std::call_once(images_.opened, [this] {
+    verify_model_files(model_, [this](const auto& file) { return is_image_file(model_, file); });
+    images_.session = open_network(model_, kImage, runtime_);
+    images_.at_once = check_image_network(model_, *images_.session, spec_.dimension);
+  });
+  return images_;
+}
+
+DualEncoder::Network& DualEncoder::texts() {
+  std::call_once(texts_.opened, [this] {
+    verify_model_files(model_, [this](const auto& file) { return !is_image_file(model_, file); });
+    tokenizer_ = open_tokenizer(model_, spec_.text);
+    texts_.session = open_network(model_, kText, runtime_);
+    texts_.at_once = check_text_network(model_, *texts_.session, spec_);
+  });
+  return texts_;
+}
 
 Embeddings DualEncoder::encode_images(std::span<const RgbImage> images) {
-  return in_batches(images, images_at_once_, spec_.dimension,
+  return in_batches(images, this->images().at_once, spec_.dimension,
                     [this](auto items, auto rows) { run_images(items, rows); });
 }
 
 Embeddings DualEncoder::encode_texts(std::span<const std::string> texts) {
-  return in_batches(texts, texts_at_once_, spec_.dimension,
+  return in_batches(texts, this->texts().at_once, spec_.dimension,
                     [this](auto items, auto rows) { run_texts(items, rows); });
 }
 
-void DualEncoder::run_images(std::span<const RgbImage> images, std::span<float> rows) const {
+void DualEncoder::run_images(std::span<const RgbImage> images, std::span<float> rows) {
   const std::int64_t size = model_.input.size_px;
   const auto values = static_cast<std::size_t>(3 * size * size);
   std::vector<float> pixels(images.size() * values);
@@ -162,17 +179,17 @@ void DualEncoder::run_images(std::span<const RgbImage> images, std::span<float> 
   const TensorInput input = {model_.input_of(kImage, kImage),
                              {static_cast<std::int64_t>(images.size()), 3, size, size},
                              std::span<const float>(pixels)};
-  run(image_session_, kImage, {&input, 1}, rows);
+  run(*images_.session, kImage, {&input, 1}, rows);
 }
 
-void DualEncoder::run_texts(std::span<const std::string> texts, std::span<float> rows) const {
+void DualEncoder::run_texts(std::span<const std::string> texts, std::span<float> rows) {
   const IdBatch batch = make_id_batch(texts, spec_.text, *tokenizer_);
   std::vector<TensorInput> inputs;
   for (const auto& [role, name] : model_.network(kText).inputs) {
     const auto& values = role == "ids" ? batch.ids : role == "mask" ? batch.mask : batch.types;
     inputs.push_back({name, batch.shape, std::span<const std::int64_t>(values)});
   }
-  run(text_session_, kText, inputs, rows);
+  run(*texts_.session, kText, inputs, rows);
 }
 
 void DualEncoder::run(const OnnxSession& session, const std::string& network,

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,9 +21,11 @@ namespace ovimap {
 /// of kind dual_encoder.
 class DualEncoder : public ImageTextEncoder {
  public:
+  /// Opens what `use` needs; the rest when it is first asked for, which then throws likewise.
   /// Throws Error when the folder is of another kind, a file is missing or altered, or a network's
   /// tensors are not what model.yaml says.
-  DualEncoder(const ModelFolder& model, const RuntimeConfig& runtime);
+  DualEncoder(const ModelFolder& model, const RuntimeConfig& runtime,
+              EncoderUse use = EncoderUse::kBoth);
 
   const EncoderIdentity& identity() const override { return identity_; }
   std::optional<MatchCalibration> calibration() const override { return spec_.calibration; }
@@ -30,17 +34,26 @@ class DualEncoder : public ImageTextEncoder {
   Embeddings encode_texts(std::span<const std::string> texts) override;
 
  private:
-  void run_images(std::span<const RgbImage> images, std::span<float> rows) const;
-  void run_texts(std::span<const std::string> texts, std::span<float> rows) const;
+  /// A network, opened once.
+  struct Network {
+    std::once_flag opened;
+    std::optional<OnnxSession> session;
+    std::size_t at_once = 1;  ///< items in one run
+  };
+  Network& images();
+  Network& texts();
+
+  void run_images(std::span<const RgbImage> images, std::span<float> rows);
+  void run_texts(std::span<const std::string> texts, std::span<float> rows);
   void run(const OnnxSession& session, const std::string& network,
            std::span<const TensorInput> inputs, std::span<float> rows) const;
 
   ModelFolder model_;
   DualEncoderSpec spec_;
   EncoderIdentity identity_;
-  std::unique_ptr<Tokenizer> tokenizer_;
-  OnnxSession image_session_, text_session_;
-  std::size_t images_at_once_ = 1, texts_at_once_ = 1;
+  RuntimeConfig runtime_;
+  std::unique_ptr<Tokenizer> tokenizer_;  // with the text network
+  Network images_, texts_;
 };
 
 }  // namespace ovimap

@@ -55,11 +55,14 @@ class ImageTextEncoder {
 /// The name of the model that `default` stands for; tools/setup.sh puts it on the search path.
 inline constexpr const char* kDefaultEncoder = "default-encoder";
 
+/// What an encoder is wanted for. Its other half is opened when it is needed after all.
+enum class EncoderUse { kImages, kTexts, kBoth };
+
 /// The encoder that `spec` names: "none" (nullptr), "default", a model folder of kind dual_encoder,
-/// or the name of one on the search path. Throws Error when there is no such thing or it does not
-/// load.
+/// or the name of one on the search path. Throws Error when there is no such thing or what `use`
+/// needs of it does not load.
 std::unique_ptr<ImageTextEncoder> make_image_text_encoder(
     const std::string& spec, const RuntimeConfig& runtime,
-    const std::vector<std::filesystem::path>& model_dirs = {});
+    const std::vector<std::filesystem::path>& model_dirs = {}, EncoderUse use = EncoderUse::kBoth);
 
 }  // namespace ovimap

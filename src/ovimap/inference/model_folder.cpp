@@ -149,7 +149,13 @@ ModelFolder read_model_folder(const fs::path& folder) {
 }
 
 void verify_model_files(const ModelFolder& model) {
+  verify_model_files(model, [](const std::string&) { return true; });
+}
+
+void verify_model_files(const ModelFolder& model,
+                        const std::function<bool(const std::string& file)>& wanted) {
   for (const auto& [name, expected] : model.sha256) {
+    if (!wanted(name)) continue;
     const fs::path file = model.folder / name;
     if (!fs::is_regular_file(file))
       throw Error(concat("model file ", file.string(), " does not exist; fetch the model again"));

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -59,6 +60,9 @@ ModelFolder read_model_folder(const std::filesystem::path& folder);
 /// Checks that every file the model names exists and has the SHA-256 digest model.yaml gives.
 /// Throws Error naming the first file that does not, with both digests.
 void verify_model_files(const ModelFolder& model);
+/// The same for those of its files whose name `wanted` accepts.
+void verify_model_files(const ModelFolder& model,
+                        const std::function<bool(const std::string& file)>& wanted);
 
 /// Where models are looked for, in this order: `model_dirs`, the folders of $OVIMAP_MODELS
 /// (separated by colons), `.models` in the working folder and in each folder above the program, and

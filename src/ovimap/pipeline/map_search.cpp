@@ -61,7 +61,7 @@ std::unique_ptr<ImageTextEncoder> encoder_of_map(
     const MapInfo& map, const std::string& spec, const RuntimeConfig& runtime,
     const std::vector<std::filesystem::path>& model_dirs) {
   auto encoder = make_image_text_encoder(spec == "auto" ? model_named_by(map, model_dirs) : spec,
-                                         runtime, model_dirs);
+                                         runtime, model_dirs, EncoderUse::kTexts);
   if (!encoder || map.encoder.name.empty() || encoder->identity() == map.encoder) return encoder;
   throw Error(concat(
       "the map's embeddings are of encoder '", map.encoder.name, "' (", map.encoder.dimension,
