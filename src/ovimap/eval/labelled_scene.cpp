@@ -2,10 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/eval/labelled_scene.h"
 
+#include <limits>
+
 #include "ovimap/base/config.h"
 #include "ovimap/eval/nearest.h"
+#include "ovimap/eval/overlap.h"
 
 namespace ovimap {
+
+double confidence_of(const LabelledScene& scene, const InstanceSize& instance) {
+  if (scene.confidence.empty()) return static_cast<double>(instance.vertices);
+  const auto found = scene.confidence.find(static_cast<std::uint32_t>(instance.id));
+  return found == scene.confidence.end() ? std::numeric_limits<double>::lowest()
+                                         : double{found->second};
+}
 
 void list_fields(TransferConfig& config, ConfigFields& fields) {
   fields.add("radius_m", config.radius_m, 0.001f, 1.f,

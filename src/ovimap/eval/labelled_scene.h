@@ -22,6 +22,12 @@ struct LabelledScene {
   std::map<std::uint32_t, float> confidence;
 };
 
+struct InstanceSize;
+
+/// How a predicted instance ranks among others: its confidence, or its size where the scene has no
+/// confidences.
+double confidence_of(const LabelledScene& scene, const InstanceSize& instance);
+
 struct TransferConfig {
   float radius_m = 0.05f;  ///< a truth vertex with no predicted vertex this near stays unlabelled
 };

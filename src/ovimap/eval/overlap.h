@@ -23,6 +23,8 @@ struct InstanceOverlap {
   double iou() const { return static_cast<double>(shared) / static_cast<double>(united); }
   /// Whether the IoU is at least that, in exact arithmetic: 19 of 20 does reach 95 percent.
   bool reaches(int percent) const { return shared * 100 >= percent * united; }
+  /// Whether it is more than that.
+  bool exceeds(int percent) const { return shared * 100 > percent * united; }
 };
 
 /// The table of all instances of two labellings and their overlaps.

@@ -3,83 +3,20 @@
 #include "ovimap/eval/standard_scores.h"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <vector>
 
-#include "ovimap/eval/overlap.h"
+#include "ovimap/eval/average_precision.h"
 
 namespace ovimap {
 
 namespace {
 
-struct RankedPrediction {
-  float confidence = 0;
-  std::size_t scene = 0, position = 0;  // in the scene's InstanceOverlaps::predicted
-};
-
-struct PrecisionRecall {
-  double average_precision = 0, recall = 0;
-};
-
-enum class Verdict { kRight, kWrong, kIgnored };
-
-float confidence_of(const LabelledScene& scene, const InstanceSize& instance) {
-  if (scene.confidence.empty()) return static_cast<float>(instance.vertices);
-  const auto found = scene.confidence.find(static_cast<std::uint32_t>(instance.id));
-  return found == scene.confidence.end() ? std::numeric_limits<float>::lowest() : found->second;
-}
-
-std::vector<RankedPrediction> rank_predictions(std::span<const LabelledScene> scenes,
-                                               const std::vector<InstanceOverlaps>& tables) {
-  std::vector<RankedPrediction> ranked;
-  for (std::size_t s = 0; s < scenes.size(); ++s)
-    for (std::size_t p = 0; p < tables[s].predicted.size(); ++p)
-      ranked.push_back({confidence_of(scenes[s], tables[s].predicted[p]), s, p});
-  // Stable: ties stay in the order of scenes and ids.
-  std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const auto& a, const auto& b) { return a.confidence > b.confidence; });
-  return ranked;
-}
-
-/// Matches one prediction at an IoU threshold and marks the truth instance it takes.
-Verdict match(const InstanceOverlaps& table, std::size_t predicted, int percent,
-              std::vector<bool>& taken) {
-  const InstanceOverlap* best = nullptr;
-  bool reached = false;
-  for (const InstanceOverlap& overlap : table.of_predicted(predicted)) {
-    if (!overlap.reaches(percent)) continue;
-    reached = true;
-    if (!taken[overlap.truth] && (!best || overlap.iou() > best->iou())) best = &overlap;
-  }
-  if (best) {
-    taken[best->truth] = true;
-    return Verdict::kRight;
-  }
-  const bool unknown =
-      table.unlabelled[predicted] * 100 > percent * table.predicted[predicted].vertices;
-  return !reached && unknown ? Verdict::kIgnored : Verdict::kWrong;
-}
-
-PrecisionRecall precision_recall(const std::vector<InstanceOverlaps>& tables,
-                                 const std::vector<RankedPrediction>& ranked, int truth_instances,
-                                 int percent) {
-  if (truth_instances == 0) return {};
-  std::vector<std::vector<bool>> taken;
-  for (const InstanceOverlaps& table : tables) taken.emplace_back(table.truth.size(), false);
-  std::vector<double> precision;  // at each right prediction
-  int counted = 0;
-  for (const RankedPrediction& prediction : ranked) {
-    const Verdict verdict =
-        match(tables[prediction.scene], prediction.position, percent, taken[prediction.scene]);
-    if (verdict != Verdict::kIgnored) ++counted;
-    if (verdict == Verdict::kRight)
-      precision.push_back(static_cast<double>(precision.size() + 1) / counted);
-  }
-  for (std::size_t i = precision.size(); i-- > 1;)
-    precision[i - 1] = std::max(precision[i - 1], precision[i]);
-  return {std::accumulate(precision.begin(), precision.end(), 0.0) / truth_instances,
-          static_cast<double>(precision.size()) / truth_instances};
+ScoredOverlaps scored(const LabelledScene& scene) {
+  ScoredOverlaps result{count_overlaps(scene.truth, scene.predicted, Background::kNotPositive), {}};
+  for (const InstanceSize& instance : result.table.predicted)
+    result.confidence.push_back(confidence_of(scene, instance));
+  return result;
 }
 
 double sum_of_best_ious(const InstanceOverlaps& table) {
@@ -93,20 +30,17 @@ double sum_of_best_ious(const InstanceOverlaps& table) {
 
 StandardScores standard_scores(std::span<const LabelledScene> scenes) {
   StandardScores scores;
-  std::vector<InstanceOverlaps> tables;
+  std::vector<ScoredOverlaps> tables;
   double iou_sum = 0;
   for (const LabelledScene& scene : scenes) {
-    tables.push_back(count_overlaps(scene.truth, scene.predicted, Background::kNotPositive));
-    scores.truth_instances += static_cast<int>(tables.back().truth.size());
-    scores.predicted_instances += static_cast<int>(tables.back().predicted.size());
-    iou_sum += sum_of_best_ious(tables.back());
+    tables.push_back(scored(scene));
+    scores.truth_instances += static_cast<int>(tables.back().table.truth.size());
+    scores.predicted_instances += static_cast<int>(tables.back().table.predicted.size());
+    iou_sum += sum_of_best_ious(tables.back().table);
   }
   if (scores.truth_instances == 0) return scores;
   scores.miou = iou_sum / scores.truth_instances;
-  const std::vector<RankedPrediction> ranked = rank_predictions(scenes, tables);
-  const auto at = [&](int percent) {
-    return precision_recall(tables, ranked, scores.truth_instances, percent);
-  };
+  const auto at = [&](int percent) { return ranked_precision(tables, percent); };
   const PrecisionRecall at25 = at(25), at50 = at(50), at75 = at(75);
   scores.ap25 = at25.average_precision, scores.recall25 = at25.recall;
   scores.ap50 = at50.average_precision, scores.recall50 = at50.recall;
