@@ -44,7 +44,8 @@ class FrameSource {
  public:
   virtual ~FrameSource() = default;
 
-  /// The layout: "replica", "7scenes", "tum", "scannet", "sens", "folder".
+  /// The layout: "replica", "7scenes", "icl-nuim", "tum", "scannet", "sens", "redwood",
+  /// "folder".
   virtual std::string kind() const = 0;
   virtual std::int64_t size() const = 0;
 

@@ -8,8 +8,9 @@ namespace ovimap {
 namespace {
 
 /// Most particular layout first.
-const Reader* const kReaders[] = {&kReplicaReader, &kSevenScenesReader, &kTumReader,
-                                  &kScanNetReader, &kSensReader,        &kFolderReader};
+const Reader* const kReaders[] = {&kReplicaReader, &kSevenScenesReader, &kIclNuimReader,
+                                  &kTumReader,     &kScanNetReader,     &kSensReader,
+                                  &kRedwoodReader, &kFolderReader};
 
 const Reader& find_reader(const std::filesystem::path& folder) {
   for (const Reader* reader : kReaders)

@@ -22,8 +22,10 @@ struct Reader {
 extern const Reader kReplicaReader;
 extern const Reader kSevenScenesReader;
 extern const Reader kTumReader;
+extern const Reader kIclNuimReader;
 extern const Reader kScanNetReader;
 extern const Reader kSensReader;
+extern const Reader kRedwoodReader;
 extern const Reader kFolderReader;
 
 }  // namespace ovimap
