@@ -41,7 +41,8 @@ ClassedMap classify(const ExportOptions& options) {
   RuntimeConfig runtime;
   runtime.threads = options.threads;
   const MapSearch search = open_map_search(options.map);
-  const auto encoder = encoder_of_map(search.info, options.encoder, runtime, options.model_dirs);
+  const auto encoder =
+      encoder_of_map(search.info.encoder, options.encoder, runtime, options.model_dirs);
   const auto guesses = project_classes(search.index, *encoder, result.set, kBestOnly);
   for (std::size_t i = 0; i < guesses.size(); ++i)
     if (!guesses[i].empty()) result.guesses[search.index.object(i).id] = guesses[i].front();

@@ -161,7 +161,8 @@ int query(const QueryOptions& options) {
   RuntimeConfig runtime;
   runtime.threads = options.threads;
   const auto encoder =
-      words ? encoder_of_map(search.info, options.encoder, runtime, options.model_dirs) : nullptr;
+      words ? encoder_of_map(search.info.encoder, options.encoder, runtime, options.model_dirs)
+            : nullptr;
   const QueryEngine engine(search.index, encoder.get(), config, {}, search.scene);
 
   bool found = false;

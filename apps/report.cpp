@@ -5,10 +5,10 @@
 #include "command.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/image/codec.h"
-#include "ovimap/inference/model_folder.h"
 #include "ovimap/io/map_file.h"
 #include "ovimap/pipeline/map_pictures.h"
 #include "ovimap/pipeline/map_report.h"
+#include "ovimap/pipeline/map_search.h"
 
 namespace ovimap::apps {
 
@@ -26,38 +26,20 @@ struct ReportOptions {
   bool json = false;
 };
 
-/// The folder of the encoder that the map was made with, where it is on the search path.
-std::optional<std::filesystem::path> find_encoder(const EncoderIdentity& identity,
-                                                  const ReportOptions& options) {
-  for (const ModelListing& model : list_models(model_search_path(options.model_dirs)))
-    if (model.kind == "dual_encoder" && model.fault.empty() &&
-        read_model_folder(model.folder).name == identity.name)
-      return model.folder;
-  return std::nullopt;
-}
-
 /// Guesses names, or writes down why that cannot be. What the user asked for by name must work;
 /// what was only tried must not spoil the report.
 void add_names(const MapDocument& document, const LabelSet& classes, const ReportOptions& options,
                MapReport& report) {
   if (options.encoder == "none" || !has_embeddings(document)) return;
-  const EncoderIdentity& identity = document.semantics.encoder;
   RuntimeConfig runtime;
   runtime.threads = options.threads;
-  const bool is_auto = options.encoder == "auto";
   try {
-    const auto found = is_auto ? find_encoder(identity, options) : std::nullopt;
-    if (is_auto && !found) {
-      report.why_no_names = concat("the map's encoder, ", identity.name,
-                                   ", was not at hand when this report was written.");
-      return;
-    }
-    const auto encoder = make_image_text_encoder(is_auto ? found->string() : options.encoder,
-                                                 runtime, options.model_dirs);
+    const auto encoder =
+        encoder_of_map(document.semantics.encoder, options.encoder, runtime, options.model_dirs);
     report.names = {classes.name, guess_names(document, *encoder, classes,
                                               static_cast<std::size_t>(options.names))};
   } catch (const Error& error) {
-    if (!is_auto) throw;
+    if (options.encoder != "auto") throw;
     report.why_no_names = concat(error.what(), ".");
   }
 }

@@ -38,10 +38,10 @@ QueryScene scene_of(const SearchableMap& map, const SearchIndex& index,
 }
 
 /// The folder of the model that the map names; "default" when no model on the search path is it.
-std::string model_named_by(const MapInfo& map,
+std::string model_named_by(const EncoderIdentity& wanted,
                            const std::vector<std::filesystem::path>& model_dirs) {
   for (const ModelListing& model : list_models(model_search_path(model_dirs)))
-    if (model.kind == "dual_encoder" && read_model_folder(model.folder).name == map.encoder.name)
+    if (model.kind == "dual_encoder" && read_model_folder(model.folder).name == wanted.name)
       return model.folder.string();
   return "default";
 }
@@ -58,15 +58,15 @@ MapSearch open_map_search(const std::filesystem::path& map, const ObjectShapeCon
 }
 
 std::unique_ptr<ImageTextEncoder> encoder_of_map(
-    const MapInfo& map, const std::string& spec, const RuntimeConfig& runtime,
+    const EncoderIdentity& of_map, const std::string& spec, const RuntimeConfig& runtime,
     const std::vector<std::filesystem::path>& model_dirs) {
-  auto encoder = make_image_text_encoder(spec == "auto" ? model_named_by(map, model_dirs) : spec,
+  auto encoder = make_image_text_encoder(spec == "auto" ? model_named_by(of_map, model_dirs) : spec,
                                          runtime, model_dirs, EncoderUse::kTexts);
-  if (!encoder || map.encoder.name.empty() || encoder->identity() == map.encoder) return encoder;
-  throw Error(concat(
-      "the map's embeddings are of encoder '", map.encoder.name, "' (", map.encoder.dimension,
-      " numbers), not of '", encoder->identity().name, "' (", encoder->identity().dimension,
-      " numbers, other files); name that one with --encoder, or run `ovimap reembed`"));
+  if (!encoder || of_map.name.empty() || encoder->identity() == of_map) return encoder;
+  throw Error(
+      concat("the map's embeddings are of encoder '", of_map.name, "' (", of_map.dimension,
+             " numbers), not of '", encoder->identity().name, "' (", encoder->identity().dimension,
+             " numbers, other files); name that one with --encoder, or run `ovimap reembed`"));
 }
 
 void color_by_relevance(Mesh& mesh, const SearchIndex& index, const Eigen::VectorXf& relevance) {

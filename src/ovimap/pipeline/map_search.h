@@ -27,7 +27,7 @@ MapSearch open_map_search(const std::filesystem::path& map, const ObjectShapeCon
 /// the search path that the map's embeddings are of. Throws Error when there is none, or when its
 /// embeddings cannot be compared with the map's.
 std::unique_ptr<ImageTextEncoder> encoder_of_map(
-    const MapInfo& map, const std::string& spec, const RuntimeConfig& runtime,
+    const EncoderIdentity& of_map, const std::string& spec, const RuntimeConfig& runtime,
     const std::vector<std::filesystem::path>& model_dirs = {});
 
 /// Colours a mesh labelled with instance ids by the relevance [objects] of an answer; what is no

@@ -50,7 +50,7 @@ TEST_F(MapSearchTest, RefusesMissingMaps) {
 
 TEST_F(MapSearchTest, WithoutEncoderThereIsNothingToCompare) {
   const MapSearch search = open_map_search(root_ / "a.ovimap");
-  EXPECT_EQ(encoder_of_map(search.info, "none", {}), nullptr);
+  EXPECT_EQ(encoder_of_map(search.info.encoder, "none", {}), nullptr);
 }
 
 TEST_F(MapSearchTest, RefusesAnotherEncoder) {
@@ -60,7 +60,7 @@ TEST_F(MapSearchTest, RefusesAnotherEncoder) {
   if (model == models.end()) GTEST_SKIP() << "no encoder; run tools/setup.sh";
   const MapSearch search = open_map_search(root_ / "a.ovimap");
   const std::string fault =
-      fault_of([&] { encoder_of_map(search.info, model->folder.string(), {}); });
+      fault_of([&] { encoder_of_map(search.info.encoder, model->folder.string(), {}); });
   EXPECT_NE(fault.find("colours"), std::string::npos) << fault;
   EXPECT_NE(fault.find("reembed"), std::string::npos) << fault;
 }
