@@ -8,6 +8,7 @@
 #include <zlib.h>
 
 #include "ovimap/base/error.h"
+#include "ovimap/frames/lzfse.h"
 
 namespace ovimap {
 
@@ -23,19 +24,45 @@ Image<std::uint16_t> decode_zlib_depth(std::span<const std::uint8_t> bytes, int 
     throw Error(concat("holds more depth than ", width, "x", height));
   if (status != Z_OK) throw Error("is broken zlib data");
   if (decoded != expected)
-    throw Error(concat("holds ", decoded, " bytes of depth, expected ", expected, " for ", width,
-                       "x", height));
+    throw Error(
+        concat("holds ", decoded, " bytes, expected ", expected, " for ", width, "x", height));
   return units;
 }
 
-Image<std::uint16_t> decode_raw_depth(std::span<const std::uint8_t> bytes, int width, int height) {
-  Image<std::uint16_t> units(width, height);
-  const std::size_t expected = units.size() * sizeof(std::uint16_t);
+namespace {
+
+/// An image of pixels as they lie in memory.
+template <class Pixel>
+Image<Pixel> image_of(std::span<const std::uint8_t> bytes, int width, int height) {
+  Image<Pixel> image(width, height);
+  const std::size_t expected = image.size() * sizeof(Pixel);
   if (bytes.size() != expected)
-    throw Error(concat("holds ", bytes.size(), " bytes of depth, expected ", expected, " for ",
-                       width, "x", height));
-  if (expected > 0) std::memcpy(units.data(), bytes.data(), expected);
-  return units;
+    throw Error(
+        concat("holds ", bytes.size(), " bytes, expected ", expected, " for ", width, "x", height));
+  if (expected > 0) std::memcpy(image.data(), bytes.data(), expected);
+  return image;
+}
+
+template <class Pixel>
+Image<Pixel> unpacked_image(std::span<const std::uint8_t> bytes, int width, int height) {
+  const std::size_t expected =
+      static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * sizeof(Pixel);
+  if (bytes.size() == expected || !is_lzfse(bytes)) return image_of<Pixel>(bytes, width, height);
+  return image_of<Pixel>(decode_lzfse(bytes, expected), width, height);
+}
+
+}  // namespace
+
+Image<std::uint16_t> decode_raw_depth(std::span<const std::uint8_t> bytes, int width, int height) {
+  return image_of<std::uint16_t>(bytes, width, height);
+}
+
+DepthImage decode_float_depth(std::span<const std::uint8_t> bytes, int width, int height) {
+  return unpacked_image<float>(bytes, width, height);
+}
+
+Image<std::uint8_t> decode_bytes(std::span<const std::uint8_t> bytes, int width, int height) {
+  return unpacked_image<std::uint8_t>(bytes, width, height);
 }
 
 }  // namespace ovimap

@@ -16,4 +16,10 @@ Image<std::uint16_t> decode_zlib_depth(std::span<const std::uint8_t> bytes, int 
 /// The same, uncompressed.
 Image<std::uint16_t> decode_raw_depth(std::span<const std::uint8_t> bytes, int width, int height);
 
+/// Rows of little-endian 32-bit numbers, LZFSE-compressed or plain.
+DepthImage decode_float_depth(std::span<const std::uint8_t> bytes, int width, int height);
+
+/// Rows of bytes, LZFSE-compressed or plain.
+Image<std::uint8_t> decode_bytes(std::span<const std::uint8_t> bytes, int width, int height);
+
 }  // namespace ovimap

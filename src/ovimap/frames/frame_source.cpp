@@ -28,6 +28,8 @@ void list_fields(FrameSourceConfig& config, ConfigFields& fields) {
   fields.add("max_depth_m", config.max_depth_m, 0.f, 1e6f, "farther depth is invalid, metres");
   fields.add("max_time_gap_s", config.max_time_gap_s, 0.f, 10.f,
              "colour, depth and pose farther apart in time do not belong together, seconds");
+  fields.add("min_confidence", config.min_confidence, 0, 2,
+             "depth of a lower confidence is invalid (Record3D: 0 low, 1 medium, 2 high)");
 }
 
 FrameRange parse_frame_range(const std::string& text) {

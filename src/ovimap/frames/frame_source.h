@@ -20,6 +20,7 @@ struct FrameSourceConfig {
   float min_depth_m = 0.1f;      ///< nearer depth is invalid
   float max_depth_m = 10.f;      ///< farther depth is invalid
   float max_time_gap_s = 0.02f;  ///< colour, depth and pose farther apart do not belong together
+  int min_confidence = 1;        ///< depth of less is invalid (Record3D: 0 low, 1 medium, 2 high)
 };
 void list_fields(FrameSourceConfig& config, ConfigFields& fields);
 
@@ -45,7 +46,7 @@ class FrameSource {
   virtual ~FrameSource() = default;
 
   /// The layout: "replica", "7scenes", "icl-nuim", "tum", "scannet", "sens", "redwood",
-  /// "folder".
+  /// "record3d", "folder".
   virtual std::string kind() const = 0;
   virtual std::int64_t size() const = 0;
 

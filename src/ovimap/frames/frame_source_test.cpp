@@ -41,7 +41,7 @@ TEST(FrameSourceConfig, ListsItsFields) {
   list_fields(config, fields);
   fields.set("max_depth_m", "4.5");
   EXPECT_FLOAT_EQ(config.max_depth_m, 4.5f);
-  EXPECT_EQ(fields.fields().size(), 3u);
+  EXPECT_EQ(fields.fields().size(), 4u);
   EXPECT_THROW(fields.set("min_depth_m", "-1"), Error);
 }
 

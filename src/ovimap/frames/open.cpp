@@ -10,7 +10,7 @@ namespace {
 /// Most particular layout first.
 const Reader* const kReaders[] = {&kReplicaReader, &kSevenScenesReader, &kIclNuimReader,
                                   &kTumReader,     &kScanNetReader,     &kSensReader,
-                                  &kRedwoodReader, &kFolderReader};
+                                  &kRedwoodReader, &kRecord3dReader,    &kFolderReader};
 
 const Reader& find_reader(const std::filesystem::path& folder) {
   for (const Reader* reader : kReaders)
@@ -19,6 +19,15 @@ const Reader& find_reader(const std::filesystem::path& folder) {
   for (const Reader* reader : kReaders)
     looked_for += concat(looked_for.empty() ? "" : "; ", reader->looks_for);
   throw Error(concat(folder.string(), " holds no known layout; looked for: ", looked_for));
+}
+
+/// Cameras that the user gives go before those that a recording has for each frame.
+void override_cameras(const std::filesystem::path& folder, Recording& recording) {
+  const PinholeCamera color = recording.rig.color_camera, depth = recording.rig.depth_camera;
+  for (const char* name : {"camera.yaml", "calibration.yaml"})
+    if (std::filesystem::exists(folder / name)) apply_calibration(folder / name, recording.rig);
+  if (color == recording.rig.color_camera && depth == recording.rig.depth_camera) return;
+  for (RecordedFrame& frame : recording.frames) frame.camera.reset();
 }
 
 }  // namespace
@@ -30,6 +39,8 @@ std::unique_ptr<FrameSource> open_frame_source(const std::filesystem::path& path
   if (!std::filesystem::exists(status))
     throw Error(concat(path.string(), " does not exist; give a folder of frames"));
   const bool is_folder = std::filesystem::is_directory(status);
+  if (path.extension() == ".r3d" && !is_folder)
+    throw Error(concat(path.string(), " is a zip file; unzip it, and give the folder"));
   if (!is_folder && !kSensReader.recognises(path))
     throw Error(concat(path.string(),
                        " is a file; give the folder that holds the frames, or a .sens file"));
@@ -40,8 +51,7 @@ std::unique_ptr<FrameSource> open_frame_source(const std::filesystem::path& path
   try {
     const Reader& reader = is_folder ? find_reader(path) : kSensReader;
     Recording recording = reader.list_frames(path, config);
-    for (const char* name : {"camera.yaml", "calibration.yaml"})
-      if (std::filesystem::exists(folder / name)) apply_calibration(folder / name, recording.rig);
+    override_cameras(folder, recording);
     return open_recording(std::move(recording), config);
   } catch (const std::filesystem::filesystem_error& fault) {
     throw Error(concat(path.string(), " cannot be listed: ", fault.code().message()));

@@ -26,6 +26,7 @@ extern const Reader kIclNuimReader;
 extern const Reader kScanNetReader;
 extern const Reader kSensReader;
 extern const Reader kRedwoodReader;
+extern const Reader kRecord3dReader;
 extern const Reader kFolderReader;
 
 }  // namespace ovimap

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/frames/recording.h"
 
+#include <algorithm>
 #include <fstream>
 
 #include "ovimap/frames/depth_decoding.h"
@@ -122,6 +123,11 @@ class RecordingSource : public FrameSource {
     frame.color_camera = recording_.rig.color_camera;
     frame.depth_camera = recording_.rig.depth_camera;
     frame.color_from_depth = recording_.rig.color_from_depth;
+    if (record.camera) {
+      frame.color_camera = *record.camera;
+      frame.depth_camera =
+          record.camera->scaled_to(frame.depth_camera.width, frame.depth_camera.height);
+    }
     frame.world_from_camera = recording_.rig.world_from_depth_camera(stored_pose(record));
     frame.depth = load_depth(record);
     const std::string name = label(record.color, record.color_part, record);
@@ -167,16 +173,36 @@ class RecordingSource : public FrameSource {
     return std::move(png.values);
   }
 
-  DepthImage load_depth(const RecordedFrame& record) const {
-    const std::string name = label(record.depth, record.depth_part, record);
+  DepthImage depth_of_units(const RecordedFrame& record, const std::string& name) const {
     const Image<std::uint16_t> units = load_depth_units(record, name);
     DepthImage depth(units.width(), units.height());
-    bool any_valid = false;
-    for (std::size_t i = 0; i < depth.size(); ++i) {
-      depth[i] = depth_m_[units[i]];
-      any_valid |= depth[i] > 0;
-    }
-    if (!any_valid)
+    for (std::size_t i = 0; i < depth.size(); ++i) depth[i] = depth_m_[units[i]];
+    return depth;
+  }
+
+  DepthImage depth_of_metres(const RecordedFrame& record, const std::string& name) const {
+    const PinholeCamera& camera = recording_.rig.depth_camera;
+    DepthImage depth = load(name, record.depth, record.depth_part, [&](const Bytes& bytes) {
+      return decode_float_depth(bytes, camera.width, camera.height);
+    });
+    // Written so that what is not a number is invalid as well.
+    for (float& metres : depth)
+      if (!(metres >= config_.min_depth_m && metres <= config_.max_depth_m)) metres = 0;
+    if (record.confidence.empty()) return depth;
+    const auto confidence =
+        load(record.confidence.filename().string(), record.confidence, {},
+             [&](const Bytes& bytes) { return decode_bytes(bytes, camera.width, camera.height); });
+    for (std::size_t i = 0; i < depth.size(); ++i)
+      if (confidence[i] < config_.min_confidence) depth[i] = 0;
+    return depth;
+  }
+
+  DepthImage load_depth(const RecordedFrame& record) const {
+    const std::string name = label(record.depth, record.depth_part, record);
+    DepthImage depth = recording_.depth_encoding == DepthEncoding::kMetres
+                           ? depth_of_metres(record, name)
+                           : depth_of_units(record, name);
+    if (std::none_of(depth.begin(), depth.end(), [](float metres) { return metres > 0; }))
       fail(name,
            concat("has no depth from ", config_.min_depth_m, " to ", config_.max_depth_m, " m"));
     return depth;

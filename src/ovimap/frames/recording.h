@@ -26,6 +26,7 @@ enum class DepthEncoding {
   kPng,        ///< 16-bit grey PNG, CameraRig::depth_units_per_m
   kZlibUnits,  ///< the same units as rows of little-endian 16-bit numbers, zlib-compressed
   kRawUnits,   ///< the same uncompressed
+  kMetres,     ///< rows of little-endian 32-bit metres, LZFSE-compressed or plain
 };
 
 /// The files of one frame. A path may name a file that does not exist: that is a fault of this
@@ -35,6 +36,9 @@ struct RecordedFrame {
   double timestamp_s = 0;
   std::filesystem::path color, depth;
   std::optional<FilePart> color_part, depth_part;  ///< absent: the whole file
+  std::filesystem::path confidence;     ///< a byte per depth pixel, LZFSE or plain; empty: none
+  std::optional<PinholeCamera> camera;  ///< the colour camera's own of this frame (it focuses);
+                                        ///< depth is registered to it
   std::filesystem::path pose_file;      ///< 4x4 text read with the frame; empty: `pose` holds it
   std::optional<Eigen::Matrix4d> pose;  ///< as stored, unchecked
   std::string pose_origin;              ///< "traj.txt line 7"; names the pose in a fault
