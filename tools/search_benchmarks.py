@@ -16,6 +16,11 @@ import tempfile
 DATA = pathlib.Path(__file__).parent / "data"
 EVERYTHING = 1000
 STUFF = {"floor", "wall", "ceiling"}
+# The encoder's halves, to compare with, where they were built:
+#   build_default_encoder.py WHEELS .models/default-encoder-VARIANT --variant VARIANT
+PARTS = [(variant, pathlib.Path(f".models/default-encoder-{variant}")) for variant in ("classifier", "head")]
+# The published presets' sizes are meant for 640x480; the rendered rooms have a quarter of its pixels.
+SMALL = ["--set", "views.min_mask_px=250", "--set", "views.min_first_depth_px=125"]
 
 
 def run_json(*command, accepted=(0,)):
@@ -39,15 +44,13 @@ def rows_of(name):
 
 # --------------------------------------------------------------------------------------------- the kitchen
 
-def object_at(instances, point, margin=0.05):
-    """The smallest object whose box holds the point."""
-    def volume(box):
-        return (box["max"][0] - box["min"][0]) * (box["max"][1] - box["min"][1]) * (box["max"][2] - box["min"][2])
+def object_at(instances, point, reach=0.3):
+    """The object whose centroid is nearest to the point, in metres; None when none is that near."""
+    def distance(instance):
+        return sum((a - b) ** 2 for a, b in zip(instance["centroid"], point)) ** 0.5
 
-    holding = [instance for instance in instances
-               if all(low - margin <= x <= high + margin
-                      for x, low, high in zip(point, instance["box"]["min"], instance["box"]["max"]))]
-    return min(holding, key=lambda instance: volume(instance["box"]), default={"id": None})["id"]
+    nearest = min(instances, key=distance)
+    return nearest["id"] if distance(nearest) < reach else None
 
 
 def kitchen_ranks(program, map_file, *options):
@@ -76,13 +79,15 @@ def recall(ranks, k):
 
 
 def kitchen_section(program, kitchen, work):
-    made, plain = work / "kitchen.ovimap", work / "kitchen_conse.ovimap"
+    made = work / "kitchen.ovimap"
     summary = run_json(program, "run", kitchen, "--masks", "sam", "-o", made)
-    encoders = [("with head", made, [])]
-    before = pathlib.Path(".models/default-encoder-conse")
-    if before.exists():
-        run_json(program, "reembed", made, "--encoder", before, "-o", plain)
-        encoders.insert(0, ("classifier alone", plain, ["--encoder", before]))
+    encoders = []
+    for name, folder in PARTS:
+        if folder.exists():
+            map_file = work / f"kitchen_{name}.ovimap"
+            run_json(program, "reembed", made, "--encoder", folder, "-o", map_file)
+            encoders.append((f"{name} alone", map_file, ["--encoder", folder]))
+    encoders.append(("both (default)", made, []))
     columns = {name: list(kitchen_ranks(program, map_file, *options)) for name, map_file, options in encoders}
     text = ["## A real kitchen", "", "    ovimap run KITCHEN --masks sam -o kitchen.ovimap", "",
             f"{summary['instances']} objects, {summary['embedding_queries']} embedding queries "
@@ -119,11 +124,11 @@ def relation_section(program, map_file):
 
 # -------------------------------------------------------------------------------------------- rendered rooms
 
-def room_recall(program, room, map_file):
+def room_recall(program, room, map_file, *options):
     """Share of truth classes whose query is answered by an object of that class first, and among three."""
     names = json.loads((room / "labels.json").read_text())["instances"]
     classes = sorted(set(names.values()) - STUFF)
-    answers = query(program, map_file, classes, "--set", "query.grammar=false")
+    answers = query(program, map_file, classes, "--set", "query.grammar=false", *options)
     ranks = []
     for name, answer in zip(classes, answers):
         right = [rank for rank, found in enumerate(answer["instances"], 1) if names.get(str(found["id"])) == name]
@@ -131,28 +136,44 @@ def room_recall(program, room, map_file):
     return recall(ranks, 1), recall(ranks, 3), sum(1 / rank for rank in ranks if rank) / len(ranks)
 
 
-def views_section(program, work):
-    """Truth geometry, so that nothing but the choice of views differs."""
-    text = ["## Which views to embed", "", "    ovimap embed gt ROOM --views PRESET -o room.ovimap", "",
-            "The rendered `tiny` rooms of three seeds with sensor noise, true instances; mean over rooms. AQ: embedding queries "
-            "an object. Words: the classes in the room; reciprocal rank, right object first, among three.", "",
-            "| views | AQ | MRR | first | first three |", "| --- | --- | --- | --- | --- |"]
+def render_rooms(program, work):
     rooms = []
     for seed in (1, 2, 3):
         folder = work / f"room{seed}"
         run_json(program, "synth", folder, "--room", "tiny", "--noise", "--seed", seed)
         rooms.append(folder / "room")
+    return rooms
+
+
+def mean_over_rooms(program, rooms, work, options, query_options=()):
+    """AQ, then reciprocal rank, first and among three, of embeddings made with `options`."""
+    scores = []
+    for room in rooms:
+        map_file = work / "views.ovimap"
+        summary = run_json(program, "embed", "gt", room, *SMALL, *options, "-o", map_file)
+        first, three, mrr = room_recall(program, room, map_file, *query_options)
+        scores.append((summary["embedding_queries"] / summary["instances"], mrr, first, three))
+    return " | ".join(f"{sum(column) / len(rooms):.{1 if i == 0 else 3}f}" for i, column in enumerate(zip(*scores)))
+
+
+def encoders_section(program, rooms, work):
+    text = ["## The default encoder and its halves", "", "The same rooms; their furniture models took no part in the training.", "",
+            "| encoder | AQ | MRR | first | first three |", "| --- | --- | --- | --- | --- |"]
+    for name, folder in PARTS:
+        if folder.exists():
+            options = ["--encoder", folder]
+            text.append(f"| {name} alone | {mean_over_rooms(program, rooms, work, options, options)} |")
+    return text + [f"| both (default) | {mean_over_rooms(program, rooms, work, [])} |"]
+
+
+def views_section(program, rooms, work):
+    """Truth geometry, so that nothing but the choice of views differs."""
+    text = ["## Which views to embed", "", "    ovimap embed gt ROOM --views PRESET -o room.ovimap", "",
+            "The rendered `tiny` rooms of three seeds with sensor noise, true instances; mean over rooms. AQ: embedding queries "
+            "an object. Words: the classes in the room; reciprocal rank, right object first, among three.", "",
+            "| views | AQ | MRR | first | first three |", "| --- | --- | --- | --- | --- |"]
     for preset in ("default", "viewcov", "paper", "combine", "vis", "random", "all"):
-        scores, queries = [], []
-        for room in rooms:
-            map_file = work / "views.ovimap"
-            # The published presets' sizes are meant for 640x480; these rooms have a quarter of its pixels.
-            small = ["--set", "views.min_mask_px=250", "--set", "views.min_first_depth_px=125"]
-            summary = run_json(program, "embed", "gt", room, "--views", preset, *small, "-o", map_file)
-            queries.append(summary["embedding_queries"] / summary["instances"])
-            scores.append(room_recall(program, room, map_file))
-        first, three, mrr = (sum(column) / len(rooms) for column in zip(*scores))
-        text.append(f"| {preset} | {sum(queries) / len(rooms):.1f} | {mrr:.3f} | {first:.3f} | {three:.3f} |")
+        text.append(f"| {preset} | {mean_over_rooms(program, rooms, work, ['--views', preset])} |")
     return text
 
 
@@ -175,7 +196,8 @@ def main():
             f"Default encoder. {machine()}, commit {commit}, {datetime.date.today()}.", ""]
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
-        text += views_section(options.program, work) + [""]
+        rooms = render_rooms(options.program, work)
+        text += encoders_section(options.program, rooms, work) + [""] + views_section(options.program, rooms, work) + [""]
         if options.kitchen:
             text += kitchen_section(options.program, options.kitchen, work)
     options.out.write_text("\n".join(text) + "\n")

