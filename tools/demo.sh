@@ -14,12 +14,13 @@ echo "== mapping it: MobileSAM masks on every second frame"
 echo "== objects in the map"
 "$ovimap" info demo/tiny.ovimap
 echo "== finding objects by name"
-"$ovimap" query demo/tiny.ovimap "bed" "lamp" "chair" "elephant" --top 1 || true
+"$ovimap" query demo/tiny.ovimap "sofa" "lamp" "chair" "elephant" --top 1 || true
+"$ovimap" report demo/tiny.ovimap demo/report.html
 echo "== how good it is (exact truth comes with the rendered room)"
 "$ovimap" eval demo/tiny.ovimap --gt demo/tiny/room
 cat <<EOT
 
-Look at   demo/pictures/top_view.png, demo/pictures/contact_sheet.png
+Look at   demo/report.html in a browser; demo/pictures/top_view.png, demo/pictures/contact_sheet.png
 Ask       $ovimap query demo/tiny.ovimap "something to sit on" "largest cabinet"
 Open      demo/tiny.ply in any mesh viewer; demo/tiny.json in any editor
 Go on     $ovimap run YOUR_RECORDING -o my.ovimap        depth alone, real time
