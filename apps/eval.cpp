@@ -3,12 +3,9 @@
 #include <cstdio>
 
 #include "command.h"
-#include "ovimap/eval/geometry_scores.h"
-#include "ovimap/eval/reference_scores.h"
-#include "ovimap/eval/standard_scores.h"
-#include "ovimap/instance/instance_mesh.h"
-#include "ovimap/io/map_file.h"
-#include "ovimap/io/truth.h"
+#include "eval_report.h"
+#include "ovimap/base/parallel.h"
+#include "ovimap/image/codec.h"
 
 namespace ovimap::apps {
 
@@ -16,102 +13,55 @@ namespace {
 
 struct EvalOptions {
   std::vector<std::filesystem::path> maps, truths;
+  std::vector<std::string> settings;
+  std::string protocol = "both";
+  std::filesystem::path markdown;
+  EvaluationOptions evaluation;
+  int threads = 0;
   bool json = false;
 };
 
-struct SceneScores {
-  LabelledScene scene;
-  GeometryScores geometry;
-};
-
-SceneScores score_scene(const std::filesystem::path& map, const std::filesystem::path& source) {
-  const Truth truth = load_truth(source);
-  const MapDocument document = load_map(map);
-  const Mesh mesh = extract_instance_mesh(document.map, document.instances);
-  SceneScores result{
-      {truth.instances, transfer_labels(truth.mesh.vertices, mesh.vertices, mesh.labels), {}},
-      geometry_scores(truth.mesh, mesh)};
-  if (result.geometry.completeness == 0.0)
-    throw Error(concat("map ", map.string(), " and truth ", source.string(),
-                       " do not overlap; are they in the same frame and scale?"));
-  return result;
+EvaluationConfig evaluation_config(const EvalOptions& options) {
+  EvaluationConfig config;
+  ConfigFields fields;
+  fields.group("eval", [&](ConfigFields& inner) { list_fields(config, inner); });
+  for (const std::string& setting : options.settings) {
+    const std::size_t equals = setting.find('=');
+    if (equals == std::string::npos) throw Error("--set takes name=value, not '" + setting + "'");
+    fields.set(setting.substr(0, equals), setting.substr(equals + 1));
+  }
+  return config;
 }
 
-nlohmann::json json_of(const StandardScores& scores) {
-  return {{"miou", scores.miou},
-          {"ap25", scores.ap25},
-          {"ap50", scores.ap50},
-          {"ap75", scores.ap75},
-          {"ap", scores.ap},
-          {"recall25", scores.recall25},
-          {"recall50", scores.recall50},
-          {"recall75", scores.recall75},
-          {"truth_instances", scores.truth_instances},
-          {"predicted_instances", scores.predicted_instances}};
-}
-
-nlohmann::json json_of(const ReferenceScores& scores) {
-  return {{"miou", scores.miou},         {"wiou", scores.wiou},
-          {"ap25", scores.ap25},         {"ap50", scores.ap50},
-          {"ap75", scores.ap75},         {"recall25", scores.recall25},
-          {"recall50", scores.recall50}, {"recall75", scores.recall75}};
-}
-
-nlohmann::json json_of(const GeometryScores& scores) {
-  return {{"accuracy_m", scores.accuracy_m},
-          {"accuracy_median_m", scores.accuracy_median_m},
-          {"stray", scores.stray},
-          {"completeness", scores.completeness},
-          {"completeness_1cm", scores.fine_completeness}};
-}
-
-void print_table(const StandardScores& standard, const ReferenceScores& reference,
-                 const std::vector<SceneScores>& scenes) {
-  std::printf("%-10s %6s %6s %6s %6s %6s\n", "protocol", "mIoU", "AP", "AP75", "AP50", "AP25");
-  std::printf("%-10s %6.3f %6.3f %6.3f %6.3f %6.3f\n", "standard", standard.miou, standard.ap,
-              standard.ap75, standard.ap50, standard.ap25);
-  std::printf("%-10s %6.3f %6s %6.3f %6.3f %6.3f\n", "reference", reference.miou, "-",
-              reference.ap75, reference.ap50, reference.ap25);
-  std::printf("%d true objects, %d in the map\n", standard.truth_instances,
-              standard.predicted_instances);
-  for (const SceneScores& scene : scenes)
-    std::printf("surface error %.1f mm (median %.1f), completeness %.3f\n",
-                scene.geometry.accuracy_m * 1e3, scene.geometry.accuracy_median_m * 1e3,
-                scene.geometry.completeness);
+void write_markdown(const std::filesystem::path& path, const std::string& text) {
+  write_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
 int eval(const EvalOptions& options) {
   if (options.maps.size() != options.truths.size())
     throw Error(concat(options.maps.size(), " maps but ", options.truths.size(),
                        " truths; give one --gt SOURCE for each map, in order"));
-  std::vector<SceneScores> scenes;
-  std::vector<LabelledScene> labelled;
-  nlohmann::json per_scene = nlohmann::json::object();
-  double accuracy = 0, completeness = 0;
-  for (std::size_t i = 0; i < options.maps.size(); ++i) {
-    scenes.push_back(score_scene(options.maps[i], options.truths[i]));
-    labelled.push_back(scenes.back().scene);
-    accuracy += scenes.back().geometry.accuracy_m;
-    completeness += scenes.back().geometry.completeness;
-    per_scene[options.maps[i].string()] = {
-        {"standard", json_of(standard_scores(std::span(&labelled.back(), 1)))},
-        {"reference", json_of(reference_scores(labelled.back()))},
-        {"geometry", json_of(scenes.back().geometry)}};
-  }
-  const StandardScores standard = standard_scores(labelled);
-  const ReferenceSummary reference = reference_summary(labelled);
-  const auto count = static_cast<double>(scenes.size());
+  const ThreadLimit limit(options.threads);
+  const EvaluationConfig config = evaluation_config(options);
+  EvaluationOptions evaluation_options = options.evaluation;
+  evaluation_options.runtime.threads = options.threads;
+  std::vector<MapAndTruth> pairs;
+  for (std::size_t i = 0; i < options.maps.size(); ++i)
+    pairs.push_back({options.maps[i], options.truths[i]});
+  const Evaluation evaluation = evaluate_maps(pairs, evaluation_options, config);
+  for (const std::string& notice : evaluation.notices)
+    std::fprintf(stderr, "ovimap: %s\n", notice.c_str());
+  const ProtocolChoice protocols{options.protocol != "reference", options.protocol != "standard"};
+  std::vector<EvalFigures> scenes;
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    scenes.push_back(figures_of(evaluation, i, config, protocols));
+  const EvalFigures all = figures_of(evaluation, config, protocols);
+  const std::string tables = eval_markdown(evaluation, all, scenes);
+  if (!options.markdown.empty()) write_markdown(options.markdown, tables);
   if (options.json)
-    print_json({{"standard",
-                 {{"class_agnostic", json_of(standard)},
-                  {"geometry",
-                   {{"accuracy_m", accuracy / count}, {"completeness", completeness / count}}}}},
-                {"reference",
-                 {{"class_agnostic", json_of(reference.scene_mean)},
-                  {"pooled", json_of(reference.pooled)}}},
-                {"scenes", per_scene}});
+    print_json(eval_json(evaluation, all, scenes));
   else
-    print_table(standard, reference.scene_mean, scenes);
+    std::printf("%s", tables.c_str());
   return kDone;
 }
 
@@ -123,6 +73,26 @@ Action add_eval(CLI::App& command) {
   command
       .add_option("--gt", options->truths, "scene with truth, one for each map in the same order")
       ->required();
+  command
+      .add_option("--classes", options->evaluation.classes,
+                  "auto or truth: the truth's own names; replica51, scannet200, scannet20 or a "
+                  "file of names")
+      ->capture_default_str();
+  command
+      .add_option("--encoder", options->evaluation.encoder,
+                  "default, a model, auto: the one that the map was made with, or none: no classes")
+      ->capture_default_str();
+  command.add_option("--protocol", options->protocol, "which figures to compute")
+      ->check(CLI::IsMember({"both", "standard", "reference"}))
+      ->capture_default_str();
+  command.add_option("--markdown", options->markdown, "write the tables to this file as well");
+  command.add_option("--model-dir", options->evaluation.model_dirs,
+                     "folder to look for models in first");
+  command.add_option("--set", options->settings, "one setting, eval.a=b; may be repeated")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  command.add_option("--threads", options->threads, "threads to use; 0: all cores")
+      ->check(CLI::Range(0, 1024));
   command.add_flag("--json", options->json, "print one JSON object");
   return [options] { return eval(*options); };
 }

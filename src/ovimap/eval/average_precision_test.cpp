@@ -81,6 +81,12 @@ TEST(BenchmarkPrecision, OfTwoOnOneTruthTheLessConfidentIsWrong) {
   }
 }
 
+TEST(BenchmarkPrecision, APredictionIsRightOnce) {
+  // Half of it on either truth: the first takes it, the second is missed.
+  const ScoredOverlaps scene = table_of({200, 200}, {400}, {1}, {{0, 0, 200}, {1, 0, 200}});
+  EXPECT_DOUBLE_EQ(benchmark(scene, 25), 0.5);
+}
+
 TEST(BenchmarkPrecision, EqualConfidencesAreOnePoint) {
   const ScoredOverlaps scene =
       table_of({200, 200}, {160, 100, 120}, {0.5, 0.5, 0.5}, {{0, 0, 160}, {1, 2, 120}});

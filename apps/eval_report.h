@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "command.h"
+#include "ovimap/pipeline/map_evaluation.h"
+
+namespace ovimap::apps {
+
+/// Which protocols a user asked for.
+struct ProtocolChoice {
+  bool standard = true, reference = true;
+};
+
+/// All figures of some scenes; those that were not asked for, or cannot be had, are absent.
+struct EvalFigures {
+  std::string name;  ///< of the scene; "all" for the pool
+  std::optional<StandardScores> standard;
+  std::optional<ReferenceScores> reference, reference_pooled;
+  std::optional<SemanticReport> standard_semantic, reference_semantic;
+  GeometryScores geometry;  ///< means over the scenes
+};
+
+/// Of all scenes pooled, or of one of them.
+EvalFigures figures_of(const Evaluation& evaluation, const EvaluationConfig& config,
+                       const ProtocolChoice& protocols);
+EvalFigures figures_of(const Evaluation& evaluation, std::size_t scene,
+                       const EvaluationConfig& config, const ProtocolChoice& protocols);
+
+nlohmann::json eval_json(const Evaluation& evaluation, const EvalFigures& all,
+                         const std::vector<EvalFigures>& scenes);
+
+/// Tables that a terminal and a Markdown page both show well.
+std::string eval_markdown(const Evaluation& evaluation, const EvalFigures& all,
+                          const std::vector<EvalFigures>& scenes);
+
+}  // namespace ovimap::apps

@@ -1,0 +1,210 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/pipeline/map_evaluation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "ovimap/base/config.h"
+#include "ovimap/instance/instance_mesh.h"
+#include "ovimap/io/truth.h"
+#include "ovimap/pipeline/map_search.h"
+#include "ovimap/pipeline/name_guesses.h"
+#include "ovimap/pipeline/truth_classes.h"
+
+namespace ovimap {
+
+namespace {
+
+/// A scene while it is being evaluated.
+struct Draft {
+  EvaluatedScene scene;
+  MapAndTruth paths;
+  TruthClasses classes;
+  bool embedded = false;  ///< the map has embeddings
+};
+
+void require_one_frame(const MapAndTruth& paths, const Mesh& truth, const Mesh& map,
+                       const FrameCheckConfig& config) {
+  if (map.vertices.empty())
+    throw Error(concat("map ", paths.map.string(), " has no surface to score; map the recording ",
+                       "again and look at `ovimap info`"));
+  const FrameCheck check = check_frames(truth.vertices, map.vertices, config);
+  if (!check.fault.empty())
+    throw Error(concat("map ", paths.map.string(), " and the truth of ", paths.source.string(),
+                       " do not fit (", static_cast<int>(std::lround(100 * check.share)),
+                       " % of the map lies on the truth): ", check.fault));
+}
+
+void count_views(const MapDocument& map, int min_views, EvaluatedScene& scene) {
+  const Appearances& looks = map.semantics.appearances;
+  for (const auto& [id, look] : looks) {
+    scene.embedding_queries += look.queries;
+    scene.embedded_instances += look.queries > 0;
+  }
+  for (const InstanceSummary& instance : map.instances) {
+    const auto look = looks.find(instance.id);
+    const auto embedded =
+        look == looks.end()
+            ? 0
+            : std::count_if(look->second.views.begin(), look->second.views.end(),
+                            [](const ObjectView& view) { return view.embedding.size() > 0; });
+    if (embedded < min_views) scene.few_views.push_back(instance.id);
+  }
+}
+
+Draft draft_scene(const MapAndTruth& paths, const EvaluationConfig& config) {
+  Truth truth = load_truth(paths.source);
+  const MapDocument map = load_map(paths.map);
+  const Mesh mesh = extract_instance_mesh(map.map, map.instances);
+  require_one_frame(paths, truth.mesh, mesh, config.frames);
+  Draft draft;
+  draft.paths = paths;
+  draft.scene.name = paths.map.string();
+  draft.scene.geometry = geometry_scores(truth.mesh, mesh, config.geometry);
+  draft.scene.labels.instances = {
+      std::move(truth.instances),
+      transfer_labels(truth.mesh.vertices, mesh.vertices, mesh.labels, config.transfer),
+      {}};
+  draft.classes = {paths.source, std::move(truth.classes), std::move(truth.class_names)};
+  draft.embedded = has_embeddings(map);
+  if (draft.embedded) count_views(map, config.min_embedded_views, draft.scene);
+  return draft;
+}
+
+/// Why there are no semantic figures; empty when there can be.
+std::string lacking(const std::vector<Draft>& drafts, const EvaluationOptions& options) {
+  for (const Draft& draft : drafts) {
+    const std::string map = draft.paths.map.string(), source = draft.paths.source.string();
+    if (draft.classes.ids.empty()) {
+      if (options.classes != "auto")
+        throw Error(concat("the truth of '", source, "' has no classes to score against ",
+                           options.classes, "; its semantic labels are missing (Replica layout: ",
+                           "semantic_labels_SCENE.txt beside the scene's folder)"));
+      return concat("no semantic figures: the truth of ", source, " has no classes");
+    }
+    if (options.classes == "auto" && draft.classes.names.empty())
+      return concat("no semantic figures: the truth of ", source, " does not name its classes; ",
+                    "choose the set they are from with --classes");
+    if (options.encoder == "none") return "no semantic figures: --encoder none";
+    if (!draft.embedded)
+      return concat("no semantic figures: map ", map, " has no embeddings; make them with ",
+                    "`ovimap reembed`");
+  }
+  return {};
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+/// The classes of truth and map in the set's numbers.
+void add_classes(Draft& draft, const LabelSet& set, ImageTextEncoder& encoder,
+                 std::vector<std::string>& notices) {
+  constexpr std::size_t kBestOnly = 1;
+  NumberedClasses numbered = number_classes(draft.classes, set);
+  if (!numbered.unknown.empty())
+    notices.push_back(concat("not scored, because ", set.name,
+                             " has no class for it: ", joined(numbered.unknown), " (",
+                             static_cast<int>(std::lround(100 * numbered.unknown_share)),
+                             " % of the truth of ", draft.paths.source.string(), ")"));
+  draft.scene.labels.truth_classes = std::move(numbered.numbers);
+  const MapSearch search = open_map_search(draft.paths.map);
+  const auto guesses = project_classes(search.index, encoder, set, kBestOnly);
+  for (std::size_t i = 0; i < guesses.size(); ++i)
+    if (!guesses[i].empty())
+      draft.scene.labels.predicted_classes[search.index.object(i).id] =
+          static_cast<std::int32_t>(guesses[i].front().label) + 1;
+}
+
+LabelSet chosen_set(const std::vector<Draft>& drafts, const std::string& classes) {
+  if (classes != "auto" && classes != "truth") return read_label_set(classes);
+  std::vector<TruthClasses> truths;
+  for (const Draft& draft : drafts) truths.push_back({draft.paths.source, {}, draft.classes.names});
+  return label_set_of(truths);
+}
+
+SemanticClasses numbers_of(const LabelSet& set) {
+  SemanticClasses classes{static_cast<int>(set.labels.size()), {}};
+  for (const std::size_t label : stuff_labels(set))
+    classes.stuff.push_back(static_cast<std::int32_t>(label) + 1);
+  return classes;
+}
+
+}  // namespace
+
+void list_fields(EvaluationConfig& config, ConfigFields& fields) {
+  fields.group("transfer", [&](ConfigFields& inner) { list_fields(config.transfer, inner); });
+  fields.group("frames", [&](ConfigFields& inner) { list_fields(config.frames, inner); });
+  fields.group("geometry", [&](ConfigFields& inner) { list_fields(config.geometry, inner); });
+  fields.group("reference", [&](ConfigFields& inner) {
+    list_fields(config.reference, inner);
+    inner.group("semantic",
+                [&](ConfigFields& semantic) { list_fields(config.semantic_reference, semantic); });
+  });
+  fields.add("min_embedded_views", config.min_embedded_views, 0, 1000,
+             "the reference protocol drops objects with fewer embedded views");
+}
+
+Evaluation evaluate_maps(std::span<const MapAndTruth> pairs, const EvaluationOptions& options,
+                         const EvaluationConfig& config) {
+  const bool named = options.classes != "auto" && options.classes != "truth";
+  if (named) read_label_set(options.classes);  // a wrong name shows before anything slow
+  std::vector<Draft> drafts;
+  for (const MapAndTruth& paths : pairs) drafts.push_back(draft_scene(paths, config));
+  Evaluation evaluation;
+  if (const std::string reason = lacking(drafts, options); !reason.empty()) {
+    evaluation.notices.push_back(reason);
+  } else {
+    evaluation.classes = chosen_set(drafts, options.classes);
+    EncoderIdentity identity;
+    std::unique_ptr<ImageTextEncoder> encoder;  // maps mostly share one
+    for (Draft& draft : drafts) {
+      const MapInfo info = read_map_info(draft.paths.map);
+      if (!encoder || !(identity == info.encoder))
+        encoder = encoder_of_map(info, options.encoder, options.runtime, options.model_dirs);
+      identity = info.encoder;
+      add_classes(draft, *evaluation.classes, *encoder, evaluation.notices);
+    }
+  }
+  for (Draft& draft : drafts) evaluation.scenes.push_back(std::move(draft.scene));
+  return evaluation;
+}
+
+SemanticReport semantic_report(const Evaluation& evaluation, std::size_t first, std::size_t count,
+                               Protocol protocol, const EvaluationConfig& config) {
+  OVIMAP_ASSERT(evaluation.classes.has_value());
+  std::vector<SemanticScene> scenes;
+  double queries = 0, instances = 0;
+  for (std::size_t i = first; i < first + count; ++i) {
+    const EvaluatedScene& scene = evaluation.scenes[i];
+    scenes.push_back(scene.labels);
+    scenes.back().instances = labelled_scene(scene, protocol);
+    queries += scene.embedding_queries, instances += scene.embedded_instances;
+  }
+  const SemanticClasses classes = numbers_of(*evaluation.classes);
+  SemanticReport report;
+  report.classes = protocol == Protocol::kStandard
+                       ? standard_class_scores(scenes, classes)
+                       : reference_class_scores(scenes, classes, config.semantic_reference);
+  report.all = mean_scores(report.classes);
+  for (const LabelGroup& group : label_groups(*evaluation.classes)) {
+    std::vector<std::int32_t> numbers;
+    for (const std::size_t label : group.labels)
+      numbers.push_back(static_cast<std::int32_t>(label) + 1);
+    report.groups.emplace_back(group.name, mean_scores(report.classes, numbers));
+  }
+  report.queries_per_instance = instances > 0 ? queries / instances : 0;
+  return report;
+}
+
+LabelledScene labelled_scene(const EvaluatedScene& scene, Protocol protocol) {
+  return protocol == Protocol::kStandard
+             ? scene.labels.instances
+             : without_instances(scene.labels.instances, scene.few_views);
+}
+
+}  // namespace ovimap
