@@ -163,10 +163,10 @@ Evaluation evaluate_maps(std::span<const MapAndTruth> pairs, const EvaluationOpt
     EncoderIdentity identity;
     std::unique_ptr<ImageTextEncoder> encoder;  // maps mostly share one
     for (Draft& draft : drafts) {
-      const MapInfo info = read_map_info(draft.paths.map);
-      if (!encoder || !(identity == info.encoder))
-        encoder = encoder_of_map(info, options.encoder, options.runtime, options.model_dirs);
-      identity = info.encoder;
+      const EncoderIdentity of_map = read_map_info(draft.paths.map).encoder;
+      if (!encoder || !(identity == of_map))
+        encoder = encoder_of_map(of_map, options.encoder, options.runtime, options.model_dirs);
+      identity = of_map;
       add_classes(draft, *evaluation.classes, *encoder, evaluation.notices);
     }
   }
