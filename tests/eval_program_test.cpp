@@ -51,7 +51,8 @@ TEST_F(EvalProgramTest, ScoresInstancesAndClassesInBothProtocols) {
   make_map(kEncoder);
   const auto scores = run_json(kEval + kEncoder + " --json --markdown tables.md");
   EXPECT_EQ(scores["standard"]["class_agnostic"]["ap"], 1.0);
-  EXPECT_EQ(scores["standard"]["class_agnostic"]["miou"], 1.0);
+  // Two surfaces may have vertices in one place, of which either may be found.
+  EXPECT_NEAR(scores["standard"]["class_agnostic"]["miou"].get<double>(), 1.0, 1e-4);
   EXPECT_EQ(scores["standard"]["geometry"]["completeness"], 1.0);
   for (const char* protocol : {"standard", "reference"}) {
     const auto& semantic = scores[protocol]["semantic"];
