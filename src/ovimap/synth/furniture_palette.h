@@ -16,7 +16,8 @@ const std::vector<std::string>& room_classes();
 std::uint32_t room_class_id(const std::string& class_name);
 
 /// The catalogue ids of the models of a class that were looked at and found sound: upright, of
-/// plausible size, textured. Empty for classes made without a model (wall, floor, picture, rug).
+/// plausible size, textured. Empty for classes made without a model (wall, floor, picture, rug,
+/// pillow, blanket).
 /// Throws Error as room_class_id does.
 const std::vector<std::string>& models_of_class(const std::string& class_name);
 

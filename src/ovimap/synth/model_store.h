@@ -22,6 +22,7 @@ struct RoomModel {
   TexturedMesh mesh;
   Eigen::Vector3f size_m = Eigen::Vector3f::Zero();
   HeightMap upper_side{TexturedMesh{}};
+  bool soft = false;  ///< sinks into uneven ground
 };
 
 /// Picks and loads the models of a room, each once.
@@ -31,8 +32,8 @@ class ModelStore {
       : folder_(std::move(furniture_folder)) {}
 
   /// The model of that catalogue id, or one of the class drawn by `random` when `id` is empty;
-  /// pictures and rugs are made up to fit a room of `room_size_m`. Throws Error when the furniture
-  /// package is missing, or the class or the id is unknown.
+  /// pictures, rugs, pillows and blankets are made up, to fit a room of `room_size_m`. Throws Error
+  /// when the furniture package is missing, or the class or the id is unknown.
   std::shared_ptr<const RoomModel> get(const std::string& class_name, const std::string& id,
                                        const Eigen::Vector3f& room_size_m, Random& random);
 

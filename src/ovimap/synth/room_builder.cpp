@@ -81,7 +81,8 @@ class Arranger {
       case Placement::kOnFloor:
         return layout_.on_floor(size);
       case Placement::kOnWall:
-        return layout_.on_wall(size, kPictureCenter_m - size.z() / 2);
+        return layout_.on_wall(size,
+                               piece.request->bottom_m.value_or(kPictureCenter_m - size.z() / 2));
       case Placement::kOnCeiling:
         return on_ceiling(piece);
       case Placement::kRug:
@@ -106,7 +107,7 @@ class Arranger {
       auto box = piece.request->placement == Placement::kAround
                      ? layout_.around(layout_.pieces()[support.number], piece.model->size_m)
                      : layout_.on_top(support.number, support.piece->model->upper_side,
-                                      piece.model->size_m, against_wall);
+                                      piece.model->size_m, against_wall, piece.model->soft);
       if (box) return box;
     }
     return std::nullopt;

@@ -13,6 +13,7 @@ namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kRestGap_m = 5e-4f;       // things stand this far above what carries them
+constexpr float kSink_m = 0.03f;          // soft things go this deep into it
 constexpr float kMiddleShare = 0.5f;      // of the room, where middle pieces have their centre
 constexpr float kFloorNearWall_m = 0.9f;  // small things on the floor lie within this of a wall
 constexpr float kLongSide_m = 1.2f;       // a table side this long takes two chairs
@@ -43,6 +44,8 @@ void list_fields(LayoutConfig& config, ConfigFields& fields) {
              "between things on one surface, metres");
   fields.add("surface_tolerance_m", config.surface_tolerance_m, 0.f, 0.1f,
              "unevenness under a thing on a surface, metres");
+  fields.add("soft_tolerance_m", config.soft_tolerance_m, 0.f, 0.5f,
+             "the same under pillows and blankets, which sink in, metres");
   fields.add("yaw_jitter_rad", config.yaw_jitter_rad, 0.f, kPi,
              "how carelessly chairs and small things are turned, radians");
 }
@@ -166,17 +169,20 @@ std::optional<OrientedBox> RoomLayout::around(const OrientedBox& table,
 }
 
 std::optional<OrientedBox> RoomLayout::on_top(std::size_t support, const HeightMap& upper_side,
-                                              const Eigen::Vector3f& size_m, bool aligned) {
+                                              const Eigen::Vector3f& size_m, bool aligned,
+                                              bool soft) {
   const OrientedBox carrier = pieces_[support];
+  const float tolerance_m = soft ? config_.soft_tolerance_m : config_.surface_tolerance_m;
+  const float lift_m = soft ? -kSink_m : kRestGap_m;
   for (int i = 0; i < config_.tries; ++i) {
     const float turn = aligned ? random_.uniform(-config_.yaw_jitter_rad, config_.yaw_jitter_rad)
                                : random_.uniform(-kPi, kPi);
     const Eigen::Vector2f part(random_.uniform(-1, 1), random_.uniform(-1, 1));
     const OrientedBox local = box_of(size_m, part.cwiseProduct(carrier.half_m), turn, 0);
-    const auto height = upper_side.rest(local, config_.surface_tolerance_m);
+    const auto height = upper_side.rest(local, tolerance_m);
     if (!height) continue;
     const OrientedBox box = box_of(size_m, carrier.world_from_box(local.center_m),
-                                   carrier.yaw_rad + turn, *height + kRestGap_m);
+                                   carrier.yaw_rad + turn, *height + lift_m);
     bool free =
         box.inside(room_size_m_.head<2>(), config_.wall_gap_m) && box.top_m < room_size_m_.z();
     for (std::size_t k = 0; free && k < pieces_.size(); ++k)

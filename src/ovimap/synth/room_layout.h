@@ -26,6 +26,7 @@ struct LayoutConfig {
   float chair_gap_m = 0.05f;           ///< between a chair and its table
   float surface_gap_m = 0.02f;         ///< between things on one surface
   float surface_tolerance_m = 0.008f;  ///< unevenness under a thing
+  float soft_tolerance_m = 0.12f;      ///< the same under pillows and blankets, which sink in
   float yaw_jitter_rad = 0.2f;         ///< how carelessly chairs and small things are turned
 };
 void list_fields(LayoutConfig& config, ConfigFields& fields);
@@ -58,9 +59,11 @@ class RoomLayout {
   /// At a side of `table`, facing it.
   [[nodiscard]] std::optional<OrientedBox> around(const OrientedBox& table,
                                                   const Eigen::Vector3f& size_m);
-  /// On the upper side of the added piece number `support`. `aligned`: facing as that piece does.
+  /// On the upper side of the added piece number `support`. `aligned`: facing as that piece does;
+  /// `soft`: sinks into uneven ground.
   [[nodiscard]] std::optional<OrientedBox> on_top(std::size_t support, const HeightMap& upper_side,
-                                                  const Eigen::Vector3f& size_m, bool aligned);
+                                                  const Eigen::Vector3f& size_m, bool aligned,
+                                                  bool soft = false);
 
   /// Returns the number of the piece.
   std::size_t add(const OrientedBox& box);

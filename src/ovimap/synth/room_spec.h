@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,8 +32,9 @@ struct FurnitureRequest {
   std::string class_name;  ///< one of the palette's classes
   Placement placement = Placement::kAgainstWall;
   int count = 1;
-  std::vector<std::string> at;  ///< for kAround and kOnTop: the classes of the supporting pieces
-  std::string model;            ///< a catalogue id; empty: any model of the class
+  std::vector<std::string> at = {};    ///< for kAround and kOnTop: classes of the supporting pieces
+  std::string model = {};              ///< a catalogue id; empty: any model of the class
+  std::optional<float> bottom_m = {};  ///< for kOnWall: its lower edge; else centred at eye height
 };
 
 /// What a room is made from. The same spec gives the same room.
@@ -50,9 +52,14 @@ struct RoomSpec {
   PinholeCamera camera;
 };
 
-/// The rooms that can be made by name: "tiny" (3.6 x 3.1 m, 40 frames of 320x240) and "bare" (the
-/// same without furniture, which needs no furniture package). Throws Error for another name.
+/// The rooms that can be made by name: "tiny" (3.6 x 3.1 m, 40 frames of 320x240), "bare" (the
+/// same without furniture, which needs no furniture package), and the rooms of rooms-v1. Throws
+/// Error for another name.
 RoomSpec room_spec(const std::string& name, std::uint64_t seed = 1);
 std::vector<std::string> room_names();
+
+/// The benchmark's rooms: 25 or more objects, 200 frames of 640x480 each.
+inline constexpr const char* kRoomsV1 = "rooms-v1";
+std::vector<std::string> rooms_v1_names();
 
 }  // namespace ovimap

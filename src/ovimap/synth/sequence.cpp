@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdio>
+#include <mutex>
 #include <set>
 
 #include "ovimap/base/config.h"
@@ -46,6 +47,22 @@ struct SynthSequence::State {
   SynthSequenceConfig config;
   Renderer renderer;
   std::vector<Pose> poses;
+
+  void keep_ids(std::int64_t position, const IdImage& ids) {
+    const std::lock_guard lock(mutex_);
+    last_position_ = position;
+    last_ids_ = ids;
+  }
+  std::optional<IdImage> kept_ids(std::int64_t position) {
+    const std::lock_guard lock(mutex_);
+    return position == last_position_ ? std::optional(last_ids_) : std::nullopt;
+  }
+
+ private:
+  // The ids of the frame read last: who writes a frame asks for them next.
+  std::mutex mutex_;
+  std::int64_t last_position_ = -1;
+  IdImage last_ids_;
 };
 
 SynthSequence::SynthSequence(SynthRoom room, const PinholeCamera& camera, int frames,
@@ -73,6 +90,7 @@ FrameRead SynthSequence::read(std::int64_t position) const {
     return {std::nullopt, concat("frame ", position, ": the sequence has ", size(), " frames")};
   const Pose& pose = state_->poses[static_cast<std::size_t>(position)];
   RenderedView view = state_->renderer.render(state_->camera, pose);
+  state_->keep_ids(position, view.ids);
   Frame frame;
   frame.index = position;
   frame.name = frame_name(position);
@@ -95,6 +113,7 @@ FrameRead SynthSequence::read(std::int64_t position) const {
 
 std::optional<IdImage> SynthSequence::truth_ids(std::int64_t position) const {
   if (position < 0 || position >= size()) return std::nullopt;
+  if (auto ids = state_->kept_ids(position)) return ids;
   const Pose& pose = state_->poses[static_cast<std::size_t>(position)];
   return state_->renderer.render(state_->camera, pose, false).ids;
 }
