@@ -159,12 +159,30 @@ TEST_F(MapFile, WritesThroughALinkAndSparesWhatIsNoFile) {
   EXPECT_EQ(files_in_root(), 4u);
 }
 
+/// While alive, the process has no right that its user does not grant: root becomes nobody.
+class WithoutPrivilege {
+ public:
+  WithoutPrivilege() { give_up(::geteuid() == 0 ? kNobody : ::geteuid()); }
+  ~WithoutPrivilege() { give_up(user_); }
+  WithoutPrivilege(const WithoutPrivilege&) = delete;
+  WithoutPrivilege& operator=(const WithoutPrivilege&) = delete;
+
+ private:
+  static constexpr uid_t kNobody = 65534;
+  static void give_up(uid_t user) {
+    if (::seteuid(user) != 0) ADD_FAILURE() << "cannot become user " << user;
+  }
+  uid_t user_ = ::geteuid();
+};
+
 TEST_F(MapFile, RefusesToWriteIntoAFolderWithoutPermission) {
-  // Root may write into every folder of a disk, but not into the kernel's.
-  const fs::path folder = ::geteuid() == 0 ? fs::path("/sys") : root_;
-  if (::geteuid() != 0) fs::permissions(root_, fs::perms::owner_read | fs::perms::owner_exec);
-  const std::string fault =
-      fault_of([&] { save_map(folder / "a.ovimap", random_document(1, 11)); });
+  const MapDocument document = random_document(1, 11);
+  fs::permissions(root_, fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read |
+                             fs::perms::others_exec);
+  const std::string fault = [&] {
+    const WithoutPrivilege nobody;
+    return fault_of([&] { save_map(root_ / "a.ovimap", document); });
+  }();
   fs::permissions(root_, fs::perms::owner_all);
   EXPECT_NE(fault.find("choose a folder that you can write to"), std::string::npos) << fault;
 }
