@@ -17,6 +17,12 @@ class Error : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// An Error of one frame alone: what was mapped stands, and the frames after it may be sound.
+class FrameError : public Error {
+ public:
+  using Error::Error;
+};
+
 /// Joins its arguments as a stream would print them: concat("frame ", 7, ": no depth").
 template <class... Args>
 std::string concat(const Args&... args) {

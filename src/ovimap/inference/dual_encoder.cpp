@@ -8,7 +8,6 @@
 
 #include "ovimap/base/error.h"
 #include "ovimap/inference/image_tensor.h"
-#include "ovimap/inference/sha256.h"
 #include "ovimap/inference/text_input.h"
 
 namespace ovimap {
@@ -23,16 +22,6 @@ constexpr std::size_t kItemsAtOnce = 8;  // keeps a GPU busy; a CPU gains nothin
 /// The image network and the weights beside it; all other files belong to the text.
 bool is_image_file(const ModelFolder& model, const std::string& file) {
   return file.starts_with(model.network(kImage).file);
-}
-
-/// SHA-256 over the lines "file digest" in the order of the files' names.
-std::string digest_of(const ModelFolder& model) {
-  Sha256 sum;
-  for (const auto& [file, digest] : model.sha256) {
-    const std::string line = concat(file, " ", digest, "\n");
-    sum.update({reinterpret_cast<const std::uint8_t*>(line.data()), line.size()});
-  }
-  return sum.finish();
 }
 
 OnnxSession open_network(const ModelFolder& model, const char* name, const RuntimeConfig& runtime) {
@@ -135,7 +124,7 @@ Embeddings in_batches(std::span<const Item> items, std::size_t at_once, int dime
 DualEncoder::DualEncoder(const ModelFolder& model, const RuntimeConfig& runtime, EncoderUse use)
     : model_(model),
       spec_(read_dual_encoder_spec(model)),
-      identity_{model.name, spec_.dimension, digest_of(model)},
+      identity_{model.name, spec_.dimension, model.digest()},
       runtime_(runtime) {
   if (use != EncoderUse::kTexts) images();
   if (use != EncoderUse::kImages) texts();

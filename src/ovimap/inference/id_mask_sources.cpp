@@ -29,6 +29,16 @@ std::optional<std::int64_t> number_at_end(const std::string& text) {
   return number;
 }
 
+/// Reads something of one frame; what is wrong with it is that frame's fault alone.
+template <class Read>
+auto of_this_frame(const Read& read) {
+  try {
+    return read();
+  } catch (const Error& fault) {
+    throw FrameError(fault.what());
+  }
+}
+
 }  // namespace
 
 GtMaskSource::GtMaskSource(const FrameSource& frames) : frames_(frames) {
@@ -39,7 +49,7 @@ GtMaskSource::GtMaskSource(const FrameSource& frames) : frames_(frames) {
 }
 
 Entities GtMaskSource::entities(const Frame& frame, std::span<const MaskPrompt>) {
-  const std::optional<IdImage> ids = frames_.truth_ids(frame.index);
+  const std::optional<IdImage> ids = of_this_frame([&] { return frames_.truth_ids(frame.index); });
   return ids ? entities_of_ids(*ids)
              : Entities{IdImage(frame.color.width(), frame.color.height()), {}};
 }
@@ -85,12 +95,12 @@ const fs::path* DirMaskSource::file_of(const std::string& name, std::int64_t ind
 Entities DirMaskSource::entities(const Frame& frame, std::span<const MaskPrompt>) {
   const fs::path* file = file_of(frame.name, frame.index);
   if (!file) return {IdImage(frame.color.width(), frame.color.height()), {}};
-  const GrayPng mask = read_gray(*file);
+  const GrayPng mask = of_this_frame([&] { return read_gray(*file); });
   if (!mask.values.same_size(frame.color))
-    throw Error(concat("mask ", file->string(), " is ", mask.values.width(), "x",
-                       mask.values.height(), ", but the colour image of frame ", frame.index,
-                       " is ", frame.color.width(), "x", frame.color.height(),
-                       "; write masks at the colour image's size"));
+    throw FrameError(concat("mask ", file->string(), " is ", mask.values.width(), "x",
+                            mask.values.height(), ", but the colour image of frame ", frame.index,
+                            " is ", frame.color.width(), "x", frame.color.height(),
+                            "; write masks at the colour image's size"));
   return entities_of_ids(mask.values);
 }
 

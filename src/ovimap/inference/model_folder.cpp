@@ -84,6 +84,20 @@ NetworkSpec parse_network(const YAML::Node& node, const fs::path& folder) {
   return {file, text_map(node["inputs"]), text_map(node["outputs"])};
 }
 
+/// A network's file and the weights that ONNX keeps beside it: "net.onnx", "net.onnx.data".
+std::vector<std::string> files_of(const fs::path& folder, const std::string& file) {
+  std::vector<std::string> files = {file};
+  std::error_code unreadable;
+  const fs::path path = folder / file;
+  for (const auto& entry : fs::directory_iterator(path.parent_path(), unreadable)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(path.filename().string() + "."))
+      files.push_back((fs::path(file).parent_path() / name).string());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
 ModelFolder parse(const YAML::Node& root, const fs::path& folder) {
   if (!root.IsMap()) fault(folder, "it must be a list of 'key: value' lines");
   ModelFolder model;
@@ -97,8 +111,9 @@ ModelFolder parse(const YAML::Node& root, const fs::path& folder) {
     model.networks[entry.first.as<std::string>()] = parse_network(entry.second, folder);
   model.sha256 = text_map(root["sha256"]);
   for (const auto& [name, network] : model.networks)
-    if (!model.sha256.contains(network.file))
-      fault(folder, concat("'sha256' has no digest of ", network.file, "; add it"));
+    for (const std::string& file : files_of(folder, network.file))
+      if (!model.sha256.contains(file))
+        fault(folder, concat("'sha256' has no digest of ", file, "; add it"));
   static const std::set<std::string> known = {"kind", "name", "license", "source"};
   for (const auto& entry : root)
     if (entry.second.IsScalar() && !known.contains(entry.first.as<std::string>()))
@@ -134,6 +149,15 @@ const std::string& ModelFolder::input_of(const std::string& network_name,
 const std::string& ModelFolder::output_of(const std::string& network_name,
                                           const std::string& role) const {
   return tensor_of(*this, network_name, network(network_name).outputs, "outputs", role);
+}
+
+std::string ModelFolder::digest() const {
+  Sha256 sum;
+  for (const auto& [file, file_digest] : sha256) {
+    const std::string line = concat(file, " ", file_digest, "\n");
+    sum.update({reinterpret_cast<const std::uint8_t*>(line.data()), line.size()});
+  }
+  return sum.finish();
 }
 
 ModelFolder read_model_folder(const fs::path& folder) {

@@ -37,6 +37,18 @@ void require_motion(const SequenceResult& result, const MapperConfig& config) {
                        "still, --set allow_still_camera=true"));
 }
 
+/// Returns what kept the frame out of the map, empty when nothing did. What is wrong with the very
+/// first frame is wrong with all of them as a rule, and better told at once.
+std::string fuse(const Frame& frame, Mapper& mapper, bool others_went_well, FrameReport& report) {
+  try {
+    report = mapper.process(frame);
+    return {};
+  } catch (const FrameError& fault) {
+    if (!others_went_well) throw;
+    return fault.what();
+  }
+}
+
 }  // namespace
 
 std::vector<Pose> poses_of(const std::vector<FrameLogEntry>& frames) {
@@ -61,8 +73,8 @@ SequenceResult run_sequence(const FrameSource& source, const std::vector<std::in
     }();
     if (i + 1 < positions.size()) next = read(positions[i + 1]);
     FrameReport report;
-    if (current.frame) {
-      report = mapper.process(*current.frame);
+    if (current.frame) current.fault = fuse(*current.frame, mapper, !result.frames.empty(), report);
+    if (current.fault.empty()) {
       const Frame& frame = *current.frame;
       if (result.frames.empty()) result.depth_camera = frame.depth_camera;
       result.frames.push_back(
@@ -71,7 +83,8 @@ SequenceResult run_sequence(const FrameSource& source, const std::vector<std::in
       result.skipped.push_back({positions[i], current.fault});
     }
     if (result.frames.size() == kFramesUntilMotion) require_motion(result, mapper.config());
-    if (progress && !progress(i + 1, positions.size(), current.frame ? &report : nullptr)) break;
+    const bool fused = current.fault.empty();
+    if (progress && !progress(i + 1, positions.size(), fused ? &report : nullptr)) break;
   }
   if (next.valid()) next.wait();
   if (result.frames.empty())
