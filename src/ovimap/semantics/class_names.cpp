@@ -78,6 +78,7 @@ std::vector<LabelGroup> thirds(const LabelSet& set) {
 
 std::optional<std::size_t> find_class(const LabelSet& set, const std::string& name) {
   if (const auto same = position_of(set, name)) return same;
+  if (!set.built_in) return std::nullopt;
   const auto column = std::find(kTableColumns.begin(), kTableColumns.end(), set.name);
   const auto row = room_table().find(plain(name));
   if (column == kTableColumns.end() || row == room_table().end()) return std::nullopt;
@@ -85,13 +86,14 @@ std::optional<std::size_t> find_class(const LabelSet& set, const std::string& na
 }
 
 std::vector<LabelGroup> label_groups(const LabelSet& set) {
+  if (!set.built_in) return {};
   if (set.name == "scannet200") return scannet200_groups(set);
   if (set.name == "replica51") return thirds(set);
   return {};
 }
 
 std::vector<std::size_t> stuff_labels(const LabelSet& set) {
-  const bool scannet = set.name == "scannet200" || set.name == "scannet20";
+  const bool scannet = set.built_in && set.name.starts_with("scannet");
   std::vector<std::size_t> labels;
   for (std::size_t i = 0; i < set.labels.size(); ++i) {
     const std::string& name = set.labels[i].name;

@@ -29,8 +29,11 @@ ClassLabel numbered_label(const std::string& entry) {
 }
 
 LabelSet labels_of_file(const std::string& file) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   std::ifstream in(file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  if (!in) throw Error(concat("class file ", file, " cannot be read; check its permissions"));
+  if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
   LabelSet set{std::filesystem::path(file).stem().string(), {}};
   for (std::string& entry : list_entries(text))
     set.labels.push_back({static_cast<int>(set.labels.size()) + 1, std::move(entry)});
@@ -72,7 +75,7 @@ std::vector<std::string> label_set_names() {
 LabelSet read_label_set(const std::string& name_or_file) {
   const std::vector<std::string> names = label_set_names();
   if (std::find(names.begin(), names.end(), name_or_file) != names.end()) {
-    LabelSet set{name_or_file, {}};
+    LabelSet set{name_or_file, {}, true};
     for (const std::string& entry : list_entries(builtin_word_list(name_or_file)))
       set.labels.push_back(numbered_label(entry));
     return set;

@@ -19,6 +19,7 @@ struct ClassLabel {
 struct LabelSet {
   std::string name;
   std::vector<ClassLabel> labels;
+  bool built_in = false;  ///< a data set's own; a file may bear its name and hold something else
 };
 
 /// The sets that are built in: "replica51", "scannet200", "scannet20".

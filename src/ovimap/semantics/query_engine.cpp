@@ -140,7 +140,10 @@ QueryAnswer QueryEngine::answer_like(const Eigen::VectorXf& embedding, std::size
       some_embedded(index_, static_cast<std::size_t>(config_.max_like_references));
   if (own.size() < static_cast<std::size_t>(config_.verdict.min_references)) {
     scores.standard = scores.cosines;
-    return answer(scores, {}, {}, relevance);
+    QueryAnswer result = answer(scores, {}, {}, relevance);
+    result.reason = concat("the best of ", own.size(),
+                           " objects; too few to tell whether it is a match at all");
+    return result;
   }
   Embeddings references(static_cast<Eigen::Index>(own.size()), index_.dimension());
   for (std::size_t i = 0; i < own.size(); ++i)

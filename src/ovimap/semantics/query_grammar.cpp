@@ -83,6 +83,10 @@ constexpr std::array<std::string_view, 9> kAnything{
 constexpr std::array<std::string_view, 14> kFillers{
     "that",   "which",   "is",   "are",   "located", "placed",  "standing",
     "stands", "sitting", "sits", "lying", "lies",    "hanging", "situated"};
+// Places within a room, no objects: "the picture on the left", "a chair in the corner".
+constexpr std::array<std::string_view, 14> kPlaces{
+    "left",   "right", "front",      "back",       "middle", "center", "centre",
+    "corner", "room",  "background", "foreground", "side",   "top",    "bottom"};
 constexpr std::array<std::string_view, 3> kPair{"two", "both", "2"};
 
 constexpr std::size_t kMaxRelations = 16;  // in one query; more is no question but a text
@@ -97,13 +101,15 @@ std::string lower(std::string text) {
   return text;
 }
 
-/// Blank-separated; what stands between double quotes is one word with its quotes.
+/// Blank-separated; what stands between double quotes is one word with its quotes. A quote that
+/// nothing closes is an inch mark: 24" monitor.
 std::vector<std::string> words_of(std::string_view text) {
   std::vector<std::string> words;
   std::string word;
   bool quoted = false;
-  for (const char c : text) {
-    if (c == '"') quoted = !quoted;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '"') quoted = !quoted && text.find('"', i + 1) != std::string_view::npos;
     if (c == ' ' && !quoted) {
       if (!word.empty()) words.push_back(word);
       word.clear();
@@ -160,6 +166,11 @@ FoundRelation relation_at(Words words) {
 
 std::optional<QueryPhrase> parse_words(Words words);
 
+bool is_place(Words words) {
+  words = without_articles(words);
+  return words.size() == 1 && is_one_of(lower(words[0]), kPlaces);
+}
+
 /// `[superlative] things`, at least one thing.
 std::optional<QueryPhrase> parse_things(Words words) {
   words = without_articles(words);
@@ -204,6 +215,8 @@ std::optional<QueryPhrase> parse_relation(Words words, std::size_t at, const Fou
   phrase->negated = negated;
   if (found.relation == Relation::kBetween)
     phrase->anchors = parse_pair(right, phrase->same_kind);
+  else if (is_place(right))
+    return std::nullopt;
   else if (auto anchor = parse_words(right))
     phrase->anchors = {*std::move(anchor)};
   if (phrase->anchors.empty()) return std::nullopt;

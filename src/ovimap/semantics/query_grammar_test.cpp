@@ -92,7 +92,11 @@ TEST(QueryGrammar, SurvivesAnything) {
   std::string nested = "cup";
   for (int i = 0; i < 60; ++i) nested += " between plates";
   EXPECT_TRUE(parse_query(nested).free_text());
-  EXPECT_EQ(parse_query("\"unbalanced on the table").things, "\"unbalanced on the table");
+  const QueryPhrase inches = parse_query("24\" monitor on the desk");
+  EXPECT_EQ(inches.things, "24\" monitor");
+  EXPECT_EQ(inches.relation, Relation::kOn);
+  for (const char* place : {"picture on the left", "chair in the corner", "bin in front"})
+    EXPECT_TRUE(parse_query(place).free_text()) << place;
 }
 
 }  // namespace

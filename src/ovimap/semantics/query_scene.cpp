@@ -115,14 +115,13 @@ PhraseMatch PhraseSearch::match_things(const QueryPhrase& phrase,
   result.holds.assign(index_.size(), true);
   result.evidence.resize(index_.size());
   const std::vector<std::string> terms = split_terms(phrase.things);
-  if (phrase.anything && negatives.empty()) return result;
+  if (phrase.anything) {
+    if (!negatives.empty()) leave_out(negatives, result);
+    return result;
+  }
   if (terms.empty())
     throw Error(concat("the query names nothing in '", phrase.things, "'; say what to look for"));
-  if (!matcher_)
-    throw Error(concat("'", phrase.things,
-                       "' needs an encoder, none was given; name one with "
-                       "--encoder"));
-  result.things = matcher_->match(terms, negatives);
+  result.things = needed_matcher(phrase.things).match(terms, negatives);
   rate_by_text(phrase, result);
   return result;
 }
@@ -137,6 +136,7 @@ void PhraseSearch::rate_by_text(const QueryPhrase& phrase, PhraseMatch& result) 
       best = i;
   const double best_p = best ? matcher_->p_value(text, at(text.standard, *best)) : 1.0;
   if (best_p > double{config_.verdict.false_positive_rate}) result.missing.push_back(phrase.things);
+  result.holds.assign(index_.size(), false);
   if (!best) return;
   at(result.scores, *best) = static_cast<float>(match_probability(best_p));  // if only as a guess
   // A weak candidate can win a comparison of places; it cannot make a relation true.
@@ -144,10 +144,30 @@ void PhraseSearch::rate_by_text(const QueryPhrase& phrase, PhraseMatch& result) 
                         phrase.relation == Relation::kFarthest;
   float level = matcher_->score_at(text, double{config_.candidate_rate});
   if (compares) level = std::max(level, config_.rival_share * at(text.standard, *best));
-  for (std::size_t i = 0; i < index_.size(); ++i)
-    if (index_.has_embedding(i) && !text.excluded[i] && at(text.standard, i) >= level)
-      at(result.scores, i) =
-          static_cast<float>(match_probability(matcher_->p_value(text, at(text.standard, i))));
+  for (std::size_t i = 0; i < index_.size(); ++i) {
+    const bool candidate = index_.has_embedding(i) && !text.excluded[i];
+    const double p = candidate ? matcher_->p_value(text, at(text.standard, i)) : 1.0;
+    // What only resembles the thing may be listed, but proves nothing.
+    result.holds[i] = p <= double{config_.verdict.false_positive_rate};
+    if (candidate && at(text.standard, i) >= level)
+      at(result.scores, i) = static_cast<float>(match_probability(p));
+  }
+}
+
+void PhraseSearch::leave_out(const std::vector<std::string>& negatives, PhraseMatch& result) const {
+  const MatchScores text = needed_matcher("--not " + negatives.front()).match(negatives, {});
+  for (std::size_t i = 0; i < index_.size(); ++i) {
+    if (!index_.has_embedding(i)) continue;
+    const double p = matcher_->p_value(text, at(text.standard, i));
+    if (p > double{config_.verdict.false_positive_rate}) continue;
+    at(result.scores, i) = 0.f;
+    result.holds[i] = false;
+  }
+}
+
+const TextMatcher& PhraseSearch::needed_matcher(const std::string& what) const {
+  if (matcher_) return *matcher_;
+  throw Error(concat("'", what, "' needs an encoder, none was given; name one with --encoder"));
 }
 
 std::vector<std::size_t> PhraseSearch::anchors_of(const PhraseMatch& match) const {
@@ -192,6 +212,7 @@ void PhraseSearch::apply_order(const QueryPhrase& phrase, const PhraseMatch& anc
                                PhraseMatch& result) const {
   const bool nearest = *phrase.relation == Relation::kNearest;
   const Eigen::VectorXf chances = result.scores;
+  const std::vector<bool> things_hold = result.holds;
   result.scores.setZero();
   for (const std::size_t j : anchors_of(anchors)) {
     std::vector<std::size_t> ordered = positive(chances);
@@ -212,7 +233,7 @@ void PhraseSearch::apply_order(const QueryPhrase& phrase, const PhraseMatch& anc
       const float score = at(scores, i) * at(anchors.scores, j);
       if (score <= at(result.scores, i)) continue;
       at(result.scores, i) = score;
-      result.holds[i] = anchors.holds[j];
+      result.holds[i] = things_hold[i] && anchors.holds[j];
       const auto rating = rate_relation(Relation::kNear, scene_.shapes[i], scene_.shapes[j],
                                         id_of(j), scene_.viewpoint, config_.relations);
       result.evidence[i] = with_anchor(rating.evidence, anchors.evidence[j]);
@@ -238,7 +259,7 @@ void PhraseSearch::apply_between(const PhraseMatch& first, const PhraseMatch& se
         result.evidence[i] = rating.evidence;
       }
     at(result.scores, i) *= best;
-    result.holds[i] = holds;
+    result.holds[i] = result.holds[i] && holds;
   }
 }
 

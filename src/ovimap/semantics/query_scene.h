@@ -30,7 +30,7 @@ GroundViewpoint mean_viewpoint(const Eigen::Matrix3f& ground_from_world,
 /// How well the objects fit a query with relations.
 struct PhraseMatch {
   Eigen::VectorXf scores;             ///< [objects] chance in [0, 1] that the whole phrase fits
-  std::vector<bool> holds;            ///< whether its relations are more true than not
+  std::vector<bool> holds;            ///< whether it is the thing and its relations are true
   std::vector<std::string> evidence;  ///< why; empty where the score is 0
   std::vector<std::string> missing;   ///< things named that are not in the map
   MatchScores things;                 ///< what the text alone says; no rows for "anything"
@@ -51,6 +51,9 @@ class PhraseSearch {
  private:
   PhraseMatch match_things(const QueryPhrase& phrase,
                            const std::vector<std::string>& negatives) const;
+  /// Takes away whatever one of the negatives is found to be.
+  void leave_out(const std::vector<std::string>& negatives, PhraseMatch& result) const;
+  const TextMatcher& needed_matcher(const std::string& what) const;
   void rate_by_text(const QueryPhrase& phrase, PhraseMatch& result) const;
   void apply_pairs(const QueryPhrase& phrase, const PhraseMatch& anchors,
                    PhraseMatch& result) const;

@@ -32,6 +32,13 @@ std::string single_spaced(std::string_view text) {
   return result;
 }
 
+/// "the red mug" -> "red mug", so that a template does not make it "a photo of a the red mug".
+std::string_view without_article(std::string_view text) {
+  for (const std::string_view article : {"a ", "an ", "the "})
+    if (text.starts_with(article)) return text.substr(article.size());
+  return text;
+}
+
 std::ptrdiff_t characters(std::string_view utf8) {
   return std::count_if(utf8.begin(), utf8.end(), [](char c) { return (c & 0xC0) != 0x80; });
 }
@@ -68,8 +75,10 @@ std::vector<std::string> split_terms(std::string_view text) {
     if (std::string spaced = single_spaced(term); !spaced.empty()) terms.push_back(spaced);
     term.clear();
   };
-  for (const char c : text) {
-    if (c == '"')
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    const bool closed = quoted || text.find('"', i + 1) != std::string_view::npos;
+    if (c == '"' && closed)
       quoted = !quoted;
     else if (c == ',' && !quoted)
       finish();
@@ -98,8 +107,10 @@ Embeddings encode_prompted(ImageTextEncoder& encoder, std::span<const std::strin
                            std::span<const std::string> templates) {
   std::vector<std::string> prompted;
   for (const std::string& text : texts)
-    for (const std::string& prompt : templates)
-      prompted.push_back(std::string(prompt).replace(prompt.find(kSlot), kSlot.size(), text));
+    for (const std::string& prompt : templates) {
+      const std::string_view words = prompt == kSlot ? text : without_article(text);
+      prompted.push_back(std::string(prompt).replace(prompt.find(kSlot), kSlot.size(), words));
+    }
   const Embeddings rows = encoder.encode_texts(prompted);
   const auto each = static_cast<Eigen::Index>(templates.size());
   Embeddings means(static_cast<Eigen::Index>(texts.size()), rows.cols());
