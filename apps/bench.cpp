@@ -62,8 +62,9 @@ int bench(const BenchOptions& options) {
   config.masks.runtime.threads = network_threads(config, options.mapping);
   const auto source = open_frame_source(options.mapping.source, config.source);
   const auto range = positions(parse_frame_range(options.mapping.frames), source->size());
-  Mapper mapper(config.mapper, make_mask_source(options.mapping.masks, config.masks,
-                                                {source.get(), options.mapping.model_dirs}));
+  auto masks = make_mask_source(options.mapping.masks, config.masks,
+                                {source.get(), options.mapping.model_dirs});
+  Mapper mapper(config.mapper, std::move(masks), make_encoder(options.mapping, config));
   Progress progress("measuring");
   const SequenceResult result = run_sequence(
       *source, range, mapper, [&](std::size_t done, std::size_t total, const FrameReport*) {
@@ -74,6 +75,7 @@ int bench(const BenchOptions& options) {
     const FrameRead read = source->read(range[i]);
     if (read.frame) (void)mapper.project(*read.frame);
   }
+  mapper.finish();
   const double peak_mb = peak_rss_mb();
   {
     auto t = mapper.timers().measure("mesh");

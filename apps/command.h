@@ -73,6 +73,13 @@ std::shared_ptr<ImageTextEncoder> make_encoder(const MappingOptions& options,
 /// Threads of a network run: what the config says, else what --threads says.
 int network_threads(const ProgramConfig& config, const MappingOptions& options);
 
+/// The map's mesh with instance ids. Throws Error for a map without voxels, as `embed` makes.
+Mesh mesh_of(const MapDocument& document, const std::filesystem::path& map);
+
+/// Options of which each takes one value, so that what follows is not swallowed.
+CLI::Option* one_value(CLI::Option* option);
+void add_model_dirs(CLI::App& command, std::vector<std::filesystem::path>& model_dirs);
+
 /// Views that an encoder was asked about; 0 without one.
 int embedding_queries(const SemanticRecord& semantics);
 
@@ -89,6 +96,8 @@ class Progress {
   bool shown_ = false;
 };
 
+/// As text; what is not UTF-8 in it becomes the replacement character.
+std::string json_text(const nlohmann::json& value);
 /// Prints the one JSON object of a --json run.
 void print_json(const nlohmann::json& value);
 nlohmann::json stages_json(const StageTimers& timers);

@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
+#include <limits>
 
 #include "command.h"
 #include "ovimap/base/parallel.h"
@@ -25,7 +27,9 @@ std::vector<std::uint32_t> read_ids(const std::filesystem::path& path) {
   std::ifstream file(path);
   if (!file) throw Error(concat("file of instance ids ", path.string(), " cannot be read"));
   std::vector<std::uint32_t> ids;
-  for (long long id; file >> id;) ids.push_back(id > 0 ? static_cast<std::uint32_t>(id) : 0);
+  constexpr long long kLargest = std::numeric_limits<std::uint32_t>::max();
+  for (long long id; file >> id;)  // what is too large stays too large, and is refused
+    ids.push_back(static_cast<std::uint32_t>(std::clamp(id, 0LL, kLargest)));
   if (!file.eof())
     throw Error(concat("file of instance ids ", path.string(), ": entry ", ids.size() + 1,
                        " is no whole number; one id a line is expected"));

@@ -86,8 +86,7 @@ Action add_eval(CLI::App& command) {
       ->check(CLI::IsMember({"both", "standard", "reference"}))
       ->capture_default_str();
   command.add_option("--markdown", options->markdown, "write the tables to this file as well");
-  command.add_option("--model-dir", options->evaluation.model_dirs,
-                     "folder to look for models in first");
+  add_model_dirs(command, options->evaluation.model_dirs);
   command.add_option("--set", options->settings, "one setting, eval.a=b; may be repeated")
       ->type_size(1)
       ->allow_extra_args(false);

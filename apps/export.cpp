@@ -42,7 +42,7 @@ ClassedMap classify(const ExportOptions& options) {
   runtime.threads = options.threads;
   const MapSearch search = open_map_search(options.map);
   const auto encoder =
-      encoder_of_map(search.info.encoder, options.encoder, runtime, options.model_dirs);
+      needed_encoder_of_map(search.info.encoder, options.encoder, runtime, options.model_dirs);
   const auto guesses = project_classes(search.index, *encoder, result.set, kBestOnly);
   for (std::size_t i = 0; i < guesses.size(); ++i)
     if (!guesses[i].empty()) result.guesses[search.index.object(i).id] = guesses[i].front();
@@ -50,8 +50,9 @@ ClassedMap classify(const ExportOptions& options) {
 }
 
 /// The map's mesh with class ids as labels and a colour per class; 0 where no class is known.
-Mesh semantic_mesh(const MapDocument& document, const ClassedMap& classes) {
-  Mesh mesh = extract_instance_mesh(document.map, document.instances);
+Mesh semantic_mesh(const MapDocument& document, const ClassedMap& classes,
+                   const ExportOptions& options) {
+  Mesh mesh = mesh_of(document, options.map);
   for (std::uint32_t& label : mesh.labels) {
     const auto guess = classes.guesses.find(label);
     label = guess == classes.guesses.end()
@@ -78,7 +79,7 @@ nlohmann::json semantic_json(const ExportOptions& options, const ClassedMap& cla
 }
 
 void export_ply(const MapDocument& document, const ExportOptions& options) {
-  Mesh mesh = extract_instance_mesh(document.map, document.instances);
+  Mesh mesh = mesh_of(document, options.map);
   if (options.what == "instances") mesh.colors = instance_colors(mesh.labels);
   if (options.what == "points") mesh.triangles.clear();
   write_ply(options.out, mesh);
@@ -91,9 +92,9 @@ void write_text(const std::filesystem::path& path, const std::string& text) {
 void export_semantic(const ExportOptions& options, const std::string& kind) {
   const ClassedMap classes = classify(options);
   if (kind == ".json")
-    return write_text(options.out, semantic_json(options, classes).dump() + "\n");
+    return write_text(options.out, json_text(semantic_json(options, classes)) + "\n");
   const MapDocument document = load_map(options.map);
-  const Mesh mesh = semantic_mesh(document, classes);
+  const Mesh mesh = semantic_mesh(document, classes, options);
   if (kind == ".ply") return write_ply(options.out, mesh);
   write_file(options.out, encode_png(top_down(mesh, document.up)));
 }
@@ -103,6 +104,7 @@ void export_plain(const ExportOptions& options, const std::string& kind) {
     return write_text(options.out, info_json(options.map, read_map_info(options.map)) + "\n");
   const MapDocument document = load_map(options.map);
   if (kind == ".ply") return export_ply(document, options);
+  (void)mesh_of(document, options.map);
   const auto coloring = options.what == "mesh" ? MeshColoring::kColors : MeshColoring::kInstances;
   write_file(options.out, encode_png(top_down_picture(document, coloring)));
 }
@@ -146,7 +148,7 @@ Action add_export(CLI::App& command) {
       ->capture_default_str();
   command.add_option("--encoder", options->encoder,
                      "of --what semantic; auto: the model the map was made with");
-  command.add_option("--model-dir", options->model_dirs, "folder to look for models in first");
+  add_model_dirs(command, options->model_dirs);
   command.add_option("--threads", options->threads, "threads to use; 0: all cores")
       ->check(CLI::Range(0, 1024));
   command.add_flag("--json", options->json, "print one JSON object");

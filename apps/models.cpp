@@ -58,7 +58,7 @@ Action add_models(CLI::App& command) {
   auto options = std::make_shared<ModelsOptions>();
   auto action = std::make_shared<Action>();
   command.require_subcommand(1);
-  command.add_option("--model-dir", options->model_dirs, "folder to look for models in first");
+  add_model_dirs(command, options->model_dirs);
   command.add_flag("--json", options->json, "print one JSON object");
   command.add_subcommand("list", "models that can be found")->fallthrough()->callback([=] {
     *action = [=] { return list(*options); };

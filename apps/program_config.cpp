@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 #include "command.h"
+#include "ovimap/instance/instance_mesh.h"
 
 namespace ovimap::apps {
 
@@ -27,8 +28,8 @@ void add_mapping_options(CLI::App& command, MappingOptions& options) {
                   "random or all")
       ->capture_default_str();
   command.add_option("--config", options.config_file, "YAML file of settings");
-  command.add_option("--set", options.settings, "one setting, a.b=c; may be repeated");
-  command.add_option("--model-dir", options.model_dirs, "folder to look for models in first");
+  one_value(command.add_option("--set", options.settings, "one setting, a.b=c; may be repeated"));
+  add_model_dirs(command, options.model_dirs);
   command.add_option("--frames", options.frames,
                      "which frames: FIRST:LAST:STEP, each part optional");
   command.add_option("--threads", options.threads, "threads to use; 0: all cores")
@@ -56,6 +57,23 @@ ProgramConfig read_program_config(const MappingOptions& options) {
     fields.set(setting.substr(0, equals), setting.substr(equals + 1));
   }
   return config;
+}
+
+Mesh mesh_of(const MapDocument& document, const std::filesystem::path& map) {
+  Mesh mesh = extract_instance_mesh(document.map, document.instances);
+  if (mesh.vertices.empty())
+    throw Error(concat("map '", map.string(),
+                       "' holds objects without a surface, as `ovimap embed` makes them; draw the "
+                       "mesh they were made from"));
+  return mesh;
+}
+
+CLI::Option* one_value(CLI::Option* option) {
+  return option->type_size(1)->allow_extra_args(false);
+}
+
+void add_model_dirs(CLI::App& command, std::vector<std::filesystem::path>& model_dirs) {
+  one_value(command.add_option("--model-dir", model_dirs, "folder to look for models in first"));
 }
 
 int network_threads(const ProgramConfig& config, const MappingOptions& options) {

@@ -11,6 +11,7 @@
 #include "ovimap/io/ply.h"
 #include "ovimap/pipeline/map_search.h"
 #include "ovimap/semantics/query_engine.h"
+#include "ovimap/semantics/query_grammar.h"
 #include "ovimap/semantics/query_text.h"
 
 namespace ovimap::apps {
@@ -112,7 +113,7 @@ std::filesystem::path heat_map_path(const std::filesystem::path& out, std::size_
 void write_heat_maps(const QueryOptions& options, const MapSearch& search,
                      const std::vector<QueryAnswer>& answers) {
   const MapDocument document = load_map(options.map);
-  Mesh mesh = extract_instance_mesh(document.map, document.instances);
+  Mesh mesh = mesh_of(document, options.map);
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const auto path = heat_map_path(options.heat_map, i + 1, answers.size(), answers[i].query);
     color_by_relevance(mesh, search.index, answers[i].relevance);
@@ -129,6 +130,8 @@ void write_heat_maps(const QueryOptions& options, const MapSearch& search,
 void check_options(const QueryOptions& options) {
   const std::size_t queries = options.texts.size() + options.images.size() + options.like.size();
   if (queries == 0) throw Error("nothing is asked; give a TEXT, --image FILE or --like ID");
+  if (options.texts.empty() && !(options.negatives.empty() && options.near.empty()))
+    throw Error("--not and --near belong to a TEXT; give one beside --image or --like");
   if (options.heat_map.empty()) return;
   const std::string kind = options.heat_map.extension().string();
   if (kind != ".ply" && kind != ".png")
@@ -136,12 +139,20 @@ void check_options(const QueryOptions& options) {
                        "'; the name must end in .ply or .png"));
 }
 
+/// "TEXT near THIS". A text with a place of its own would tie `near` to that place.
+std::string near_to(const std::string& text, const std::string& near) {
+  if (near.empty()) return text;
+  if (parse_query(text).relation)
+    throw Error(concat("'", text, "' says where to look already; leave --near '", near,
+                       "' out, or ask for the thing alone"));
+  return text + " near " + near;
+}
+
 std::vector<QueryAnswer> ask(const QueryOptions& options, const QueryEngine& engine) {
   const bool relevance = !options.heat_map.empty();
   std::vector<QueryAnswer> answers;
   for (const std::string& text : options.texts) {
-    const std::string near = options.near.empty() ? "" : " near " + options.near;
-    answers.push_back(engine.find({text + near, options.negatives, relevance}));
+    answers.push_back(engine.find({near_to(text, options.near), options.negatives, relevance}));
   }
   for (const std::filesystem::path& image : options.images)
     answers.push_back(engine.find_like(read_rgb(image), image.string(), relevance));
@@ -207,7 +218,7 @@ Action add_query(CLI::App& command) {
       .add_option("--encoder", options->encoder,
                   "default, a model, or auto: the one that the map was made with")
       ->capture_default_str();
-  command.add_option("--model-dir", options->model_dirs, "folder to look for models in first");
+  add_model_dirs(command, options->model_dirs);
   command.add_option("--set", options->settings, "one setting, query.a=b; may be repeated")
       ->type_size(1)
       ->allow_extra_args(false);

@@ -22,7 +22,8 @@ struct ReembedOptions {
 int reembed_map(const ReembedOptions& options) {
   const ThreadLimit limit(options.threads);
   const std::filesystem::path out = options.out.empty() ? options.map : options.out;
-  if (options.encoder == "none") throw Error("--encoder none embeds nothing; name an encoder");
+  if (options.encoder.empty() || options.encoder == "none")
+    throw Error("--encoder names none, and without one nothing is embedded; name an encoder");
   MapDocument document = load_map(options.map);
   check_map_target(out);
   RuntimeConfig runtime;
@@ -57,7 +58,7 @@ Action add_reembed(CLI::App& command) {
   command.add_option("--encoder", options->encoder, "default, a model folder or a model's name")
       ->capture_default_str();
   command.add_option("-o,--output", options->out, "map file to write; without it MAP is replaced");
-  command.add_option("--model-dir", options->model_dirs, "folder to look for models in first");
+  add_model_dirs(command, options->model_dirs);
   command.add_option("--threads", options->threads, "threads to use; 0: all cores")
       ->check(CLI::Range(0, 1024));
   command.add_flag("--json", options->json, "print one JSON object");

@@ -34,8 +34,8 @@ void add_names(const MapDocument& document, const LabelSet& classes, const Repor
   RuntimeConfig runtime;
   runtime.threads = options.threads;
   try {
-    const auto encoder =
-        encoder_of_map(document.semantics.encoder, options.encoder, runtime, options.model_dirs);
+    const auto encoder = needed_encoder_of_map(document.semantics.encoder, options.encoder, runtime,
+                                               options.model_dirs);
     report.names = {classes.name, guess_names(document, *encoder, classes,
                                               static_cast<std::size_t>(options.names))};
   } catch (const Error& error) {
@@ -102,7 +102,7 @@ Action add_report(CLI::App& command) {
       .add_option("--encoder", options->encoder,
                   "what guesses names: auto (the map's own), none, default, or a model")
       ->capture_default_str();
-  command.add_option("--model-dir", options->model_dirs, "folder to look for models in first");
+  add_model_dirs(command, options->model_dirs);
   command.add_option("--threads", options->threads, "threads to use; 0: all cores")
       ->check(CLI::Range(0, 1024));
   command.add_flag("--json", options->json, "print one JSON object");

@@ -33,9 +33,13 @@ void Progress::show(std::size_t done, std::size_t total, const std::string& deta
   shown_ = true;
 }
 
+std::string json_text(const nlohmann::json& value) {
+  // Paths and names may hold bytes that are no UTF-8; the rest is worth having all the same.
+  return value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
 void print_json(const nlohmann::json& value) {
-  // Paths may hold bytes that are no UTF-8; the rest of the answer is worth printing all the same.
-  std::cout << value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << std::endl;
+  std::cout << json_text(value) << std::endl;
 }
 
 nlohmann::json stages_json(const StageTimers& timers) {

@@ -79,4 +79,25 @@ class ProgramTest : public ::testing::Test {
   fixture::TemporaryFolder folder_;
 };
 
+/// A model folder of the inference tests, quoted for the shell. Its weights are random: what it
+/// finds means nothing, but everything else about it is real.
+inline std::string golden_model(const std::string& name) {
+  return "'" OVIMAP_SOURCE_DIR "/src/ovimap/inference/testdata/golden_" + name + "'";
+}
+
+/// ... and maps that recording with embeddings.
+class EncodedProgramTest : public ProgramTest {
+ protected:
+  static constexpr const char* kSmallViews =
+      " --set views.min_mask_px=20 --set views.min_first_depth_px=10 --set views.min_depth_px=10 "
+      "--set summary.min_instance_views=1 --set views.min_frames_seen=1";
+
+  /// Writes room.ovimap.
+  void map_with(const std::string& encoder) const {
+    const ProgramResult result =
+        run("run replica/scene --masks gt -o room.ovimap --encoder " + encoder + kSmallViews);
+    ASSERT_EQ(result.code, 0) << result.err;
+  }
+};
+
 }  // namespace ovimap

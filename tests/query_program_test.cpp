@@ -6,33 +6,32 @@
 namespace ovimap {
 namespace {
 
-class QueryProgramTest : public ProgramTest {
+class QueryProgramTest : public EncodedProgramTest {
  protected:
-  /// Maps the recording with embeddings; false where there is no encoder.
-  bool map_with_embeddings() const {
-    const ProgramResult models = run("models list --json");
-    if (models.out.find("\"dual_encoder\"") == std::string::npos) return false;
-    const ProgramResult result = run(
-        "run replica/scene --masks gt --encoder default -o room.ovimap "
-        "--set summary.min_instance_views=1 --set views.min_frames_seen=1 --set view_interval=1");
-    EXPECT_EQ(result.code, 0) << result.err;
-    return result.code == 0;
+  /// A query of room.ovimap; exit code 0 or 1, as the verdict has it.
+  nlohmann::json query(const std::string& arguments) const {
+    const ProgramResult answer = run("query room.ovimap --json " + arguments + kEncoder);
+    EXPECT_LE(answer.code, 1) << arguments << answer.err;
+    const auto report = nlohmann::json::parse(answer.out, nullptr, false);
+    bool found = false;
+    for (const auto& result : report["results"]) found = found || result["verdict"] == "found";
+    EXPECT_EQ(answer.code, found ? 0 : 1);
+    return report["results"];
   }
+
+  const std::string kEncoder = " --encoder " + golden_model("minilm");
 };
 
 TEST_F(QueryProgramTest, AnswersInTheDocumentedShape) {
-  if (!map_with_embeddings()) GTEST_SKIP() << "no encoder; run tools/setup.sh";
-  run("query room.ovimap table \"largest object\" --heatmap heat.ply");
+  map_with(golden_model("minilm"));
+  const auto results = query("table \"largest object\" --top 2 --heatmap heat.ply");
   for (const char* file : {"heat-1-table.ply", "heat-2-largest-object.ply"})
     EXPECT_TRUE(std::filesystem::exists(path(file))) << file;
-  const ProgramResult answer = run("query room.ovimap table \"largest object\" --top 2 --json");
-  ASSERT_TRUE(answer.code == 0 || answer.code == 1) << answer.err;
-  const auto report = nlohmann::json::parse(answer.out);
-  ASSERT_EQ(report["results"].size(), 2u);
-  for (const auto& query : report["results"]) {
-    EXPECT_TRUE(query["verdict"] == "found" || query["verdict"] == "not_in_map");
-    EXPECT_LE(query["instances"].size(), 2u);
-    for (const auto& instance : query["instances"]) {
+  ASSERT_EQ(results.size(), 2u);
+  for (const auto& result : results) {
+    EXPECT_TRUE(result["verdict"] == "found" || result["verdict"] == "not_in_map");
+    EXPECT_LE(result["instances"].size(), 2u);
+    for (const auto& instance : result["instances"]) {
       EXPECT_GT(instance["id"], 0);
       EXPECT_GE(instance["probability"], 0.0);
       EXPECT_LE(instance["probability"], 1.0);
@@ -40,22 +39,48 @@ TEST_F(QueryProgramTest, AnswersInTheDocumentedShape) {
       EXPECT_EQ(instance["centroid"].size(), 3u);
     }
   }
-  EXPECT_EQ(report["results"][0]["query"], "table");
-  EXPECT_EQ(report["results"][1]["reading"], "largest [object]");
-  EXPECT_EQ(report["results"][1]["verdict"], "found");
+  EXPECT_EQ(results[0]["query"], "table");
+  EXPECT_EQ(results[1]["reading"], "largest [object]");
+  EXPECT_EQ(results[1]["verdict"], "found");
 }
 
-TEST_F(QueryProgramTest, FindsLookAlikesAndDrawsHeatMaps) {
-  if (!map_with_embeddings()) GTEST_SKIP() << "no encoder; run tools/setup.sh";
+TEST_F(QueryProgramTest, FindsLookAlikes) {
+  map_with(golden_model("minilm"));
   const auto objects = run_json("info room.ovimap --json")["instances"];
-  ASSERT_FALSE(objects.empty());
+  ASSERT_GE(objects.size(), 2u);
+  const int id = objects[0]["id"];
+  const auto alike = query("--like " + std::to_string(id))[0];
+  ASSERT_GE(alike["instances"].size(), 1u);
+  for (const auto& instance : alike["instances"]) EXPECT_NE(instance["id"], id);
+  const std::string picture = "replica/scene/results/frame000000.jpg";
+  const auto seen = query("--image " + picture)[0];
+  EXPECT_EQ(seen["query"], picture);
+  EXPECT_GE(seen["instances"].size(), 1u);
+  EXPECT_NE(seen["reason"].get<std::string>().find("too few"), std::string::npos);
+  expect_complaint("query room.ovimap --like 987654", {"987654"});
+  expect_complaint("query room.ovimap --not mug --image " + picture, {"--not", "TEXT"});
+}
+
+TEST_F(QueryProgramTest, NarrowsWhatIsAsked) {
+  map_with(golden_model("minilm"));
+  EXPECT_EQ(query("anything --near table")[0]["reading"], "[anything] near [table]");
+  expect_complaint("query room.ovimap \"mug on the table\" --near door" + kEncoder, {"--near"});
+  const auto all = query("thing --top 99")[0]["instances"];
+  const auto without = query("thing --top 99 --not thing")[0]["instances"];
+  EXPECT_LE(without.size(), all.size());
+  EXPECT_EQ(query("table --set query.top_k=1")[0]["instances"].size(), 1u);
+}
+
+TEST_F(QueryProgramTest, DrawsHeatMaps) {
+  map_with(golden_model("minilm"));
   for (const char* file : {"heat.ply", "heat.png"}) {
-    run(std::string("query room.ovimap table --heatmap ") + file);
+    query(std::string("table --heatmap ") + file);
     ASSERT_TRUE(std::filesystem::exists(path(file))) << file;
     EXPECT_GT(std::filesystem::file_size(path(file)), 100u);
   }
   expect_complaint("query room.ovimap table --heatmap heat.jpg", {"heat.jpg", ".ply"});
-  expect_complaint("query room.ovimap --like 987654", {"987654"});
+  expect_complaint("query room.ovimap table --heatmap none/heat.png" + kEncoder,
+                   {"none/heat.png", "create the folder"});
 }
 
 TEST_F(QueryProgramTest, SaysWhatIsWrong) {
@@ -64,11 +89,12 @@ TEST_F(QueryProgramTest, SaysWhatIsWrong) {
   expect_complaint("query bare.ovimap", {"nothing is asked"});
   expect_complaint("query none.ovimap mug", {"none.ovimap"});
   expect_complaint("query bare.ovimap mug --set query.top=3", {"query.top", "query.top_k"});
-  if (!map_with_embeddings()) GTEST_SKIP() << "no encoder; run tools/setup.sh";
+  map_with(golden_model("minilm"));
+  expect_complaint("query room.ovimap mug", {"golden", "--encoder"});  // not on the search path
   expect_complaint("query room.ovimap \"  \"", {"empty"});
   expect_complaint("query room.ovimap " + std::string(10000, 'a'), {"10000", "2000"});
   expect_complaint("query room.ovimap mug --encoder no-such-model", {"no-such-model"});
-  expect_complaint("query room.ovimap mug --set query.prompts=plain", {"{}"});
+  expect_complaint("query room.ovimap mug --set query.prompts=plain" + kEncoder, {"{}"});
 }
 
 }  // namespace

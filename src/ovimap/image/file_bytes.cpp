@@ -18,6 +18,23 @@ std::string reason(int error) {
   return std::generic_category().message(error);
 }
 
+std::string remedy_for(int error) {
+  switch (error) {
+    case ENOSPC:
+    case EDQUOT:
+      return "free some space or choose another disk";
+    case ENOENT:
+    case ENOTDIR:
+      return "create the folder first or choose another";
+    default:
+      return "choose a place that you can write to";
+  }
+}
+
+[[noreturn]] void fail_to_write(const std::filesystem::path& path, int error) {
+  throw Error(concat("cannot write ", path.string(), ": ", reason(error), "; ", remedy_for(error)));
+}
+
 class Descriptor {
  public:
   Descriptor(const std::filesystem::path& path, int flags)
@@ -90,12 +107,12 @@ void write_file(const std::filesystem::path& path, std::span<const std::uint8_t>
     throw Error(concat("cannot write ", path.string(), ": it is a folder, give a file name"));
   const std::filesystem::path temporary = temporary_beside(path);
   Descriptor file(temporary, O_WRONLY | O_CREAT | O_EXCL);
-  if (file.get() < 0) throw Error(concat("cannot write ", path.string(), ": ", reason(errno)));
+  if (file.get() < 0) fail_to_write(path, errno);
   const bool complete = write_all(file.get(), bytes) && file.close();
   if (!complete || ::rename(temporary.c_str(), path.c_str()) != 0) {
-    const std::string why = reason(errno);
+    const int error = errno;
     ::unlink(temporary.c_str());
-    throw Error(concat("cannot write ", path.string(), ": ", why));
+    fail_to_write(path, error);
   }
 }
 

@@ -41,6 +41,7 @@ void AppearanceBuilder::submit() {
 
 void AppearanceBuilder::finish(const InstanceRegistry& registry) {
   apply(queue_.finish(), registry);
+  for (auto& [id, appearance] : appearances_) prune_crops(appearance, config_.crops.kept_views);
 }
 
 void AppearanceBuilder::apply(std::vector<EmbeddingAnswer> answers,
@@ -58,7 +59,9 @@ void AppearanceBuilder::apply(std::vector<EmbeddingAnswer> answers,
     if (view == views.end()) continue;  // a better one took its place meanwhile
     view->embedding = std::move(answer.embedding);
     view->crop = std::move(answer.crop);
-    prune_crops(owner->second, config_.crops.kept_views);
+    // Views drawn at random may yet be thrown out: which crops stay is settled in the end.
+    if (config_.views.strategy != ViewStrategy::kRandom)
+      prune_crops(owner->second, config_.crops.kept_views);
   }
 }
 

@@ -15,6 +15,9 @@ namespace ovimap {
 
 namespace {
 
+// Ids index tables. Exports mark what is no object by the largest number of their type.
+constexpr std::uint32_t kLargestId = (1u << 24) - 1;
+
 void require_labels(const Mesh& mesh) {
   if (mesh.triangles.empty())
     throw Error("the geometry has no triangles; give a mesh, not a point cloud");
@@ -23,6 +26,10 @@ void require_labels(const Mesh& mesh) {
     throw Error(
         "the geometry has no instance ids; give a PLY with a vertex property 'label', or a file "
         "with one id a line");
+  const std::uint32_t largest = *std::max_element(mesh.labels.begin(), mesh.labels.end());
+  if (largest > kLargestId)
+    throw Error(concat("the geometry has instance id ", largest, "; ids go up to ", kLargestId,
+                       ", and 0 marks what is no object: number the instances anew"));
 }
 
 /// A registry in which every object is known: nothing of given geometry is ever merged.

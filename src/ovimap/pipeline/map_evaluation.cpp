@@ -165,7 +165,8 @@ Evaluation evaluate_maps(std::span<const MapAndTruth> pairs, const EvaluationOpt
     for (Draft& draft : drafts) {
       const EncoderIdentity of_map = read_map_info(draft.paths.map).encoder;
       if (!encoder || !(identity == of_map))
-        encoder = encoder_of_map(of_map, options.encoder, options.runtime, options.model_dirs);
+        encoder =
+            needed_encoder_of_map(of_map, options.encoder, options.runtime, options.model_dirs);
       identity = of_map;
       add_classes(draft, *evaluation.classes, *encoder, evaluation.notices);
     }

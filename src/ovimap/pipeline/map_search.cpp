@@ -37,13 +37,23 @@ QueryScene scene_of(const SearchableMap& map, const SearchIndex& index,
   return scene;
 }
 
-/// The folder of the model that the map names; "default" when no model on the search path is it.
-std::string model_named_by(const EncoderIdentity& wanted,
-                           const std::vector<std::filesystem::path>& model_dirs) {
-  for (const ModelListing& model : list_models(model_search_path(model_dirs)))
-    if (model.kind == "dual_encoder" && read_model_folder(model.folder).name == wanted.name)
-      return model.folder.string();
-  return "default";
+/// The folder of the model on the search path that is the map's encoder, or at least bears its
+/// name. A map without embeddings takes the default.
+std::string model_of_map(const EncoderIdentity& wanted,
+                         const std::vector<std::filesystem::path>& model_dirs) {
+  if (wanted.name.empty()) return "default";
+  std::string namesake;
+  for (const ModelListing& listing : list_models(model_search_path(model_dirs))) {
+    if (listing.kind != "dual_encoder") continue;
+    const ModelFolder model = read_model_folder(listing.folder);
+    if (model.name != wanted.name) continue;
+    if (model.digest() == wanted.digest) return listing.folder.string();
+    if (namesake.empty()) namesake = listing.folder.string();
+  }
+  if (!namesake.empty()) return namesake;
+  throw Error(concat("the map's embeddings are of encoder '", wanted.name,
+                     "', which is not on this machine; name its folder with --encoder or "
+                     "--model-dir, or run `ovimap reembed` to use another"));
 }
 
 }  // namespace
@@ -60,13 +70,22 @@ MapSearch open_map_search(const std::filesystem::path& map, const ObjectShapeCon
 std::unique_ptr<ImageTextEncoder> encoder_of_map(
     const EncoderIdentity& of_map, const std::string& spec, const RuntimeConfig& runtime,
     const std::vector<std::filesystem::path>& model_dirs) {
-  auto encoder = make_image_text_encoder(spec == "auto" ? model_named_by(of_map, model_dirs) : spec,
+  auto encoder = make_image_text_encoder(spec == "auto" ? model_of_map(of_map, model_dirs) : spec,
                                          runtime, model_dirs, EncoderUse::kTexts);
   if (!encoder || of_map.name.empty() || encoder->identity() == of_map) return encoder;
   throw Error(
       concat("the map's embeddings are of encoder '", of_map.name, "' (", of_map.dimension,
              " numbers), not of '", encoder->identity().name, "' (", encoder->identity().dimension,
              " numbers, other files); name that one with --encoder, or run `ovimap reembed`"));
+}
+
+std::unique_ptr<ImageTextEncoder> needed_encoder_of_map(
+    const EncoderIdentity& of_map, const std::string& spec, const RuntimeConfig& runtime,
+    const std::vector<std::filesystem::path>& model_dirs) {
+  if (auto encoder = encoder_of_map(of_map, spec, runtime, model_dirs)) return encoder;
+  throw Error(concat("--encoder '", spec,
+                     "' names no encoder, and this cannot be done without; name one, or leave the "
+                     "option out for the map's own"));
 }
 
 void color_by_relevance(Mesh& mesh, const SearchIndex& index, const Eigen::VectorXf& relevance) {

@@ -25,8 +25,13 @@ MapSearch open_map_search(const std::filesystem::path& map, const ObjectShapeCon
 
 /// The encoder that `spec` names, as make_image_text_encoder takes it, or with "auto" the model on
 /// the search path that the map's embeddings are of. Throws Error when there is none, or when its
-/// embeddings cannot be compared with the map's.
+/// embeddings cannot be compared with the map's. Null where `spec` is "none" or empty.
 std::unique_ptr<ImageTextEncoder> encoder_of_map(
+    const EncoderIdentity& of_map, const std::string& spec, const RuntimeConfig& runtime,
+    const std::vector<std::filesystem::path>& model_dirs = {});
+
+/// The same for work that is pointless without: throws Error where `spec` names none.
+std::unique_ptr<ImageTextEncoder> needed_encoder_of_map(
     const EncoderIdentity& of_map, const std::string& spec, const RuntimeConfig& runtime,
     const std::vector<std::filesystem::path>& model_dirs = {});
 

@@ -20,7 +20,7 @@ std::int32_t number_of(const LabelSet& set, const std::string& name) {
 }
 
 std::int32_t number_of_own_id(const LabelSet& set, std::int32_t id, const TruthClasses& truth) {
-  if (set.name == "replica51" && id == kReplicaUnlabelled) return 0;
+  if (set.built_in && set.name == "replica51" && id == kReplicaUnlabelled) return 0;
   for (std::size_t i = 0; i < set.labels.size(); ++i)
     if (set.labels[i].id == id) return static_cast<std::int32_t>(i) + 1;
   throw Error(concat("the truth of '", truth.source.string(), "' has class id ", id,
