@@ -25,6 +25,7 @@ constexpr Entry kCommands[] = {
     {"query", "find objects in words: MAP \"mug on the table\"", add_query},
     {"export", "write a map as mesh, JSON or picture", add_export},
     {"eval", "score maps against the truth", add_eval},
+    {"ablate", "vary one choice and score the maps, beside published figures", add_ablate},
     {"bench", "measure speed and memory on a recording", add_bench},
 #ifdef OVIMAP_SYNTH
     {"synth", "render a furnished room with exact truth", add_synth},

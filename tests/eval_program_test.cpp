@@ -1,54 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
-// Evaluation as a user meets it. The truth is the map itself, so that every figure that knows no
-// classes is perfect; the encoder is a golden one with random weights, whose classes mean nothing.
-#include "ovimap/io/ply.h"
-#include "program_fixture.h"
+// Evaluation as a user meets it.
+#include "truth_fixture.h"
 
 namespace ovimap {
 namespace {
 
-const std::string kEncoder =
-    " --encoder '" OVIMAP_SOURCE_DIR "/src/ovimap/inference/testdata/golden_minilm'";
-
-class EvalProgramTest : public ProgramTest {
+class EvalProgramTest : public TruthfulProgramTest {
  protected:
-  void make_map(const std::string& encoder) {
-    const ProgramResult result =
-        run("run replica/scene --masks gt -o room.ovimap" + encoder +
-            " --set views.min_mask_px=20 --set views.min_first_depth_px=10 "
-            "--set views.min_depth_px=10 --set summary.min_instance_views=1 "
-            "--set views.min_frames_seen=1");
-    ASSERT_EQ(result.code, 0) << result.err;
-    ASSERT_EQ(run("export room.ovimap truth.ply").code, 0);
-    write_truth(read_ply(path("truth.ply")));
-  }
-
-  void write_truth(const Mesh& mesh) {
-    write_ply(path("replica/scene_mesh.ply"), mesh);
-    std::string instances, classes;
-    for (const std::uint32_t label : mesh.labels) {
-      instances += concat(label, "\n");
-      classes += concat(label == 0 ? 0 : label % 3 + 1, "\n");
-    }
-    fixture::write_text(path("replica/instance_labels_scene.txt"), instances);
-    fixture::write_text(path("replica/semantic_labels_scene.txt"), classes);
-    fixture::write_text(path("replica/labels.json"),
-                        R"({"classes": {"1": "wall", "2": "sofa", "3": "teapot"}})");
-  }
-
-  /// The truth's mesh with every position put elsewhere; the labels stay.
-  void move_truth(const Eigen::Matrix3f& by) {
-    Mesh mesh = read_ply(path("truth.ply"));
-    for (Eigen::Vector3f& vertex : mesh.vertices) vertex = by * vertex;
-    write_ply(path("replica/scene_mesh.ply"), mesh);
-  }
-
+  const std::string kEncoder = " --encoder " + golden_model("minilm");
   static constexpr const char* kEval = "eval room.ovimap --gt replica/scene";
 };
 
 TEST_F(EvalProgramTest, ScoresInstancesAndClassesInBothProtocols) {
-  make_map(kEncoder);
+  make_map(golden_model("minilm"));
   const auto scores = run_json(kEval + kEncoder + " --json --markdown tables.md");
   EXPECT_EQ(scores["standard"]["class_agnostic"]["ap"], 1.0);
   // Two surfaces may have vertices in one place, of which either may be found.
@@ -73,7 +38,7 @@ TEST_F(EvalProgramTest, ScoresInstancesAndClassesInBothProtocols) {
 }
 
 TEST_F(EvalProgramTest, ProtocolsAndClassSetsCanBeChosen) {
-  make_map(kEncoder);
+  make_map(golden_model("minilm"));
   const auto one = run_json(kEval + kEncoder + " --json --protocol standard --classes scannet200");
   EXPECT_FALSE(one.contains("reference"));
   EXPECT_EQ(one["standard"]["semantic"]["class_set"], "scannet200");
@@ -85,7 +50,7 @@ TEST_F(EvalProgramTest, ProtocolsAndClassSetsCanBeChosen) {
 }
 
 TEST_F(EvalProgramTest, ScenesArePooled) {
-  make_map(kEncoder);
+  make_map(golden_model("minilm"));
   std::filesystem::copy_file(path("room.ovimap"), path("again.ovimap"));
   const auto scores =
       run_json("eval room.ovimap again.ovimap --gt replica/scene replica/scene --json" + kEncoder);
@@ -101,7 +66,7 @@ TEST_F(EvalProgramTest, ScenesArePooled) {
 }
 
 TEST_F(EvalProgramTest, WithoutEmbeddingsThereAreNoSemanticFigures) {
-  make_map(" --encoder none");
+  make_map("none");
   const ProgramResult result = run(std::string(kEval) + " --json");
   EXPECT_EQ(result.code, 0);
   EXPECT_NE(result.err.find("no embeddings"), std::string::npos) << result.err;
@@ -111,7 +76,7 @@ TEST_F(EvalProgramTest, WithoutEmbeddingsThereAreNoSemanticFigures) {
 }
 
 TEST_F(EvalProgramTest, SaysHowTruthAndMapDisagree) {
-  make_map(" --encoder none");
+  make_map("none");
   move_truth(1000 * Eigen::Matrix3f::Identity());
   expect_complaint(kEval, {"room.ovimap", "replica/scene", "1000 times"});
   Eigen::Matrix3f y_up;
@@ -126,7 +91,7 @@ TEST_F(EvalProgramTest, SaysHowTruthAndMapDisagree) {
 }
 
 TEST_F(EvalProgramTest, SaysWhatIsWrongWithTheLabels) {
-  make_map(kEncoder);
+  make_map(golden_model("minilm"));
   fixture::write_text(path("replica/labels.json"), R"({"classes": {"1": "wall", "2": "sofa"}})");
   expect_complaint(kEval + kEncoder, {"class id 3", "labels.json"});
   std::filesystem::remove(path("replica/labels.json"));
@@ -140,7 +105,7 @@ TEST_F(EvalProgramTest, SaysWhatIsWrongWithTheLabels) {
 }
 
 TEST_F(EvalProgramTest, TakesTruthMeshesOfPolygons) {
-  make_map(" --encoder none");
+  make_map("none");
   // The same vertices with one face of five corners.
   const Mesh mesh = read_ply(path("truth.ply"));
   std::string text = concat("ply\nformat ascii 1.0\nelement vertex ", mesh.vertices.size(),

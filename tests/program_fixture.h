@@ -84,6 +84,7 @@ class ProgramTest : public ::testing::Test {
 inline std::string golden_model(const std::string& name) {
   return "'" OVIMAP_SOURCE_DIR "/src/ovimap/inference/testdata/golden_" + name + "'";
 }
+constexpr const char* kGoldenModels = "'" OVIMAP_SOURCE_DIR "/src/ovimap/inference/testdata'";
 
 /// ... and maps that recording with embeddings.
 class EncodedProgramTest : public ProgramTest {

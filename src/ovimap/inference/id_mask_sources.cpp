@@ -104,4 +104,21 @@ Entities DirMaskSource::entities(const Frame& frame, std::span<const MaskPrompt>
   return entities_of_ids(mask.values);
 }
 
+KeptMaskSource::KeptMaskSource(fs::path folder, std::unique_ptr<MaskSource> source)
+    : folder_(std::move(folder)), source_(std::move(source)) {
+  std::error_code fault;
+  fs::create_directories(folder_, fault);
+  if (fault)
+    throw Error(concat("mask folder ", folder_.string(), " cannot be made: ", fault.message(),
+                       "; choose a place that you can write to"));
+}
+
+Entities KeptMaskSource::entities(const Frame& frame, std::span<const MaskPrompt> prompts) {
+  const fs::path file = folder_ / concat(frame.index, ".png");
+  if (fs::exists(file)) return entities_of_ids(read_gray(file).values);
+  Entities entities = source_->entities(frame, prompts);
+  write_file(file, encode_png(entities.ids));
+  return entities_of_ids(entities.ids);
+}
+
 }  // namespace ovimap

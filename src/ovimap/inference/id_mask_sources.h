@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 
 #include "ovimap/inference/mask_source.h"
 
@@ -43,6 +44,22 @@ class DirMaskSource : public MaskSource {
   std::filesystem::path folder_;
   std::map<std::string, std::filesystem::path> by_stem_;
   std::map<std::int64_t, std::filesystem::path> by_index_;
+};
+
+/// Another source's entities, kept as PNGs so that they are computed once: a folder that a
+/// DirMaskSource reads. Whoever changes what the entities depend on takes another folder.
+class KeptMaskSource : public MaskSource {
+ public:
+  /// Throws Error when the folder cannot be made.
+  KeptMaskSource(std::filesystem::path folder, std::unique_ptr<MaskSource> source);
+  std::string kind() const override { return source_->kind(); }
+  bool is_slow() const override { return source_->is_slow(); }
+  /// Scores are all 1. Throws what the source throws, and Error when a mask cannot be written.
+  Entities entities(const Frame& frame, std::span<const MaskPrompt> prompts) override;
+
+ private:
+  std::filesystem::path folder_;
+  std::unique_ptr<MaskSource> source_;
 };
 
 }  // namespace ovimap

@@ -55,6 +55,41 @@ TEST(GtMaskSource, GivesTheTruth) {
   EXPECT_TRUE(source->entities(frame_at(0), {}).scores.empty());
 }
 
+TEST(KeptMaskSource, AsksOnlyOnce) {
+  class Counting : public MaskSource {
+   public:
+    explicit Counting(int& asked) : asked_(asked) {}
+    std::string kind() const override { return "counting"; }
+    bool is_slow() const override { return true; }
+    Entities entities(const Frame& frame, std::span<const MaskPrompt>) override {
+      ++asked_;
+      Entities found{IdImage(frame.color.width(), frame.color.height()), {0.5f, 0.25f}};
+      found.ids.at(0, 0) = 2;
+      found.ids.at(1, 0) = 1;
+      return found;
+    }
+
+   private:
+    int& asked_;
+  };
+  const ScratchFolder folder("kept");
+  int asked = 0;
+  for (int run = 0; run < 2; ++run) {
+    KeptMaskSource source(folder.path() / "masks", std::make_unique<Counting>(asked));
+    EXPECT_EQ(source.kind(), "counting");
+    EXPECT_TRUE(source.is_slow());
+    for (std::int64_t i = 0; i < 2; ++i) {
+      const Entities entities = source.entities(frame_at(i), {});
+      EXPECT_EQ(entities.scores, (std::vector<float>{1, 1}));
+      EXPECT_EQ(entities.ids.at(0, 0), 2);
+      EXPECT_EQ(entities.ids.at(1, 0), 1);
+    }
+  }
+  EXPECT_EQ(asked, 2);
+  // What was kept is what any folder of masks is.
+  EXPECT_EQ(DirMaskSource(folder.path() / "masks").entities(frame_at(1), {}).scores.size(), 2u);
+}
+
 TEST(GtMaskSource, NeedsTruth) {
   const TestFrames frames(false);
   EXPECT_TRUE(contains(error_of([&] {

@@ -49,6 +49,7 @@ void AppearanceBuilder::apply(std::vector<EmbeddingAnswer> answers,
   if (registry.aliases().size() != merges_followed_) follow_merges(appearances_, registry);
   merges_followed_ = registry.aliases().size();
   for (EmbeddingAnswer& answer : answers) {
+    if (encoder_) durations_ms_.push_back(answer.milliseconds);
     const InstanceId asked = asked_for_.extract(answer.ticket).mapped();
     const auto owner = appearances_.find(registry.resolve(asked));
     if (owner == appearances_.end()) continue;

@@ -4,6 +4,8 @@
 
 #include <memory>
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include "ovimap/frames/frame.h"
 #include "ovimap/pipeline/embedding_queue.h"
@@ -37,6 +39,9 @@ class AppearanceBuilder {
   /// All that was gathered; call finish() first.
   Appearances take() { return std::move(appearances_); }
 
+  /// What the encoder took for each view since the last call.
+  std::vector<double> take_durations_ms() { return std::exchange(durations_ms_, {}); }
+
   const std::shared_ptr<ImageTextEncoder>& encoder() const { return encoder_; }
   const SemanticsConfig& config() const { return config_; }
 
@@ -50,6 +55,7 @@ class AppearanceBuilder {
   std::vector<EmbeddingRequest> chosen_;
   std::unordered_map<std::uint64_t, InstanceId> asked_for_;  ///< open tickets
   std::size_t merges_followed_ = 0;
+  std::vector<double> durations_ms_;
   EmbeddingQueue queue_;
 };
 

@@ -3,6 +3,7 @@
 #include "ovimap/pipeline/embedding_queue.h"
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include "ovimap/base/config.h"
@@ -96,11 +97,15 @@ std::vector<EmbeddingAnswer> EmbeddingQueue::answer(
   std::vector<const ObjectCrop*> objects;
   for (const EmbeddingRequest& request : batch) objects.push_back(&request.crop);
   std::vector<Eigen::VectorXf> embeddings(batch.size());
+  const auto start = std::chrono::steady_clock::now();
   if (encoder_) embeddings = embed_objects(*encoder_, objects, crops_);
+  const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - start;
+  const double each_ms = encoder_ ? taken.count() / static_cast<double>(batch.size()) : 0;
   std::vector<EmbeddingAnswer> answers;
   for (std::size_t i = 0; i < batch.size(); ++i)
     answers.push_back({batch[i].ticket, std::move(embeddings[i]),
-                       crops_.kept_views > 0 ? store_crop(batch[i].crop, crops_) : StoredCrop{}});
+                       crops_.kept_views > 0 ? store_crop(batch[i].crop, crops_) : StoredCrop{},
+                       each_ms});
   return answers;
 }
 

@@ -34,6 +34,7 @@ struct EmbeddingAnswer {
   std::uint64_t ticket = 0;
   Eigen::VectorXf embedding;  ///< empty without an encoder, or when it gave nothing finite
   StoredCrop crop;            ///< empty when CropConfig::kept_views is 0
+  double milliseconds = 0;    ///< its share of the batch's time; 0 without an encoder
 };
 
 /// Embeds views on a thread of its own, beside the mapper, in the order they come.

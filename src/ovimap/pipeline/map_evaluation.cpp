@@ -37,6 +37,20 @@ void require_one_frame(const MapAndTruth& paths, const Mesh& truth, const Mesh& 
                        " % of the map lies on the truth): ", check.fault));
 }
 
+/// The surface of a map that `ovimap embed gt` made: its objects are the truth's own.
+Mesh true_objects(const Truth& truth, const MapDocument& map, const MapAndTruth& paths) {
+  Mesh mesh = truth.mesh;
+  mesh.labels.clear();
+  for (const std::int32_t id : truth.instances)
+    mesh.labels.push_back(id > 0 ? static_cast<std::uint32_t>(id) : 0);
+  for (const InstanceSummary& instance : map.instances)
+    if (std::find(mesh.labels.begin(), mesh.labels.end(), instance.id) == mesh.labels.end())
+      throw Error(concat("map ", paths.map.string(), " has no surface, and its object ",
+                         instance.id, " is none of the truth of ", paths.source.string(),
+                         "; score maps that `ovimap run` or `ovimap embed gt` made"));
+  return mesh;
+}
+
 void count_views(const MapDocument& map, int min_views, EvaluatedScene& scene) {
   const Appearances& looks = map.semantics.appearances;
   for (const auto& [id, look] : looks) {
@@ -57,16 +71,16 @@ void count_views(const MapDocument& map, int min_views, EvaluatedScene& scene) {
 Draft draft_scene(const MapAndTruth& paths, const EvaluationConfig& config) {
   Truth truth = load_truth(paths.source);
   const MapDocument map = load_map(paths.map);
-  const Mesh mesh = extract_instance_mesh(map.map, map.instances);
+  const Mesh mesh = map.map.block_count() > 0 ? extract_instance_mesh(map.map, map.instances)
+                                              : true_objects(truth, map, paths);
   require_one_frame(paths, truth.mesh, mesh, config.frames);
   Draft draft;
   draft.paths = paths;
   draft.scene.name = paths.map.string();
   draft.scene.geometry = geometry_scores(truth.mesh, mesh, config.geometry);
-  draft.scene.labels.instances = {
-      std::move(truth.instances),
-      transfer_labels(truth.mesh.vertices, mesh.vertices, mesh.labels, config.transfer),
-      {}};
+  std::vector<std::uint32_t> labels =
+      transfer_labels(truth.mesh.vertices, mesh.vertices, mesh.labels, config.transfer);
+  draft.scene.labels.instances = {std::move(truth.instances), std::move(labels), {}};
   draft.classes = {paths.source, std::move(truth.classes), std::move(truth.class_names)};
   draft.embedded = has_embeddings(map);
   if (draft.embedded) count_views(map, config.min_embedded_views, draft.scene);

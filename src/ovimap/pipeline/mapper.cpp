@@ -139,8 +139,12 @@ int Mapper::look_at_objects(const Frame& frame) {
 }
 
 void Mapper::finish() {
-  auto t = timers_.measure("await_encoder");
-  builder_->finish(registry_);
+  {
+    auto t = timers_.measure("await_encoder");
+    builder_->finish(registry_);
+  }
+  for (const double milliseconds : builder_->take_durations_ms())
+    timers_.add("embed", milliseconds);
 }
 
 Appearances Mapper::take_appearances() {

@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ablation.h"
+
+#include <limits>
+
+#include "ovimap/base/config.h"
+
+namespace ovimap::apps {
+
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kPercent = 100;
+
+const SemanticReport* semantic(const EvalFigures& figures, Protocol protocol) {
+  const auto& report =
+      protocol == Protocol::kStandard ? figures.standard_semantic : figures.reference_semantic;
+  return report ? &*report : nullptr;
+}
+
+template <double SemanticScores::*Field>
+std::optional<double> class_figure(const EvalFigures& figures, Protocol protocol) {
+  const SemanticReport* report = semantic(figures, protocol);
+  return report ? std::optional(kPercent * report->all.*Field) : std::nullopt;
+}
+
+template <double StandardScores::*Standard, double ReferenceScores::*Reference>
+std::optional<double> instance_figure(const EvalFigures& figures, Protocol protocol) {
+  if (protocol == Protocol::kStandard)
+    return figures.standard ? std::optional(kPercent * (*figures.standard).*Standard)
+                            : std::nullopt;
+  return figures.reference ? std::optional(kPercent * (*figures.reference).*Reference)
+                           : std::nullopt;
+}
+
+std::optional<double> queries_per_object(const EvalFigures& figures, Protocol protocol) {
+  const SemanticReport* report = semantic(figures, protocol);
+  return report ? std::optional(report->queries_per_instance) : std::nullopt;
+}
+
+const AblationColumn kMiou{"mIoU", class_figure<&SemanticScores::miou>};
+const AblationColumn kMacc{"mAcc", class_figure<&SemanticScores::macc>};
+const AblationColumn kAp25{"AP25", class_figure<&SemanticScores::ap25>};
+const AblationColumn kAp50{"AP50", class_figure<&SemanticScores::ap50>};
+const AblationColumn kAp{"AP", class_figure<&SemanticScores::ap>};
+const AblationColumn kQueries{"AQ", queries_per_object};
+const AblationColumn kObjectMiou{"inst mIoU",
+                                 instance_figure<&StandardScores::miou, &ReferenceScores::miou>};
+const AblationColumn kObjectAp75{"inst AP75",
+                                 instance_figure<&StandardScores::ap75, &ReferenceScores::ap75>};
+const AblationColumn kObjectAp50{"inst AP50",
+                                 instance_figure<&StandardScores::ap50, &ReferenceScores::ap50>};
+const AblationColumn kObjectAp25{"inst AP25",
+                                 instance_figure<&StandardScores::ap25, &ReferenceScores::ap25>};
+
+AblationVariant of_views(std::string name, std::string views, bool true_objects = false) {
+  AblationVariant variant;
+  variant.name = std::move(name);
+  variant.views = std::move(views);
+  variant.true_objects = true_objects;
+  return variant;
+}
+
+Ablation views() {
+  Ablation ablation{"views", "Which views of an object are embedded", {}, {}, {}, false};
+  ablation.columns = {kMiou, kMacc, kAp25, kAp50, kQueries};
+  ablation.variants = {of_views("random", "random"),
+                       of_views("pixels", "vis"),
+                       of_views("coverage", "viewcov"),
+                       of_views("paper", "paper"),
+                       of_views("default", "default"),
+                       of_views("true objects, pixels", "vis", true),
+                       of_views("true objects, coverage", "viewcov", true),
+                       of_views("true objects, default", "default", true)};
+  const std::string replica = "Replica";
+  ablation.published = {{"random", replica, {23.8, 30.4, 31.4, 18.6, 50.3}},
+                        {"pixels", replica, {26.5, 31.8, 33.2, 19.8, 18.7}},
+                        {"coverage", replica, {26.5, 32.2, 34.5, 21.2, 8.6}},
+                        {"true objects, pixels", replica, {38.0, 50.3, 37.6, 37.6, 20.7}},
+                        {"true objects, coverage", replica, {37.6, 48.4, 36.2, 36.2, 10.4}}};
+  return ablation;
+}
+
+AblationVariant of_masks(std::string name, std::string masks) {
+  AblationVariant variant;
+  variant.name = std::move(name);
+  variant.masks = std::move(masks);
+  variant.encoder = "none";
+  return variant;
+}
+
+Ablation masks(const std::vector<std::string>& models) {
+  Ablation ablation{"masks", "Where the 2D entities come from", {}, {}, {}, false};
+  ablation.columns = {kObjectMiou, kObjectAp75, kObjectAp50, kObjectAp25};
+  ablation.variants = {of_masks("none: depth alone", "none"), of_masks("sam: MobileSAM", "sam")};
+  for (const std::string& model : models) ablation.variants.push_back(of_masks(model, model));
+  ablation.variants.push_back(of_masks("gt: true 2D masks", "gt"));
+  const std::string replica = "Replica";
+  ablation.published = {{"SAM 2", replica, {36.6, 14.2, 27.8, kNone}},
+                        {"CropFormer", replica, {36.3, 22.0, 50.8, 76.7}},
+                        {"true 2D masks", replica, {53.9, 38.8, 65.7, kNone}}};
+  return ablation;
+}
+
+Ablation fusion() {
+  Ablation ablation{"fusion", "How the embeddings of an object's views become one", {}, {}, {},
+                    false};
+  ablation.columns = {kMiou, kMacc, kAp25, kAp50};
+  for (const char* rule : {"pixel_weighted", "mean", "max_cosine", "min_l1"}) {
+    AblationVariant variant;
+    variant.name = rule;
+    variant.settings = {std::string("views.fusion=") + rule};
+    ablation.variants.push_back(variant);
+  }
+  return ablation;
+}
+
+Ablation encoder(const std::vector<std::string>& encoders) {
+  Ablation ablation{"encoder", "Which encoder embeds the views", {}, {}, {}, false};
+  ablation.columns = {kMiou, kMacc, kAp25, kAp50, kAp};
+  for (const std::string& name :
+       encoders.empty() ? std::vector<std::string>{"default"} : encoders) {
+    AblationVariant variant;
+    variant.name = variant.encoder = name;
+    ablation.variants.push_back(variant);
+  }
+  return ablation;
+}
+
+Ablation incremental() {
+  Ablation ablation{"incremental", "Figures as the recording goes on", {}, {}, {}, true};
+  ablation.columns = {kObjectMiou, kObjectAp50, kMiou, kAp50};
+  for (const int frames : {25, 50, 100, 150, 200}) {
+    AblationVariant variant;
+    variant.name = std::to_string(frames);
+    variant.frames = ":" + std::to_string(frames);
+    ablation.variants.push_back(variant);
+  }
+  return ablation;
+}
+
+Ablation schedule() {
+  Ablation ablation{"schedule", "Networks on every frame, or on as many as keep up", {}, {}, {},
+                    false};
+  ablation.columns = {kMiou, kMacc, kAp25, kAp50, kAp};
+  const auto of_intervals = [](std::string name, int masks, int views) {
+    AblationVariant variant;
+    variant.name = std::move(name);
+    variant.settings = {concat("mask_interval=", masks), concat("view_interval=", views)};
+    return variant;
+  };
+  ablation.variants = {of_intervals("offline: every frame", 1, 1),
+                       of_intervals("default: masks of every 5th", 5, 1),
+                       of_intervals("30 fps: masks of every 30th, views of every 10th", 30, 10)};
+  ablation.published = {{"offline", "Replica", {26.5, 32.2, 34.5, 21.2, 8.5}},
+                        {"30 fps", "Replica", {27.0, 32.5, 31.8, 17.7, 8.0}},
+                        {"offline", "ScanNet", {17.5, 27.6, 23.4, 15.7, 7.2}},
+                        {"30 fps", "ScanNet", {16.3, 25.4, 21.1, 14.4, 7.0}}};
+  return ablation;
+}
+
+}  // namespace
+
+std::vector<std::string> ablation_names() {
+  return {"views", "masks", "fusion", "encoder", "incremental", "schedule"};
+}
+
+Ablation make_ablation(const std::string& name, const AblationChoice& choice) {
+  if (name == "views") return views();
+  if (name == "masks") return masks(choice.models);
+  if (name == "fusion") return fusion();
+  if (name == "encoder") return encoder(choice.encoders);
+  if (name == "incremental") return incremental();
+  if (name == "schedule") return schedule();
+  std::vector<std::string> names = ablation_names();
+  names.emplace_back(kTiming);
+  throw Error(concat("ablation '", name, "': no such ablation, did you mean '",
+                     nearest_word(name, names), "'?"));
+}
+
+}  // namespace ovimap::apps

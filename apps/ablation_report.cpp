@@ -1,0 +1,199 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "ablation.h"
+
+namespace ovimap::apps {
+
+namespace {
+
+constexpr std::array kProtocols = {Protocol::kStandard, Protocol::kReference};
+// Wong, "Points of view: Color blindness", Nature Methods 8, 2011.
+constexpr std::array kColors = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00"};
+
+const char* protocol_name(Protocol protocol) {
+  return protocol == Protocol::kStandard ? "standard" : "reference";
+}
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f", value);
+  return std::isfinite(value) ? text : "-";
+}
+
+std::string cell(const std::optional<double>& value) {
+  return value ? number(*value) : "-";
+}
+
+/// CSV: quotes around what holds a comma or a quote.
+std::string field(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text)
+    result += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
+  return result;
+}
+
+struct Point {
+  double x = 0, y = 0;
+};
+
+/// Pictures of 760 x 360 units; the plot itself leaves room for a scale and a legend.
+constexpr double kWidth = 760, kHeight = 360, kLeft = 50, kRight = 20, kTop = 40, kBottom = 60;
+
+double plot_y(double value, double most) {
+  return kHeight - kBottom - (kHeight - kBottom - kTop) * value / most;
+}
+
+std::string text_at(Point at, const std::string& text, const char* anchor = "middle") {
+  return concat("<text x=\"", at.x, "\" y=\"", at.y, "\" text-anchor=\"", anchor, "\">",
+                escaped(text), "</text>\n");
+}
+
+std::string scale_lines(double most) {
+  std::string svg;
+  constexpr int kLines = 5;
+  for (int i = 0; i <= kLines; ++i) {
+    const double value = most * i / kLines, y = plot_y(value, most);
+    svg += concat("<line x1=\"", kLeft, "\" y1=\"", y, "\" x2=\"", kWidth - kRight, "\" y2=\"", y,
+                  "\" stroke=\"#ddd\"/>\n");
+    svg += text_at({kLeft - 8, y + 4}, number(value), "end");
+  }
+  return svg;
+}
+
+std::string legend(const std::vector<AblationColumn>& columns) {
+  std::string svg;
+  double x = kLeft;
+  for (std::size_t c = 0; c < columns.size(); ++c, x += 110) {
+    svg += concat("<rect x=\"", x, "\" y=\"14\" width=\"12\" height=\"12\" fill=\"",
+                  kColors[c % kColors.size()], "\"/>\n");
+    svg += text_at({x + 18, 24}, columns[c].name, "start");
+  }
+  return svg;
+}
+
+/// Every figure that is a percentage.
+std::vector<AblationColumn> percentages(const Ablation& ablation) {
+  std::vector<AblationColumn> columns = ablation.columns;
+  std::erase_if(columns, [](const AblationColumn& column) { return column.name == "AQ"; });
+  return columns;
+}
+
+double value_of(const AblationColumn& column, const AblationResult& result) {
+  return column.figure(result.figures, Protocol::kStandard).value_or(0);
+}
+
+std::string bars(const std::vector<AblationColumn>& columns,
+                 const std::vector<AblationResult>& results, double most) {
+  std::string svg;
+  const double group = (kWidth - kLeft - kRight) / static_cast<double>(results.size());
+  const double bar = 0.8 * group / static_cast<double>(columns.size());
+  for (std::size_t r = 0; r < results.size(); ++r) {
+    const double left = kLeft + group * (static_cast<double>(r) + 0.1);
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      const double y = plot_y(value_of(columns[c], results[r]), most);
+      svg += concat("<rect x=\"", left + bar * static_cast<double>(c), "\" y=\"", y, "\" width=\"",
+                    0.9 * bar, "\" height=\"", kHeight - kBottom - y, "\" fill=\"",
+                    kColors[c % kColors.size()], "\"/>\n");
+    }
+    // Long names take two lines by turns, so that neighbours do not meet.
+    svg += text_at({left + 0.4 * group, kHeight - kBottom + (r % 2 == 0 ? 20.0 : 38.0)},
+                   results[r].variant);
+  }
+  return svg;
+}
+
+std::string curves(const std::vector<AblationColumn>& columns,
+                   const std::vector<AblationResult>& results, double most) {
+  std::string svg;
+  const double last = std::stod(results.back().variant);
+  const auto x_of = [&](const AblationResult& result) {
+    return kLeft + (kWidth - kLeft - kRight) * std::stod(result.variant) / last;
+  };
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    std::string points;
+    for (const AblationResult& result : results)
+      points += concat(x_of(result), ",", plot_y(value_of(columns[c], result), most), " ");
+    svg += concat("<polyline points=\"", points, "\" fill=\"none\" stroke-width=\"2.5\" stroke=\"",
+                  kColors[c % kColors.size()], "\"/>\n");
+  }
+  for (const AblationResult& result : results)
+    svg += text_at({x_of(result), kHeight - kBottom + 20}, result.variant);
+  return svg + text_at({kWidth / 2, kHeight - 14}, "frames");
+}
+
+}  // namespace
+
+std::string ablation_markdown(const Ablation& ablation, const std::vector<AblationResult>& results,
+                              const std::string& heading) {
+  std::string text =
+      concat("## ", ablation.title, "\n\n", heading, "\n\n| ", ablation.name, " | protocol |");
+  for (const AblationColumn& column : ablation.columns) text += concat(" ", column.name, " |");
+  text += "\n| --- | --- |";
+  for (std::size_t c = 0; c < ablation.columns.size(); ++c) text += " --- |";
+  text += "\n";
+  for (const Protocol protocol : kProtocols)
+    for (const AblationResult& result : results) {
+      text += concat("| ", result.variant, " | ", protocol_name(protocol), " |");
+      for (const AblationColumn& column : ablation.columns)
+        text += concat(" ", cell(column.figure(result.figures, protocol)), " |");
+      text += "\n";
+    }
+  for (const PublishedRow& row : ablation.published) {
+    text += concat("| ", row.name, " | *published, ", row.where, "* |");
+    for (const double figure : row.figures) text += concat(" *", number(figure), "* |");
+    text += "\n";
+  }
+  return text;
+}
+
+std::string ablation_csv(const Ablation& ablation, const std::vector<AblationResult>& results) {
+  std::string text = "variant,protocol,measured_or_published";
+  for (const AblationColumn& column : ablation.columns) text += "," + field(column.name);
+  text += "\n";
+  for (const AblationResult& result : results)
+    for (const Protocol protocol : kProtocols) {
+      text += concat(field(result.variant), ",", protocol_name(protocol), ",measured");
+      for (const AblationColumn& column : ablation.columns) {
+        const auto figure = column.figure(result.figures, protocol);
+        text += figure ? concat(",", *figure) : ",";
+      }
+      text += "\n";
+    }
+  for (const PublishedRow& row : ablation.published) {
+    text += concat(field(row.name), ",reference,", field("published, " + row.where));
+    for (const double figure : row.figures)
+      text += std::isfinite(figure) ? concat(",", figure) : ",";
+    text += "\n";
+  }
+  return text;
+}
+
+std::string ablation_svg(const Ablation& ablation, const std::vector<AblationResult>& results) {
+  const std::vector<AblationColumn> columns = percentages(ablation);
+  double most = 0;
+  for (const AblationResult& result : results)
+    for (const AblationColumn& column : columns) most = std::max(most, value_of(column, result));
+  constexpr double kStep = 10;  // percent
+  most = std::max(kStep, kStep * std::ceil(most / kStep));
+  return concat(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 ", kWidth, " ", kHeight,
+      "\" font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"100%\" "
+      "height=\"100%\" fill=\"#fff\"/>\n",
+      legend(columns), scale_lines(most),
+      ablation.along_frames ? curves(columns, results, most) : bars(columns, results, most),
+      "</svg>\n");
+}
+
+}  // namespace ovimap::apps

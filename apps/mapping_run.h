@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "command.h"
+#include "ovimap/pipeline/sequence_run.h"
+
+namespace ovimap::apps {
+
+/// A recording, mapped.
+struct MappingRun {
+  std::unique_ptr<FrameSource> source;
+  SequenceResult sequence;
+  StageTimers timers;
+  MapDocument document;
+};
+
+/// Opens what the options name and maps it, with progress under `title`; Ctrl-C ends it early with
+/// what was mapped so far. `keep_masks`: folder in which masks are kept and looked for; empty:
+/// nowhere. Throws what the parts throw.
+MappingRun map_recording(const MappingOptions& options, const std::string& title,
+                         const std::filesystem::path& keep_masks = {});
+
+}  // namespace ovimap::apps

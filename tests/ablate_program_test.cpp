@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+// `ovimap ablate` as a user meets it.
+#include "truth_fixture.h"
+
+namespace ovimap {
+namespace {
+
+class AblateProgramTest : public TruthfulProgramTest {
+ protected:
+  AblateProgramTest() { make_map("none"); }
+
+  std::string command(const std::string& name) const {
+    return "ablate " + name + " replica/scene -o out --masks gt --encoder " +
+           golden_model("minilm") + " --model-dir " + kGoldenModels + kSmallViews;
+  }
+  std::size_t lines_with(const std::string& file, const std::string& word) const {
+    std::istringstream text(slurp(path(file)));
+    std::size_t count = 0;
+    for (std::string line; std::getline(text, line);) count += line.find(word) != std::string::npos;
+    return count;
+  }
+};
+
+TEST_F(AblateProgramTest, ComparesFusionRules) {
+  const ProgramResult result = run(command("fusion"));
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(result.out, slurp(path("out/fusion.md")));
+  EXPECT_EQ(lines_with("out/fusion.md", "| pixel_weighted |"), 2u);  // one a protocol
+  EXPECT_EQ(lines_with("out/fusion.csv", ",measured,"), 8u);
+  EXPECT_EQ(lines_with("out/fusion.svg", "<rect"), 1 + 4 + 4 * 4u);
+  EXPECT_EQ(slurp(path("out/fusion.svg")).find("nan"), std::string::npos);
+}
+
+TEST_F(AblateProgramTest, PrintsPublishedRowsApart) {
+  ASSERT_EQ(run(command("views")).code, 0);
+  EXPECT_EQ(lines_with("out/views.md", "*published, Replica*"), 5u);
+  EXPECT_EQ(lines_with("out/views.md", "| true objects, coverage | standard |"), 1u);
+  EXPECT_EQ(lines_with("out/views.csv", "\"published, Replica\",26.5,32.2,34.5,21.2,8.6"), 1u);
+}
+
+TEST_F(AblateProgramTest, GoesOnWhereItStopped) {
+  ASSERT_EQ(run(command("incremental")).code, 0);
+  const auto map = path("out/maps/incremental/scene-25.ovimap");
+  ASSERT_TRUE(std::filesystem::exists(map));
+  const auto written = std::filesystem::last_write_time(map);
+  ASSERT_EQ(run(command("incremental")).code, 0);
+  EXPECT_EQ(std::filesystem::last_write_time(map), written);
+  EXPECT_EQ(lines_with("out/incremental.svg", "<polyline"), 4u);
+  expect_complaint(command("incremental") + " --frames ::2", {"settings.txt", "another folder"});
+}
+
+TEST_F(AblateProgramTest, TimesTheStages) {
+  ASSERT_EQ(run(command("timing")).code, 0);
+  EXPECT_EQ(lines_with("out/timing.md", "| view features | encoder's |"), 1u);
+  EXPECT_EQ(lines_with("out/timing.md", "*964.8*"), 1u);
+}
+
+TEST_F(AblateProgramTest, SaysWhatIsWrong) {
+  expect_complaint(command("viewz"), {"viewz", "views"});
+  expect_complaint("ablate fusion recording -o out --masks none --encoder none", {"recording"});
+}
+
+}  // namespace
+}  // namespace ovimap
