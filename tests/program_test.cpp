@@ -63,7 +63,8 @@ TEST_F(ProgramTest, ReportsOnAMap) {
   EXPECT_EQ(report["named"], 0);
   const std::string html = slurp(path("room.html"));
   EXPECT_EQ(report["bytes"], html.size());
-  for (const auto& instance : run_json("info room.ovimap --json")["instances"])
+  const auto objects = run_json("info room.ovimap --json")["instances"];
+  for (const auto& instance : objects)
     EXPECT_NE(html.find("id=\"object-" + instance["id"].dump() + "\""), std::string::npos);
   for (const char* text : {"My &lt;room&gt;", "data:image/png", "this map has no embeddings",
                            "<th scope=\"row\">integrate</th>", "map.voxel_size_m: 0.01"})
