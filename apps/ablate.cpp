@@ -83,9 +83,9 @@ MapDocument embed_truth(const MappingOptions& mapping, const std::string& title)
 }
 
 /// Masks depend on the network and on what it is prompted by; both are in the folder's name or
-/// the same for all variants of an ablation.
+/// the same for all variants of an ablation. What is timed is not taken from a folder.
 fs::path mask_folder(const AblateOptions& options, const MappingOptions& mapping) {
-  if (mapping.masks == "none" || mapping.masks == "gt") return {};
+  if (mapping.masks == "none" || mapping.masks == "gt" || options.name == kTiming) return {};
   return options.out / "masks" / (scene_name(mapping.source) + "-" + slug(mapping.masks));
 }
 

@@ -3,8 +3,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures how well words find objects, and writes docs/search-benchmarks.md.
 
-Usage: tools/search_benchmarks.py PROGRAM [--kitchen FOLDER] [--out docs/search-benchmarks.md]
-FOLDER is 7-Scenes "red kitchen" (every 5th frame); without it only the rendered room is measured.
+Usage: tools/search_benchmarks.py PROGRAM [--rooms build/benchmarks/rooms/noisy] [--kitchen FOLDER]
+                                 [--out docs/search-benchmarks.md]
+--rooms: where rooms-v1 with noise is, or goes. FOLDER is 7-Scenes "red kitchen" (every 5th frame); without it only the
+rendered rooms are measured.
 """
 import argparse
 import datetime
@@ -19,9 +21,9 @@ STUFF = {"floor", "wall", "ceiling"}
 # The encoder's halves, to compare with, where they were built:
 #   build_default_encoder.py WHEELS .models/default-encoder-VARIANT --variant VARIANT
 PARTS = [(variant, pathlib.Path(f".models/default-encoder-{variant}")) for variant in ("classifier", "head")]
-# The published presets' sizes are meant for 640x480; the rendered rooms have a quarter of its pixels.
 # One scale of crops, plain and without background, is enough to compare with.
-SMALL = ["--set", "views.min_mask_px=250", "--set", "views.min_first_depth_px=125", "--set", "crops.scales=1"]
+VIEWS = ["default", "viewcov", "paper", "combine", "vis"]
+FEW_CROPS = ["--set", "crops.scales=1"]
 
 
 def run_json(*command, accepted=(0,)):
@@ -109,7 +111,23 @@ def kitchen_section(program, kitchen, work):
         wrong = verdict_rates(program, map_file, *options)
         text.append(f"| {name} | {len(wrong['absent']) / 50:.0%} ({', '.join(wrong['absent']) or 'none'}) "
                     f"| {len(wrong['present']) / 50:.0%} ({', '.join(wrong['present'])}) |")
-    return text + [""] + relation_section(program, made)
+    return text + [""] + kitchen_views(program, kitchen, made, work) + relation_section(program, made)
+
+
+def kitchen_views(program, kitchen, made, work):
+    """The same objects, other views: the map's mesh goes the way of any finished geometry."""
+    mesh, map_file = work / "kitchen.ply", work / "kitchen_views.ovimap"
+    run_json(program, "export", made, mesh, "--what", "instances")
+    text = ["### Which views to embed", "", "    ovimap export kitchen.ovimap kitchen.ply --what instances",
+            "    ovimap embed kitchen.ply KITCHEN --views PRESET -o views.ovimap", "",
+            "The phrases above; one scale of crops.", "", "| views | AQ | MRR | first | first five |", "| --- | --- | --- | --- | --- |"]
+    for preset in VIEWS:
+        summary = run_json(program, "embed", mesh, kitchen, *FEW_CROPS, "--views", preset, "-o", map_file)
+        ranks = [rank for _, rank, _, _ in kitchen_ranks(program, map_file)]
+        mrr = sum(1 / rank for rank in ranks if rank) / len(ranks)
+        text.append(f"| {preset} | {summary['embedding_queries'] / summary['instances']:.1f} | {mrr:.3f} | {recall(ranks, 1):.3f} "
+                    f"| {recall(ranks, 5):.3f} |")
+    return text + [""]
 
 
 def relation_section(program, map_file):
@@ -137,13 +155,9 @@ def room_recall(program, room, map_file, *options):
     return recall(ranks, 1), recall(ranks, 3), sum(1 / rank for rank in ranks if rank) / len(ranks)
 
 
-def render_rooms(program, work):
-    rooms = []
-    for seed in (1, 2, 3):
-        folder = work / f"room{seed}"
-        run_json(program, "synth", folder, "--room", "tiny", "--noise", "--seed", seed)
-        rooms.append(folder / "room")
-    return rooms
+def render_rooms(program, folder):
+    run_json(program, "synth", folder, "--room", "rooms-v1", "--noise")
+    return sorted(file.parent for file in folder.glob("*/traj.txt"))
 
 
 def mean_over_rooms(program, rooms, work, options, query_options=()):
@@ -151,15 +165,15 @@ def mean_over_rooms(program, rooms, work, options, query_options=()):
     scores = []
     for room in rooms:
         map_file = work / "views.ovimap"
-        summary = run_json(program, "embed", "gt", room, *SMALL, *options, "-o", map_file)
+        summary = run_json(program, "embed", "gt", room, *FEW_CROPS, *options, "-o", map_file)
         first, three, mrr = room_recall(program, room, map_file, *query_options)
         scores.append((summary["embedding_queries"] / summary["instances"], mrr, first, three))
     return " | ".join(f"{sum(column) / len(rooms):.{1 if i == 0 else 3}f}" for i, column in enumerate(zip(*scores)))
 
 
 def encoders_section(program, rooms, work):
-    text = ["## The default encoder and its halves", "", "The rendered `tiny` rooms of three seeds with sensor noise, true instances, views as by default; "
-            "their furniture models took no part in the training.", "",
+    text = ["## The default encoder and its halves", "", "rooms-v1 with sensor noise, true instances, views as by default; the furniture models "
+            "of these rooms took no part in the training.", "",
             "| encoder | AQ | MRR | first | first three |", "| --- | --- | --- | --- | --- |"]
     for name, folder in PARTS:
         if folder.exists():
@@ -171,10 +185,10 @@ def encoders_section(program, rooms, work):
 def views_section(program, rooms, work):
     """Truth geometry, so that nothing but the choice of views differs."""
     text = ["## Which views to embed", "", "    ovimap embed gt ROOM --views PRESET -o room.ovimap", "",
-            "The rendered `tiny` rooms of three seeds with sensor noise, true instances; mean over rooms. AQ: embedding queries "
+            "rooms-v1 with sensor noise, true instances; mean over the five rooms. AQ: embedding queries "
             "an object. Words: the classes in the room; reciprocal rank, right object first, among three. One scale of crops.", "",
             "| views | AQ | MRR | first | first three |", "| --- | --- | --- | --- | --- |"]
-    for preset in ("default", "viewcov", "paper", "combine", "vis", "random", "all"):
+    for preset in VIEWS:
         text.append(f"| {preset} | {mean_over_rooms(program, rooms, work, ['--views', preset])} |")
     return text
 
@@ -189,6 +203,7 @@ def machine():
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("program")
+    parser.add_argument("--rooms", type=pathlib.Path, default=pathlib.Path("build/benchmarks/rooms/noisy"))
     parser.add_argument("--kitchen", type=pathlib.Path)
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("docs/search-benchmarks.md"))
     options = parser.parse_args()
@@ -198,7 +213,7 @@ def main():
             f"Default encoder. {machine()}, commit {commit}, {datetime.date.today()}.", ""]
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
-        rooms = render_rooms(options.program, work)
+        rooms = render_rooms(options.program, options.rooms)
         text += encoders_section(options.program, rooms, work) + [""] + views_section(options.program, rooms, work) + [""]
         if options.kitchen:
             text += kitchen_section(options.program, options.kitchen, work)
