@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
-#include <array>
-
 #include "ovimap/base/error.h"
 #include "ovimap/frames/folder_parts.h"
 #include "ovimap/frames/number_text.h"
@@ -44,6 +42,13 @@ Pose read_extrinsic(const fs::path& file) {
   return rigid_pose(matrix);
 }
 
+/// The published 2D annotation, whose values are object ids from 1; the filtered one goes first.
+fs::path find_truth(const fs::path& folder, const std::string& name) {
+  for (const char* part : {"instance-filt", "instance"})
+    if (fs::path file = folder / part / (name + ".png"); fs::exists(file)) return file;
+  return {};
+}
+
 Recording list_frames(const fs::path& folder, const FrameSourceConfig&) {
   Recording recording;
   recording.kind = kScanNetReader.kind;
@@ -68,6 +73,7 @@ Recording list_frames(const fs::path& folder, const FrameSourceConfig&) {
     frame.color = color;
     frame.depth = folder / "depth" / (frame.name + ".png");
     frame.pose_file = folder / "pose" / (frame.name + ".txt");
+    frame.truth = find_truth(folder, frame.name);
     recording.frames.push_back(std::move(frame));
   }
   return recording;

@@ -69,6 +69,19 @@ TEST_F(ScanNet, ExtrinsicsMeetInOneFrame) {
   EXPECT_TRUE(open_frame_source(path())->read(0).frame->color_from_depth.matrix().isIdentity());
 }
 
+TEST_F(ScanNet, TwoDimensionalAnnotationIsTheTruth) {
+  EXPECT_FALSE(open_frame_source(path())->truth_ids(2));
+  for (const char* part : {"instance", "instance-filt"}) {
+    fs::create_directories(path() / part);
+    IdImage ids = sequence_.ids(2);
+    if (part == std::string("instance")) ids.fill(9);
+    write_file(path() / part / "2.png", encode_png(ids));
+  }
+  const auto source = open_frame_source(path());
+  EXPECT_EQ(source->truth_ids(2), sequence_.ids(2));
+  EXPECT_FALSE(source->truth_ids(3));
+}
+
 TEST_F(ScanNet, LostAndIncompleteFramesAreFaults) {
   std::string lost;
   for (int i = 0; i < 16; ++i) lost += "-inf ";

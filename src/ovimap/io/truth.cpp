@@ -13,6 +13,7 @@
 #include "ovimap/base/error.h"
 #include "ovimap/image/codec.h"
 #include "ovimap/io/ply.h"
+#include "ovimap/io/truth_scannet.h"
 
 namespace ovimap {
 
@@ -72,14 +73,31 @@ void read_names(const fs::path& path, Truth& truth) {
   }
 }
 
-/// "ROOT/SCENE", also when it was given as "ROOT/SCENE/" or ".".
+/// Replica's own description: {"classes": [{"id": 1, "name": "backpack"}], "objects": [{"id": 12,
+/// "class_name": "sofa"}]}.
+void read_replica_names(const fs::path& path, Truth& truth) {
+  const Bytes bytes = read_file(path);
+  try {
+    const nlohmann::json document = nlohmann::json::parse(bytes.begin(), bytes.end());
+    for (const auto& entry : document.at("classes"))
+      truth.class_names[entry.at("id").get<std::int32_t>()] = entry.at("name").get<std::string>();
+    for (const auto& object : document.at("objects"))
+      truth.instance_names[object.at("id").get<std::int32_t>()] =
+          object.at("class_name").get<std::string>();
+  } catch (const nlohmann::json::exception&) {
+    throw Error(concat("'", path.string(), "' is not Replica's info_semantic.json: expected are ",
+                       "classes with id and name, and objects with id and class_name"));
+  }
+}
+
+/// The folder of a recording, "ROOT/SCENE" also when it was given as "ROOT/SCENE/" or ".".
 fs::path scene_folder(const fs::path& source) {
   std::error_code fault;
-  const fs::path folder = fs::canonical(source, fault);
-  if (fault || !fs::is_directory(folder))
+  const fs::path path = fs::canonical(source, fault);
+  if (fault)
     throw Error(concat("there is no folder '", source.string(),
                        "' to take the truth from; give the scene's folder ROOT/SCENE"));
-  return folder;
+  return fs::is_directory(path) ? path : path.parent_path();
 }
 
 fs::path existing(const fs::path& path, const fs::path& source) {
@@ -89,26 +107,39 @@ fs::path existing(const fs::path& path, const fs::path& source) {
   return path;
 }
 
-}  // namespace
+void find_names(const fs::path& folder, Truth& truth) {
+  for (const fs::path& names : {folder / "labels.json", folder.parent_path() / "labels.json"})
+    if (fs::exists(names)) return read_names(names, truth);
+  for (const fs::path& names :
+       {folder / "info_semantic.json", folder / "habitat" / "info_semantic.json"})
+    if (fs::exists(names)) return read_replica_names(names, truth);
+}
 
-Truth load_truth(const fs::path& source) {
-  const fs::path folder = scene_folder(source), root = folder.parent_path();
+Truth load_replica_truth(const fs::path& folder, const fs::path& source) {
+  const fs::path root = folder.parent_path();
   const std::string scene = folder.filename().string();
   const fs::path mesh_path = existing(root / (scene + "_mesh.ply"), source);
   const fs::path instance_path = existing(root / ("instance_labels_" + scene + ".txt"), source);
   const fs::path class_path = root / ("semantic_labels_" + scene + ".txt");
   Truth truth;
   truth.mesh = read_ply(mesh_path);
+  truth.mesh.labels.clear();
   if (truth.mesh.vertices.empty())
     throw Error(concat("the truth mesh '", mesh_path.string(), "' has no vertices"));
   truth.instances = read_labels_for(truth.mesh, instance_path);
   if (fs::exists(class_path)) truth.classes = read_labels_for(truth.mesh, class_path);
-  for (const fs::path& names : {folder / "labels.json", root / "labels.json"}) {
-    if (!fs::exists(names)) continue;
-    read_names(names, truth);
-    break;
-  }
+  find_names(folder, truth);
   return truth;
+}
+
+}  // namespace
+
+Truth load_truth(const fs::path& source, ScanNetClasses scannet_classes) {
+  const fs::path folder = scene_folder(source);
+  if (!fs::exists(folder.parent_path() / (folder.filename().string() + "_mesh.ply")))
+    if (const fs::path mesh = find_scannet_mesh(folder); !mesh.empty())
+      return load_scannet_truth(mesh, scannet_classes);
+  return load_replica_truth(folder, source);
 }
 
 }  // namespace ovimap

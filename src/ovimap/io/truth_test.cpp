@@ -76,6 +76,37 @@ TEST_F(TruthFolder, ClassesAndNamesMayBeMissing) {
   EXPECT_TRUE(truth.instance_names.empty());
 }
 
+TEST_F(TruthFolder, MeshOfQuadsAsReplicaPublishesIt) {
+  write("den_mesh.ply",
+        "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\n"
+        "property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
+        "element face 2\nproperty list uchar int vertex_indices\nend_header\n"
+        "0 0 0 1 2 3\n1 0 0 1 2 3\n1 1 0 1 2 3\n0 1 0 1 2 3\n2 0 0 1 2 3\n2 1 0 1 2 3\n"
+        "4 0 1 2 3\n4 1 4 5 2\n");
+  write("instance_labels_den.txt", "7\n7\n7\n7\n9\n9\n");
+  write("semantic_labels_den.txt", "93\n93\n93\n93\n-1\n256\n");
+  const Truth truth = load_truth(root_ / "den");
+  EXPECT_EQ(truth.mesh.vertices.size(), 6u);
+  EXPECT_EQ(truth.mesh.triangles.size(), 4u);  // two for each quad
+  EXPECT_EQ(truth.instances, (std::vector<std::int32_t>{7, 7, 7, 7, 9, 9}));
+  EXPECT_EQ(truth.classes, (std::vector<std::int32_t>{93, 93, 93, 93, -1, 256}));
+}
+
+TEST_F(TruthFolder, NamesOfTheDataSetItself) {
+  fs::create_directories(root_ / "den" / "habitat");
+  write("den/habitat/info_semantic.json",
+        R"({"classes": [{"id": 1, "name": "backpack"}, {"id": 93, "name": "wall"}],
+            "objects": [{"id": 12, "class_id": 93, "class_name": "wall"}]})");
+  const Truth truth = load_truth(root_ / "den");
+  EXPECT_EQ(truth.class_names.at(93), "wall");
+  EXPECT_EQ(truth.instance_names.at(12), "wall");
+  write("labels.json", R"({"instances": {"12": "sofa"}})");
+  EXPECT_EQ(load_truth(root_ / "den").instance_names.at(12), "sofa");
+  fs::remove(root_ / "labels.json");
+  write("den/habitat/info_semantic.json", R"({"classes": [{"id": "one"}]})");
+  EXPECT_TRUE(fault_names("is not Replica's info_semantic.json")) << fault();
+}
+
 TEST_F(TruthFolder, NamesWhatIsMissing) {
   EXPECT_THROW(load_truth(root_ / "attic"), Error);
   fs::remove(root_ / "instance_labels_den.txt");
