@@ -68,8 +68,14 @@ void count_views(const MapDocument& map, int min_views, EvaluatedScene& scene) {
   }
 }
 
-Draft draft_scene(const MapAndTruth& paths, const EvaluationConfig& config) {
-  Truth truth = load_truth(paths.source);
+/// The numbering of ScanNet's own truth that a set of classes needs: its 20 are some of NYU's 40.
+ScanNetClasses numbering_for(const std::string& classes) {
+  return classes == "scannet20" ? ScanNetClasses::kNyu40 : ScanNetClasses::kScanNet200;
+}
+
+Draft draft_scene(const MapAndTruth& paths, const std::string& classes,
+                  const EvaluationConfig& config) {
+  Truth truth = load_truth(paths.source, numbering_for(classes));
   const MapDocument map = load_map(paths.map);
   const Mesh mesh = map.map.block_count() > 0 ? extract_instance_mesh(map.map, map.instances)
                                               : true_objects(truth, map, paths);
@@ -168,7 +174,8 @@ Evaluation evaluate_maps(std::span<const MapAndTruth> pairs, const EvaluationOpt
   const bool named = options.classes != "auto" && options.classes != "truth";
   if (named) read_label_set(options.classes);  // a wrong name shows before anything slow
   std::vector<Draft> drafts;
-  for (const MapAndTruth& paths : pairs) drafts.push_back(draft_scene(paths, config));
+  for (const MapAndTruth& paths : pairs)
+    drafts.push_back(draft_scene(paths, options.classes, config));
   Evaluation evaluation;
   if (const std::string reason = lacking(drafts, options); !reason.empty()) {
     evaluation.notices.push_back(reason);
