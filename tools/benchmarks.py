@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures quality on the rendered rooms and speed on a real recording, and writes docs/benchmarks.md.
 
-Usage: tools/benchmarks.py PROGRAM [--kitchen FOLDER] [--work build/benchmarks] [--out docs]
+Usage: tools/benchmarks.py PROGRAM [--kitchen FOLDER] [--only SECTION...] [--work build/benchmarks] [--out docs]
 FOLDER is a 640x480 recording (7-Scenes red kitchen in the published page); without it speed is not measured. Rooms,
 masks and maps stay in the work folder: a broken-off run goes on where it stopped, a finished one is only read again.
 """
@@ -17,6 +17,7 @@ import subprocess
 TARGETS_MS = {"depth segmentation": 30, "association + fusion + labels": 40, "ray cast": 20, "MobileSAM frame": 4000}
 TUNED, UNSEEN = ["living-room", "bedroom", "kitchen"], ["office", "bathroom"]
 MASKS = ["gt", "sam", "none"]
+SECTIONS = ["tiny", "rooms", "exact", "speed", "ablations"]
 # Aims of the standard protocol, class-agnostic, with sensor noise.
 AIMS = {"gt": {"ap50": 0.80, "miou": 0.75}, "sam": {"ap50": 0.45, "ap25": 0.65}, "none": {"ap25": 0.35}}
 # On the unseen rooms. Masks on every frame are slow: that schedule is measured on every second frame.
@@ -34,7 +35,38 @@ def run_json(*command):
     return json.loads(subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True).stdout)
 
 
+def processor():
+    for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines():
+        if line.startswith("model name"):
+            return line.split(":", 1)[1].strip()
+    return "unknown processor"
+
+
 # ------------------------------------------------------------------------------------------------------- quality
+
+def tiny_rows(program, work):
+    for noise in (False, True):
+        room = work / "tiny" / ("noisy" if noise else "exact")
+        run(program, "synth", room, "--room", "tiny", *(["--noise"] if noise else []))
+        for masks, options in (("gt", []), ("sam", ["--set", "mask_interval=1"]), ("none", [])):
+            map_file = work / "tiny" / "room.ovimap"
+            run(program, "run", room / "room", "--masks", masks, "--encoder", "none", *options, "-o", map_file)
+            scores = run_json(program, "eval", map_file, "--gt", room / "room", "--encoder", "none")
+            standard, reference = scores["standard"]["class_agnostic"], scores["reference"]["class_agnostic"]
+            geometry = scores["standard"]["geometry"]
+            yield (f"| {'on' if noise else 'off'} | {masks} | {standard['miou']:.3f} | {standard['ap']:.3f} | {standard['ap75']:.3f} "
+                   f"| {standard['ap50']:.3f} | {standard['ap25']:.3f} | {reference['miou']:.3f} | {reference['ap50']:.3f} "
+                   f"| {standard['predicted_instances']} / {standard['truth_instances']} "
+                   f"| {1e3 * geometry['accuracy_m']:.1f} | {geometry['completeness']:.3f} |")
+
+
+def tiny_section(program, work):
+    return ["## Quality: the room `tiny`, 40 frames of 320x240", "",
+            "    ovimap synth DIR --room tiny [--noise]", "    ovimap run DIR/room --masks MASKS -o MAP", "    ovimap eval MAP --gt DIR/room", "",
+            "Class-agnostic. MobileSAM on every frame.", "",
+            "| noise | masks | mIoU | AP | AP75 | AP50 | AP25 | ref. mIoU | ref. AP50 | objects found / true | error, mm | completeness |",
+            "| --- " * 12 + "|", *tiny_rows(program, work), ""]
+
 
 def render(program, work, noise):
     folder = work / "rooms" / ("noisy" if noise else "exact")
@@ -46,7 +78,8 @@ def map_of(program, work, rooms, name, masks):
     file = work / "maps" / f"{rooms.name}-{name}-{masks}.ovimap"
     file.parent.mkdir(parents=True, exist_ok=True)
     if not file.exists():
-        run(program, "run", rooms / name, "--masks", masks, "-o", file)
+        encoder = [] if masks != "none" else ["--encoder", "none"]
+        run(program, "run", rooms / name, "--masks", masks, *FEW_CROPS, *encoder, "-o", file)
     return file
 
 
@@ -73,11 +106,12 @@ def quality_row(program, work, rooms, names, group, masks):
             f"| {' | '.join(words)} | {aq} |")
 
 
-def quality_section(program, work, noisy, exact):
+def quality_section(program, work, with_exact):
+    noisy, exact = render(program, work, True), render(program, work, False) if with_exact else None
     heads = ["noise", "rooms", "masks", "mIoU", "AP75", "AP50", "AP25", "ref. mIoU", "ref. AP75", "ref. AP50", "ref. AP25",
              "objects found / true", "error, mm", "completeness", "class mIoU", "class mAcc", "class AP50", "class AP25", "AQ"]
     rows = [quality_row(program, work, rooms, names, group, masks)
-            for rooms in (noisy, exact)
+            for rooms in ((noisy, exact) if with_exact else (noisy,))
             for group, names in (("tuned on", TUNED), ("unseen", UNSEEN))
             for masks in (MASKS if rooms is noisy else ["gt"])]
     return ["## Quality: rooms-v1", "",
@@ -90,7 +124,8 @@ def quality_section(program, work, noisy, exact):
             "| " + " | ".join(heads) + " |", "| --- " * len(heads) + "|", *rows, ""]
 
 
-def ablation_section(program, work, noisy, out):
+def ablation_section(program, work, out):
+    noisy = render(program, work, True)
     pictures = out / "ablations"
     pictures.mkdir(exist_ok=True)
     scenes = [noisy / name for name in UNSEEN]
@@ -137,17 +172,19 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("program", type=pathlib.Path)
     parser.add_argument("--kitchen", type=pathlib.Path)
+    parser.add_argument("--only", nargs="+", choices=SECTIONS, help="measure these sections; the page then has no others")
     parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("build/benchmarks"))
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("docs"))
     arguments = parser.parse_args()
     program, work = arguments.program.resolve(), arguments.work
-    speed, machine = speed_section(program, arguments.kitchen) if arguments.kitchen else ([], "not recorded")
-    noisy, exact = render(program, work, True), render(program, work, False)
-    quality = quality_section(program, work, noisy, exact)
-    ablations = ablation_section(program, work, noisy, arguments.out)
+    wanted = set(arguments.only or SECTIONS)
+    speed, machine = speed_section(program, arguments.kitchen) if arguments.kitchen and "speed" in wanted else ([], processor())
+    tiny = tiny_section(program, work) if "tiny" in wanted else []
+    quality = quality_section(program, work, "exact" in wanted) if "rooms" in wanted else []
+    ablations = ablation_section(program, work, arguments.out) if "ablations" in wanted else []
     version = subprocess.run([program, "--version"], stdout=subprocess.PIPE, text=True, check=True).stdout.strip()
     page = ["# Benchmarks", "", "Written by `make benchmarks KITCHEN=FOLDER`. Nothing here was typed in by hand.", "",
-            f"Machine: {machine}. Program: {version}. Date: {datetime.date.today()}.", "", *quality, *speed, *ablations]
+            f"Machine: {machine}. Program: {version}. Date: {datetime.date.today()}.", "", *tiny, *quality, *speed, *ablations]
     (arguments.out / "benchmarks.md").write_text("\n".join(page))
 
 
