@@ -7,6 +7,7 @@
 
 #include "command.h"
 #include "ovimap/base/version.h"
+#include "usage_fault.h"
 
 namespace {
 
@@ -64,7 +65,7 @@ int main(int argc, char** argv) {
   } catch (const CLI::Success& success) {
     return app.exit(success);  // --help and --version
   } catch (const CLI::ParseError& error) {
-    return complain((std::string(error.what()) + "; see ovimap --help").c_str(), kUserCanMend);
+    return complain(usage_fault(app, error, {argv + 1, argv + argc}).c_str(), kUserCanMend);
   } catch (const ovimap::Error& error) {
     return complain(error.what(), kUserCanMend);
   } catch (const std::filesystem::filesystem_error& error) {

@@ -101,7 +101,9 @@ TEST_F(ProgramTest, ChecksRecordings) {
 }
 
 TEST_F(ProgramTest, SaysWhatIsWrongWithTheCommandLine) {
-  expect_complaint("", {"subcommand"});
+  expect_complaint("", {"say what to do", "run, check", "--help"});
+  expect_complaint("qurey room.ovimap mug", {"qurey", "'query'"});
+  expect_complaint("run recording --mask sam -o a.ovimap", {"'--mask'", "'--masks'"});
   expect_complaint("fly", {"ovimap"});
   expect_complaint("run recording", {"output"});
   expect_complaint("run recording -o a.ovimap --set map.voxel=1", {"map.voxel_size_m"});
