@@ -122,6 +122,8 @@ int export_map(const ExportOptions& options) {
   if (options.json)
     print_json(
         {{"map", options.map.string()}, {"out", options.out.string()}, {"what", options.what}});
+  else
+    std::printf("%s: %s\n", options.out.c_str(), options.what.c_str());
   return kDone;
 }
 

@@ -27,10 +27,10 @@ int info(const InfoOptions& options) {
       options.map.c_str(), map.instances.size(), static_cast<long long>(map.frames),
       static_cast<long long>(map.blocks), double{map.voxel_size_m},
       static_cast<double>(map.size_bytes) / 1e6, map.version.c_str());
-  std::printf("%6s  %-24s %24s %24s %8s %6s\n", "id", "name", "centre (m)", "size (m)", "points",
+  std::printf("%6s  %-24s %24s %24s %8s %6s\n", "id", "name", "centroid (m)", "size (m)", "points",
               "views");
   for (const InstanceSummary& instance : map.instances) {
-    const Eigen::Vector3f center = instance.box.center(), size = instance.box.sizes();
+    const Eigen::Vector3f center = instance.centroid, size = instance.box.sizes();
     const auto name = map.names.find(instance.id);
     std::printf("%6u  %-24s %8.2f%8.2f%8.2f %8.2f%8.2f%8.2f %8zu %6d\n", instance.id,
                 name == map.names.end() ? "" : name->second.c_str(), double{center.x()},

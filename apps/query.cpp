@@ -76,7 +76,7 @@ void print_answer(const QueryAnswer& answer, const SearchIndex& index) {
               answer.verdict == Verdict::kFound ? "found" : "not in the map");
   if (!answer.reading.empty()) std::printf(", read as %s", answer.reading.c_str());
   if (!answer.reason.empty()) std::printf(" (%s)", answer.reason.c_str());
-  std::printf("\n");
+  std::printf(answer.verdict == Verdict::kFound ? "\n" : "; what comes nearest:\n");
   for (const QueryMatch& match : answer.matches) {
     const SearchObject& object = index.object(match.position);
     std::printf("  #%-5u %6.3f", match.id, double{match.score});

@@ -51,8 +51,13 @@ int run(const RunOptions& options) {
                 {"instances", mapped.document.instances.size()},
                 {"peak_rss_mb", peak_rss_mb()}});
   else
-    std::printf("%s: %zu objects from %zu frames in %.1f s (%.1f frames/s)\n", options.map.c_str(),
-                mapped.document.instances.size(), result.frames.size(), result.seconds, fps);
+    std::printf("%s: %zu objects from %zu frames (%d with masks) in %.1f s (%.1f frames/s)\n",
+                options.map.c_str(), mapped.document.instances.size(), result.frames.size(),
+                mapped.document.mask_frames, result.seconds, fps);
+  if (mapped.document.instances.empty())
+    std::fprintf(stderr,
+                 "ovimap: no object was seen often enough to be kept; map more frames, or --set "
+                 "mask_interval=1 where masks are slow\n");
   return kDone;
 }
 

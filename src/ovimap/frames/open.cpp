@@ -15,10 +15,14 @@ const Reader* const kReaders[] = {&kReplicaReader, &kSevenScenesReader, &kIclNui
 const Reader& find_reader(const std::filesystem::path& folder) {
   for (const Reader* reader : kReaders)
     if (reader->recognises(folder)) return *reader;
+  if (std::filesystem::is_empty(folder))
+    throw Error(concat(folder.string(), " is empty; give the folder of a recording"));
   std::string looked_for;
   for (const Reader* reader : kReaders)
     looked_for += concat(looked_for.empty() ? "" : "; ", reader->looks_for);
-  throw Error(concat(folder.string(), " holds no known layout; looked for: ", looked_for));
+  throw Error(
+      concat(folder.string(),
+             " holds no known layout (docs/sources.md describes them); looked for: ", looked_for));
 }
 
 /// Cameras that the user gives go before those that a recording has for each frame.

@@ -147,6 +147,8 @@ TEST(OpenFrameSource, WhatCannotBeOpenedIsNamed) {
     return "no error";
   };
   EXPECT_NE(message(folder.path() / "none").find("does not exist"), std::string::npos);
+  EXPECT_NE(message(folder.path()).find("is empty"), std::string::npos);
+  fixture::write_text(folder.path() / "readme.txt", "no recording");
   EXPECT_NE(message(folder.path()).find("frame-NNNNNN.color.jpg"), std::string::npos);
   fixture::write_text(folder.path() / "a.txt", "x");
   EXPECT_NE(message(folder.path() / "a.txt").find("is a file"), std::string::npos);

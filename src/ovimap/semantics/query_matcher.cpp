@@ -26,6 +26,8 @@ void join(MatchScores& scores, const MatchScores& other, TermRule rule) {
 }  // namespace
 
 void require_embeddings(const SearchIndex& index) {
+  if (index.size() == 0)
+    throw Error("the map holds no object to be found; map the recording again with more frames");
   if (index.embedded() == 0)
     throw Error(concat("none of the map's ", index.size(),
                        " objects has an embedding; map with "
