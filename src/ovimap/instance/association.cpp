@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <map>
 #include <queue>
-#include <set>
 #include <tuple>
 
 #include "ovimap/base/config.h"
@@ -66,10 +65,7 @@ class OneToOne {
  public:
   OneToOne(const Segments& segments, const Image<VoxelRef>& surface, const VoxelMap& map,
            const AssociationConfig& config)
-      : surface_(surface), map_(map), config_(config), pixels_(segments.segments.size()) {
-    for (std::uint32_t i = 0; i < surface.size(); ++i)
-      if (segments.ids[i] != 0 && surface[i]) pixels_[segments.ids[i] - 1u].push_back(i);
-  }
+      : segments_(segments), surface_(surface), map_(map), config_(config) {}
 
   void assign(const std::vector<Votes>& votes, std::vector<SegmentAssociation>& result) {
     for (std::size_t segment = 0; segment < votes.size(); ++segment)
@@ -77,29 +73,42 @@ class OneToOne {
     while (!queue_.empty()) {
       const auto [count, order, label] = queue_.top();
       queue_.pop();
-      const std::size_t segment = pixels_.size() - 1 - order;
-      if (taken_.insert(label).second)
-        result[segment].label = label;
-      else
+      const std::size_t segment = votes.size() - 1 - order;
+      if (!is_free(label, segment)) {
         enqueue(segment, vote_again(segment));
+        continue;
+      }
+      owner_.try_emplace(label, segment);
+      result[segment].label = label;
     }
   }
 
  private:
+  /// Whether the segment may take the label in this frame.
+  bool is_free(Label label, std::size_t segment) const {
+    const auto found = owner_.find(label);
+    if (found == owner_.end()) return true;
+    const auto masked = [this](std::size_t s) { return segments_.segments[s].entity != 0; };
+    return config_.association == AssociationRule::kMixed && !masked(segment) &&
+           !masked(found->second);
+  }
+
   void enqueue(std::size_t segment, const Votes& votes) {
     const auto [label, count] = winner(votes);
     // Among equals the lower segment goes first: the queue serves the largest tuple.
-    if (count > config_.assoc_min_votes) queue_.emplace(count, pixels_.size() - 1 - segment, label);
+    if (count > config_.assoc_min_votes)
+      queue_.emplace(count, segments_.segments.size() - 1 - segment, label);
   }
 
-  Votes vote_again(std::size_t segment) const {
+  Votes vote_again(std::size_t segment) {
+    if (pixels_.empty()) list_pixels();
     Votes votes;
     for (std::uint32_t pixel : pixels_[segment]) {
       const VoxelRef ref = surface_[pixel];
       for (const LabelSupport& held :
            voxel_labels(map_.block(ref.block()), ref.voxel(), map_.labels())) {
         if (held.label == kNoLabel) break;
-        if (taken_.contains(held.label)) continue;
+        if (!is_free(held.label, segment)) continue;
         ++votes[held.label];
         break;
       }
@@ -107,11 +116,19 @@ class OneToOne {
     return votes;
   }
 
+  /// Most frames have few disputes, and frames without masks none: listed when first needed.
+  void list_pixels() {
+    pixels_.resize(segments_.segments.size());
+    for (std::uint32_t i = 0; i < surface_.size(); ++i)
+      if (segments_.ids[i] != 0 && surface_[i]) pixels_[segments_.ids[i] - 1u].push_back(i);
+  }
+
+  const Segments& segments_;
   const Image<VoxelRef>& surface_;
   const VoxelMap& map_;
   const AssociationConfig& config_;
   std::vector<std::vector<std::uint32_t>> pixels_;
-  std::set<Label> taken_;
+  std::map<Label, std::size_t> owner_;  ///< the first segment that took a label
   std::priority_queue<std::tuple<int, std::size_t, Label>> queue_;
 };
 
@@ -131,10 +148,11 @@ std::vector<Label> overlapped_labels(const Votes& votes, int area_px,
 }  // namespace
 
 void list_fields(AssociationConfig& config, ConfigFields& fields) {
-  fields.add_choice<AssociationRule>(
-      "association", config.association,
-      {{"one_to_one", AssociationRule::kOneToOne}, {"argmax", AssociationRule::kArgmax}},
-      "how segments take super-points");
+  fields.add_choice<AssociationRule>("association", config.association,
+                                     {{"one_to_one", AssociationRule::kOneToOne},
+                                      {"argmax", AssociationRule::kArgmax},
+                                      {"mixed", AssociationRule::kMixed}},
+                                     "how segments take super-points");
   fields.add("assoc_min_votes", config.assoc_min_votes, 0, 1000000,
              "a super-point needs more votes than this, points");
   fields.add("merge_min_points", config.merge_min_points, 0, 100000000,
@@ -147,7 +165,7 @@ std::vector<SegmentAssociation> associate(const Segments& segments, const Image<
                                           VoxelMap& map, const AssociationConfig& config) {
   const std::vector<Votes> votes = count_votes(segments, surface, map);
   std::vector<SegmentAssociation> result(segments.segments.size());
-  if (config.association == AssociationRule::kOneToOne) {
+  if (config.association != AssociationRule::kArgmax) {
     OneToOne(segments, surface, map, config).assign(votes, result);
   } else {
     for (std::size_t i = 0; i < votes.size(); ++i) {

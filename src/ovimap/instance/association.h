@@ -11,12 +11,13 @@ namespace ovimap {
 
 enum class AssociationRule {
   kOneToOne,  ///< greedy; a label serves one segment a frame (the released code)
-  kArgmax,    ///< every segment takes its most voted label (the paper's text; better,
-              ///< docs/experiments.md)
+  kArgmax,    ///< every segment takes its most voted label (the paper's text)
+  kMixed,     ///< one to one, but segments without an entity may share a label: a mask tells
+              ///< things apart, depth alone breaks them into pieces (docs/experiments.md)
 };
 
 struct AssociationConfig {
-  AssociationRule association = AssociationRule::kArgmax;
+  AssociationRule association = AssociationRule::kMixed;
   int assoc_min_votes = 20;       ///< a label needs more votes than this (theta_assoc)
   int merge_min_points = 1000;    ///< larger segments tell which super-points belong together
   float merge_min_share = 0.15f;  ///< ... namely those holding more than this share of its points

@@ -69,7 +69,19 @@ TEST_F(AssociateTest, OneToOneGivesTheLoserItsNextLabel) {
   EXPECT_EQ(result[1].label, 5u);
 }
 
+TEST_F(AssociateTest, MixedSharesALabelOnlyAmongSegmentsWithoutAnEntity) {
+  hold(0, 300, 2);
+  Segments segments = cut({{0, 150}, {150, 200}, {200, 300}});
+  EXPECT_EQ(associate(segments, surface_, map_, config_)[2].label, 2u) << "no entities: shared";
+  segments.segments[2].entity = 1;
+  const auto result = associate(segments, surface_, map_, config_);
+  EXPECT_EQ(result[0].label, 2u);
+  EXPECT_EQ(result[1].label, 2u);
+  EXPECT_TRUE(result[2].founded) << "an entity needs a super-point that is not another's";
+}
+
 TEST_F(AssociateTest, ArgmaxMayShareALabel) {
+  config_.association = AssociationRule::kArgmax;
   hold(0, 200, 2);
   const auto result = associate(cut({{0, 150}, {150, 200}}), surface_, map_, config_);
   EXPECT_EQ(result[0].label, 2u);

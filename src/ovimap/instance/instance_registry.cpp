@@ -27,10 +27,12 @@ std::vector<std::size_t> by_area(const Segments& segments) {
 void list_fields(InstanceConfig& config, ConfigFields& fields) {
   fields.add_choice<InstanceReading>("instances", config.instances,
                                      {{"superpoints", InstanceReading::kSuperPoints},
-                                      {"entity_votes", InstanceReading::kEntityVotes}},
+                                      {"entity_votes", InstanceReading::kEntityVotes},
+                                      {"consensus", InstanceReading::kConsensus}},
                                      "what an instance is when there are 2D masks");
   fields.add("min_vote_share", config.min_vote_share, 0.f, 100.f,
              "votes needed per frame without such a vote");
+  list_fields(config.consensus, fields);
   list_fields(config.merging, fields);
 }
 
@@ -38,9 +40,13 @@ void InstanceRegistry::observe(const Segments& segments,
                                std::span<const SegmentAssociation> associations,
                                std::int64_t frame_index, bool has_entities, LabelForest& forest) {
   const bool by_votes = has_entities && config_.instances == InstanceReading::kEntityVotes;
+  const bool by_consensus = has_entities && config_.instances == InstanceReading::kConsensus;
   if (by_votes) vote(segments, associations, forest);
-  for (const auto& [keep, drop] : merging_.observe(associations, forest)) merge(keep, drop);
-  if (!by_votes) see_super_points(associations, forest);
+  if (by_consensus) see_entities(segments, associations, forest);
+  for (const auto& [keep, drop] : merging_.observe(associations, forest))
+    by_consensus ? merge_consensus(keep, drop) : merge(keep, drop);
+  if (by_consensus) find_objects();
+  if (!by_votes && !by_consensus) see_super_points(associations, forest);
   count_views(associations, frame_index, forest);
 }
 
@@ -77,6 +83,59 @@ InstanceId InstanceRegistry::best_free_instance(const SuperPoint& point,
   return best == 0 ? ++last_id_ : best;
 }
 
+/// Which super-points the frame's entities show, each by the entity that covers most of it.
+void InstanceRegistry::see_entities(const Segments& segments,
+                                    std::span<const SegmentAssociation> associations,
+                                    const LabelForest& forest) {
+  std::map<Label, std::map<std::uint16_t, int>> areas;
+  for (std::size_t i = 0; i < associations.size(); ++i)
+    areas[forest.root(associations[i].label)][segments.segments[i].entity] +=
+        segments.segments[i].area_px;
+  std::vector<EntityConsensus::Sighting> sightings;
+  for (auto& [root, by_entity] : areas) {
+    SuperPoint& point = super_points_[root];
+    ++point.frames_seen;
+    by_entity.erase(0);
+    if (by_entity.empty()) continue;
+    if (point.votes.empty()) point.votes[++last_id_] = 0;
+    ++point.votes.begin()->second;
+    const auto most =
+        std::max_element(by_entity.begin(), by_entity.end(),
+                         [](const auto& a, const auto& b) { return a.second < b.second; });
+    sightings.push_back({root, most->first});
+  }
+  consensus_.observe(sightings);
+}
+
+/// An object goes by the oldest id among its super-points. The others are its aliases for as long
+/// as they belong to it.
+void InstanceRegistry::find_objects() {
+  const std::map<Label, Label> object_of = consensus_.objects();
+  const auto object = [&](Label root) {
+    const auto found = object_of.find(root);
+    return found == object_of.end() ? root : found->second;
+  };
+  std::map<Label, InstanceId> oldest;
+  for (const auto& [root, point] : super_points_) {
+    if (point.votes.empty()) continue;
+    const InstanceId own = point.votes.begin()->first;
+    const auto [found, first] = oldest.try_emplace(object(root), own);
+    if (!first) found->second = std::min(found->second, own);
+  }
+  objects_.clear();
+  for (const auto& [root, point] : super_points_) {
+    if (point.votes.empty()) continue;
+    const InstanceId own = point.votes.begin()->first, id = oldest.at(object(root));
+    objects_[root] = id;
+    if (own == id) {
+      aliases_.erase(own);
+      continue;
+    }
+    aliases_[own] = id;
+    unify_records(id, own);
+  }
+}
+
 /// Every super-point an instance of its own: the frame had no 2D masks, or the paper's reading is
 /// chosen.
 void InstanceRegistry::see_super_points(std::span<const SegmentAssociation> associations,
@@ -103,6 +162,24 @@ void InstanceRegistry::merge(Label keep, Label drop) {
     unify(kept_instance, dropped_instance);
 }
 
+/// The survivor keeps the older of both ids; the other stays its alias for good.
+void InstanceRegistry::merge_consensus(Label keep, Label drop) {
+  consensus_.merge(keep, drop);
+  SuperPoint& into = super_points_[keep];
+  const SuperPoint from = super_points_[drop];
+  super_points_.erase(drop);
+  into.frames_seen += from.frames_seen;  // as the votes, so that their ratio keeps its meaning
+  for (const auto& [id, votes] : from.votes) into.votes[id] += votes;
+  while (into.votes.size() > 1) {
+    const auto younger = std::prev(into.votes.end());
+    const InstanceId own = into.votes.begin()->first;
+    into.votes.begin()->second += younger->second;
+    aliases_[younger->first] = own;
+    unify_records(own, younger->first);
+    into.votes.erase(younger);
+  }
+}
+
 bool InstanceRegistry::owns_super_point(InstanceId id) const {
   return std::any_of(super_points_.begin(), super_points_.end(),
                      [&](const auto& entry) { return instance_of(entry.first) == id; });
@@ -120,6 +197,10 @@ void InstanceRegistry::unify(InstanceId a, InstanceId b) {
     point.votes[keep] += found->second;
     point.votes.erase(drop);
   }
+  unify_records(keep, drop);
+}
+
+void InstanceRegistry::unify_records(InstanceId keep, InstanceId drop) {
   const auto dropped = records_.find(drop);
   if (dropped == records_.end()) return;
   const auto [kept, created] = records_.try_emplace(keep, dropped->second);
@@ -153,12 +234,16 @@ InstanceId InstanceRegistry::instance_of(Label root) const {
   int most = 0;
   for (const auto& [id, votes] : point.votes)
     if (votes > most) best = id, most = votes;
-  const bool by_votes = config_.instances == InstanceReading::kEntityVotes;
-  const auto unsupported = static_cast<float>(point.frames_seen - most);
-  if (by_votes && point.votes.size() > 0 &&
-      static_cast<float>(most) <= config_.min_vote_share * unsupported)
-    return 0;
-  return best;
+  if (!supported(point, most)) return 0;
+  const auto object = objects_.find(root);
+  return object == objects_.end() ? best : object->second;
+}
+
+/// Whether enough of the frames that showed the super-point voted so.
+bool InstanceRegistry::supported(const SuperPoint& point, int votes) const {
+  if (config_.instances == InstanceReading::kSuperPoints) return true;
+  const auto unsupported = static_cast<float>(point.frames_seen - votes);
+  return static_cast<float>(votes) > config_.min_vote_share * unsupported;
 }
 
 std::vector<InstanceId> InstanceRegistry::instance_table(const LabelForest& forest) const {
@@ -169,8 +254,9 @@ std::vector<InstanceId> InstanceRegistry::instance_table(const LabelForest& fore
 }
 
 InstanceId InstanceRegistry::resolve(InstanceId id) const {
-  const auto found = aliases_.find(id);
-  return found == aliases_.end() ? id : found->second;
+  for (auto found = aliases_.find(id); found != aliases_.end(); found = aliases_.find(id))
+    id = found->second;
+  return id;
 }
 
 void InstanceRegistry::restore(State state) {
@@ -178,7 +264,9 @@ void InstanceRegistry::restore(State state) {
   records_ = std::move(state.records);
   aliases_ = std::move(state.aliases);
   merging_.restore(std::move(state.pair_counts));
+  consensus_.restore(std::move(state.entity_pairs));
   last_id_ = state.last_id;
+  if (!consensus_.pairs().empty()) find_objects();
 }
 
 }  // namespace ovimap

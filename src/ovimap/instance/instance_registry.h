@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ovimap/instance/association.h"
+#include "ovimap/instance/entity_consensus.h"
 #include "ovimap/instance/super_point_merging.h"
 
 namespace ovimap {
@@ -18,20 +19,23 @@ enum class InstanceReading {
   kSuperPoints,  ///< an instance is a super-point (the paper's text)
   kEntityVotes,  ///< super-points vote for instances keyed by 2D entities (released code, printed
                  ///< numbers)
+  kConsensus,    ///< super-points that 2D entities join more often than they keep them apart
 };
 
 struct InstanceConfig {
-  InstanceReading instances = InstanceReading::kEntityVotes;
+  InstanceReading instances = InstanceReading::kConsensus;
   float min_vote_share =
       0.1f;  ///< votes needed per frame in which the super-point was seen without voting so
+  ConsensusConfig consensus;
   MergeConfig merging;
 };
 void list_fields(InstanceConfig& config, ConfigFields& fields);
 
 /// What is known of a super-point.
 struct SuperPoint {
-  int frames_seen = 0;  ///< frames with 2D entities in which it was seen
-  std::map<InstanceId, int> votes;
+  int frames_seen = 0;              ///< frames with 2D entities in which it was seen
+  std::map<InstanceId, int> votes;  ///< kConsensus: one, for an id of its own, counts the frames in
+                                    ///< which it was in an entity
 };
 
 /// What is known of an instance besides its geometry.
@@ -46,7 +50,7 @@ struct InstanceRecord {
 class InstanceRegistry {
  public:
   explicit InstanceRegistry(const InstanceConfig& config = {})
-      : config_(config), merging_(config.merging) {}
+      : config_(config), merging_(config.merging), consensus_(config.consensus) {}
 
   /// Adds one frame: merges super-points in `forest`, counts entity votes, updates instances.
   /// `has_entities`: the frame had 2D masks (else every super-point is an instance of its own kind
@@ -75,26 +79,37 @@ class InstanceRegistry {
     std::map<Label, SuperPoint> super_points;
     std::map<InstanceId, InstanceRecord> records;
     std::map<InstanceId, InstanceId> aliases;
-    SuperPointMerging::PairCounts pair_counts;
+    PairCounts pair_counts;   ///< of SuperPointMerging
+    PairCounts entity_pairs;  ///< of EntityConsensus
     InstanceId last_id = 0;
   };
-  State state() const { return {super_points_, records_, aliases_, merging_.counts(), last_id_}; }
+  State state() const {
+    return {super_points_, records_, aliases_, merging_.counts(), consensus_.pairs(), last_id_};
+  }
   void restore(State state);
 
  private:
   void vote(const Segments& segments, std::span<const SegmentAssociation> associations,
             const LabelForest& forest);
+  void see_entities(const Segments& segments, std::span<const SegmentAssociation> associations,
+                    const LabelForest& forest);
+  void find_objects();
+  void merge_consensus(Label keep, Label drop);
+  bool supported(const SuperPoint& point, int votes) const;
   InstanceId best_free_instance(const SuperPoint& point, const std::set<InstanceId>& used);
   void see_super_points(std::span<const SegmentAssociation> associations,
                         const LabelForest& forest);
   void merge(Label keep, Label drop);
   void unify(InstanceId a, InstanceId b);
+  void unify_records(InstanceId keep, InstanceId drop);
   bool owns_super_point(InstanceId id) const;
   void count_views(std::span<const SegmentAssociation> associations, std::int64_t frame_index,
                    const LabelForest& forest);
 
   InstanceConfig config_;
   SuperPointMerging merging_;
+  EntityConsensus consensus_;
+  std::map<Label, InstanceId> objects_;       ///< kConsensus: the id of each super-point's object
   std::map<Label, SuperPoint> super_points_;  ///< by root
   std::map<InstanceId, InstanceRecord> records_;
   std::map<InstanceId, InstanceId> aliases_;

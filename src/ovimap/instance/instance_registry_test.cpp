@@ -53,8 +53,10 @@ TEST_F(RegistryTest, TheSameInstanceIsRecognisedWhateverTheEntityIsCalled) {
   EXPECT_NE(registry.instance_of(2), id);
 }
 
-TEST_F(RegistryTest, TwoEntitiesOfAFrameNeverShareAnInstance) {
-  InstanceRegistry registry;
+TEST_F(RegistryTest, VotesNeverGiveTwoEntitiesOfAFrameOneInstance) {
+  InstanceConfig config;
+  config.instances = InstanceReading::kEntityVotes;
+  InstanceRegistry registry(config);
   see(registry, {{1, 5, 500}, {2, 5, 400}});
   see(registry, {{1, 5, 500}, {2, 6, 400}});
   see(registry, {{1, 5, 500}, {2, 6, 400}});
@@ -73,6 +75,35 @@ TEST_F(RegistryTest, RareVotesAreNoInstance) {
   see(registry, {{1, 7, 500}});
   for (int i = 0; i < 11; ++i) see(registry, {{1, 0, 500}});
   EXPECT_EQ(registry.instance_of(1), 0u) << "one vote against eleven frames without";
+}
+
+TEST_F(RegistryTest, AnObjectGoesByItsOldestIdAndItsPartsAreAliasesWhileTheyBelongToIt) {
+  InstanceRegistry registry;
+  see(registry, {{1, 5, 500}, {2, 6, 400}});
+  const InstanceId older = registry.instance_of(1), younger = registry.instance_of(2);
+  EXPECT_NE(older, younger);
+  see(registry, {{1, 5, 500}, {2, 5, 400}});
+  EXPECT_EQ(registry.instance_of(2), older);
+  EXPECT_EQ(registry.resolve(younger), older);
+  EXPECT_EQ(registry.records().size(), 1u);
+  EXPECT_EQ(registry.records().at(older).last_frame, 1);
+  for (int i = 0; i < 2; ++i) see(registry, {{1, 5, 500}, {2, 6, 400}});
+  EXPECT_EQ(registry.instance_of(2), younger) << "most frames keep it apart: its own id is back";
+  EXPECT_EQ(registry.resolve(younger), younger);
+}
+
+TEST_F(RegistryTest, MergedSuperPointsKeepTheOlderIdForGood) {
+  InstanceConfig config;
+  config.merging.merge_min_count = 1;
+  InstanceRegistry registry(config);
+  see(registry, {{2, 5, 500}});
+  const InstanceId older = registry.instance_of(2);
+  see(registry, {{1, 5, 500}});
+  const InstanceId younger = registry.instance_of(1);
+  for (int i = 0; i < 2; ++i) see(registry, {{1, 5, 2000, {1, 2}}});
+  EXPECT_EQ(registry.instance_of(1), older);
+  EXPECT_EQ(registry.resolve(younger), older);
+  EXPECT_EQ(registry.records().size(), 1u);
 }
 
 TEST_F(RegistryTest, SuperPointReadingKeepsTheOlderIdAfterAMerge) {
@@ -110,12 +141,15 @@ TEST_F(RegistryTest, MergedSuperPointsKeepTheirVotes) {
 TEST_F(RegistryTest, RestoresItsState) {
   InstanceRegistry registry;
   see(registry, {{1, 7, 500}, {2, 8, 300}});
+  see(registry, {{1, 7, 500}, {2, 7, 300}});
   InstanceRegistry copy;
   copy.restore(registry.state());
+  EXPECT_EQ(copy.instance_table(forest_), registry.instance_table(forest_));
   see(registry, {{1, 7, 500}, {3, 9, 100}});
   --frame_;
   see(copy, {{1, 7, 500}, {3, 9, 100}});
   EXPECT_EQ(copy.instance_table(forest_), registry.instance_table(forest_));
+  EXPECT_EQ(copy.aliases(), registry.aliases());
 }
 
 }  // namespace

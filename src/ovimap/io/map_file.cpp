@@ -179,7 +179,7 @@ MapDocument load_map(const std::filesystem::path& path) {
   file.read([&](SQLite::Database& database) {
     const MapMeta meta = read_meta(database, document);
     document.map = read_voxels(database, meta);
-    read_registry(database, document.map.labels(), document);
+    read_registry(database, file.schema(), document.map.labels(), document);
     read_instances(database, document);
     read_frames(database, document);
     if (file.schema() >= kSchemaWithSemantics) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/io/map_file_access.h"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cctype>
@@ -124,7 +125,10 @@ int pragma(SQLite::Database& database, const char* name) {
   return database.execAndGet(concat("PRAGMA ", name)).getInt();
 }
 
-[[noreturn]] void fail_as_damaged(const fs::path& path, const std::string& fault) {
+/// `fault` may quote the file's own bytes, so what would break the line becomes a blank.
+[[noreturn]] void fail_as_damaged(const fs::path& path, std::string fault) {
+  std::replace_if(
+      fault.begin(), fault.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
   throw Error(concat("map '", path.string(), "' is damaged: ", fault,
                      "; restore it from a copy or map again"));
 }

@@ -146,6 +146,13 @@ void write_frames(SQLite::Database& database, const MapRecord& record) {
   rows.finish();
 }
 
+void write_pairs(SQLite::Database& database, const MapTable& table, const PairCounts& counts) {
+  RowWriter pairs(database, table);
+  for (const auto& [pair, count] : counts)
+    pairs.insert(pair.first, pair.second, count.joined, count.apart);
+  pairs.finish();
+}
+
 void write_registry(SQLite::Database& database, const InstanceRegistry::State& state) {
   RowWriter points(database, kSuperPoints);
   for (const auto& [label, point] : state.super_points) points.insert(label, point.frames_seen);
@@ -154,10 +161,8 @@ void write_registry(SQLite::Database& database, const InstanceRegistry::State& s
   for (const auto& [label, point] : state.super_points)
     for (const auto& [id, count] : point.votes) votes.insert(label, id, count);
   votes.finish();
-  RowWriter pairs(database, kLabelPairs);
-  for (const auto& [pair, count] : state.pair_counts)
-    pairs.insert(pair.first, pair.second, count.joined, count.apart);
-  pairs.finish();
+  write_pairs(database, kLabelPairs, state.pair_counts);
+  write_pairs(database, kEntityPairs, state.entity_pairs);
   RowWriter records(database, kInstanceRecords);
   for (const auto& [id, known] : state.records)
     records.insert(id, known.views, known.first_frame, known.last_frame);
@@ -265,7 +270,21 @@ void read_frames(SQLite::Database& database, MapRecord& record) {
   }
 }
 
-void read_registry(SQLite::Database& database, const LabelForest& forest, MapRecord& record) {
+PairCounts read_pairs(SQLite::Database& database, const MapTable& table,
+                      const LabelForest& forest) {
+  PairCounts counts;
+  RowReader pairs(database, table);
+  while (pairs.next()) {
+    const Label lower = take_label(pairs, forest), higher = take_label(pairs, forest);
+    PairCount& count = counts[{lower, higher}];
+    count.joined = pairs.integer<int>();
+    count.apart = pairs.integer<int>();
+  }
+  return counts;
+}
+
+void read_registry(SQLite::Database& database, int schema, const LabelForest& forest,
+                   MapRecord& record) {
   InstanceRegistry::State& state = record.registry;
   RowReader points(database, kSuperPoints);
   while (points.next()) {
@@ -279,13 +298,9 @@ void read_registry(SQLite::Database& database, const LabelForest& forest, MapRec
     if (point == state.super_points.end()) votes.fail("names a super-point that is not there");
     point->second.votes[id] = votes.integer<int>();
   }
-  RowReader pairs(database, kLabelPairs);
-  while (pairs.next()) {
-    const Label lower = take_label(pairs, forest), higher = take_label(pairs, forest);
-    SuperPointMerging::PairCount& count = state.pair_counts[{lower, higher}];
-    count.joined = pairs.integer<int>();
-    count.apart = pairs.integer<int>();
-  }
+  state.pair_counts = read_pairs(database, kLabelPairs, forest);
+  if (schema >= kSchemaWithConsensus)
+    state.entity_pairs = read_pairs(database, kEntityPairs, forest);
   RowReader records(database, kInstanceRecords);
   while (records.next()) {
     InstanceRecord& known = state.records[take_instance(records, state.last_id)];
@@ -296,7 +311,9 @@ void read_registry(SQLite::Database& database, const LabelForest& forest, MapRec
   RowReader aliases(database, kInstanceAliases);
   while (aliases.next()) {
     const InstanceId id = take_instance(aliases, state.last_id);
-    state.aliases[id] = take_instance(aliases, state.last_id);
+    const InstanceId target = take_instance(aliases, state.last_id);
+    if (target >= id) aliases.fail(concat("makes ", target, " stand for the older ", id));
+    state.aliases[id] = target;
   }
 }
 

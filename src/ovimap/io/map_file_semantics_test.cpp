@@ -55,6 +55,20 @@ TEST_F(MapFileSemantics, RefusesEmbeddingsThatCannotBe) {
   EXPECT_THROW(read_searchable_map(root_ / "a.ovimap"), Error);
 }
 
+TEST_F(MapFileSemantics, ReadsMapsOfTheSecondSchema) {
+  const fs::path path = fs::path(OVIMAP_SOURCE_DIR) / "tests/maps/schema2.ovimap";
+  const MapDocument map = load_map(path);
+  EXPECT_EQ(read_map_info(path).schema, 2);
+  EXPECT_FALSE(map.instances.empty());
+  EXPECT_FALSE(map.semantics.appearances.empty());
+  EXPECT_TRUE(map.registry.entity_pairs.empty());
+  EXPECT_EQ(map.instance_config.instances, InstanceReading::kEntityVotes)
+      << "a map goes on as it was begun";
+  EXPECT_GT(read_searchable_map(path).embeddings.norm(), 0);
+  save_map(root_ / "new.ovimap", map);
+  EXPECT_EQ(difference(map, load_map(root_ / "new.ovimap")), "");
+}
+
 TEST_F(MapFileSemantics, ReadsMapsOfTheFirstSchema) {
   const fs::path path = fs::path(OVIMAP_SOURCE_DIR) / "tests/maps/schema1.ovimap";
   const MapDocument map = load_map(path);

@@ -46,8 +46,7 @@ void AppearanceBuilder::finish(const InstanceRegistry& registry) {
 
 void AppearanceBuilder::apply(std::vector<EmbeddingAnswer> answers,
                               const InstanceRegistry& registry) {
-  if (registry.aliases().size() != merges_followed_) follow_merges(appearances_, registry);
-  merges_followed_ = registry.aliases().size();
+  follow_merges(appearances_, registry);
   for (EmbeddingAnswer& answer : answers) {
     if (encoder_) durations_ms_.push_back(answer.milliseconds);
     const InstanceId asked = asked_for_.extract(answer.ticket).mapped();

@@ -54,7 +54,6 @@ class AppearanceBuilder {
   Appearances appearances_;
   std::vector<EmbeddingRequest> chosen_;
   std::unordered_map<std::uint64_t, InstanceId> asked_for_;  ///< open tickets
-  std::size_t merges_followed_ = 0;
   std::vector<double> durations_ms_;
   EmbeddingQueue queue_;
 };

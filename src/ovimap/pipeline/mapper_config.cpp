@@ -57,6 +57,7 @@ MapperConfig mapper_preset(const std::string& name) {
     throw Error(concat("there is no preset '", name, "'; accepted is default or reference"));
   config.segment = reference_segment_depth_config();
   config.association.association = AssociationRule::kOneToOne;
+  config.instance.instances = InstanceReading::kEntityVotes;
   config.instance.merging.merge_max_dissent = 1e6f;  // the paper counts no dissent
   config.map.max_weight = 1e4f;
   config.map.label_band_voxels = static_cast<float>(config.map.truncation_voxels);
