@@ -13,7 +13,7 @@ help:
 	@echo "make test    set up, build, run every test"
 	@echo "make build   build the program: $(OVIMAP)"
 	@echo "make bench   measure speed and memory on SOURCE (default: the demo room)"
-	@echo "make benchmarks KITCHEN=FOLDER   write docs/benchmarks.md"
+	@echo "make benchmarks KITCHEN=FOLDER [ONLY='tiny rooms']   write docs/benchmarks.md, or these parts of it"
 	@echo "make asan    run the tests under AddressSanitizer and UBSan;  make tsan: ThreadSanitizer"
 
 setup:
@@ -41,7 +41,7 @@ bench: build
 	@$(BUILD)/bin/ovimap_micro_bench --benchmark_min_time=0.2
 
 benchmarks: build
-	@python3 tools/benchmarks.py $(OVIMAP) $(if $(KITCHEN),--kitchen "$(KITCHEN)")
+	@python3 tools/benchmarks.py $(OVIMAP) $(if $(KITCHEN),--kitchen "$(KITCHEN)") $(if $(ONLY),--only $(ONLY))
 
 clean:
 	rm -rf build demo

@@ -9,7 +9,9 @@ masks and maps stay in the work folder: a broken-off run goes on where it stoppe
 """
 import argparse
 import datetime
+import functools
 import json
+import os
 import pathlib
 import shutil
 import subprocess
@@ -17,11 +19,11 @@ import subprocess
 TARGETS_MS = {"depth segmentation": 30, "association + fusion + labels": 40, "ray cast": 20, "MobileSAM frame": 4000}
 TUNED, UNSEEN = ["living-room", "bedroom", "kitchen"], ["office", "bathroom"]
 MASKS = ["gt", "sam", "none"]
-SECTIONS = ["tiny", "rooms", "exact", "speed", "ablations"]
 # Aims of the standard protocol, class-agnostic, with sensor noise.
 AIMS = {"gt": {"ap50": 0.80, "miou": 0.75}, "sam": {"ap50": 0.45, "ap25": 0.65}, "none": {"ap25": 0.35}}
 # On the unseen rooms. Masks on every frame are slow: that schedule is measured on every second frame.
 ABLATIONS = {"masks": [], "views": [], "fusion": [], "incremental": [], "schedule": ["--frames", "::2"], "timing": []}
+SECTIONS = ["tiny", "rooms", "exact", "speed", *ABLATIONS]
 # Two crops a view instead of six: the ablations compare, and embedding is most of their time.
 FEW_CROPS = ["--set", "crops.scales=1"]
 
@@ -98,7 +100,7 @@ def quality_row(program, work, rooms, names, group, masks):
     semantic = scores["standard"].get("semantic")
     words = [f"{semantic[key]:.3f}" for key in ("miou", "macc", "ap50", "ap25")] if semantic else ["-"] * 4
     aq = f"{semantic['aq']:.1f}" if semantic else "-"
-    return (f"| {'on' if noisy else 'off'} | {group} | {masks} | {figure(standard, 'miou', aims.get('miou'))} "
+    return (f"| {group} | {masks} | {figure(standard, 'miou', aims.get('miou'))} "
             f"| {standard['ap75']:.3f} | {figure(standard, 'ap50', aims.get('ap50'))} "
             f"| {figure(standard, 'ap25', aims.get('ap25'))} | {reference['miou']:.3f} | {reference['ap75']:.3f} "
             f"| {reference['ap50']:.3f} | {reference['ap25']:.3f} | {standard['predicted_instances']} / "
@@ -106,16 +108,15 @@ def quality_row(program, work, rooms, names, group, masks):
             f"| {' | '.join(words)} | {aq} |")
 
 
-def quality_section(program, work, with_exact):
-    noisy, exact = render(program, work, True), render(program, work, False) if with_exact else None
-    heads = ["noise", "rooms", "masks", "mIoU", "AP75", "AP50", "AP25", "ref. mIoU", "ref. AP75", "ref. AP50", "ref. AP25",
+def quality_section(program, work, noisy):
+    rooms = render(program, work, noisy)
+    heads = ["rooms", "masks", "mIoU", "AP75", "AP50", "AP25", "ref. mIoU", "ref. AP75", "ref. AP50", "ref. AP25",
              "objects found / true", "error, mm", "completeness", "class mIoU", "class mAcc", "class AP50", "class AP25", "AQ"]
     rows = [quality_row(program, work, rooms, names, group, masks)
-            for rooms in ((noisy, exact) if with_exact else (noisy,))
             for group, names in (("tuned on", TUNED), ("unseen", UNSEEN))
-            for masks in (MASKS if rooms is noisy else ["gt"])]
-    return ["## Quality: rooms-v1", "",
-            "    ovimap synth DIR --room rooms-v1 [--noise]", "    ovimap run DIR/ROOM --masks MASKS -o MAP",
+            for masks in (MASKS if noisy else ["gt"])]
+    return ["## Quality: rooms-v1, " + ("with sensor noise" if noisy else "exact"), "",
+            "    ovimap synth DIR --room rooms-v1" + (" --noise" if noisy else ""), "    ovimap run DIR/ROOM --masks MASKS --set crops.scales=1 -o MAP",
             "    ovimap eval MAP... --gt DIR/ROOM...", "",
             "`standard` protocol unless it says ref., which computes what the paper's released code calls AP. Masks: gt = the true 2D "
             "instances, sam = MobileSAM on every fifth frame, none = depth alone. Scenes are pooled. Parameters were tuned on living "
@@ -124,20 +125,17 @@ def quality_section(program, work, with_exact):
             "| " + " | ".join(heads) + " |", "| --- " * len(heads) + "|", *rows, ""]
 
 
-def ablation_section(program, work, out):
-    noisy = render(program, work, True)
+def ablation_section(program, work, out, name):
+    noisy, options = render(program, work, True), ABLATIONS[name]
     pictures = out / "ablations"
     pictures.mkdir(exist_ok=True)
-    scenes = [noisy / name for name in UNSEEN]
-    text = []
-    for name, options in ABLATIONS.items():
-        folder = work / "ablations" / ("every-second" if options else "all-frames")
-        run(program, "ablate", name, *scenes, "-o", folder, *FEW_CROPS, *options)
-        text += [(folder / f"{name}.md").read_text()]
-        picture = folder / f"{name}.svg"
-        if picture.exists():
-            shutil.copy(picture, pictures / picture.name)
-            text += [f"![{name}](ablations/{picture.name})", ""]
+    folder = work / "ablations" / ("every-second" if options else "all-frames")
+    run(program, "ablate", name, *(noisy / room for room in UNSEEN), "-o", folder, *FEW_CROPS, *options)
+    text = (folder / f"{name}.md").read_text().splitlines()
+    picture = folder / f"{name}.svg"
+    if picture.exists():
+        shutil.copy(picture, pictures / picture.name)
+        text += ["", f"![{name}](ablations/{picture.name})"]
     return text
 
 
@@ -165,27 +163,53 @@ def speed_section(program, kitchen):
             "| what | target, ms | measured p50, ms |", "| --- | --- | --- |"]
     text += [f"| {name} | {TARGETS_MS[name]} | {value:.1f} |" for name, value in measured_ms(bench, sam).items()]
     text += ["", "Every stage, depth alone:", "", "| stage | p50 ms | p95 ms | p99 ms | count |", "| --- | --- | --- | --- | --- |"]
-    return text + [*stage_rows(bench), ""], bench["machine"]
+    return text + [*stage_rows(bench), ""]
+
+
+# ----------------------------------------------------------------------------------------------------------- page
+
+HEAD = ["# Benchmarks", "", "Written by `make benchmarks KITCHEN=FOLDER`. Nothing here was typed in by hand. Each part says what made it.", ""]
+
+
+def mark(section):
+    return f"<!-- {section} -->"
+
+
+def kept_sections(page):
+    """The parts of an earlier page: name, text from its mark to the next."""
+    text = page.read_text() if page.exists() else ""
+    starts = sorted((text.index(mark(name)), name) for name in SECTIONS if mark(name) in text)
+    ends = [start for start, _ in starts[1:]] + [len(text)]
+    return {name: text[start:end].rstrip() + "\n" for (start, name), end in zip(starts, ends)}
+
+
+def provenance(program):
+    version = subprocess.run([program, "--version"], stdout=subprocess.PIPE, text=True, check=True).stdout.strip()
+    return f"{processor()}, {os.cpu_count()} threads; {version}; {datetime.date.today()}."
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("program", type=pathlib.Path)
     parser.add_argument("--kitchen", type=pathlib.Path)
-    parser.add_argument("--only", nargs="+", choices=SECTIONS, help="measure these sections; the page then has no others")
+    parser.add_argument("--only", nargs="+", choices=SECTIONS, help="measure these parts; the page keeps the others as they are")
     parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("build/benchmarks"))
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("docs"))
     arguments = parser.parse_args()
-    program, work = arguments.program.resolve(), arguments.work
-    wanted = set(arguments.only or SECTIONS)
-    speed, machine = speed_section(program, arguments.kitchen) if arguments.kitchen and "speed" in wanted else ([], processor())
-    tiny = tiny_section(program, work) if "tiny" in wanted else []
-    quality = quality_section(program, work, "exact" in wanted) if "rooms" in wanted else []
-    ablations = ablation_section(program, work, arguments.out) if "ablations" in wanted else []
-    version = subprocess.run([program, "--version"], stdout=subprocess.PIPE, text=True, check=True).stdout.strip()
-    page = ["# Benchmarks", "", "Written by `make benchmarks KITCHEN=FOLDER`. Nothing here was typed in by hand.", "",
-            f"Machine: {machine}. Program: {version}. Date: {datetime.date.today()}.", "", *tiny, *quality, *speed, *ablations]
-    (arguments.out / "benchmarks.md").write_text("\n".join(page))
+    program, work, page = arguments.program.resolve(), arguments.work, arguments.out / "benchmarks.md"
+    measure = {"tiny": lambda: tiny_section(program, work),
+               "rooms": lambda: quality_section(program, work, noisy=True),
+               "exact": lambda: quality_section(program, work, noisy=False),
+               "speed": lambda: speed_section(program, arguments.kitchen),
+               **{name: functools.partial(ablation_section, program, work, arguments.out, name) for name in ABLATIONS}}
+    for name in arguments.only or SECTIONS:
+        if name == "speed" and not arguments.kitchen:
+            print("speed is not measured: name a recording with --kitchen FOLDER")
+            continue
+        title, *body = measure[name]()
+        sections = kept_sections(page)
+        sections[name] = "\n".join([mark(name), title, "", provenance(program), *body]).rstrip() + "\n"
+        page.write_text("\n".join([*HEAD, *(sections[known] for known in SECTIONS if known in sections)]))
 
 
 if __name__ == "__main__":
