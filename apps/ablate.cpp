@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cstdio>
 #include <ctime>
+#include <set>
 
 #include "ablation.h"
 #include "mapping_run.h"
@@ -157,6 +158,19 @@ void require_same_settings(const AblateOptions& options) {
                        "another folder"));
 }
 
+/// A model that is missing or damaged is said now, not when its turn comes.
+void require_models(const AblateOptions& options, const Ablation& ablation) {
+  std::set<std::pair<std::string, std::string>> tried;
+  for (const AblationVariant& variant : ablation.variants) {
+    MappingOptions mapping = options_of(options, variant, options.scenes.front());
+    if (variant.true_objects || mapping.masks == "gt") mapping.masks = "none";
+    if (!tried.emplace(mapping.masks, mapping.encoder).second) continue;
+    const ProgramConfig config = read_program_config(mapping);
+    make_mask_source(mapping.masks, config.masks, {nullptr, mapping.model_dirs});
+    make_encoder(mapping, config);
+  }
+}
+
 /// Nothing is varied: one map of each scene says what its stages took.
 int time_stages(const AblateOptions& options) {
   std::vector<fs::path> maps;
@@ -178,6 +192,7 @@ int ablate(const AblateOptions& options) {
   const Ablation ablation = timing ? Ablation{} : make_ablation(options.name, options.choice);
   for (const std::string& scene : options.scenes)  // before anything slow
     if (!timing) load_truth(scene);
+  require_models(options, ablation);
   make_folder(options.out);
   require_same_settings(options);
   watch_for_interrupt();

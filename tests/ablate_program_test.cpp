@@ -58,6 +58,8 @@ TEST_F(AblateProgramTest, TimesTheStages) {
 
 TEST_F(AblateProgramTest, SaysWhatIsWrong) {
   expect_complaint(command("viewz"), {"viewz", "views"});
+  expect_complaint("ablate fusion replica/scene -o late --encoder none --masks nosuch", {"nosuch"});
+  EXPECT_FALSE(std::filesystem::exists(path("late/maps"))) << "said before anything slow";
   expect_complaint("ablate fusion recording -o out --masks none --encoder none", {"recording"});
 }
 
