@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <span>
+#include <vector>
 
-#include "ovimap/instance/pair_counts.h"
+#include "ovimap/map/label_forest.h"
 
 namespace ovimap {
 
@@ -18,6 +20,15 @@ struct ConsensusConfig {
 };
 void list_fields(ConsensusConfig& config, ConfigFields& fields);
 
+/// A super-point was seen in a 2D entity.
+struct EntitySighting {
+  std::uint32_t frame = 0;   ///< counts frames with entities
+  std::uint16_t entity = 0;  ///< not 0; means nothing beyond its frame
+  auto operator<=>(const EntitySighting&) const = default;
+};
+
+using EntitySightings = std::map<Label, std::vector<EntitySighting>>;  ///< by root; frames ascend
+
 /// Which super-points are one object, by what the 2D entities of all frames say together.
 ///
 /// A frame joins two super-points when one entity shows both, and keeps them apart when different
@@ -26,30 +37,29 @@ void list_fields(ConsensusConfig& config, ConfigFields& fields);
 /// edges are added up, until no edge speaks for joining. Unlike votes that are cast frame by frame,
 /// the result does not depend on the order of the frames, and a mask that once spans two objects
 /// does no lasting harm.
+///
+/// Kept are sightings, not pairs: their number grows with what is seen, that of pairs with its
+/// square.
 class EntityConsensus {
  public:
-  struct Sighting {
-    Label root = kNoLabel;
-    std::uint16_t entity = 0;  ///< not 0
-  };
-
   explicit EntityConsensus(const ConsensusConfig& config = {}) : config_(config) {}
 
-  /// Adds one frame: each root at most once, ascending.
-  void observe(std::span<const Sighting> sightings);
+  /// Adds one frame: the entity of each root seen in one.
+  void observe(const std::map<Label, std::uint16_t>& entity_of_root);
 
-  /// Two super-points became one.
-  void merge(Label keep, Label drop) { merge_labels(pairs_, keep, drop); }
+  /// Two super-points became one. Where a frame saw both, what it says of `keep` counts.
+  void merge(Label keep, Label drop);
 
-  /// The oldest (lowest) root of each root's object; a root that never met another is absent.
+  /// The oldest (lowest) root of each root's object.
   std::map<Label, Label> objects() const;
 
-  const PairCounts& pairs() const { return pairs_; }
-  void restore(PairCounts pairs) { pairs_ = std::move(pairs); }
+  const EntitySightings& sightings() const { return sightings_; }
+  void restore(EntitySightings sightings);
 
  private:
   ConsensusConfig config_;
-  PairCounts pairs_;
+  EntitySightings sightings_;
+  std::uint32_t frames_ = 0;
 };
 
 }  // namespace ovimap

@@ -11,7 +11,7 @@
 namespace ovimap {
 namespace {
 
-using Frame = std::vector<EntityConsensus::Sighting>;
+using Frame = std::map<Label, std::uint16_t>;  // entity by root
 
 EntityConsensus after(const std::vector<Frame>& frames, float apart_weight = 0.5f) {
   EntityConsensus consensus({apart_weight});
@@ -46,18 +46,72 @@ TEST(EntityConsensus, TheOrderOfFramesDoesNotMatter) {
   for (Frame& frame : frames)
     for (Label root = 1; root <= 12; ++root)
       if (random() % 3 != 0)
-        frame.push_back({root, static_cast<std::uint16_t>(root / 3 + (random() % 4 == 0) + 1)});
+        frame[root] = static_cast<std::uint16_t>(root / 3 + (random() % 4 == 0) + 1);
   const std::map<Label, Label> objects = after(frames).objects();
   std::shuffle(frames.begin(), frames.end(), random);
   EXPECT_EQ(after(frames).objects(), objects);
   EXPECT_EQ(objects.size(), 12u);
 }
 
+/// The same by its definition, pair by pair and edge by edge.
+std::map<Label, Label> plain_objects(const std::vector<Frame>& frames, double apart_weight) {
+  std::map<Label, std::vector<Label>> members;
+  for (const Frame& frame : frames)
+    for (const auto& [root, entity] : frame) members[root] = {root};
+  const auto weight = [&](Label a, Label b) {
+    double sum = 0;
+    for (const Label x : members[a])
+      for (const Label y : members[b])
+        for (const Frame& frame : frames)
+          if (frame.contains(x) && frame.contains(y))
+            sum += frame.at(x) == frame.at(y) ? 1 : -apart_weight;
+    return sum;
+  };
+  for (;;) {
+    double best = 0;
+    Label keep = 0, drop = 0;
+    for (const auto& [a, of_a] : members)
+      for (const auto& [b, of_b] : members)
+        if (a < b && weight(a, b) > best) best = weight(a, b), keep = a, drop = b;
+    if (keep == 0) break;
+    members[keep].insert(members[keep].end(), members[drop].begin(), members[drop].end());
+    members.erase(drop);
+  }
+  std::map<Label, Label> objects;
+  for (const auto& [object, roots] : members)
+    for (const Label root : roots) objects[root] = object;
+  return objects;
+}
+
+TEST(EntityConsensus, IsGreedyAdditiveEdgeContraction) {
+  std::mt19937 random(11);
+  for (int round = 0; round < 40; ++round) {
+    std::vector<Frame> frames(12);
+    for (Frame& frame : frames)
+      for (Label root = 1; root <= 9; ++root)
+        if (random() % 3 != 0)
+          frame[root] = static_cast<std::uint16_t>((root + random() % 4) / 3 + 1);
+    EXPECT_EQ(after(frames).objects(), plain_objects(frames, 0.5)) << "round " << round;
+  }
+}
+
 TEST(EntityConsensus, MergedSuperPointsKeepTheirEvidence) {
-  EntityConsensus consensus = after({{{1, 1}, {3, 1}}, {{2, 1}, {3, 2}}, {{2, 1}, {4, 1}}});
+  EntityConsensus consensus =
+      after({{{1, 1}, {3, 1}}, {{2, 1}, {3, 2}}, {{2, 1}, {4, 1}}, {{1, 5}, {2, 6}}});
   consensus.merge(1, 2);
-  EXPECT_EQ(consensus.pairs(), (PairCounts{{{1, 3}, {1, 1}}, {{1, 4}, {1, 0}}}));
+  EXPECT_EQ(consensus.sightings().at(1),
+            (std::vector<EntitySighting>{{0, 1}, {1, 1}, {2, 1}, {3, 5}}));
+  EXPECT_FALSE(consensus.sightings().contains(2));
   EXPECT_EQ(consensus.objects().at(4), 1u);
+}
+
+TEST(EntityConsensus, GoesOnWhereItStopped) {
+  const std::vector<Frame> begun = {{{1, 7}, {2, 7}}, {{1, 7}, {2, 3}}};
+  EntityConsensus whole = after(begun), resumed;
+  resumed.restore(whole.sightings());
+  for (EntityConsensus* consensus : {&whole, &resumed}) consensus->observe({{1, 7}, {2, 3}});
+  EXPECT_EQ(resumed.sightings(), whole.sightings());
+  EXPECT_EQ(resumed.objects(), whole.objects());
 }
 
 }  // namespace

@@ -91,7 +91,7 @@ void InstanceRegistry::see_entities(const Segments& segments,
   for (std::size_t i = 0; i < associations.size(); ++i)
     areas[forest.root(associations[i].label)][segments.segments[i].entity] +=
         segments.segments[i].area_px;
-  std::vector<EntityConsensus::Sighting> sightings;
+  std::map<Label, std::uint16_t> entity_of_root;
   for (auto& [root, by_entity] : areas) {
     SuperPoint& point = super_points_[root];
     ++point.frames_seen;
@@ -102,9 +102,9 @@ void InstanceRegistry::see_entities(const Segments& segments,
     const auto most =
         std::max_element(by_entity.begin(), by_entity.end(),
                          [](const auto& a, const auto& b) { return a.second < b.second; });
-    sightings.push_back({root, most->first});
+    entity_of_root[root] = most->first;
   }
-  consensus_.observe(sightings);
+  consensus_.observe(entity_of_root);
 }
 
 /// An object goes by the oldest id among its super-points. The others are its aliases for as long
@@ -264,9 +264,9 @@ void InstanceRegistry::restore(State state) {
   records_ = std::move(state.records);
   aliases_ = std::move(state.aliases);
   merging_.restore(std::move(state.pair_counts));
-  consensus_.restore(std::move(state.entity_pairs));
+  consensus_.restore(std::move(state.entity_sightings));
   last_id_ = state.last_id;
-  if (!consensus_.pairs().empty()) find_objects();
+  if (!consensus_.sightings().empty()) find_objects();
 }
 
 }  // namespace ovimap

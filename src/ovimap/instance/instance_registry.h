@@ -79,12 +79,12 @@ class InstanceRegistry {
     std::map<Label, SuperPoint> super_points;
     std::map<InstanceId, InstanceRecord> records;
     std::map<InstanceId, InstanceId> aliases;
-    PairCounts pair_counts;   ///< of SuperPointMerging
-    PairCounts entity_pairs;  ///< of EntityConsensus
+    SuperPointMerging::PairCounts pair_counts;
+    EntitySightings entity_sightings;
     InstanceId last_id = 0;
   };
   State state() const {
-    return {super_points_, records_, aliases_, merging_.counts(), consensus_.pairs(), last_id_};
+    return {super_points_, records_, aliases_, merging_.counts(), consensus_.sightings(), last_id_};
   }
   void restore(State state);
 

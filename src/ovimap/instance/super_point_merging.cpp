@@ -29,7 +29,7 @@ std::vector<SuperPointMerging::Merge> SuperPointMerging::observe(
     }
     const auto [keep, drop] = found->first;
     forest.merge(keep, drop);
-    merge_labels(counts_, keep, drop);
+    rename(keep, drop);
     merges.push_back({keep, drop});
     found = counts_.begin();  // a merge renames and combines counts, which may ripen others
   }
@@ -59,6 +59,21 @@ void SuperPointMerging::count_apart(std::span<const SegmentAssociation> associat
   for (auto& [pair, count] : counts_)
     if (seen.contains(pair.first) && seen.contains(pair.second) && !joined_now.contains(pair))
       ++count.apart;
+}
+
+/// Counts of the dropped label go to the kept one. Combined by maximum: the two histories overlap
+/// in time.
+void SuperPointMerging::rename(Label keep, Label drop) {
+  PairCounts renamed;
+  for (const auto& [pair, count] : counts_) {
+    const Label a = pair.first == drop ? keep : pair.first,
+                b = pair.second == drop ? keep : pair.second;
+    if (a == b) continue;
+    PairCount& into = renamed[std::minmax(a, b)];
+    into.joined = std::max(into.joined, count.joined);
+    into.apart = std::max(into.apart, count.apart);
+  }
+  counts_ = std::move(renamed);
 }
 
 }  // namespace ovimap

@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "ovimap/instance/association.h"
-#include "ovimap/instance/pair_counts.h"
 
 namespace ovimap {
 
@@ -33,6 +34,11 @@ class SuperPointMerging {
   /// Adds one frame. Returns the merges it brings about, already made in `forest`, in order.
   std::vector<Merge> observe(std::span<const SegmentAssociation> associations, LabelForest& forest);
 
+  struct PairCount {
+    int joined = 0, apart = 0;
+    bool operator==(const PairCount&) const = default;
+  };
+  using PairCounts = std::map<std::pair<Label, Label>, PairCount>;
   const PairCounts& counts() const { return counts_; }
   void restore(PairCounts counts) { counts_ = std::move(counts); }
 
@@ -40,9 +46,10 @@ class SuperPointMerging {
   void count_joined(std::span<const SegmentAssociation> associations);
   void count_apart(std::span<const SegmentAssociation> associations);
   bool ripe(const PairCount& count) const;
+  void rename(Label keep, Label drop);
 
   MergeConfig config_;
-  PairCounts counts_;
+  PairCounts counts_;  ///< by (lower, higher) root
 };
 
 }  // namespace ovimap

@@ -99,7 +99,7 @@ inline MapDocument random_document(int block_count, std::uint32_t seed) {
       {1, {7, {{1, 3}, {2, 5}}}}, {4, {1, {}}}, {20, {900, {{3, 800}}}}};
   document.registry.records = {{1, {3, 0, 70}}, {3, {800, -5, std::int64_t{1} << 40}}};
   document.registry.aliases = {{2, 1}};
-  document.registry.entity_pairs = {{{4, 8}, {3, 2}}};
+  document.registry.entity_sightings = {{4, {{0, 8}, {3, 65535}}}, {20, {{3, 1}}}};
   document.registry.pair_counts = {{{1, 4}, {11, 2}}, {{4, 20}, {0, 1}}};
   document.registry.last_id = 3;
   InstanceSummary cup, table;
@@ -198,7 +198,7 @@ inline bool same_registry(const InstanceRegistry::State& a, const InstanceRegist
          std::equal(a.records.begin(), a.records.end(), b.records.begin(), b.records.end(),
                     same_record) &&
          a.aliases == b.aliases && a.pair_counts == b.pair_counts &&
-         a.entity_pairs == b.entity_pairs && a.last_id == b.last_id;
+         a.entity_sightings == b.entity_sightings && a.last_id == b.last_id;
 }
 
 inline bool same_view(const ObjectView& a, const ObjectView& b) {

@@ -146,13 +146,6 @@ void write_frames(SQLite::Database& database, const MapRecord& record) {
   rows.finish();
 }
 
-void write_pairs(SQLite::Database& database, const MapTable& table, const PairCounts& counts) {
-  RowWriter pairs(database, table);
-  for (const auto& [pair, count] : counts)
-    pairs.insert(pair.first, pair.second, count.joined, count.apart);
-  pairs.finish();
-}
-
 void write_registry(SQLite::Database& database, const InstanceRegistry::State& state) {
   RowWriter points(database, kSuperPoints);
   for (const auto& [label, point] : state.super_points) points.insert(label, point.frames_seen);
@@ -161,8 +154,14 @@ void write_registry(SQLite::Database& database, const InstanceRegistry::State& s
   for (const auto& [label, point] : state.super_points)
     for (const auto& [id, count] : point.votes) votes.insert(label, id, count);
   votes.finish();
-  write_pairs(database, kLabelPairs, state.pair_counts);
-  write_pairs(database, kEntityPairs, state.entity_pairs);
+  RowWriter pairs(database, kLabelPairs);
+  for (const auto& [pair, count] : state.pair_counts)
+    pairs.insert(pair.first, pair.second, count.joined, count.apart);
+  pairs.finish();
+  RowWriter sightings(database, kEntitySightings);
+  for (const auto& [label, seen] : state.entity_sightings)
+    for (const auto& [frame, entity] : seen) sightings.insert(label, frame, entity);
+  sightings.finish();
   RowWriter records(database, kInstanceRecords);
   for (const auto& [id, known] : state.records)
     records.insert(id, known.views, known.first_frame, known.last_frame);
@@ -270,17 +269,15 @@ void read_frames(SQLite::Database& database, MapRecord& record) {
   }
 }
 
-PairCounts read_pairs(SQLite::Database& database, const MapTable& table,
-                      const LabelForest& forest) {
-  PairCounts counts;
-  RowReader pairs(database, table);
-  while (pairs.next()) {
-    const Label lower = take_label(pairs, forest), higher = take_label(pairs, forest);
-    PairCount& count = counts[{lower, higher}];
-    count.joined = pairs.integer<int>();
-    count.apart = pairs.integer<int>();
+EntitySightings read_sightings(SQLite::Database& database, const LabelForest& forest) {
+  EntitySightings sightings;
+  RowReader rows(database, kEntitySightings);
+  while (rows.next()) {
+    std::vector<EntitySighting>& seen = sightings[take_label(rows, forest)];
+    const auto frame = rows.integer<std::uint32_t>();
+    seen.push_back({frame, rows.integer<std::uint16_t>()});
   }
-  return counts;
+  return sightings;
 }
 
 void read_registry(SQLite::Database& database, int schema, const LabelForest& forest,
@@ -298,9 +295,14 @@ void read_registry(SQLite::Database& database, int schema, const LabelForest& fo
     if (point == state.super_points.end()) votes.fail("names a super-point that is not there");
     point->second.votes[id] = votes.integer<int>();
   }
-  state.pair_counts = read_pairs(database, kLabelPairs, forest);
-  if (schema >= kSchemaWithConsensus)
-    state.entity_pairs = read_pairs(database, kEntityPairs, forest);
+  RowReader pairs(database, kLabelPairs);
+  while (pairs.next()) {
+    const Label lower = take_label(pairs, forest), higher = take_label(pairs, forest);
+    SuperPointMerging::PairCount& count = state.pair_counts[{lower, higher}];
+    count.joined = pairs.integer<int>();
+    count.apart = pairs.integer<int>();
+  }
+  if (schema >= kSchemaWithConsensus) state.entity_sightings = read_sightings(database, forest);
   RowReader records(database, kInstanceRecords);
   while (records.next()) {
     InstanceRecord& known = state.records[take_instance(records, state.last_id)];

@@ -60,11 +60,11 @@ inline constexpr MapTable kLabelPairs{"label_pairs", "lower, higher, joined, apa
                                       "INTEGER NOT NULL, apart INTEGER NOT NULL, "
                                       "PRIMARY KEY (lower, higher)",
                                       "WITHOUT ROWID"};
-inline constexpr MapTable kEntityPairs{"entity_pairs", "lower, higher, joined, apart",
-                                       "lower INTEGER NOT NULL, higher INTEGER NOT NULL, joined "
-                                       "INTEGER NOT NULL, apart INTEGER NOT NULL, "
-                                       "PRIMARY KEY (lower, higher)",
-                                       "WITHOUT ROWID"};
+inline constexpr MapTable kEntitySightings{
+    "entity_sightings", "label, frame, entity",
+    "label INTEGER NOT NULL, frame INTEGER NOT NULL, entity INTEGER NOT NULL, "
+    "PRIMARY KEY (label, frame)",
+    "WITHOUT ROWID"};
 inline constexpr MapTable kLabelForest{"label_forest", "epoch, roots",
                                        "epoch INTEGER PRIMARY KEY, roots BLOB NOT NULL"};
 inline constexpr MapTable kFrames{

@@ -61,7 +61,7 @@ TEST_F(MapFileSemantics, ReadsMapsOfTheSecondSchema) {
   EXPECT_EQ(read_map_info(path).schema, 2);
   EXPECT_FALSE(map.instances.empty());
   EXPECT_FALSE(map.semantics.appearances.empty());
-  EXPECT_TRUE(map.registry.entity_pairs.empty());
+  EXPECT_TRUE(map.registry.entity_sightings.empty());
   EXPECT_EQ(map.instance_config.instances, InstanceReading::kEntityVotes)
       << "a map goes on as it was begun";
   EXPECT_GT(read_searchable_map(path).embeddings.norm(), 0);
