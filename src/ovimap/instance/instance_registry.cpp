@@ -122,11 +122,9 @@ void InstanceRegistry::find_objects() {
     const auto [found, first] = oldest.try_emplace(object(root), own);
     if (!first) found->second = std::min(found->second, own);
   }
-  objects_.clear();
   for (const auto& [root, point] : super_points_) {
     if (point.votes.empty()) continue;
     const InstanceId own = point.votes.begin()->first, id = oldest.at(object(root));
-    objects_[root] = id;
     if (own == id) {
       aliases_.erase(own);
       continue;
@@ -152,11 +150,7 @@ void InstanceRegistry::see_super_points(std::span<const SegmentAssociation> asso
 
 void InstanceRegistry::merge(Label keep, Label drop) {
   const InstanceId kept_instance = instance_of(keep), dropped_instance = instance_of(drop);
-  SuperPoint& into = super_points_[keep];
-  const SuperPoint& from = super_points_[drop];
-  into.frames_seen += from.frames_seen;  // as the votes, so that their ratio keeps its meaning
-  for (const auto& [id, votes] : from.votes) into.votes[id] += votes;
-  super_points_.erase(drop);
+  absorb(keep, drop);
   if (kept_instance == 0 || dropped_instance == 0 || kept_instance == dropped_instance) return;
   if (!owns_super_point(kept_instance) || !owns_super_point(dropped_instance))
     unify(kept_instance, dropped_instance);
@@ -165,19 +159,18 @@ void InstanceRegistry::merge(Label keep, Label drop) {
 /// The survivor keeps the older of both ids; the other stays its alias for good.
 void InstanceRegistry::merge_consensus(Label keep, Label drop) {
   consensus_.merge(keep, drop);
+  const SuperPoint& into = absorb(keep, drop);
+  while (into.votes.size() > 1) unify(into.votes.begin()->first, into.votes.rbegin()->first);
+}
+
+/// Adds the evidence of `drop` to that of `keep`.
+const SuperPoint& InstanceRegistry::absorb(Label keep, Label drop) {
   SuperPoint& into = super_points_[keep];
-  const SuperPoint from = super_points_[drop];
-  super_points_.erase(drop);
+  const SuperPoint& from = super_points_[drop];
   into.frames_seen += from.frames_seen;  // as the votes, so that their ratio keeps its meaning
   for (const auto& [id, votes] : from.votes) into.votes[id] += votes;
-  while (into.votes.size() > 1) {
-    const auto younger = std::prev(into.votes.end());
-    const InstanceId own = into.votes.begin()->first;
-    into.votes.begin()->second += younger->second;
-    aliases_[younger->first] = own;
-    unify_records(own, younger->first);
-    into.votes.erase(younger);
-  }
+  super_points_.erase(drop);
+  return into;
 }
 
 bool InstanceRegistry::owns_super_point(InstanceId id) const {
@@ -234,9 +227,7 @@ InstanceId InstanceRegistry::instance_of(Label root) const {
   int most = 0;
   for (const auto& [id, votes] : point.votes)
     if (votes > most) best = id, most = votes;
-  if (!supported(point, most)) return 0;
-  const auto object = objects_.find(root);
-  return object == objects_.end() ? best : object->second;
+  return supported(point, most) ? resolve(best) : 0;
 }
 
 /// Whether enough of the frames that showed the super-point voted so.
@@ -266,7 +257,6 @@ void InstanceRegistry::restore(State state) {
   merging_.restore(std::move(state.pair_counts));
   consensus_.restore(std::move(state.entity_sightings));
   last_id_ = state.last_id;
-  if (!consensus_.sightings().empty()) find_objects();
 }
 
 }  // namespace ovimap

@@ -95,6 +95,7 @@ class InstanceRegistry {
                     const LabelForest& forest);
   void find_objects();
   void merge_consensus(Label keep, Label drop);
+  const SuperPoint& absorb(Label keep, Label drop);
   bool supported(const SuperPoint& point, int votes) const;
   InstanceId best_free_instance(const SuperPoint& point, const std::set<InstanceId>& used);
   void see_super_points(std::span<const SegmentAssociation> associations,
@@ -109,7 +110,6 @@ class InstanceRegistry {
   InstanceConfig config_;
   SuperPointMerging merging_;
   EntityConsensus consensus_;
-  std::map<Label, InstanceId> objects_;       ///< kConsensus: the id of each super-point's object
   std::map<Label, SuperPoint> super_points_;  ///< by root
   std::map<InstanceId, InstanceRecord> records_;
   std::map<InstanceId, InstanceId> aliases_;

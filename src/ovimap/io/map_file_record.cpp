@@ -269,6 +269,9 @@ void read_frames(SQLite::Database& database, MapRecord& record) {
   }
 }
 
+/// Maps of earlier schemas know nothing of which 2D entities showed a super-point.
+constexpr int kSchemaWithConsensus = 3;
+
 EntitySightings read_sightings(SQLite::Database& database, const LabelForest& forest) {
   EntitySightings sightings;
   RowReader rows(database, kEntitySightings);

@@ -29,9 +29,6 @@ void write_record(SQLite::Database& database, const MapRecord& record, const Map
 MapMeta read_meta(SQLite::Database& database, MapRecord& record);
 void read_instances(SQLite::Database& database, MapRecord& record);  ///< with their names
 void read_frames(SQLite::Database& database, MapRecord& record);
-/// Maps of earlier schemas know nothing of which 2D entities showed a super-point.
-inline constexpr int kSchemaWithConsensus = 3;
-
 /// `forest`: the labels that the state may speak of.
 void read_registry(SQLite::Database& database, int schema, const LabelForest& forest,
                    MapRecord& record);
