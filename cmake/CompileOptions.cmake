@@ -13,7 +13,9 @@ set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin")
 
 find_program(OVIMAP_CCACHE ccache)
 if(OVIMAP_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER "${OVIMAP_CCACHE}")
+  # Precompiled headers carry times of files, which ccache must be told to overlook.
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND}" -E env
+    CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime "${OVIMAP_CCACHE}")
 endif()
 find_program(OVIMAP_MOLD mold)
 
@@ -27,6 +29,9 @@ endif()
 # Results must not depend on how the compiler fuses or reorders floating-point operations.
 # Nobody here reads errno or floating-point exception flags; saying so lets loops be vectorised.
 target_compile_options(ovimap_options INTERFACE -ffp-contract=off -fno-math-errno -fno-trapping-math)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  target_compile_options(ovimap_options INTERFACE -fpch-preprocess)  # for ccache
+endif()
 if(OVIMAP_MOLD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND NOT OVIMAP_SANITIZE)
   target_link_options(ovimap_options INTERFACE -fuse-ld=mold)
 endif()
