@@ -22,6 +22,13 @@ void StageTimers::add(std::string_view stage, double milliseconds) {
   found->second.push_back(milliseconds);
 }
 
+void StageTimers::merge(const StageTimers& other) {
+  for (const auto& [stage, durations] : other.durations_ms_) {
+    std::vector<double>& own = durations_ms_[stage];
+    own.insert(own.end(), durations.begin(), durations.end());
+  }
+}
+
 std::map<std::string, StageSummary> StageTimers::summary() const {
   std::map<std::string, StageSummary> result;
   for (const auto& [stage, durations] : durations_ms_) {

@@ -39,6 +39,8 @@ class StageTimers {
 
   [[nodiscard]] Scope measure(std::string_view stage) { return Scope(*this, stage); }
   void add(std::string_view stage, double milliseconds);
+  /// Adds all that another has measured.
+  void merge(const StageTimers& other);
 
   /// Percentiles by nearest rank, per stage.
   std::map<std::string, StageSummary> summary() const;

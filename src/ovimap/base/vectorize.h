@@ -7,7 +7,7 @@
 /// Sanitizers cannot intercept the start-up choice, so they get the baseline alone.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
     !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
-#define OVIMAP_VECTORIZE __attribute__((target_clones("avx2", "default")))
+#define OVIMAP_VECTORIZE __attribute__((flatten, target_clones("avx2", "default")))
 #else
 #define OVIMAP_VECTORIZE
 #endif

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "ovimap/base/buffer_pool.h"
 #include "ovimap/base/error.h"
 
 namespace ovimap {
@@ -65,7 +66,7 @@ class Image {
   }
 
   int width_ = 0, height_ = 0;
-  std::vector<Pixel> pixels_;
+  std::vector<Pixel, PooledAllocator<Pixel>> pixels_;
 };
 
 using RgbImage = Image<Rgb8>;

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/base/buffer_pool.h"
+
+#include <cstdint>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace ovimap {
+namespace {
+
+using Buffer = std::vector<std::uint32_t, PooledAllocator<std::uint32_t>>;
+
+TEST(BufferPool, AReusedBufferIsFilledLikeANewOne) {
+  for (int round = 0; round < 3; ++round) {
+    Buffer buffer(100000);
+    for (const std::uint32_t value : buffer) ASSERT_EQ(value, 0u);
+    buffer.assign(buffer.size(), 7u);
+  }
+}
+
+TEST(BufferPool, ServesManyThreadsAndSizes) {
+  std::vector<std::thread> threads;
+  for (std::uint32_t id = 1; id <= 4; ++id)
+    threads.emplace_back([id] {
+      for (std::size_t round = 0; round < 200; ++round) {
+        const Buffer buffer(20000 + 5000 * (round % 5), id);
+        const Buffer copy = buffer;
+        for (const std::uint32_t value : copy) ASSERT_EQ(value, id);
+      }
+    });
+  for (std::thread& thread : threads) thread.join();
+}
+
+TEST(BufferPool, GivesBackWhatItCannotHold) {
+  std::vector<Buffer> buffers;
+  for (int i = 0; i < 5; ++i) buffers.emplace_back(std::size_t{5} << 20);  // 20 MiB each
+  buffers.clear();
+  EXPECT_EQ(Buffer(std::size_t{5} << 20)[12345], 0u);
+}
+
+}  // namespace
+}  // namespace ovimap
