@@ -29,7 +29,7 @@ struct MappedRoom {
     integrate(map, {.depth = view.depth,
                     .camera = view.camera,
                     .world_from_camera = view.pose,
-                    .normals = &surface.normals,
+                    .plane_slope = &surface.plane_slope,
                     .segment_ids = &segments.ids,
                     .segment_labels = labels});
   }

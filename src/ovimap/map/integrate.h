@@ -17,22 +17,29 @@ struct Observation {
   const DepthImage& depth;      ///< metres, 0 = invalid
   const PinholeCamera& camera;  ///< of the depth
   const Pose& world_from_camera;
-  const RgbImage* color = nullptr;                  ///< registered to the depth; black = unknown
-  const Image<Eigen::Vector3f>* normals = nullptr;  ///< unit, camera frame; 0 = unknown
-  const IdImage* segment_ids = nullptr;             ///< segment of each pixel; 0 = none
-  std::span<const Label> segment_labels = {};       ///< label of segment id, at [id - 1]
+  const RgbImage* color = nullptr;             ///< registered to the depth; black = unknown
+  const Image<float>* plane_slope = nullptr;   ///< see DepthSurface::plane_slope; 0 = unknown
+  const IdImage* segment_ids = nullptr;        ///< segment of each pixel; 0 = none
+  std::span<const Label> segment_labels = {};  ///< label of segment id, at [id - 1]
 };
 
 /// Fuses one frame into the map: distance, colour and label support, one pass over the blocks near
 /// the observed surface (method section 5; weights 1/z^2 as in voxblox, linear drop-off behind the
 /// surface).
 ///
-/// Distances along the ray are multiplied by the cosine between ray and normal where the normal is
-/// known: the distance to the surface's tangent plane. Projective distances alone are too long on
-/// surfaces seen at a slant, and differ from view to view.
+/// Where a plane was fitted the distance is that to the plane: the difference of depths times the
+/// plane's slope, else times the length of the ray. Projective distances alone are too long on
+/// surfaces seen at a slant, and differ from view to view. Voxels further than the truncation from
+/// the surface along the optical axis keep what they have.
 ///
-/// The only writer of voxels. Returns the slots of the blocks it visited, in block-index order.
+/// The only writer of voxels, with vote_labels. Returns the slots of the blocks it visited, in
+/// block-index order.
 std::vector<std::uint32_t> integrate(VoxelMap& map, const Observation& observation);
+
+/// The frame's label votes alone, for masks that come after their frame was fused: the same voxels
+/// as `integrate` would ask, without touching distance, weight or colour. The observation must have
+/// segments. Returns likewise.
+std::vector<std::uint32_t> vote_labels(VoxelMap& map, const Observation& observation);
 
 /// Creates the blocks within the truncation band of the observed surface and returns the slots of
 /// all blocks in that band, in block-index order.

@@ -6,6 +6,7 @@
 
 #include "ovimap/base/parallel.h"
 #include "ovimap/map/label_slots.h"
+#include "ovimap/map/plain_fusion.h"
 #include "ovimap/map/sphere_fixture.h"
 
 namespace ovimap {
@@ -58,6 +59,81 @@ TEST(Integrate, GivesTheSameBitsForEveryThreadCount) {
     return map.content_hash();
   };
   EXPECT_EQ(hash(1), hash(2));
+}
+
+/// A frame with everything that makes fusion branch: noise, holes, unknown planes and colours, and
+/// segments of which one has no label.
+struct RoughFrame {
+  DepthImage depth;
+  Image<float> slope;
+  RgbImage color;
+  IdImage segments;
+
+  RoughFrame(const SphereScene& scene, std::uint32_t seed)
+      : depth(scene.depth()),
+        slope(scene.plane_slope()),
+        color(depth.width(), depth.height()),
+        segments(depth.width(), depth.height()) {
+    for (std::size_t i = 0; i < depth.size(); ++i) {
+      seed = seed * 1664525u + 1013904223u;
+      depth[i] += depth[i] > 0.f ? 0.01f * (static_cast<float>(seed >> 8) / 16777216.f - 0.5f) : 0;
+      if (seed >> 28 == 0) depth[i] = 0.f;
+      if (seed >> 28 == 1) slope[i] = 0.f;
+      if (seed >> 28 > 2)
+        color[i] = {static_cast<std::uint8_t>(seed >> 20), static_cast<std::uint8_t>(seed >> 12),
+                    static_cast<std::uint8_t>(seed >> 4)};
+      segments[i] = static_cast<std::uint16_t>(i / 37 % 4);
+    }
+  }
+};
+
+TEST(Integrate, EqualsThePlainFusionToTheBit) {
+  const SphereScene scene;
+  VoxelMap fast, plain;
+  std::vector<Label> labels;
+  for (VoxelMap* map : {&fast, &plain})
+    labels = {map->labels().create(), kNoLabel, map->labels().create()};
+  for (int view = 0; view < 5; ++view) {
+    const RoughFrame frame(scene, 7u + static_cast<std::uint32_t>(view));
+    const Pose pose = scene.pose(0.4 * view);
+    const Observation observation{.depth = frame.depth,
+                                  .camera = scene.camera,
+                                  .world_from_camera = pose,
+                                  .color = view == 2 ? nullptr : &frame.color,
+                                  .plane_slope = view == 3 ? nullptr : &frame.slope,
+                                  .segment_ids = view == 1 ? nullptr : &frame.segments,
+                                  .segment_labels = labels};
+    integrate(fast, observation);
+    plain::integrate(plain, observation);
+    ASSERT_EQ(fast.content_hash(), plain.content_hash()) << "view " << view;
+  }
+  EXPECT_GT(fast.block_count(), 100u);
+}
+
+TEST(VoteLabels, GivesTheVotesThatIntegrateWouldHaveGiven) {
+  const SphereScene scene;
+  VoxelMap together, apart;
+  std::vector<Label> labels;
+  for (VoxelMap* map : {&together, &apart})
+    labels = {map->labels().create(), kNoLabel, map->labels().create()};
+  for (int view = 0; view < 3; ++view) {
+    const RoughFrame frame(scene, 50u + static_cast<std::uint32_t>(view));
+    const Pose pose = scene.pose(0.4 * view);
+    Observation observation{.depth = frame.depth,
+                            .camera = scene.camera,
+                            .world_from_camera = pose,
+                            .color = &frame.color,
+                            .plane_slope = &frame.slope,
+                            .segment_ids = &frame.segments,
+                            .segment_labels = labels};
+    integrate(together, observation);
+    observation.segment_ids = nullptr;
+    integrate(apart, observation);
+    EXPECT_NE(apart.content_hash(), together.content_hash());
+    observation.segment_ids = &frame.segments;
+    vote_labels(apart, observation);
+    EXPECT_EQ(apart.content_hash(), together.content_hash());
+  }
 }
 
 TEST(Integrate, IgnoresInvalidDepth) {

@@ -8,8 +8,8 @@
 #include <Eigen/Geometry>
 
 #include "ovimap/base/parallel.h"
-#include "ovimap/map/label_slots.h"
 #include "ovimap/map/marching_cubes_table.h"
+#include "ovimap/map/mesh_vertex.h"
 
 namespace ovimap {
 
@@ -41,7 +41,6 @@ class Neighbourhood {
 
   bool observed(int x, int y, int z) const { return observed_[at(x, y, z)]; }
   bool inside(int x, int y, int z) const { return tsdf_[at(x, y, z)] < 0; }
-  float tsdf(int x, int y, int z) const { return tsdf_[at(x, y, z)]; }
   const VoxelBlock& block(int x, int y, int z) const { return *blocks_[which(x, y, z)]; }
 
  private:
@@ -97,35 +96,17 @@ class BlockMesher {
       mesh.vertex_of_edge = std::make_unique<std::array<std::uint16_t, kEdges>>();
       mesh.vertex_of_edge->fill(kNoVertex);
     }
-    const float da = near.tsdf(a.x(), a.y(), a.z()), db = near.tsdf(b.x(), b.y(), b.z());
-    const float along = da / (da - db);
-    Eigen::Vector3f voxel =
-        (map_.block(slots_[i]).index * kBlockSide + a).cast<float>().array() + 0.5f;
-    voxel[axis] += along;
-    const Eigen::Vector3i& nearer = along < 0.5f ? a : b;
-    const Eigen::Vector3i& farther = along < 0.5f ? b : a;
+    const auto end_at = [&](const Eigen::Vector3i& at) -> MeshEdgeEnd {
+      return {&near.block(at.x(), at.y(), at.z()),
+              voxel_offset(at.x() & 7, at.y() & 7, at.z() & 7)};
+    };
+    const MeshVertex made = mesh_vertex(
+        map_, {map_.block(slots_[i]).index * kBlockSide + a, axis, end_at(a), end_at(b)});
     const auto edge = static_cast<std::size_t>(voxel_offset(a.x(), a.y(), a.z()) * 3 + axis);
     (*mesh.vertex_of_edge)[edge] = static_cast<std::uint16_t>(mesh.part.vertices.size());
-    mesh.part.vertices.push_back(voxel * map_.config().voxel_size_m);
-    add_attributes(near, nearer, farther, mesh.part);
-  }
-
-  /// Colour and label of the voxel nearer to the surface; of the other one where that has none.
-  void add_attributes(const Neighbourhood& near, const Eigen::Vector3i& nearer,
-                      const Eigen::Vector3i& farther, Mesh& part) const {
-    std::array<std::uint8_t, 3> color{};
-    Label label = kNoLabel;
-    for (const Eigen::Vector3i& at : {nearer, farther}) {
-      const VoxelBlock& block = near.block(at.x(), at.y(), at.z());
-      const int voxel = voxel_offset(at.x() & 7, at.y() & 7, at.z() & 7);
-      if (color == std::array<std::uint8_t, 3>{})
-        for (std::size_t c = 0; c < 3; ++c)
-          color[c] =
-              static_cast<std::uint8_t>(block.color[c][static_cast<std::size_t>(voxel)] >> 8);
-      if (label == kNoLabel) label = voxel_label(block, voxel, map_.labels());
-    }
-    part.colors.push_back(color);
-    part.labels.push_back(label);
+    mesh.part.vertices.push_back(made.position);
+    mesh.part.colors.push_back(made.color);
+    mesh.part.labels.push_back(made.label);
   }
 
   void add_cell(const Neighbourhood& near, std::size_t i, const Eigen::Vector3i& cell,

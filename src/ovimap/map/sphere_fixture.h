@@ -40,30 +40,31 @@ struct SphereScene {
     return result;
   }
 
-  /// Exact normals of the sphere in the camera frame.
-  Image<Eigen::Vector3f> normals() const {
+  /// Exact slopes of the sphere's tangent planes.
+  Image<float> plane_slope() const {
     const DepthImage image = depth();
-    Image<Eigen::Vector3f> result(camera.width, camera.height, Eigen::Vector3f::Zero());
+    Image<float> result(camera.width, camera.height);
     for (int y = 0; y < image.height(); ++y)
       for (int x = 0; x < image.width(); ++x)
-        if (image.at(x, y) > 0.f)
-          result.at(x, y) =
-              (camera.unproject(static_cast<float>(x), static_cast<float>(y), image.at(x, y)) -
-               Eigen::Vector3f(0, 0, 1.2f))
-                  .normalized();
+        if (image.at(x, y) > 0.f) {
+          const Eigen::Vector3f point =
+              camera.unproject(static_cast<float>(x), static_cast<float>(y), image.at(x, y));
+          const Eigen::Vector3f normal = (point - Eigen::Vector3f(0, 0, 1.2f)).normalized();
+          result.at(x, y) = -normal.dot(point) / point.z();
+        }
     return result;
   }
 
   /// Integrates `views` views all around; every pixel belongs to segment 1 with the given label.
   void integrate_views(VoxelMap& map, int views, Label label, Rgb8 color = {200, 100, 50}) const {
     const DepthImage image = depth();
-    const Image<Eigen::Vector3f> normal_image = normals();
+    const Image<float> slopes = plane_slope();
     const RgbImage colors(camera.width, camera.height, color);
     const IdImage segments(camera.width, camera.height, 1);
     const std::array<Label, 1> labels{label};
     for (int i = 0; i < views; ++i) {
       const Pose world_from_camera = pose(2 * M_PI * i / views);
-      integrate(map, {image, camera, world_from_camera, &colors, &normal_image, &segments, labels});
+      integrate(map, {image, camera, world_from_camera, &colors, &slopes, &segments, labels});
     }
   }
 };

@@ -33,10 +33,12 @@ TileRanges::TileRanges(const VoxelMap& map, const PinholeCamera& camera,
     return std::fabs(c.x()) <= corner * c.z() + radius * std::sqrt(1.f + corner * corner) &&
            std::fabs(c.y()) <= side * c.z() + radius * std::sqrt(1.f + side * side);
   };
-  map.for_each_region([&](const BlockIndex& index, const std::vector<std::uint32_t>& slots) {
-    const Eigen::Vector3d center = (index.cast<double>() + Eigen::Vector3d::Constant(0.5)) * region;
+  map.for_each_region([&](const BlockRegion& blocks) {
+    const Eigen::Vector3d center =
+        (blocks.index.cast<double>() + Eigen::Vector3d::Constant(0.5)) * region;
     if (!in_view((camera_from_world * center).cast<float>(), region_radius)) return;
-    for (std::uint32_t slot : slots) {
+    for (std::uint32_t slot : blocks.slots) {
+      if (slot == kNoBlock) continue;
       const Eigen::Vector3d middle =
           (map.block(slot).index.cast<double>() + Eigen::Vector3d::Constant(0.5)) * block;
       const Eigen::Vector3f c = (camera_from_world * middle).cast<float>();

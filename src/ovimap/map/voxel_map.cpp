@@ -14,10 +14,6 @@ namespace ovimap {
 
 namespace {
 
-BlockIndex region_of(const BlockIndex& index) {
-  return {index.x() >> 3, index.y() >> 3, index.z() >> 3};  // floor division by 8 for either sign
-}
-
 /// Hash of what a block says, independent of how its palette happens to be numbered.
 std::uint64_t block_hash(const VoxelBlock& block, const LabelForest& forest) {
   XXH64_hash_t hash = XXH64(block.index.data(), sizeof(int) * 3, 0);
@@ -58,23 +54,31 @@ const VoxelBlock* VoxelMap::find(const BlockIndex& index) const {
 }
 
 std::uint32_t VoxelMap::find_slot(const BlockIndex& index) const {
-  const auto found = slots_.find(pack_index(index));
-  return found == slots_.end() ? kNoBlock : found->second;
+  const BlockRegion* region = find_region(BlockRegion::index_of(index));
+  return region ? region->slot(index) : kNoBlock;
 }
 
-bool VoxelMap::region_occupied(const BlockIndex& index) const {
-  return regions_.contains(pack_index(region_of(index)));
+const BlockRegion* VoxelMap::find_region(const BlockIndex& region) const {
+  const auto found = region_positions_.find(pack_index(region));
+  return found == region_positions_.end() ? nullptr : regions_[found->second].get();
+}
+
+BlockRegion& VoxelMap::find_or_create_region(const BlockIndex& region) {
+  const auto [found, created] = region_positions_.try_emplace(
+      pack_index(region), static_cast<std::uint32_t>(regions_.size()));
+  if (created) regions_.push_back(std::make_unique<BlockRegion>(region));
+  return *regions_[found->second];
 }
 
 std::uint32_t VoxelMap::find_or_create(const BlockIndex& index) {
-  const auto [found, created] =
-      slots_.try_emplace(pack_index(index), static_cast<std::uint32_t>(blocks_.size()));
-  if (created) {
+  BlockRegion& region = find_or_create_region(BlockRegion::index_of(index));
+  std::uint32_t& slot = region.slots[BlockRegion::position(index)];
+  if (slot == kNoBlock) {
+    slot = static_cast<std::uint32_t>(blocks_.size());
     blocks_.push_back(std::make_unique<VoxelBlock>(index));
     blocks_.back()->forest_epoch = labels_.epoch();
-    regions_[pack_index(region_of(index))].push_back(found->second);
   }
-  return found->second;
+  return slot;
 }
 
 std::vector<std::uint32_t> VoxelMap::ordered_slots() const {
@@ -94,7 +98,8 @@ std::size_t VoxelMap::bytes() const {
   std::size_t palettes = 0;
   for (const auto& block : blocks_) palettes += block->palette.capacity() * sizeof(Label);
   return blocks_.size() * (sizeof(VoxelBlock) + sizeof(blocks_[0])) + palettes +
-         slots_.bucket_count() * sizeof(std::pair<std::uint64_t, std::uint32_t>);
+         regions_.size() * (sizeof(BlockRegion) + sizeof(regions_[0])) +
+         region_positions_.bucket_count() * sizeof(std::pair<std::uint64_t, std::uint32_t>);
 }
 
 std::uint64_t VoxelMap::content_hash() const {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -42,6 +43,26 @@ struct VoxelRef {
   }
 };
 
+inline constexpr std::uint32_t kNoBlock = ~std::uint32_t{0};
+
+/// A cube of 8 x 8 x 8 blocks and the slots of those that exist. Rays stay in one for long, and
+/// leap over the space where there is none.
+struct BlockRegion {
+  explicit BlockRegion(const BlockIndex& region_index) : index(region_index) {
+    slots.fill(kNoBlock);
+  }
+  static BlockIndex index_of(const BlockIndex& block) {
+    return {block.x() >> 3, block.y() >> 3, block.z() >> 3};  // floor division for either sign
+  }
+  static std::size_t position(const BlockIndex& block) {
+    return static_cast<std::size_t>((block.x() & 7) | (block.y() & 7) << 3 | (block.z() & 7) << 6);
+  }
+  std::uint32_t slot(const BlockIndex& block) const { return slots[position(block)]; }
+
+  BlockIndex index;  ///< covers the blocks [index * 8, index * 8 + 8) along each axis
+  std::array<std::uint32_t, kRegionBlocks * kRegionBlocks * kRegionBlocks> slots;
+};
+
 /// The sparse TSDF of the scene with per-voxel label support. World frame, metres. Blocks are
 /// created by `integrate` alone and never move in memory.
 class VoxelMap {
@@ -56,16 +77,15 @@ class VoxelMap {
 
   /// The block at `index`, or nullptr when that space was never near an observed surface.
   const VoxelBlock* find(const BlockIndex& index) const;
-  static constexpr std::uint32_t kNoBlock = ~std::uint32_t{0};
+  /// kNoBlock where there is none.
   std::uint32_t find_slot(const BlockIndex& index) const;
-  /// False when no block of the region (cube of 8^3 blocks) around block `index` exists: empty
-  /// space to leap over.
-  bool region_occupied(const BlockIndex& index) const;
+  /// The region of the given index, nullptr when none of its blocks exists.
+  const BlockRegion* find_region(const BlockIndex& region) const;
 
-  /// Calls `visit(region_index, slots)` for every region, in no particular order.
+  /// Calls `visit(region)` for every region, in no particular order.
   template <class Visit>
   void for_each_region(Visit&& visit) const {
-    for (const auto& [key, slots] : regions_) visit(unpack_index(key), slots);
+    for (const auto& region : regions_) visit(*region);
   }
 
   const VoxelBlock& block(std::uint32_t slot) const { return *blocks_[slot]; }
@@ -94,14 +114,14 @@ class VoxelMap {
   struct KeyHash {  // robin_map takes the low bits, so the high ones are mixed in
     std::size_t operator()(std::uint64_t key) const;
   };
-  using Slots = tsl::robin_map<std::uint64_t, std::uint32_t, KeyHash>;
-  using Regions = tsl::robin_map<std::uint64_t, std::vector<std::uint32_t>, KeyHash>;
+  using RegionPositions = tsl::robin_map<std::uint64_t, std::uint32_t, KeyHash>;
+  BlockRegion& find_or_create_region(const BlockIndex& region);
 
   VoxelMapConfig config_;
   float metres_per_unit_;
   std::vector<std::unique_ptr<VoxelBlock>> blocks_;
-  Slots slots_;
-  Regions regions_;  ///< slots of the blocks in each region
+  std::vector<std::unique_ptr<BlockRegion>> regions_;
+  RegionPositions region_positions_;  ///< in regions_, by packed index
   LabelForest labels_;
 };
 

@@ -26,8 +26,10 @@ TEST(VoxelMap, FindsWhatWasCreated) {
   const std::uint32_t slot = map.find_or_create({1, -2, 3});
   EXPECT_EQ(map.find_or_create({1, -2, 3}), slot);
   EXPECT_EQ(map.find({1, -2, 3})->index, BlockIndex(1, -2, 3));
-  EXPECT_TRUE(map.region_occupied({7, -8, 0}));
-  EXPECT_FALSE(map.region_occupied({8, -2, 3}));
+  EXPECT_EQ(map.find({1, -2, 4}), nullptr);
+  ASSERT_NE(map.find_region({0, -1, 0}), nullptr);
+  EXPECT_EQ(map.find_region({0, -1, 0})->slot({1, -2, 3}), slot);
+  EXPECT_EQ(map.find_region({1, -1, 0}), nullptr);
 }
 
 TEST(VoxelMap, ContentHashIgnoresCreationOrderAndSeesEveryVoxel) {

@@ -4,14 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "ovimap/base/parallel.h"
+#include "ovimap/base/vectorize.h"
 
 namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kRowsPerTask = 16;
+constexpr std::size_t kRowsPerTask = 32;
 
 /// Least 1 - cos(angle) that counts as a fold, by depth: a table, as it is asked for every pixel.
 class FoldThreshold {
@@ -30,6 +32,7 @@ class FoldThreshold {
   float operator()(float depth_m) const {
     return least_[std::min(static_cast<int>(depth_m / kStep_m), kSteps - 1)];
   }
+  float least() const { return *std::min_element(std::begin(least_), std::end(least_)); }
 
  private:
   static constexpr int kSteps = 200;
@@ -43,6 +46,9 @@ class FoldMeasure {
   FoldMeasure(const DepthSurface& surface, const PinholeCamera& camera,
               const SegmentDepthConfig& config)
       : surface_(surface), camera_(camera), threshold_(surface, camera, config) {}
+
+  /// No fold is weaker than this, wherever it is; a little less, for rounding.
+  float least() const { return 0.999f * threshold_.least(); }
 
   float operator()(int x1, int y1, int x2, int y2) const {
     const Eigen::Vector3f& n1 = surface_.normals.at(x1, y1);
@@ -66,37 +72,77 @@ class FoldMeasure {
   FoldThreshold threshold_;
 };
 
+/// Marks the pixels of a row whose window is cut, or whose normals at the ends of a whole window
+/// differ enough for a fold: the few that are worth a closer look. `before` and `after` are the
+/// normals at the ends of the window of pixel 0, `arm1` and `arm2` its arms.
+OVIMAP_VECTORIZE void mark_fold_candidates(const float* before, const float* after,
+                                           const std::uint8_t* arm1, const std::uint8_t* arm2,
+                                           int radius, float least, int begin, int end,
+                                           std::uint8_t* candidates) {
+  for (int x = begin; x < end; ++x) {
+    const float dot = before[3 * x] * after[3 * x] + before[3 * x + 1] * after[3 * x + 1] +
+                      before[3 * x + 2] * after[3 * x + 2];
+    const bool cut = (arm1[x] != radius) | (arm2[x] != radius);
+    candidates[x] = cut | (1.f - dot >= least);
+  }
+}
+
 struct FoldImages {
   Image<float> across;  ///< between left and right
   Image<float> down;    ///< between above and below
 };
 
-/// Unbroken pixels above / below (x, y), at most `radius`.
-int column_arm(const DepthSurface& surface, int x, int y, int direction, int radius) {
-  int arm = 0;
-  for (int row = y; arm < radius; ++arm, row += direction) {
-    const int upper = direction < 0 ? row - 1 : row;
-    if (upper < 0 || upper + 1 >= surface.breaks.height()) break;
-    if (surface.breaks.at(x, upper) & DepthSurface::kBelow) break;
+/// Folds of one row of the images.
+class RowFolds {
+ public:
+  RowFolds(const DepthSurface& surface, const FoldMeasure& fold)
+      : surface_(surface),
+        fold_(fold),
+        width_(surface.breaks.width()),
+        radius_(surface.radius_px),
+        candidates_(static_cast<std::size_t>(width_)) {}
+
+  void across(int y, float* strength) {
+    const std::uint8_t *left = surface_.left_px.row(y), *right = surface_.right_px.row(y);
+    const float* normals = surface_.normals.row(y)->data();
+    std::fill(candidates_.begin(), candidates_.end(), std::uint8_t{1});
+    mark_fold_candidates(normals - 3 * radius_, normals + 3 * radius_, left, right, radius_,
+                         fold_.least(), radius_, width_ - radius_, candidates_.data());
+    for (int x = 0; x < width_; ++x)
+      if (candidates_[static_cast<std::size_t>(x)] && left[x] + right[x] >= radius_)
+        strength[x] = fold_(x - left[x], y, x + right[x], y);
   }
-  return arm;
-}
+
+  void down(int y, float* strength) {
+    const std::uint8_t *up = surface_.up_px.row(y), *down = surface_.down_px.row(y);
+    std::fill(candidates_.begin(), candidates_.end(), std::uint8_t{1});
+    if (y >= radius_ && y + radius_ < surface_.breaks.height())
+      mark_fold_candidates(surface_.normals.row(y - radius_)->data(),
+                           surface_.normals.row(y + radius_)->data(), up, down, radius_,
+                           fold_.least(), 0, width_, candidates_.data());
+    for (int x = 0; x < width_; ++x)
+      if (candidates_[static_cast<std::size_t>(x)] && up[x] + down[x] >= radius_)
+        strength[x] = fold_(x, y - up[x], x, y + down[x]);
+  }
+
+ private:
+  const DepthSurface& surface_;
+  const FoldMeasure& fold_;
+  int width_, radius_;
+  std::vector<std::uint8_t> candidates_;
+};
 
 FoldImages measure_folds(const DepthSurface& surface, const FoldMeasure& fold) {
-  const int width = surface.breaks.width(), height = surface.breaks.height(),
-            radius = surface.radius_px;
+  const int width = surface.breaks.width(), height = surface.breaks.height();
   FoldImages folds{Image<float>(width, height), Image<float>(width, height)};
-  parallel_for(static_cast<std::size_t>(height), kRowsPerTask, [&](std::size_t row) {
-    const int y = static_cast<int>(row);
-    for (int x = 0; x < width; ++x) {
-      if (surface.smooth_depth_m.at(x, y) <= 0.f) continue;
-      const int left = surface.left_px.at(x, y), right = surface.right_px.at(x, y);
-      if (left + right >= radius) folds.across.at(x, y) = fold(x - left, y, x + right, y);
-      const int up = column_arm(surface, x, y, -1, radius),
-                down = column_arm(surface, x, y, 1, radius);
-      if (up + down >= radius) folds.down.at(x, y) = fold(x, y - up, x, y + down);
-    }
-  });
+  parallel_for_ranges(static_cast<std::size_t>(height), kRowsPerTask,
+                      [&](std::size_t begin, std::size_t end) {
+                        RowFolds row(surface, fold);
+                        for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+                          row.across(y, folds.across.row(y));
+                          row.down(y, folds.down.row(y));
+                        }
+                      });
   return folds;
 }
 
@@ -118,8 +164,11 @@ Image<std::uint8_t> find_concave_edges(const DepthSurface& surface, const Pinhol
   };
   parallel_for(static_cast<std::size_t>(height), kRowsPerTask, [&](std::size_t row) {
     const int y = static_cast<int>(row);
+    const float *across = folds.across.row(y), *down = folds.down.row(y);
+    std::uint8_t* edge = edges.row(y);
     for (int x = 0; x < width; ++x)
-      edges.at(x, y) = is_ridge(folds.across, x, y, 1, 0) || is_ridge(folds.down, x, y, 0, 1);
+      if (across[x] > 0.f || down[x] > 0.f)
+        edge[x] = is_ridge(folds.across, x, y, 1, 0) || is_ridge(folds.down, x, y, 0, 1);
   });
   return edges;
 }

@@ -7,153 +7,86 @@
 
 #include "ovimap/base/config.h"
 #include "ovimap/base/parallel.h"
+#include "ovimap/base/vectorize.h"
 #include "ovimap/segment/concave_edges.h"
 #include "ovimap/segment/connected_regions.h"
+#include "ovimap/segment/region_growth.h"
 
 namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kRowsPerTask = 16;
-constexpr std::uint32_t kNoSeed = std::numeric_limits<std::uint32_t>::max();
+constexpr std::size_t kRowsPerTask = 32;
+
+/// The rows that say whether regions grow from the pixels of one row.
+struct InteriorRows {
+  const std::uint8_t *folds_above, *folds, *folds_below;
+  const std::uint8_t *breaks_above, *breaks;
+};
+
+OVIMAP_VECTORIZE void mark_interior(const InteriorRows& rows, int width, std::uint8_t* interior) {
+  const std::uint8_t *above = rows.folds_above, *here = rows.folds, *below = rows.folds_below;
+  const std::uint8_t *breaks = rows.breaks, *breaks_above = rows.breaks_above;
+  for (int x = 1; x < width - 1; ++x) {
+    const int broken = breaks[x] | (breaks[x - 1] & DepthSurface::kRight) |
+                       (breaks_above[x] & DepthSurface::kBelow);
+    const int folded = above[x - 1] | above[x] | above[x + 1] | here[x - 1] | here[x] |
+                       here[x + 1] | below[x - 1] | below[x] | below[x + 1];
+    interior[x] = (broken | folded) == 0;
+  }
+}
 
 /// Pixels whose surface goes on to all four neighbours and that touch no concave edge: what regions
 /// grow from.
 Image<std::uint8_t> find_interior(const DepthSurface& surface, const Image<std::uint8_t>& concave) {
   const int width = concave.width(), height = concave.height();
   Image<std::uint8_t> interior(width, height);
-  parallel_for(
-      static_cast<std::size_t>(std::max(0, height - 2)), kRowsPerTask, [&](std::size_t row) {
-        const int y = static_cast<int>(row) + 1;
-        const std::uint8_t *above = concave.row(y - 1), *here = concave.row(y),
-                           *below = concave.row(y + 1);
-        const std::uint8_t *breaks = surface.breaks.row(y),
-                           *breaks_above = surface.breaks.row(y - 1);
-        for (int x = 1; x < width - 1; ++x) {
-          const int broken = breaks[x] | (breaks[x - 1] & DepthSurface::kRight) |
-                             (breaks_above[x] & DepthSurface::kBelow);
-          const int folded = above[x - 1] | above[x] | above[x + 1] | here[x - 1] | here[x] |
-                             here[x + 1] | below[x - 1] | below[x] | below[x + 1];
-          interior.at(x, y) = broken == 0 && folded == 0;
-        }
-      });
+  parallel_for(static_cast<std::size_t>(std::max(0, height - 2)), kRowsPerTask,
+               [&](std::size_t row) {
+                 const int y = static_cast<int>(row) + 1;
+                 mark_interior({concave.row(y - 1), concave.row(y), concave.row(y + 1),
+                                surface.breaks.row(y - 1), surface.breaks.row(y)},
+                               width, interior.row(y));
+               });
   return interior;
 }
 
-/// Gives pixels between regions to the region whose nearest interior pixel is nearest in 3D.
-class Regrowth {
- public:
-  Regrowth(const DepthSurface& surface, const PinholeCamera& camera,
-           const SegmentDepthConfig& config, Image<std::uint32_t>& labels)
-      : surface_(surface),
-        camera_(camera),
-        config_(config),
-        labels_(labels),
-        seeds_(labels.width(), labels.height(), kNoSeed) {
-    for (std::size_t i = 0; i < labels.size(); ++i) {
-      if (labels[i] != 0)
-        seeds_[i] = static_cast<std::uint32_t>(i);
-      else if (surface.smooth_depth_m[i] > 0.f)
-        open_.push_back(static_cast<std::uint32_t>(i));
+/// Calls `visit(label, begin, end, y)` for every run of equal labels in a row, in raster order.
+template <class Visit>
+void for_each_run(const Image<std::uint32_t>& labels, const Visit& visit) {
+  for (int y = 0; y < labels.height(); ++y) {
+    const std::uint32_t* row = labels.row(y);
+    for (int begin = 0; begin < labels.width();) {
+      int end = begin + 1;
+      while (end < labels.width() && row[end] == row[begin]) ++end;
+      visit(row[begin], begin, end, y);
+      begin = end;
     }
   }
-
-  /// One ring of pixels further; returns whether anything grew.
-  bool grow() {
-    std::vector<std::uint32_t> found(open_.size(), kNoSeed);
-    parallel_for(open_.size(), 4096, [&](std::size_t i) { found[i] = nearest_seed(open_[i]); });
-    std::vector<std::uint32_t> still_open;
-    for (std::size_t i = 0; i < open_.size(); ++i) {
-      if (found[i] == kNoSeed) {
-        still_open.push_back(open_[i]);
-        continue;
-      }
-      seeds_[open_[i]] = found[i];
-      labels_[open_[i]] = labels_[found[i]];
-    }
-    const bool grew = still_open.size() < open_.size();
-    open_ = std::move(still_open);
-    return grew;
-  }
-
- private:
-  Eigen::Vector3f point(std::uint32_t index) const {
-    const auto width = static_cast<std::uint32_t>(labels_.width());
-    return camera_.unproject(static_cast<float>(index % width), static_cast<float>(index / width),
-                             surface_.smooth_depth_m[index]);
-  }
-
-  std::uint32_t nearest_seed(std::uint32_t index) const {
-    const int x = static_cast<int>(index) % labels_.width(),
-              y = static_cast<int>(index) / labels_.width();
-    const Eigen::Vector3f here = point(index);
-    float nearest = config_.regrow_m * config_.regrow_m;
-    std::uint32_t result = kNoSeed;
-    for (int ny = y - 1; ny <= y + 1; ++ny) {
-      for (int nx = x - 1; nx <= x + 1; ++nx) {
-        if (!seeds_.contains(nx, ny) || seeds_.at(nx, ny) == kNoSeed) continue;
-        const std::uint32_t seed = seeds_.at(nx, ny);
-        const float distance = (point(seed) - here).squaredNorm();
-        if (distance < nearest) nearest = distance, result = seed;
-      }
-    }
-    return result;
-  }
-
-  const DepthSurface& surface_;
-  const PinholeCamera& camera_;
-  const SegmentDepthConfig& config_;
-  Image<std::uint32_t>& labels_;
-  Image<std::uint32_t> seeds_;
-  std::vector<std::uint32_t> open_;
-};
+}
 
 /// Drops small components and packs the ids of the others to 16 bits; when there are too many the
 /// smallest would not fit, which `min_region_px` of a few pixels rules out for any real image.
 DepthRegions pack(const Image<std::uint32_t>& labels, int min_region_px) {
-  const std::uint32_t count = labels.empty() ? 0 : *std::max_element(labels.begin(), labels.end());
-  std::vector<int> area(count + 1, 0);
-  for (std::uint32_t label : labels) ++area[label];
-  std::vector<std::uint16_t> id_of(count + 1, 0);
+  std::vector<DepthRegion> components;  // by label
+  for_each_run(labels, [&](std::uint32_t label, int begin, int end, int y) {
+    if (label >= components.size()) components.resize(label + 1);
+    components[label].area_px += end - begin;
+    components[label].extent_px.extend(Eigen::Vector2i(begin, y));
+    components[label].extent_px.extend(Eigen::Vector2i(end - 1, y));
+  });
+  std::vector<std::uint16_t> id_of(components.size(), 0);
   DepthRegions result{IdImage(labels.width(), labels.height()), {}};
-  for (std::uint32_t label = 1; label <= count; ++label) {
-    if (area[label] < min_region_px ||
+  for (std::size_t label = 1; label < components.size(); ++label) {
+    if (components[label].area_px < min_region_px ||
         result.regions.size() == std::numeric_limits<std::uint16_t>::max())
       continue;
-    result.regions.push_back({area[label], Eigen::Vector2i::Zero(), Eigen::AlignedBox2i()});
+    result.regions.push_back(components[label]);
     id_of[label] = static_cast<std::uint16_t>(result.regions.size());
   }
-  for (std::size_t i = 0; i < labels.size(); ++i) result.ids[i] = id_of[labels[i]];
+  parallel_for(labels.size(), kRowsPerTask * 640,
+               [&](std::size_t i) { result.ids[i] = id_of[labels[i]]; });
   return result;
-}
-
-/// Boxes, and for each region the pixel deepest inside it: city-block distance to the nearest pixel
-/// of another id, by one pass down and one up (distances only grow within a region).
-void describe(DepthRegions& result) {
-  const int width = result.ids.width(), height = result.ids.height();
-  Image<std::uint16_t> depth(width, height);
-  const auto step = [&](int x, int y, int dx, int dy) -> int {
-    if (!depth.contains(x + dx, y + dy) || result.ids.at(x + dx, y + dy) != result.ids.at(x, y))
-      return 1;
-    return depth.at(x + dx, y + dy) + 1;
-  };
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x)
-      if (result.ids.at(x, y))
-        depth.at(x, y) = static_cast<std::uint16_t>(std::min(step(x, y, -1, 0), step(x, y, 0, -1)));
-  std::vector<int> deepest(result.regions.size(), 0);
-  for (int y = height - 1; y >= 0; --y) {
-    for (int x = width - 1; x >= 0; --x) {
-      const std::uint16_t id = result.ids.at(x, y);
-      if (id == 0) continue;
-      std::uint16_t& value = depth.at(x, y);
-      value =
-          static_cast<std::uint16_t>(std::min({int{value}, step(x, y, 1, 0), step(x, y, 0, 1)}));
-      DepthRegion& region = result.regions[id - 1u];
-      region.extent_px.extend(Eigen::Vector2i(x, y));
-      if (value > deepest[id - 1u]) deepest[id - 1u] = value, region.interior_px = {x, y};
-    }
-  }
 }
 
 }  // namespace
@@ -190,11 +123,36 @@ DepthRegions segment_depth(const DepthSurface& surface, const PinholeCamera& cam
                            const SegmentDepthConfig& config) {
   const Image<std::uint8_t> concave = find_concave_edges(surface, camera, config);
   Image<std::uint32_t> labels = connected_regions(find_interior(surface, concave));
-  Regrowth regrowth(surface, camera, config, labels);
-  for (int ring = 0; ring < config.regrow_px && regrowth.grow(); ++ring) continue;
-  DepthRegions result = pack(labels, config.min_region_px);
-  describe(result);
-  return result;
+  grow_regions(surface, camera, config, labels);
+  return pack(labels, config.min_region_px);
+}
+
+std::vector<Eigen::Vector2i> deepest_pixels(const DepthRegions& regions) {
+  const IdImage& ids = regions.ids;
+  const int width = ids.width(), height = ids.height();
+  Image<std::uint16_t> inset(width, height);
+  const auto step = [&](int x, int y, int dx, int dy) -> int {
+    if (!inset.contains(x + dx, y + dy) || ids.at(x + dx, y + dy) != ids.at(x, y)) return 1;
+    return inset.at(x + dx, y + dy) + 1;
+  };
+  // City-block distance to the nearest pixel of another id, by one pass down and one up: distances
+  // only grow within a region.
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      if (ids.at(x, y))
+        inset.at(x, y) = static_cast<std::uint16_t>(std::min(step(x, y, -1, 0), step(x, y, 0, -1)));
+  std::vector<int> most(regions.regions.size(), 0);
+  std::vector<Eigen::Vector2i> deepest(regions.regions.size(), Eigen::Vector2i::Zero());
+  for (int y = height - 1; y >= 0; --y) {
+    for (int x = width - 1; x >= 0; --x) {
+      const std::uint16_t id = ids.at(x, y);
+      if (id == 0) continue;
+      const int value = std::min({int{inset.at(x, y)}, step(x, y, 1, 0), step(x, y, 0, 1)});
+      inset.at(x, y) = static_cast<std::uint16_t>(value);
+      if (value > most[id - 1u]) most[id - 1u] = value, deepest[id - 1u] = {x, y};
+    }
+  }
+  return deepest;
 }
 
 }  // namespace ovimap

@@ -27,7 +27,6 @@ SegmentDepthConfig reference_segment_depth_config();
 
 struct DepthRegion {
   int area_px = 0;
-  Eigen::Vector2i interior_px;    ///< a pixel well inside the region
   Eigen::AlignedBox2i extent_px;  ///< inclusive pixel box
 };
 
@@ -46,5 +45,9 @@ DepthRegions segment_depth(const DepthImage& depth, const PinholeCamera& camera,
 /// The same for a surface already fitted with `config.surface`.
 DepthRegions segment_depth(const DepthSurface& surface, const PinholeCamera& camera,
                            const SegmentDepthConfig& config);
+
+/// For each region the pixel farthest from pixels of other ids, counted in steps along rows and
+/// columns: where a promptable network should look. By region, [id - 1].
+std::vector<Eigen::Vector2i> deepest_pixels(const DepthRegions& regions);
 
 }  // namespace ovimap

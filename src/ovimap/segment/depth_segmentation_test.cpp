@@ -9,6 +9,7 @@
 
 #include "ovimap/base/parallel.h"
 #include "ovimap/segment/connected_regions.h"
+#include "ovimap/segment/plain_segmentation.h"
 
 namespace ovimap {
 namespace {
@@ -114,12 +115,32 @@ TEST(SegmentDepth, DescribesItsRegions) {
   const DepthRegions regions = segment_depth(scene.depth, kCamera, {});
   std::vector<int> area(regions.regions.size() + 1, 0);
   for (std::uint16_t id : regions.ids) ++area[id];
+  const std::vector<Eigen::Vector2i> deepest = deepest_pixels(regions);
+  ASSERT_EQ(deepest.size(), regions.regions.size());
   for (std::size_t i = 0; i < regions.regions.size(); ++i) {
     const DepthRegion& region = regions.regions[i];
     EXPECT_EQ(region.area_px, area[i + 1]);
-    EXPECT_EQ(regions.ids.at(region.interior_px.x(), region.interior_px.y()), i + 1);
-    EXPECT_TRUE(region.extent_px.contains(region.interior_px));
+    EXPECT_EQ(regions.ids.at(deepest[i].x(), deepest[i].y()), i + 1);
+    EXPECT_TRUE(region.extent_px.contains(deepest[i]));
   }
+}
+
+TEST(SegmentDepth, EqualsThePlainSegmentation) {
+  std::size_t regions_compared = 0;
+  for (const float noise : {0.f, 1.f, 3.f}) {
+    TableScene scene(noise, 5);
+    std::mt19937 random(11);
+    for (float& depth : scene.depth)
+      if (random() % 200 == 0) depth = 0.f;
+    for (const SegmentDepthConfig& config :
+         {SegmentDepthConfig{}, reference_segment_depth_config()}) {
+      const DepthSurface surface = fit_depth_surface(scene.depth, kCamera, config.surface);
+      const DepthRegions regions = segment_depth(surface, kCamera, config);
+      EXPECT_EQ(regions.ids, plain::segment(surface, kCamera, config)) << "noise " << noise;
+      regions_compared += regions.regions.size();
+    }
+  }
+  EXPECT_GT(regions_compared, 10u);
 }
 
 TEST(SegmentDepth, EmptyDepthHasNoRegions) {

@@ -44,17 +44,19 @@ struct DepthSurface {
   int radius_px = 0;            ///< half window of the plane fit
   Image<std::uint8_t> breaks;   ///< bits: the surface does not go on to the right / lower neighbour
   Image<std::uint8_t> left_px;  ///< unbroken pixels to the left, at most radius_px
-  Image<std::uint8_t> right_px;  ///< unbroken pixels to the right, at most radius_px
-  Image<float> smooth_depth_m;   ///< depth of the fitted plane; 0 where depth is invalid
+  Image<std::uint8_t> right_px, up_px, down_px;  ///< likewise to the other sides
+  Image<float> smooth_depth_m;  ///< depth of the fitted plane; 0 where depth is invalid
   Image<Eigen::Vector3f>
-      normals;  ///< unit, towards the camera, camera frame; 0 where no plane fits
+      normals;               ///< unit, towards the camera, camera frame; 0 where no plane fits
+  Image<float> plane_slope;  ///< metres off the plane per metre of depth along the pixel's ray:
+                             ///< |normal . ray|, the ray with unit depth; 0 where no plane fits
 };
 
 /// Fits a plane to the unbroken neighbourhood of every pixel of `depth` (metres, 0 = invalid).
 ///
 /// A plane is linear in inverse depth (1/z = a u + b v + c), so its least-squares fit needs only
 /// window sums. The window is cut at depth discontinuities, first along rows, then along columns
-/// (cross-based aggregation, Zhang et al. 2009), which costs a constant per pixel in the row pass.
+/// (cross-based aggregation, Zhang et al. 2009): a constant cost per pixel, whatever the radius.
 DepthSurface fit_depth_surface(const DepthImage& depth, const PinholeCamera& camera,
                                const DepthSurfaceConfig& config);
 

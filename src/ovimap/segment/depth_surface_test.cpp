@@ -4,9 +4,9 @@
 
 #include <random>
 
-#include <Eigen/Cholesky>
-
 #include <gtest/gtest.h>
+
+#include "ovimap/segment/plain_segmentation.h"
 
 namespace ovimap {
 namespace {
@@ -23,33 +23,6 @@ DepthImage plane(const Eigen::Vector3f& normal, float distance_m) {
   return depth;
 }
 
-/// The same sums gathered pixel by pixel over the rows' unbroken windows: what the fast path must
-/// equal.
-Eigen::Vector3f naive_normal(const DepthImage& depth, const DepthSurface& surface, int x, int y) {
-  Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d b = Eigen::Vector3d::Zero();
-  const auto add_row = [&](int row) {
-    for (int u = x - surface.left_px.at(x, row); u <= x + surface.right_px.at(x, row); ++u) {
-      const Eigen::Vector3d basis(u - x, row - y, 1);
-      a += basis * basis.transpose();
-      b += basis / depth.at(u, row);
-    }
-  };
-  add_row(y);
-  for (int row = y - 1; row >= std::max(0, y - surface.radius_px); --row) {
-    if (surface.breaks.at(x, row) & DepthSurface::kBelow) break;
-    add_row(row);
-  }
-  for (int row = y + 1; row <= std::min(depth.height() - 1, y + surface.radius_px); ++row) {
-    if (surface.breaks.at(x, row - 1) & DepthSurface::kBelow) break;
-    add_row(row);
-  }
-  const Eigen::Vector3d fit = a.ldlt().solve(b);
-  const Eigen::Vector3d normal(fit.x() * kCamera.fx, fit.y() * kCamera.fy,
-                               fit.z() + fit.x() * (kCamera.cx - x) + fit.y() * (kCamera.cy - y));
-  return -normal.normalized().cast<float>();
-}
-
 TEST(DepthSurface, PlaneHasItsExactNormalEverywhere) {
   const Eigen::Vector3f normal = Eigen::Vector3f(0.3f, 0.5f, 0.8f).normalized();
   const DepthSurface surface = fit_depth_surface(plane(normal, 1.5f), kCamera, {});
@@ -58,7 +31,7 @@ TEST(DepthSurface, PlaneHasItsExactNormalEverywhere) {
       ASSERT_NEAR(surface.normals.at(x, y).dot(-normal), 1.f, 1e-5f) << x << "," << y;
 }
 
-TEST(DepthSurface, MatchesThePixelwiseFitOnNoisyDepthWithHolesAndSteps) {
+TEST(DepthSurface, EqualsThePlainFitOnNoisyDepthWithHolesAndSteps) {
   DepthImage depth = plane(Eigen::Vector3f(0.1f, 0.6f, 0.8f).normalized(), 1.2f);
   std::mt19937 random(7);
   for (std::size_t i = 0; i < depth.size(); ++i) {
@@ -67,17 +40,27 @@ TEST(DepthSurface, MatchesThePixelwiseFitOnNoisyDepthWithHolesAndSteps) {
   }
   for (int y = 30; y < 60; ++y)
     for (int x = 40; x < 90; ++x) depth.at(x, y) *= 0.7f;
-  const DepthSurface surface = fit_depth_surface(depth, kCamera, {});
-  int compared = 0;
-  for (int y = 0; y < depth.height(); ++y) {
-    for (int x = 0; x < depth.width(); ++x) {
-      if (surface.normals.at(x, y).isZero()) continue;
-      ASSERT_NEAR(surface.normals.at(x, y).dot(naive_normal(depth, surface, x, y)), 1.f, 2e-4f)
-          << x << "," << y;
-      ++compared;
+  for (const float radius_rad : {0.0135f, 0.04f}) {  // 2 and 6 pixels
+    DepthSurfaceConfig config;
+    config.normal_radius_rad = radius_rad;
+    const DepthSurface surface = fit_depth_surface(depth, kCamera, config);
+    int compared = 0;
+    for (int y = 0; y < depth.height(); ++y) {
+      for (int x = 0; x < depth.width(); ++x) {
+        ASSERT_EQ(surface.left_px.at(x, y), plain::arm(surface, x, y, -1, 0));
+        ASSERT_EQ(surface.right_px.at(x, y), plain::arm(surface, x, y, 1, 0));
+        ASSERT_EQ(surface.up_px.at(x, y), plain::arm(surface, x, y, 0, -1));
+        ASSERT_EQ(surface.down_px.at(x, y), plain::arm(surface, x, y, 0, 1));
+        const plain::Plane plane = plain::fit_plane(depth, surface, kCamera, x, y);
+        ASSERT_EQ(surface.normals.at(x, y).isZero(), plane.normal.isZero()) << x << "," << y;
+        ASSERT_NEAR(surface.smooth_depth_m.at(x, y), plane.depth_m, 1e-5f) << x << "," << y;
+        ASSERT_LT((surface.normals.at(x, y) - plane.normal).norm(), 1e-3f) << x << "," << y;
+        ASSERT_NEAR(surface.plane_slope.at(x, y), plane.slope, 1e-3f) << x << "," << y;
+        compared += !plane.normal.isZero();
+      }
     }
+    EXPECT_GT(compared, depth.width() * depth.height() / 2);
   }
-  EXPECT_GT(compared, depth.width() * depth.height() / 2);
 }
 
 TEST(DepthSurface, BreaksAtAStepAndNotOnASteepPlane) {

@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/map/cell_rows.h"
+
+#include <bit>
+#include <cstring>
+
+namespace ovimap {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little);
+
+/// The signs of four 16-bit integers in a word, in the low bits.
+unsigned four_signs(const VoxelBlock::Tsdf* values) {
+  std::uint64_t word;
+  std::memcpy(&word, values, sizeof(word));
+  // The factor's powers move the sign of value i, at bit 16 i, to bit 48 + i.
+  constexpr std::uint64_t kGather = 1ull << 48 | 1ull << 33 | 1ull << 18 | 1ull << 3;
+  return static_cast<unsigned>((word >> 15 & 0x0001000100010001ull) * kGather >> 48 & 0xf);
+}
+
+unsigned inside_bits(const VoxelBlock::Tsdf* values) {
+  return four_signs(values) | four_signs(values + 4) << 4;
+}
+
+unsigned observed_bits(const float* weights, float min_weight) {
+  unsigned bits = 0;
+  for (int i = 0; i < kBlockSide; ++i) bits |= static_cast<unsigned>(weights[i] > min_weight) << i;
+  return bits;
+}
+
+}  // namespace
+
+CellRows::CellRows(const VoxelMap& map, std::uint32_t slot) {
+  const BlockIndex& index = map.block(slot).index;
+  blocks_[0] = &map.block(slot);
+  for (int i = 1; i < 8; ++i)
+    blocks_[static_cast<std::size_t>(i)] =
+        map.find(index + BlockIndex(i & 1, i >> 1 & 1, i >> 2 & 1));
+  const float min_weight = map.config().min_mesh_weight;
+  for (int z = 0; z < kSide; ++z)
+    for (int y = 0; y < kSide; ++y)
+      rows_[static_cast<std::size_t>(y + kSide * z)] = read(y, z, min_weight);
+}
+
+CellRows::Row CellRows::read(int y, int z, float min_weight) const {
+  Row result;
+  const auto first = static_cast<std::size_t>(voxel_offset(0, y & 7, z & 7));
+  if (const VoxelBlock* here = block(0, y, z)) {
+    result.inside = static_cast<std::uint16_t>(inside_bits(here->tsdf.data() + first));
+    result.observed =
+        static_cast<std::uint16_t>(observed_bits(here->weight.data() + first, min_weight));
+  }
+  if (const VoxelBlock* next = block(kBlockSide, y, z)) {
+    result.inside = static_cast<std::uint16_t>(result.inside | (next->tsdf[first] < 0) << 8);
+    result.observed =
+        static_cast<std::uint16_t>(result.observed | (next->weight[first] > min_weight) << 8);
+  }
+  return result;
+}
+
+unsigned CellRows::surface_cells(int y, int z) const {
+  const Row &a = row(y, z), &b = row(y + 1, z), &c = row(y, z + 1), &d = row(y + 1, z + 1);
+  const unsigned observed = a.observed & b.observed & c.observed & d.observed;
+  const unsigned some = a.inside | b.inside | c.inside | d.inside;
+  const unsigned all = a.inside & b.inside & c.inside & d.inside;
+  return observed & observed >> 1 & (some | some >> 1) & ~(all & all >> 1) & 0xff;
+}
+
+unsigned CellRows::inside_corners(int x, int y, int z) const {
+  const auto pair = [&](int dy, int dz) -> unsigned {
+    return row(y + dy, z + dz).inside >> x & 3u;
+  };
+  return pair(0, 0) | pair(1, 0) << 2 | pair(0, 1) << 4 | pair(1, 1) << 6;
+}
+
+}  // namespace ovimap

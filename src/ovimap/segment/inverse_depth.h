@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "ovimap/base/parallel.h"
+#include "ovimap/image/image.h"
+
+namespace ovimap {
+
+/// Inverse depth (1/m, 0 = invalid) with a border of two invalid pixels, so that neighbour tests
+/// need no bounds.
+class InverseDepth {
+ public:
+  explicit InverseDepth(const DepthImage& depth)
+      : padded_(depth.width() + 2 * kBorder, depth.height() + 2 * kBorder) {
+    parallel_for(static_cast<std::size_t>(depth.height()), kRowsPerTask, [&](std::size_t y) {
+      const float* in = depth.row(static_cast<int>(y));
+      float* out = padded_.row(static_cast<int>(y) + kBorder) + kBorder;
+      for (int x = 0; x < depth.width(); ++x) out[x] = in[x] > 0.f ? 1.f / in[x] : 0.f;
+    });
+  }
+  int width() const { return padded_.width() - 2 * kBorder; }
+  int height() const { return padded_.height() - 2 * kBorder; }
+  /// Rows from -2 to height + 1.
+  const float* row(int y) const { return padded_.row(y + kBorder) + kBorder; }
+
+ private:
+  static constexpr int kBorder = 2;
+  static constexpr std::size_t kRowsPerTask = 32;
+  Image<float> padded_;
+};
+
+}  // namespace ovimap
