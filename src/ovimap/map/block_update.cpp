@@ -24,9 +24,10 @@ static_assert(std::endian::native == std::endian::little);
 
 /// Where eight voxels in a row along x lie in the image.
 struct ProjectedRow {
-  Floats z_m;   ///< of the voxel's centre along the optical axis
-  Ints pixel;   ///< index of the nearest pixel, 0 outside the image
-  Ints inside;  ///< mask
+  Floats z_m;            ///< of the voxel's centre along the optical axis
+  Floats range_squared;  ///< of the voxel's centre from the camera, m^2
+  Ints pixel;            ///< index of the nearest pixel, 0 outside the image
+  Ints inside;           ///< mask
 };
 
 /// What the frame says of them.
@@ -45,6 +46,7 @@ OVIMAP_INLINE void project(const PinholeCamera& camera, const Eigen::Vector3f& s
   const Floats along = {0.f, 1.f, 2.f, 3.f, 4.f, 5.f, 6.f, 7.f};
   const Floats x = start.x() + along * steps(0, 0), y = start.y() + along * steps(1, 0);
   row.z_m = start.z() + along * steps(2, 0);
+  row.range_squared = x * x + y * y + row.z_m * row.z_m;
   const Floats inverse = 1.f / larger(row.z_m, broadcast(1e-6f));
   const Floats u = camera.fx * (x * inverse) + (camera.cx + 0.5f);
   const Floats v = camera.fy * (y * inverse) + (camera.cy + 0.5f);
@@ -77,7 +79,10 @@ OVIMAP_INLINE bool observe(const FusionView& view, const ProjectedRow& row, Obse
   if (!any(row.inside)) return false;
   const Floats depth = gather(view.frame.depth.data(), row.pixel);
   const Floats in_front = depth - row.z_m;
-  const Ints near = row.inside & (depth > 0.f) & (magnitude(in_front) < view.truncation_m);
+  // Along the ray the distance is range / z times as long: both sides are squared, times z^2.
+  const Floats reach = row.z_m * view.truncation_m;
+  const Ints near =
+      row.inside & (depth > 0.f) & (in_front * in_front * row.range_squared < reach * reach);
   if (!any(near)) return false;
   seen.distance_m = in_front * slopes(view, row, near);
   const Floats falloff =

@@ -30,7 +30,7 @@ struct Observation {
 /// Where a plane was fitted the distance is that to the plane: the difference of depths times the
 /// plane's slope, else times the length of the ray. Projective distances alone are too long on
 /// surfaces seen at a slant, and differ from view to view. Voxels further than the truncation from
-/// the surface along the optical axis keep what they have.
+/// the surface along their ray keep what they have.
 ///
 /// The only writer of voxels, with vote_labels. Returns the slots of the blocks it visited, in
 /// block-index order.

@@ -49,7 +49,10 @@ class VoxelFusion {
     if (index < 0) return;
     const auto pixel = static_cast<std::size_t>(index);
     const float depth = view_.frame.depth[pixel], in_front = depth - point.z();
-    if (depth <= 0.f || std::fabs(in_front) >= view_.truncation_m) return;
+    const float range_squared =
+        point.x() * point.x() + point.y() * point.y() + point.z() * point.z();
+    const float reach = point.z() * view_.truncation_m;
+    if (depth <= 0.f || in_front * in_front * range_squared >= reach * reach) return;
     const float distance = in_front * slope(pixel);
     const float falloff = std::min(1.f, (distance + view_.truncation_m) * view_.inverse_falloff);
     if (falloff <= 0.f) return;
