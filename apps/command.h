@@ -14,7 +14,7 @@
 #include "ovimap/inference/image_text_encoder.h"
 #include "ovimap/inference/mask_source_factory.h"
 #include "ovimap/io/map_document.h"
-#include "ovimap/pipeline/mapper.h"
+#include "ovimap/pipeline/live_mapper.h"
 
 namespace ovimap::apps {
 
@@ -60,6 +60,7 @@ struct ProgramConfig {
   FrameSourceConfig source;
   MaskSourceConfig masks;
   RuntimeConfig encoder;
+  LiveConfig live;
 };
 void list_fields(ProgramConfig& config, ConfigFields& fields);
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "command.h"
-#include "ovimap/pipeline/sequence_run.h"
+#include "ovimap/pipeline/live_run.h"
 
 namespace ovimap::apps {
 
@@ -11,6 +11,7 @@ namespace ovimap::apps {
 struct MappingRun {
   std::unique_ptr<FrameSource> source;
   SequenceResult sequence;
+  std::optional<LiveRunResult> live;  ///< of map_live
   StageTimers timers;
   MapDocument document;
 };
@@ -20,5 +21,9 @@ struct MappingRun {
 /// nowhere. Throws what the parts throw.
 MappingRun map_recording(const MappingOptions& options, const std::string& title,
                          const std::filesystem::path& keep_masks = {});
+
+/// The same as a camera of `fps` frames a second would have it. Networks run with lower priority
+/// than the mapping.
+MappingRun map_live(const MappingOptions& options, double fps);
 
 }  // namespace ovimap::apps

@@ -41,6 +41,7 @@ void list_fields(ProgramConfig& config, ConfigFields& fields) {
   fields.group("source", [&](ConfigFields& f) { list_fields(config.source, f); });
   fields.group("masks", [&](ConfigFields& f) { list_fields(config.masks, f); });
   fields.group("encoder.runtime", [&](ConfigFields& f) { list_fields(config.encoder, f); });
+  fields.group("live", [&](ConfigFields& f) { list_fields(config.live, f); });
 }
 
 ProgramConfig read_program_config(const MappingOptions& options) {

@@ -35,8 +35,8 @@ int AppearanceBuilder::choose(const Frame& frame, const SeenObjects& seen,
   return static_cast<int>(chosen_.size());
 }
 
-void AppearanceBuilder::submit() {
-  queue_.submit(std::exchange(chosen_, {}));
+void AppearanceBuilder::submit(bool wait) {
+  queue_.submit(std::exchange(chosen_, {}), wait);
 }
 
 void AppearanceBuilder::finish(const InstanceRegistry& registry) {

@@ -31,8 +31,10 @@ class AppearanceBuilder {
 
   /// Chooses and cuts out views of one frame; returns how many. Throws what the encoder threw.
   int choose(const Frame& frame, const SeenObjects& seen, const InstanceRegistry& registry);
-  /// Hands the chosen views to the encoder; waits while it is too far behind.
-  void submit();
+  /// Hands the chosen views to the encoder; `wait`: not before it has room for them.
+  void submit(bool wait = true);
+  /// Whether the encoder's queue is at most half full.
+  bool keeps_up() const { return 2 * queue_.waiting() <= config_.queue.capacity; }
 
   /// Waits until every chosen view is embedded. Throws what the encoder threw.
   void finish(const InstanceRegistry& registry);

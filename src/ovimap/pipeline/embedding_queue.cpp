@@ -30,11 +30,16 @@ EmbeddingQueue::~EmbeddingQueue() {
   worker_.join();
 }
 
-void EmbeddingQueue::submit(std::vector<EmbeddingRequest> requests) {
+int EmbeddingQueue::waiting() const {
+  const std::lock_guard lock(mutex_);
+  return static_cast<int>(waiting_.size());
+}
+
+void EmbeddingQueue::submit(std::vector<EmbeddingRequest> requests, bool wait) {
   for (EmbeddingRequest& request : requests) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] {
-      return failure_ || waiting_.size() < static_cast<std::size_t>(config_.capacity);
+      return !wait || failure_ || waiting_.size() < static_cast<std::size_t>(config_.capacity);
     });
     rethrow_failure();
     waiting_.push_back(std::move(request));

@@ -46,8 +46,11 @@ class EmbeddingQueue {
   /// What still waits is dropped.
   ~EmbeddingQueue();
 
-  /// Blocks while the queue is full. Throws what the encoder threw on an earlier view.
-  void submit(std::vector<EmbeddingRequest> requests);
+  /// `wait`: blocks while the queue is full; else it holds more than its capacity for once. Throws
+  /// what the encoder threw on an earlier view.
+  void submit(std::vector<EmbeddingRequest> requests, bool wait = true);
+  /// Views that no work has begun on.
+  int waiting() const;
   /// What has been answered since the last call, in the order of submission.
   std::vector<EmbeddingAnswer> take();
   /// Waits for everything, then the same. Throws what the encoder threw.
@@ -62,7 +65,7 @@ class EmbeddingQueue {
   CropConfig crops_;
   std::shared_ptr<ImageTextEncoder> encoder_;
 
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<EmbeddingRequest> waiting_;
   std::vector<EmbeddingAnswer> answered_;

@@ -3,8 +3,8 @@
 #include "ovimap/pipeline/mapper.h"
 
 #include <algorithm>
+#include <optional>
 
-#include "ovimap/frames/registration.h"
 #include "ovimap/map/integrate.h"
 #include "ovimap/map/surface_lookup.h"
 
@@ -12,28 +12,15 @@ namespace ovimap {
 
 namespace {
 
-/// Where a promptable network should look: every region's place in the colour image.
-std::vector<MaskPrompt> prompts_of(const DepthRegions& regions, const Registration& registration,
-                                   const PinholeCamera& color_camera) {
-  const Image<std::int32_t>& color_index = registration.color_index();
-  std::vector<MaskPrompt> prompts(regions.regions.size());
-  const int color_width = color_camera.width;
-  for (std::size_t i = 0; i < regions.ids.size(); ++i) {
-    if (regions.ids[i] == 0 || color_index[i] == Registration::kNoColor) continue;
-    MaskPrompt& prompt = prompts[regions.ids[i] - 1u];
-    ++prompt.area_px;
-    prompt.extent_px.extend(Eigen::Vector2f(static_cast<float>(color_index[i] % color_width),
-                                            static_cast<float>(color_index[i] / color_width)));
-  }
-  for (std::size_t i = 0; i < prompts.size(); ++i) {
-    const Eigen::Vector2i& interior = regions.regions[i].interior_px;
-    const std::int32_t index = color_index.at(interior.x(), interior.y());
-    if (index == Registration::kNoColor) prompts[i].area_px = 0;
-    prompts[i].interior_px = Eigen::Vector2f(static_cast<float>(index % color_width),
-                                             static_cast<float>(index / color_width));
-  }
-  std::erase_if(prompts, [](const MaskPrompt& prompt) { return prompt.area_px == 0; });
-  return prompts;
+Observation observation_of(const PreparedFrame& prepared, const FrameSegments* cut,
+                           std::span<const Label> labels) {
+  return {.depth = prepared.frame->depth,
+          .camera = prepared.frame->depth_camera,
+          .world_from_camera = prepared.frame->world_from_camera,
+          .color = &prepared.color,
+          .plane_slope = &prepared.surface.plane_slope,
+          .segment_ids = cut ? &cut->segments.ids : nullptr,
+          .segment_labels = labels};
 }
 
 std::vector<Label> labels_of(std::span<const SegmentAssociation> associations) {
@@ -55,71 +42,62 @@ Mapper::Mapper(const MapperConfig& config, std::shared_ptr<MaskSource> masks,
 }
 
 FrameReport Mapper::process(const Frame& frame) {
-  FrameReport report;
-  const bool labelled = frames_ % config_.mask_interval == 0;
-  const Registration registration = [&] {
-    auto t = timers_.measure("registration");
-    return Registration(frame, config_.occlusion_margin_m);
-  }();
-  const DepthSurface surface = [&] {
-    auto t = timers_.measure("surface");
-    return fit_depth_surface(frame.depth, frame.depth_camera, config_.segment.surface);
-  }();
-  const RgbImage color = registration.color_at_depth(frame.color);
-  Segments segments;
-  std::vector<SegmentAssociation> associations;
-  if (labelled) {
-    const DepthRegions regions = [&] {
-      auto t = timers_.measure("regions");
-      return segment_depth(surface, frame.depth_camera, config_.segment);
-    }();
-    report.regions = static_cast<int>(regions.regions.size());
-    segments = cut_segments(frame, regions, registration, report);
-    auto t = timers_.measure("associate");
-    const Image<VoxelRef> voxels =
-        surface_voxels(map_, frame.depth, frame.depth_camera, frame.world_from_camera);
-    associations = associate(segments, voxels, map_, config_.association);
-  }
-  const std::vector<Label> labels = labels_of(associations);
+  const std::shared_ptr<const Frame> borrowed(std::shared_ptr<const Frame>(), &frame);
+  const PreparedFrame prepared = prepare_frame(borrowed, config_, timers_);
+  std::optional<FrameSegments> cut;
+  if (frames_ % config_.mask_interval == 0)
+    cut = cut_segments(prepared, masks_.get(), config_, timers_);
+  FrameReport report = fuse(prepared, cut ? &*cut : nullptr);
+  if (frames_ % config_.view_interval == 0) report.views = look_at_objects(frame);
+  return report;
+}
+
+FrameReport Mapper::fuse(const PreparedFrame& prepared, const FrameSegments* cut) {
+  const std::vector<SegmentAssociation> associations = find_labels(prepared, cut);
   {
     auto t = timers_.measure("integrate");
-    integrate(map_, {.depth = frame.depth,
-                     .camera = frame.depth_camera,
-                     .world_from_camera = frame.world_from_camera,
-                     .color = &color,
-                     .normals = &surface.normals,
-                     .segment_ids = labelled ? &segments.ids : nullptr,
-                     .segment_labels = labels});
+    integrate(map_, observation_of(prepared, cut, labels_of(associations)));
   }
-  if (labelled) {
-    auto t = timers_.measure("registry");
-    registry_.observe(segments, associations, frame.index, masks_ != nullptr, map_.labels());
-  }
-  if ((frames_ + 1) % config_.view_interval == 0) report.views = look_at_objects(frame);
   ++frames_;
-  report.labelled = labelled;
-  report.segments = static_cast<int>(segments.segments.size());
+  return observe(*prepared.frame, cut, associations);
+}
+
+FrameReport Mapper::label(const PreparedFrame& prepared, const FrameSegments& cut) {
+  const std::vector<SegmentAssociation> associations = find_labels(prepared, &cut);
+  {
+    auto t = timers_.measure("vote");
+    vote_labels(map_, observation_of(prepared, &cut, labels_of(associations)));
+  }
+  return observe(*prepared.frame, &cut, associations);
+}
+
+std::vector<SegmentAssociation> Mapper::find_labels(const PreparedFrame& prepared,
+                                                    const FrameSegments* cut) {
+  if (!cut) return {};
+  auto t = timers_.measure("associate");
+  const Frame& frame = *prepared.frame;
+  const Image<VoxelRef> voxels =
+      surface_voxels(map_, frame.depth, frame.depth_camera, frame.world_from_camera);
+  return associate(cut->segments, voxels, map_, config_.association);
+}
+
+FrameReport Mapper::observe(const Frame& frame, const FrameSegments* cut,
+                            std::span<const SegmentAssociation> associations) {
+  if (!cut) return {};
+  auto t = timers_.measure("registry");
+  registry_.observe(cut->segments, associations, frame.index, cut->masked, map_.labels());
+  mask_frames_ += cut->masked;
+  FrameReport report;
+  report.regions = cut->regions;
+  report.entities = cut->entities;
+  report.labelled = true;
+  report.segments = static_cast<int>(cut->segments.segments.size());
   report.founded = static_cast<int>(std::count_if(associations.begin(), associations.end(),
                                                   [](const auto& a) { return a.founded; }));
   return report;
 }
 
-Segments Mapper::cut_segments(const Frame& frame, const DepthRegions& regions,
-                              const Registration& registration, FrameReport& report) {
-  if (!masks_) return segments_of_regions(regions);
-  Entities entities;
-  {
-    auto t = timers_.measure("masks");
-    entities = masks_->entities(frame, prompts_of(regions, registration, frame.color_camera));
-  }
-  ++mask_frames_;
-  report.entities = static_cast<int>(entities.scores.size());
-  auto t = timers_.measure("mask_fusion");
-  return fuse_masks(regions, registration.ids_at_depth(entities.ids), frame.depth,
-                    config_.mask_fusion);
-}
-
-int Mapper::look_at_objects(const Frame& frame) {
+int Mapper::look_at_objects(const Frame& frame, Encoder encoder) {
   const InstanceView view = project(frame);
   int chosen = 0;
   {
@@ -134,7 +112,7 @@ int Mapper::look_at_objects(const Frame& frame) {
                               registry_);
   }
   auto t = timers_.measure("await_encoder");
-  builder_->submit();
+  builder_->submit(encoder == Encoder::kCatchUp);
   return chosen;
 }
 

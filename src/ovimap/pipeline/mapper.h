@@ -12,6 +12,7 @@
 #include "ovimap/map/voxel_map.h"
 #include "ovimap/pipeline/appearance_builder.h"
 #include "ovimap/pipeline/mapper_config.h"
+#include "ovimap/pipeline/prepared_frame.h"
 
 namespace ovimap {
 
@@ -45,6 +46,22 @@ class Mapper {
   /// frame. Throws what the encoder threw on views of earlier frames.
   FrameReport process(const Frame& frame);
 
+  // The parts of `process`, for a pipeline that runs the others on threads of its own.
+
+  /// Adds geometry, colour and, unless `cut` is null, labels.
+  FrameReport fuse(const PreparedFrame& prepared, const FrameSegments* cut);
+  /// Adds the labels of a frame that was fused without, some time ago: its segments vote with the
+  /// depth and pose of their own frame on the map as it is now.
+  FrameReport label(const PreparedFrame& prepared, const FrameSegments& cut);
+  enum class Encoder {
+    kCatchUp,  ///< while too many views wait for the encoder, so does the mapper
+    kRunOn,    ///< views wait, however many
+  };
+  /// Chooses views of the objects in sight and hands them to the encoder; returns how many.
+  int look_at_objects(const Frame& frame, Encoder encoder = Encoder::kCatchUp);
+  /// Whether few enough views wait for the encoder to look for more.
+  bool encoder_keeps_up() const { return builder_->keeps_up(); }
+
   /// The map seen from a frame's depth camera, guided by its depth (method section 8).
   InstanceView project(const Frame& frame);
 
@@ -65,9 +82,10 @@ class Mapper {
   int mask_frames() const { return mask_frames_; }
 
  private:
-  Segments cut_segments(const Frame& frame, const DepthRegions& regions,
-                        const class Registration& registration, FrameReport& report);
-  int look_at_objects(const Frame& frame);
+  std::vector<SegmentAssociation> find_labels(const PreparedFrame& prepared,
+                                              const FrameSegments* cut);
+  FrameReport observe(const Frame& frame, const FrameSegments* cut,
+                      std::span<const SegmentAssociation> associations);
 
   MapperConfig config_;
   std::shared_ptr<MaskSource> masks_;

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "ovimap/pipeline/live_mapper.h"
+#include "ovimap/pipeline/sequence_run.h"
+
+namespace ovimap {
+
+struct LiveRunResult {
+  SequenceResult sequence;
+  LiveStatistics statistics;
+  std::int64_t frames_read_late = 0;  ///< decoding was not done when the camera would have been
+};
+
+/// Called after every frame is handed over. Returning false ends the run early; what was fused
+/// stays.
+using LiveProgress = std::function<bool(std::size_t done, std::size_t total)>;
+
+/// Feeds a recording to the mapper as a camera of `fps` frames a second would, whatever the mapper
+/// manages, and drains it. Frames are decoded ahead. Throws Error when no frame was usable, and
+/// what a stage threw.
+LiveRunResult run_live(const FrameSource& source, const std::vector<std::int64_t>& positions,
+                       LiveMapper& mapper, double fps, const LiveProgress& progress = nullptr);
+
+}  // namespace ovimap

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "ovimap/base/stage_timers.h"
+#include "ovimap/frames/registration.h"
+#include "ovimap/inference/mask_source.h"
+#include "ovimap/pipeline/mapper_config.h"
+
+namespace ovimap {
+
+/// What can be said of a frame without the map.
+struct PreparedFrame {
+  std::shared_ptr<const Frame> frame;
+  Registration registration;
+  DepthSurface surface;
+  RgbImage color;  ///< registered to the depth
+};
+
+PreparedFrame prepare_frame(std::shared_ptr<const Frame> frame, const MapperConfig& config,
+                            StageTimers& timers);
+
+/// The pieces of a frame that are lifted to 3D, and what they were cut from.
+struct FrameSegments {
+  Segments segments;
+  int regions = 0;      ///< geometric regions
+  int entities = 0;     ///< 2D entities
+  bool masked = false;  ///< 2D masks had a say
+};
+
+/// Cuts the frame by depth and, unless `masks` is null, by its 2D entities. Does not look at the
+/// map. Throws what the mask source throws.
+FrameSegments cut_segments(const PreparedFrame& prepared, MaskSource* masks,
+                           const MapperConfig& config, StageTimers& timers);
+
+}  // namespace ovimap
