@@ -1,12 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <thread>
 
-#include "command.h"
+#include "bench.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/base/version.h"
 #include "ovimap/io/map_file.h"
@@ -20,8 +22,34 @@ namespace {
 struct BenchOptions {
   MappingOptions mapping;
   int project_every = 5;
+  int corridor = 0;  ///< frames; 0: measure SOURCE
   bool json = false;
 };
+
+/// What the process has used of its processors so far, all threads together.
+double cpu_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+/// Keeps a mesh up to date beside a mapper of its own, for the first frames.
+void measure_mesh(const FrameSource& source, const std::vector<std::int64_t>& range,
+                  const MapperConfig& config, StageTimers& timers) {
+  constexpr std::size_t kFrames = 100;
+  Mapper mapper(config);
+  IncrementalMesh mesh;
+  for (std::size_t i = 0; i < std::min(range.size(), kFrames); ++i) {
+    const FrameRead read = source.read(range[i]);
+    if (!read.frame) continue;
+    mapper.process(*read.frame);
+    auto t = timers.measure("mesh_update");
+    mesh.update(mapper.map(), mapper.touched_blocks());
+  }
+}
 
 std::string processor_name() {
   std::ifstream info("/proc/cpuinfo");
@@ -59,6 +87,11 @@ std::uintmax_t saved_bytes(const MapDocument& document, StageTimers& timers) {
 int bench(const BenchOptions& options) {
   const ThreadLimit limit(options.mapping.threads);
   ProgramConfig config = read_program_config(options.mapping);
+  if (options.mapping.source.empty() == (options.corridor == 0))
+    throw Error("name a SOURCE to measure, or --corridor N");
+#ifdef OVIMAP_SYNTH
+  if (options.corridor > 0) return bench_corridor(options.corridor, config.mapper, options.json);
+#endif
   config.masks.runtime.threads = network_threads(config, options.mapping);
   const auto source = open_frame_source(options.mapping.source, config.source);
   const auto range = positions(parse_frame_range(options.mapping.frames), source->size());
@@ -66,11 +99,14 @@ int bench(const BenchOptions& options) {
                                 {source.get(), options.mapping.model_dirs});
   Mapper mapper(config.mapper, std::move(masks), make_encoder(options.mapping, config));
   Progress progress("measuring");
+  const double cpu_before = cpu_seconds();
   const SequenceResult result = run_sequence(
       *source, range, mapper, [&](std::size_t done, std::size_t total, const FrameReport*) {
         progress.show(done, total);
         return true;
       });
+  const double cpu_ms =
+      1e3 * (cpu_seconds() - cpu_before) / static_cast<double>(result.frames.size());
   for (std::size_t i = 0; i < range.size(); i += static_cast<std::size_t>(options.project_every)) {
     const FrameRead read = source->read(range[i]);
     if (read.frame) (void)mapper.project(*read.frame);
@@ -84,6 +120,7 @@ int bench(const BenchOptions& options) {
   const auto voxels = static_cast<double>(mapper.map().block_count()) * kBlockVoxels;
   const double map_bytes = static_cast<double>(mapper.map().bytes());
   StageTimers timers = mapper.timers();
+  measure_mesh(*source, range, config.mapper, timers);
   const MapDocument document = make_document(std::move(mapper), result, options.mapping.source, "");
   const std::uintmax_t file_bytes = saved_bytes(document, timers);
   const double fps = static_cast<double>(result.frames.size()) / result.seconds;
@@ -96,6 +133,7 @@ int bench(const BenchOptions& options) {
                 {"frames", result.frames.size()},
                 {"stages", stages_json(timers)},
                 {"fps", fps},
+                {"cpu_ms_per_frame", cpu_ms},
                 {"peak_rss_mb", peak_mb},
                 {"bytes_per_voxel", map_bytes / voxels},
                 {"map_bytes", file_bytes},
@@ -106,8 +144,10 @@ int bench(const BenchOptions& options) {
   for (const auto& [stage, s] : timers.summary())
     std::printf("%-16s %9.2f %9.2f %9.2f %7zu\n", stage.c_str(), s.p50_ms, s.p95_ms, s.p99_ms,
                 s.count);
-  std::printf("%.1f frames/s, peak memory %.0f MB, %.1f bytes a voxel, map file %.1f MB\n", fps,
-              peak_mb, map_bytes / voxels, static_cast<double>(file_bytes) / 1e6);
+  std::printf(
+      "%.1f frames/s, %.1f ms of processor a frame, peak memory %.0f MB, %.1f bytes a voxel, "
+      "map file %.1f MB\n",
+      fps, cpu_ms, peak_mb, map_bytes / voxels, static_cast<double>(file_bytes) / 1e6);
   return kDone;
 }
 
@@ -121,6 +161,13 @@ Action add_bench(CLI::App& command) {
                   "measure the projection of every n-th frame")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
+  command.get_option("SOURCE")->required(false);
+#ifdef OVIMAP_SYNTH
+  command
+      .add_option("--corridor", options->corridor,
+                  "walk N frames down a generated corridor instead: does mapping slow down?")
+      ->check(CLI::Range(1, 1000000));
+#endif
   command.add_flag("--json", options->json, "print one JSON object");
   return [options] { return bench(*options); };
 }

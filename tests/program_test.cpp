@@ -36,6 +36,18 @@ TEST_F(ProgramTest, SameMapForEveryRunAndThreadCount) {
   EXPECT_EQ(objects.size(), 1u);
 }
 
+TEST_F(ProgramTest, MapsAtACamerasPace) {
+  const auto report =
+      run_json("run replica/scene --masks gt --live --fps 60 -o live.ovimap --json");
+  const auto& live = report["live"];
+  EXPECT_EQ(live["camera_fps"], 60);
+  EXPECT_EQ(live["frames_fused"].get<int>() + live["frames_dropped"].get<int>(), sequence_.frames);
+  EXPECT_GT(live["geometry_lag"]["p50_ms"], 0.0);
+  EXPECT_EQ(report["frames"], live["frames_fused"]);
+  EXPECT_GE(report["mask_frames"], 1);
+  EXPECT_EQ(run_json("info live.ovimap --json")["frames"], live["frames_fused"]);
+}
+
 TEST_F(ProgramTest, TruthMasksGiveTheTrueObjects) {
   ASSERT_EQ(
       run("run replica/scene --masks gt -o room.ovimap --set summary.min_instance_views=1").code,
@@ -113,6 +125,8 @@ TEST_F(ProgramTest, SaysWhatIsWrongWithTheCommandLine) {
   expect_complaint("run recording -o a.ovimap --masks nothing_such", {"nothing_such"});
   expect_complaint("run recording -o a.ovimap --masks gt", {"gt"});
   expect_complaint("run recording -o a.ovimap --frames a:b", {"a:b"});
+  expect_complaint("run recording -o a.ovimap --fps 20", {"--fps", "--live"});
+  expect_complaint("bench", {"SOURCE", "--corridor"});
   EXPECT_EQ(run("--help").code, 0);
 }
 

@@ -56,7 +56,7 @@ FrameReport Mapper::fuse(const PreparedFrame& prepared, const FrameSegments* cut
   const std::vector<SegmentAssociation> associations = find_labels(prepared, cut);
   {
     auto t = timers_.measure("integrate");
-    integrate(map_, observation_of(prepared, cut, labels_of(associations)));
+    touched_blocks_ = integrate(map_, observation_of(prepared, cut, labels_of(associations)));
   }
   ++frames_;
   return observe(*prepared.frame, cut, associations);
@@ -66,7 +66,7 @@ FrameReport Mapper::label(const PreparedFrame& prepared, const FrameSegments& cu
   const std::vector<SegmentAssociation> associations = find_labels(prepared, &cut);
   {
     auto t = timers_.measure("vote");
-    vote_labels(map_, observation_of(prepared, &cut, labels_of(associations)));
+    touched_blocks_ = vote_labels(map_, observation_of(prepared, &cut, labels_of(associations)));
   }
   return observe(*prepared.frame, &cut, associations);
 }

@@ -79,6 +79,8 @@ class Mapper {
   const StageTimers& timers() const { return timers_; }
   StageTimers& timers() { return timers_; }
   int frames() const { return frames_; }
+  /// Slots of the map's blocks that the last frame touched.
+  const std::vector<std::uint32_t>& touched_blocks() const { return touched_blocks_; }
   int mask_frames() const { return mask_frames_; }
 
  private:
@@ -93,6 +95,7 @@ class Mapper {
   InstanceRegistry registry_;
   std::unique_ptr<AppearanceBuilder> builder_;
   StageTimers timers_;
+  std::vector<std::uint32_t> touched_blocks_;
   int frames_ = 0, mask_frames_ = 0;
 };
 

@@ -21,7 +21,8 @@ constexpr std::size_t kFramesUntilMotion = 30;  // tell early, not after an hour
 std::string commonest_fault(const std::vector<SkippedFrame>& skipped) {
   std::vector<std::string> faults;
   for (const SkippedFrame& frame : skipped) faults.push_back(frame.fault);
-  return faults.empty() ? "the chosen range (--frames) holds none" : count_faults(faults).front().example;
+  return faults.empty() ? "the chosen range (--frames) holds none"
+                        : count_faults(faults).front().example;
 }
 
 /// Poses that never change mean missing tracking far more often than a camera on a tripod.

@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "command.h"
+#include "ovimap/map/incremental_mesh.h"
+
+namespace ovimap::apps {
+
+/// Walks down a generated corridor and reports, every 500 frames, what a frame costs and how large
+/// the map is.
+int bench_corridor(int frames, const MapperConfig& config, bool json);
+
+}  // namespace ovimap::apps
