@@ -6,13 +6,14 @@ OVIMAP := $(BUILD)/bin/ovimap
 JOBS ?= $(shell nproc)
 SOURCE ?= demo/tiny/room
 
-.PHONY: help setup build demo test asan tsan bench benchmarks clean
+.PHONY: help setup build demo test asan tsan bench rivals benchmarks clean
 
 help:
 	@echo "make demo    set up, build, render a room, map it, show the objects"
 	@echo "make test    set up, build, run every test"
 	@echo "make build   build the program: $(OVIMAP)"
-	@echo "make bench   measure speed and memory on SOURCE (default: the demo room)"
+	@echo "make bench   measure speed and memory on SOURCE (default: the demo room), beside their targets"
+	@echo "make rivals  install Open3D (1.3 GB) into build/rivals, for make bench to compare with"
 	@echo "make benchmarks KITCHEN=FOLDER [ONLY='tiny rooms']   write docs/benchmarks.md, or these parts of it"
 	@echo "make asan    run the tests under AddressSanitizer and UBSan;  make tsan: ThreadSanitizer"
 
@@ -37,8 +38,11 @@ asan tsan: setup
 
 bench: build
 	@test -d "$(SOURCE)" || $(OVIMAP) synth demo/tiny --room tiny
-	@$(OVIMAP) bench "$(SOURCE)"
+	@python3 tools/speed.py $(OVIMAP) "$(SOURCE)"
 	@$(BUILD)/bin/ovimap_micro_bench --benchmark_min_time=0.2
+
+rivals:
+	@tools/rivals.sh
 
 benchmarks: build
 	@python3 tools/benchmarks.py $(OVIMAP) $(if $(KITCHEN),--kitchen "$(KITCHEN)") $(if $(ONLY),--only $(ONLY))

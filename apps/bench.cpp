@@ -88,7 +88,8 @@ int bench(const BenchOptions& options) {
   const ThreadLimit limit(options.mapping.threads);
   ProgramConfig config = read_program_config(options.mapping);
   if (options.mapping.source.empty() == (options.corridor == 0))
-    throw Error("name a SOURCE to measure, or --corridor N");
+    throw Error(
+        "name a SOURCE to measure, or --corridor N (where the program was built with rooms)");
 #ifdef OVIMAP_SYNTH
   if (options.corridor > 0) return bench_corridor(options.corridor, config.mapper, options.json);
 #endif
@@ -165,8 +166,9 @@ Action add_bench(CLI::App& command) {
 #ifdef OVIMAP_SYNTH
   command
       .add_option("--corridor", options->corridor,
-                  "walk N frames down a generated corridor instead: does mapping slow down?")
-      ->check(CLI::Range(1, 1000000));
+                  "walk N frames down a generated corridor instead, depth alone and 4 cm voxels: "
+                  "does mapping slow down?")
+      ->check(CLI::Range(1000, 1000000));
 #endif
   command.add_flag("--json", options->json, "print one JSON object");
   return [options] { return bench(*options); };

@@ -56,7 +56,7 @@ std::vector<CorridorRow> walk(const CorridorSource& corridor, MapperConfig confi
       (void)mapper.project(frame);
     }
     progress.show(static_cast<std::size_t>(i + 1), static_cast<std::size_t>(corridor.size()));
-    if ((i + 1) % kPart != 0 && i + 1 != corridor.size()) continue;
+    if ((i + 1) % kPart != 0) continue;
     const auto summary = part.summary();
     rows.push_back({i + 1, summary.at("frame"), summary.at("project"), summary.at("mesh"),
                     static_cast<double>(mapper.map().bytes()) / 1e6, surface_m2(mapper.map()),
@@ -72,8 +72,7 @@ int bench_corridor(int frames, const MapperConfig& config, bool json) {
   watch_for_interrupt();
   const CorridorSource corridor({.frames = frames});
   const std::vector<CorridorRow> rows = walk(corridor, config);
-  if (rows.empty()) return kDone;
-  const double growth = rows.back().frame.p50_ms / rows.front().frame.p50_ms;
+  const double growth = rows.empty() ? 0 : rows.back().frame.p50_ms / rows.front().frame.p50_ms;
   if (json) {
     nlohmann::json parts = nlohmann::json::array();
     for (const CorridorRow& row : rows)
@@ -85,7 +84,10 @@ int bench_corridor(int frames, const MapperConfig& config, bool json) {
                        {"map_mb", row.map_mb},
                        {"surface_m2", row.wall_m2},
                        {"objects", row.objects}});
-    print_json({{"parts", parts}, {"growth", growth}, {"peak_rss_mb", peak_rss_mb()}});
+    print_json({{"parts", parts},
+                {"growth", growth},
+                {"interrupted", interrupted()},
+                {"peak_rss_mb", peak_rss_mb()}});
     return kDone;
   }
   std::printf("%8s %9s %9s %11s %9s %9s %10s %8s\n", "frames", "p50 ms", "p95 ms", "project ms",

@@ -96,6 +96,7 @@ MappingRun map_live(const MappingOptions& options, double fps) {
                     });
   }
   MappingRun run = finished_run(std::move(inputs), options, mapper.take(), live.sequence);
+  run.document.config_text = concat("# live, ", fps, " frames/s\n", run.document.config_text);
   run.live = std::move(live);
   return run;
 }

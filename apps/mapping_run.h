@@ -22,8 +22,7 @@ struct MappingRun {
 MappingRun map_recording(const MappingOptions& options, const std::string& title,
                          const std::filesystem::path& keep_masks = {});
 
-/// The same as a camera of `fps` frames a second would have it. Networks run with lower priority
-/// than the mapping.
+/// The same as a camera of `fps` frames a second would have it. Networks let the mapping go first.
 MappingRun map_live(const MappingOptions& options, double fps);
 
 }  // namespace ovimap::apps

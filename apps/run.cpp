@@ -29,6 +29,12 @@ void report_skipped(const SequenceResult& result) {
   if (interrupted()) std::fprintf(stderr, "ovimap: interrupted; saving what was mapped so far\n");
 }
 
+void report_bad_masks(const LiveStatistics& done) {
+  if (done.masks_failed > 0)
+    std::fprintf(stderr, "ovimap: the masks of %lld frame(s) are bad, the first: %s\n",
+                 static_cast<long long>(done.masks_failed), done.mask_fault.c_str());
+}
+
 nlohmann::json lag_json(const StageSummary& lag) {
   return {{"p50_ms", lag.p50_ms}, {"p95_ms", lag.p95_ms}, {"p99_ms", lag.p99_ms}};
 }
@@ -39,6 +45,7 @@ nlohmann::json live_json(const LiveRunResult& live, double fps) {
           {"frames_fused", done.frames_fused},
           {"frames_dropped", done.frames_dropped},
           {"frames_read_late", live.frames_read_late},
+          {"camera_seconds", live.camera_seconds},
           {"mask_frames", done.mask_frames},
           {"masks_late", done.masks_late},
           {"masks_skipped", done.masks_skipped},
@@ -64,9 +71,6 @@ void print_live(const LiveRunResult& live, double fps) {
         "network was busy\n",
         static_cast<long long>(done.mask_frames), done.mask_lag.p50_ms / 1e3,
         static_cast<long long>(done.masks_skipped));
-  if (done.masks_failed > 0)
-    std::fprintf(stderr, "ovimap: the masks of %lld frame(s) are bad, the first: %s\n",
-                 static_cast<long long>(done.masks_failed), done.mask_fault.c_str());
   if (done.views_skipped > 0)
     std::printf("looks at objects left out: %lld\n", static_cast<long long>(done.views_skipped));
 }
@@ -79,6 +83,7 @@ int run(const RunOptions& options) {
                                          : map_recording(options.mapping, "mapping");
   const SequenceResult& result = mapped.sequence;
   report_skipped(result);
+  if (mapped.live) report_bad_masks(mapped.live->statistics);
   save_map(options.map, mapped.document);
   if (!options.pictures.empty())
     write_map_pictures(options.pictures, mapped.document, *mapped.source);
@@ -104,9 +109,11 @@ int run(const RunOptions& options) {
     if (mapped.live) print_live(*mapped.live, options.fps);
   }
   if (mapped.document.instances.empty())
-    std::fprintf(stderr,
-                 "ovimap: no object was seen often enough to be kept; map more frames, or --set "
-                 "mask_interval=1 where masks are slow\n");
+    std::fprintf(
+        stderr,
+        "ovimap: no object was seen often enough to be kept; map more frames, or --set %s=1 "
+        "where masks are slow\n",
+        mapped.live ? "live.masks.min_gap" : "mask_interval");
   return kDone;
 }
 

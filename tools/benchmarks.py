@@ -16,25 +16,22 @@ import pathlib
 import shutil
 import subprocess
 
-TARGETS_MS = {"depth segmentation": 30, "association + fusion + labels": 40, "ray cast": 20, "MobileSAM frame": 4000}
+import speed
+from speed import run_json
+
 TUNED, UNSEEN = ["living-room", "bedroom", "kitchen"], ["office", "bathroom"]
 MASKS = ["gt", "sam", "none"]
 # Aims of the standard protocol, class-agnostic, with sensor noise.
 AIMS = {"gt": {"ap50": 0.80, "miou": 0.75}, "sam": {"ap50": 0.45, "ap25": 0.65}, "none": {"ap25": 0.35}}
 # On the unseen rooms. Masks on every frame are slow: that schedule is measured on every second frame.
 ABLATIONS = {"masks": [], "views": [], "fusion": [], "incremental": [], "schedule": ["--frames", "::2"], "timing": []}
-SECTIONS = ["tiny", "rooms", "exact", "speed", *ABLATIONS]
+SECTIONS = ["tiny", "rooms", "exact", "speed", "corridor", *ABLATIONS]
 # Two crops a view instead of six: the ablations compare, and embedding is most of their time.
 FEW_CROPS = ["--set", "crops.scales=1"]
 
 
 def run(*command):
     subprocess.run([str(word) for word in command], check=True, stdout=subprocess.DEVNULL)
-
-
-def run_json(*command):
-    command = [str(word) for word in command] + ["--json"]
-    return json.loads(subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True).stdout)
 
 
 def processor():
@@ -141,29 +138,14 @@ def ablation_section(program, work, out, name):
 
 # --------------------------------------------------------------------------------------------------------- speed
 
-def stage_rows(bench):
-    for name, stage in bench["stages"].items():
-        yield f"| {name} | {stage['p50_ms']:.1f} | {stage['p95_ms']:.1f} | {stage['p99_ms']:.1f} | {stage['count']} |"
-
-
-def measured_ms(bench, sam):
-    p50 = {name: stage["p50_ms"] for name, stage in bench["stages"].items()}
-    return {"depth segmentation": p50["surface"] + p50["regions"],
-            "association + fusion + labels": p50["associate"] + p50["integrate"] + p50["registry"],
-            "ray cast": p50["project"], "MobileSAM frame": sam["stages"]["masks"]["p50_ms"]}
-
-
 def speed_section(program, kitchen):
-    bench = run_json(program, "bench", kitchen)
-    sam = run_json(program, "bench", kitchen, "--masks", "sam", "--encoder", "none", "--frames", "::10", "--set", "mask_interval=1")
-    text = ["## Speed: 7-Scenes red kitchen, 200 frames of 640x480, 1 cm voxels", "",
-            "    ovimap bench KITCHEN", "    ovimap bench KITCHEN --masks sam --encoder none --frames ::10 --set mask_interval=1", "",
-            f"Depth alone: {bench['fps']:.1f} frames a second, decoding included; peak memory {bench['peak_rss_mb']:.0f} MB; "
-            f"{bench['bytes_per_voxel']:.1f} bytes a voxel; map file {bench['map_bytes'] / 1e6:.1f} MB.", "",
-            "| what | target, ms | measured p50, ms |", "| --- | --- | --- |"]
-    text += [f"| {name} | {TARGETS_MS[name]} | {value:.1f} |" for name, value in measured_ms(bench, sam).items()]
-    text += ["", "Every stage, depth alone:", "", "| stage | p50 ms | p95 ms | p99 ms | count |", "| --- | --- | --- | --- | --- |"]
-    return text + [*stage_rows(bench), ""]
+    return ["## Speed: 7-Scenes red kitchen, 640x480", "",
+            "    make rivals; make bench SOURCE=KITCHEN", "", *speed.speed_lines(program, kitchen)]
+
+
+def corridor_section(program):
+    return ["## Does mapping slow down as the map grows?", "",
+            "    ovimap bench --corridor 5000", "", *speed.corridor_lines(program)]
 
 
 # ----------------------------------------------------------------------------------------------------------- page
@@ -201,6 +183,7 @@ def main():
                "rooms": lambda: quality_section(program, work, noisy=True),
                "exact": lambda: quality_section(program, work, noisy=False),
                "speed": lambda: speed_section(program, arguments.kitchen),
+               "corridor": lambda: corridor_section(program),
                **{name: functools.partial(ablation_section, program, work, arguments.out, name) for name in ABLATIONS}}
     for name in arguments.only or SECTIONS:
         if name == "speed" and not arguments.kitchen:

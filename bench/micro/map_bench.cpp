@@ -3,8 +3,10 @@
 #include <benchmark/benchmark.h>
 
 #include "ovimap/instance/association.h"
+#include "ovimap/map/incremental_mesh.h"
 #include "ovimap/map/integrate.h"
 #include "ovimap/map/mesh_extraction.h"
+#include "ovimap/map/plain_fusion.h"
 #include "ovimap/map/ray_cast.h"
 #include "ovimap/map/surface_lookup.h"
 #include "room_scene.h"
@@ -25,13 +27,16 @@ struct MappedRoom {
       labels.push_back(map.labels().create());
     for (int view = 0; view < 6; ++view) add(RoomScene(view));
   }
-  void add(const RoomScene& view) {
-    integrate(map, {.depth = view.depth,
-                    .camera = view.camera,
-                    .world_from_camera = view.pose,
-                    .plane_slope = &surface.plane_slope,
-                    .segment_ids = &segments.ids,
-                    .segment_labels = labels});
+  Observation observation(const RoomScene& view) const {
+    return {.depth = view.depth,
+            .camera = view.camera,
+            .world_from_camera = view.pose,
+            .plane_slope = &surface.plane_slope,
+            .segment_ids = &segments.ids,
+            .segment_labels = labels};
+  }
+  std::vector<std::uint32_t> add(const RoomScene& view) {
+    return integrate(map, observation(view));
   }
 };
 
@@ -40,6 +45,12 @@ void integrate_frame(benchmark::State& state) {
   for (auto _ : state) room.add(room.scene);
 }
 BENCHMARK(integrate_frame)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void integrate_frame_plain(benchmark::State& state) {
+  MappedRoom room;
+  for (auto _ : state) plain::integrate(room.map, room.observation(room.scene));
+}
+BENCHMARK(integrate_frame_plain)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void look_up_surface(benchmark::State& state) {
   const MappedRoom room;
@@ -69,6 +80,14 @@ void extract_whole_mesh(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(extract_mesh(room.map));
 }
 BENCHMARK(extract_whole_mesh)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void update_mesh(benchmark::State& state) {
+  MappedRoom room;
+  const std::vector<std::uint32_t> visited = room.add(room.scene);
+  IncrementalMesh mesh;
+  for (auto _ : state) benchmark::DoNotOptimize(mesh.update(room.map, visited));
+}
+BENCHMARK(update_mesh)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace
 }  // namespace ovimap::bench

@@ -32,8 +32,9 @@ class Pool {
   }
 
   bool give(void* buffer, std::size_t bytes) noexcept {
+    if (bytes > kMostHeld) return false;
     const std::lock_guard lock(mutex_);
-    if (held_ + bytes > kMostHeld) return false;
+    if (held_ + bytes > kMostHeld) clear();  // sizes that nobody asks for any more, as a rule
     try {
       free_[bytes].push_back(buffer);
     } catch (const std::bad_alloc&) {
@@ -44,6 +45,13 @@ class Pool {
   }
 
  private:
+  void clear() noexcept {
+    for (auto& [bytes, buffers] : free_)
+      for (void* buffer : buffers) ::operator delete(buffer);
+    free_.clear();
+    held_ = 0;
+  }
+
   std::mutex mutex_;
   std::unordered_map<std::size_t, std::vector<void*>> free_;
   std::size_t held_ = 0;

@@ -33,8 +33,8 @@ void parallel_for(std::size_t count, std::size_t grain, Body&& body) {
   });
 }
 
-/// While alive, no more than `threads` threads run parallel_for bodies in this process (0: all
-/// cores).
+/// While alive, no more than `threads` threads run the bodies of any parallel_for in this process
+/// (0: all cores), the threads that call one included.
 class ThreadLimit {
  public:
   explicit ThreadLimit(int threads);

@@ -32,45 +32,47 @@ unsigned observed_bits(const float* weights, float min_weight) {
 
 }  // namespace
 
-CellRows::CellRows(const VoxelMap& map, std::uint32_t slot) {
+CellRows::CellRows(const VoxelMap& map, std::uint32_t slot)
+    : min_weight_(map.config().min_mesh_weight) {
   const BlockIndex& index = map.block(slot).index;
   blocks_[0] = &map.block(slot);
   for (int i = 1; i < 8; ++i)
     blocks_[static_cast<std::size_t>(i)] =
         map.find(index + BlockIndex(i & 1, i >> 1 & 1, i >> 2 & 1));
-  const float min_weight = map.config().min_mesh_weight;
+  observed_.fill(kUnread);
   for (int z = 0; z < kSide; ++z)
-    for (int y = 0; y < kSide; ++y)
-      rows_[static_cast<std::size_t>(y + kSide * z)] = read(y, z, min_weight);
+    for (int y = 0; y < kSide; ++y) inside_[at(y, z)] = read_inside(y, z);
 }
 
-CellRows::Row CellRows::read(int y, int z, float min_weight) const {
-  Row result;
+std::uint16_t CellRows::read_inside(int y, int z) const {
   const auto first = static_cast<std::size_t>(voxel_offset(0, y & 7, z & 7));
-  if (const VoxelBlock* here = block(0, y, z)) {
-    result.inside = static_cast<std::uint16_t>(inside_bits(here->tsdf.data() + first));
-    result.observed =
-        static_cast<std::uint16_t>(observed_bits(here->weight.data() + first, min_weight));
-  }
-  if (const VoxelBlock* next = block(kBlockSide, y, z)) {
-    result.inside = static_cast<std::uint16_t>(result.inside | (next->tsdf[first] < 0) << 8);
-    result.observed =
-        static_cast<std::uint16_t>(result.observed | (next->weight[first] > min_weight) << 8);
-  }
-  return result;
+  const VoxelBlock *here = block(0, y, z), *next = block(kBlockSide, y, z);
+  const unsigned own = here ? inside_bits(here->tsdf.data() + first) : 0u;
+  return static_cast<std::uint16_t>(own | (next && next->tsdf[first] < 0 ? 1u << kBlockSide : 0u));
 }
 
-unsigned CellRows::surface_cells(int y, int z) const {
-  const Row &a = row(y, z), &b = row(y + 1, z), &c = row(y, z + 1), &d = row(y + 1, z + 1);
-  const unsigned observed = a.observed & b.observed & c.observed & d.observed;
-  const unsigned some = a.inside | b.inside | c.inside | d.inside;
-  const unsigned all = a.inside & b.inside & c.inside & d.inside;
-  return observed & observed >> 1 & (some | some >> 1) & ~(all & all >> 1) & 0xff;
+std::uint16_t CellRows::read_observed(int y, int z) const {
+  const auto first = static_cast<std::size_t>(voxel_offset(0, y & 7, z & 7));
+  const VoxelBlock *here = block(0, y, z), *next = block(kBlockSide, y, z);
+  const unsigned own = here ? observed_bits(here->weight.data() + first, min_weight_) : 0u;
+  return static_cast<std::uint16_t>(
+      own | (next && next->weight[first] > min_weight_ ? 1u << kBlockSide : 0u));
+}
+
+unsigned CellRows::surface_cells(int y, int z) {
+  const unsigned a = inside_[at(y, z)], b = inside_[at(y + 1, z)], c = inside_[at(y, z + 1)],
+                 d = inside_[at(y + 1, z + 1)];
+  const unsigned some = a | b | c | d, all = a & b & c & d;
+  const unsigned crossed = (some | some >> 1) & ~(all & all >> 1) & 0xff;
+  if (crossed == 0) return 0;
+  const unsigned seen =
+      observed(y, z) & observed(y + 1, z) & observed(y, z + 1) & observed(y + 1, z + 1);
+  return crossed & seen & seen >> 1;
 }
 
 unsigned CellRows::inside_corners(int x, int y, int z) const {
   const auto pair = [&](int dy, int dz) -> unsigned {
-    return row(y + dy, z + dz).inside >> x & 3u;
+    return inside_[at(y + dy, z + dz)] >> x & 3u;
   };
   return pair(0, 0) | pair(1, 0) << 2 | pair(0, 1) << 4 | pair(1, 1) << 6;
 }

@@ -19,7 +19,7 @@ class CellRows {
 
   /// The cells of row (y, z), bit x, whose eight corners are observed and lie on both sides of the
   /// surface.
-  unsigned surface_cells(int y, int z) const;
+  unsigned surface_cells(int y, int z);
 
   /// Which corners of a cell lie inside: bit i is the corner (i & 1, i >> 1 & 1, i >> 2 & 1).
   unsigned inside_corners(int x, int y, int z) const;
@@ -30,14 +30,21 @@ class CellRows {
   }
 
  private:
-  struct Row {
-    std::uint16_t observed = 0, inside = 0;  ///< bit x, in [0, 8]
-  };
-  const Row& row(int y, int z) const { return rows_[static_cast<std::size_t>(y + kSide * z)]; }
-  Row read(int y, int z, float min_weight) const;
+  static constexpr std::uint16_t kUnread = 0xffff;
+  static std::size_t at(int y, int z) { return static_cast<std::size_t>(y + kSide * z); }
+  std::uint16_t read_inside(int y, int z) const;
+  std::uint16_t read_observed(int y, int z) const;
+  unsigned observed(int y, int z) {
+    std::uint16_t& row = observed_[at(y, z)];
+    if (row == kUnread) row = read_observed(y, z);
+    return row;
+  }
 
+  float min_weight_;
   std::array<const VoxelBlock*, 8> blocks_;
-  std::array<Row, kSide * kSide> rows_;
+  // By row (y, z), bit x in [0, 8]. Weights are read only where the sign of the distance changes:
+  // most blocks of the band around a surface hold none of it.
+  std::array<std::uint16_t, kSide * kSide> inside_, observed_;
 };
 
 }  // namespace ovimap

@@ -25,7 +25,7 @@ class PatchMesher {
 
   /// Empty when the surface misses the block.
   Mesh extract(std::uint32_t slot) {
-    const CellRows cells(map_, slot);
+    CellRows cells(map_, slot);
     Mesh mesh;
     for (int z = 0; z < kBlockSide; ++z)
       for (int y = 0; y < kBlockSide; ++y)

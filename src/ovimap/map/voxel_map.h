@@ -64,7 +64,7 @@ struct BlockRegion {
 };
 
 /// The sparse TSDF of the scene with per-voxel label support. World frame, metres. Blocks are
-/// created by `integrate` alone and never move in memory.
+/// created by `integrate` and `vote_labels` alone and never move in memory.
 class VoxelMap {
  public:
   explicit VoxelMap(const VoxelMapConfig& config = {});

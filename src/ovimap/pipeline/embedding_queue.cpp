@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ovimap/base/config.h"
+#include "ovimap/base/thread_priority.h"
 #include "ovimap/semantics/object_embedding.h"
 
 namespace ovimap {
@@ -66,6 +67,7 @@ void EmbeddingQueue::rethrow_failure() {
 }
 
 void EmbeddingQueue::work() {
+  lower_thread_priority();
   while (true) {
     std::vector<EmbeddingRequest> batch;
     {

@@ -37,7 +37,7 @@ struct EmbeddingAnswer {
   double milliseconds = 0;    ///< its share of the batch's time; 0 without an encoder
 };
 
-/// Embeds views on a thread of its own, beside the mapper, in the order they come.
+/// Embeds views on a thread of its own that lets the mapper go first, in the order they come.
 class EmbeddingQueue {
  public:
   /// Without an encoder, crops are only packed for the map.

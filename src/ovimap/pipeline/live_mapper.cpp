@@ -79,11 +79,16 @@ void LiveMapper::drain() {
 }
 
 void LiveMapper::cancel() {
+  stop_stages();
+  join();
+}
+
+void LiveMapper::stop_stages() {
+  cancelled_ = true;
   incoming_.cancel();
   prepared_.cancel();
   wanted_masks_.cancel();
   found_masks_.cancel();
-  join();
 }
 
 Mapper LiveMapper::take() {
@@ -128,7 +133,7 @@ void LiveMapper::fuse_frames() {
   }
   wanted_masks_.close();
   while (auto late = found_masks_.pop()) apply_masks(std::move(*late));
-  mapper_->finish();
+  if (!cancelled_) mapper_->finish();
 }
 
 void LiveMapper::fuse(Prepared prepared) {
@@ -150,6 +155,7 @@ void LiveMapper::fuse(Prepared prepared) {
     }
   }
   mapper_->fuse(*prepared.frame, prepared.cut.get());
+  const double lag_ms = milliseconds_since(prepared.pushed);
   frames_.push_back({frame.index, frame.timestamp_s, frame.name, frame.world_from_camera,
                      prepared.cut != nullptr});
   const bool look = mapper_->frames() % live_.view_interval == 0;
@@ -162,7 +168,7 @@ void LiveMapper::fuse(Prepared prepared) {
   ++statistics_.frames_fused;
   statistics_.views_skipped += look && no_time;
   statistics_.mask_frames += prepared.cut && prepared.cut->masked;
-  lags_.add("geometry", milliseconds_since(prepared.pushed));
+  lags_.add("geometry", lag_ms);
 }
 
 void LiveMapper::apply_late_masks() {
@@ -225,10 +231,7 @@ void LiveMapper::fail(std::exception_ptr failure) {
     const std::lock_guard lock(mutex_);
     if (!failure_) failure_ = std::move(failure);
   }
-  incoming_.cancel();
-  prepared_.cancel();
-  wanted_masks_.cancel();
-  found_masks_.cancel();
+  stop_stages();
 }
 
 void LiveMapper::rethrow_failure() {

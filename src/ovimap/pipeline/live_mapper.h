@@ -43,7 +43,7 @@ struct LiveStatistics {
 /// (registration, surface, and regions where there are no masks), one fuses, one runs the mask
 /// network, one the encoder. Masks that come late are applied with the depth and pose of their own
 /// frame. When it falls behind it leaves out masks first, views second, frames last, and counts
-/// them.
+/// them. All calls but `statistics` come from one thread.
 class LiveMapper {
  public:
   LiveMapper(const MapperConfig& config, const LiveConfig& live,
@@ -69,6 +69,7 @@ class LiveMapper {
   const std::vector<FrameLogEntry>& frames() const { return frames_; }
 
   LiveStatistics statistics() const;
+  const MapperConfig& config() const { return config_; }
 
   /// Called by every stage before it works, on its thread. For tests; set before the first push.
   std::function<void(const char* stage)> before_stage;
@@ -99,6 +100,7 @@ class LiveMapper {
   }
   template <class Work>
   void run_stage(const Work& work);
+  void stop_stages();
   void fail(std::exception_ptr failure);
   void rethrow_failure();
   void join();
@@ -108,7 +110,7 @@ class LiveMapper {
   std::shared_ptr<MaskSource> mask_source_;
   std::unique_ptr<Mapper> mapper_;  ///< the fusing thread's, until that ends
   MaskSchedule schedule_;
-  StageTimers prepare_timers_, mask_timers_, lags_;
+  StageTimers prepare_timers_, mask_timers_;
 
   BoundedQueue<Incoming> incoming_;
   BoundedQueue<Prepared> prepared_;
@@ -116,8 +118,10 @@ class LiveMapper {
   std::int64_t masks_under_way_ = 0;  ///< the fusing thread's, as the next
   std::vector<FrameLogEntry> frames_;
 
+  std::atomic<bool> cancelled_ = false;
   mutable std::mutex mutex_;  ///< guards what follows
   LiveStatistics statistics_;
+  StageTimers lags_;
   std::exception_ptr failure_;
 
   std::thread preparing_, fusing_, masking_;  // last: they start when everything else is there

@@ -22,22 +22,45 @@ struct NextFrame {
 class ReadAhead {
  public:
   ReadAhead(const FrameSource& source, const std::vector<std::int64_t>& positions)
-      : frames_(kReadAhead), reader_([this, &source, &positions] {
-          for (const std::int64_t position : positions)
-            if (!frames_.push({position, source.read(position)})) return;
-          frames_.close();
-        }) {}
+      : frames_(kReadAhead), reader_([this, &source, &positions] { read(source, positions); }) {}
   ~ReadAhead() {
     frames_.cancel();
     reader_.join();
   }
-  std::optional<NextFrame> next() { return frames_.pop(); }
-  bool ready() const { return frames_.size() > 0; }
+
+  /// Throws what reading threw.
+  std::optional<NextFrame> next() {
+    std::optional<NextFrame> frame = frames_.pop();
+    if (!frame && failure_) std::rethrow_exception(failure_);
+    return frame;
+  }
 
  private:
+  void read(const FrameSource& source, const std::vector<std::int64_t>& positions) {
+    try {
+      for (const std::int64_t position : positions)
+        if (!frames_.push({position, source.read(position)})) return;
+    } catch (...) {
+      failure_ = std::current_exception();
+    }
+    frames_.close();
+  }
+
   BoundedQueue<NextFrame> frames_;
+  std::exception_ptr failure_;  ///< set before the queue is closed
   std::thread reader_;
 };
+
+/// What a run must not pass over in silence.
+void check_outcome(const LiveRunResult& result, const MapperConfig& config) {
+  const std::vector<FrameLogEntry>& frames = result.sequence.frames;
+  if (frames.empty())
+    throw Error(concat("none of the frames is usable: ", commonest_fault(result.sequence.skipped),
+                       "; `ovimap check` tells more"));
+  require_motion(frames, config);
+  if (result.statistics.masks_failed > 0 && result.statistics.mask_frames == 0)
+    throw Error(result.statistics.mask_fault);
+}
 
 }  // namespace
 
@@ -45,28 +68,30 @@ LiveRunResult run_live(const FrameSource& source, const std::vector<std::int64_t
                        LiveMapper& mapper, double fps, const LiveProgress& progress) {
   LiveRunResult result;
   ReadAhead reader(source, positions);
-  const std::chrono::duration<double> interval(1. / fps);
   std::optional<NextFrame> next = reader.next();  // the camera starts when a frame is there
   const auto start = Clock::now();
+  const auto due = [&](std::size_t frame) {
+    return start + std::chrono::duration_cast<Clock::duration>(
+                       std::chrono::duration<double>(static_cast<double>(frame) / fps));
+  };
   for (std::size_t i = 0; next; ++i) {
-    std::this_thread::sleep_until(
-        start + std::chrono::duration_cast<Clock::duration>(interval * static_cast<double>(i)));
+    std::this_thread::sleep_until(due(i));
     if (next->read.frame) {
       result.sequence.depth_camera = next->read.frame->depth_camera;
       mapper.push(std::move(*next->read.frame));
     } else {
       result.sequence.skipped.push_back({next->position, next->read.fault});
     }
+    result.camera_seconds = std::chrono::duration<double>(Clock::now() - start).count();
     if (progress && !progress(i + 1, positions.size())) break;
-    result.frames_read_late += i + 1 < positions.size() && !reader.ready();
     next = reader.next();
+    result.frames_read_late += next && Clock::now() > due(i + 1);
   }
   mapper.drain();
   result.sequence.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   result.sequence.frames = mapper.frames();
   result.statistics = mapper.statistics();
-  if (result.sequence.frames.empty())
-    throw Error("none of the frames is usable; `ovimap check` tells more");
+  check_outcome(result, mapper.config());
   return result;
 }
 

@@ -10,6 +10,7 @@ namespace ovimap {
 struct LiveRunResult {
   SequenceResult sequence;
   LiveStatistics statistics;
+  double camera_seconds = 0;          ///< from the first frame handed over to the last
   std::int64_t frames_read_late = 0;  ///< decoding was not done when the camera would have been
 };
 
@@ -18,8 +19,8 @@ struct LiveRunResult {
 using LiveProgress = std::function<bool(std::size_t done, std::size_t total)>;
 
 /// Feeds a recording to the mapper as a camera of `fps` frames a second would, whatever the mapper
-/// manages, and drains it. Frames are decoded ahead. Throws Error when no frame was usable, and
-/// what a stage threw.
+/// manages, and drains it. Frames are decoded ahead. Throws Error as run_sequence does, when masks
+/// were asked for and none was good, and what a stage threw.
 LiveRunResult run_live(const FrameSource& source, const std::vector<std::int64_t>& positions,
                        LiveMapper& mapper, double fps, const LiveProgress& progress = nullptr);
 

@@ -46,11 +46,49 @@ TEST(RunLive, StopsWhenTold) {
   EXPECT_EQ(result.statistics.frames_pushed, 4);
 }
 
+std::string failure_of(const FrameSource& source, const std::vector<std::int64_t>& positions,
+                       std::shared_ptr<MaskSource> masks = nullptr) {
+  LiveMapper mapper({}, {}, std::move(masks));
+  try {
+    (void)run_live(source, positions, mapper, 200);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "none";
+}
+
 TEST(RunLive, SaysWhenNoFrameIsUsable) {
   DeskScene scene;
   scene.bad_frame = 0;
-  LiveMapper mapper({}, {});
-  EXPECT_THROW((void)run_live(scene, {0}, mapper, 100), Error);
+  EXPECT_NE(failure_of(scene, {0}).find("pose is not finite"), std::string::npos);
+}
+
+TEST(RunLive, RefusesPosesThatNeverChange) {
+  EXPECT_NE(failure_of(DeskScene(), {3, 3, 3}).find("same pose"), std::string::npos);
+}
+
+class WrongMasks : public DeskMasks {
+ public:
+  Entities entities(const Frame&, std::span<const MaskPrompt>) override {
+    throw FrameError("frame0.png: is 1x1, expected 160x120");
+  }
+};
+
+TEST(RunLive, SaysWhenNoFrameHasGoodMasks) {
+  EXPECT_EQ(failure_of(DeskScene(), all_positions(), std::make_shared<WrongMasks>()),
+            "frame0.png: is 1x1, expected 160x120");
+}
+
+class BrokenSource : public DeskScene {
+ public:
+  FrameRead read(std::int64_t position) const override {
+    if (position == 2) throw Error("the disk is gone");
+    return DeskScene::read(position);
+  }
+};
+
+TEST(RunLive, CarriesOutWhatReadingThrows) {
+  EXPECT_EQ(failure_of(BrokenSource(), all_positions()), "the disk is gone");
 }
 
 }  // namespace

@@ -79,7 +79,7 @@ class Mapper {
   const StageTimers& timers() const { return timers_; }
   StageTimers& timers() { return timers_; }
   int frames() const { return frames_; }
-  /// Slots of the map's blocks that the last frame touched.
+  /// Slots of the map's blocks that the last `process`, `fuse` or `label` touched.
   const std::vector<std::uint32_t>& touched_blocks() const { return touched_blocks_; }
   int mask_frames() const { return mask_frames_; }
 

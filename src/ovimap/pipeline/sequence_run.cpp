@@ -18,26 +18,6 @@ namespace {
 
 constexpr std::size_t kFramesUntilMotion = 30;  // tell early, not after an hour
 
-std::string commonest_fault(const std::vector<SkippedFrame>& skipped) {
-  std::vector<std::string> faults;
-  for (const SkippedFrame& frame : skipped) faults.push_back(frame.fault);
-  return faults.empty() ? "the chosen range (--frames) holds none"
-                        : count_faults(faults).front().example;
-}
-
-/// Poses that never change mean missing tracking far more often than a camera on a tripod.
-void require_motion(const SequenceResult& result, const MapperConfig& config) {
-  const auto& frames = result.frames;
-  if (config.allow_still_camera || frames.size() < 2) return;
-  const bool still = std::all_of(frames.begin(), frames.end(), [&](const FrameLogEntry& frame) {
-    return frame.world_from_camera.matrix() == frames.front().world_from_camera.matrix();
-  });
-  if (still)
-    throw Error(concat("all ", frames.size(),
-                       " frames have the same pose; give the camera's real poses, or, if it stood "
-                       "still, --set allow_still_camera=true"));
-}
-
 /// Returns what kept the frame out of the map, empty when nothing did. What is wrong with the very
 /// first frame is wrong with all of them as a rule, and better told at once.
 std::string fuse(const Frame& frame, Mapper& mapper, bool others_went_well, FrameReport& report) {
@@ -51,6 +31,24 @@ std::string fuse(const Frame& frame, Mapper& mapper, bool others_went_well, Fram
 }
 
 }  // namespace
+
+std::string commonest_fault(const std::vector<SkippedFrame>& skipped) {
+  std::vector<std::string> faults;
+  for (const SkippedFrame& frame : skipped) faults.push_back(frame.fault);
+  return faults.empty() ? "the chosen range (--frames) holds none"
+                        : count_faults(faults).front().example;
+}
+
+void require_motion(const std::vector<FrameLogEntry>& frames, const MapperConfig& config) {
+  if (config.allow_still_camera || frames.size() < 2) return;
+  const bool still = std::all_of(frames.begin(), frames.end(), [&](const FrameLogEntry& frame) {
+    return frame.world_from_camera.matrix() == frames.front().world_from_camera.matrix();
+  });
+  if (still)
+    throw Error(concat("all ", frames.size(),
+                       " frames have the same pose; give the camera's real poses, or, if it stood "
+                       "still, --set allow_still_camera=true"));
+}
 
 std::vector<Pose> poses_of(const std::vector<FrameLogEntry>& frames) {
   std::vector<Pose> poses;
@@ -83,7 +81,7 @@ SequenceResult run_sequence(const FrameSource& source, const std::vector<std::in
     } else {
       result.skipped.push_back({positions[i], current.fault});
     }
-    if (result.frames.size() == kFramesUntilMotion) require_motion(result, mapper.config());
+    if (result.frames.size() == kFramesUntilMotion) require_motion(result.frames, mapper.config());
     const bool fused = current.fault.empty();
     if (progress && !progress(i + 1, positions.size(), fused ? &report : nullptr)) break;
   }
@@ -91,7 +89,7 @@ SequenceResult run_sequence(const FrameSource& source, const std::vector<std::in
   if (result.frames.empty())
     throw Error(concat("none of the ", result.skipped.size(), " frames is usable: ",
                        commonest_fault(result.skipped), "; `ovimap check` tells more"));
-  require_motion(result, mapper.config());
+  require_motion(result.frames, mapper.config());
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }

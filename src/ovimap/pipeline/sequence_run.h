@@ -39,6 +39,13 @@ using SequenceProgress =
 SequenceResult run_sequence(const FrameSource& source, const std::vector<std::int64_t>& positions,
                             Mapper& mapper, const SequenceProgress& progress = nullptr);
 
+/// The fault that most skipped frames have, by the first of them.
+std::string commonest_fault(const std::vector<SkippedFrame>& skipped);
+
+/// Throws Error when all of several frames have the same pose, unless the config allows it: that
+/// means missing tracking far more often than a camera on a tripod.
+void require_motion(const std::vector<FrameLogEntry>& frames, const MapperConfig& config);
+
 /// The poses of the depth camera, world_from_camera, in order.
 std::vector<Pose> poses_of(const std::vector<FrameLogEntry>& frames);
 

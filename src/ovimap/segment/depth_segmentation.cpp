@@ -66,7 +66,7 @@ void for_each_run(const Image<std::uint32_t>& labels, const Visit& visit) {
 }
 
 /// Drops small components and packs the ids of the others to 16 bits; when there are too many the
-/// smallest would not fit, which `min_region_px` of a few pixels rules out for any real image.
+/// last do not fit, which `min_region_px` of a few pixels rules out for any real image.
 DepthRegions pack(const Image<std::uint32_t>& labels, int min_region_px) {
   std::vector<DepthRegion> components;  // by label
   for_each_run(labels, [&](std::uint32_t label, int begin, int end, int y) {

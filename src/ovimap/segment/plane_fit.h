@@ -7,8 +7,9 @@
 
 namespace ovimap {
 
-/// Inverse depth in integers, 1/m per unit: fine enough that rounding stays far below any sensor's
-/// noise, and coarse enough that the sums of a window with this radius fit in 32 bits.
+/// Inverse depth in integers, 1/m per unit: coarse enough that the sums of a window with this
+/// radius fit in 32 bits. 2^-19 at 6 pixels, far below any sensor's noise; 2^-7 at 100, where
+/// rounding averages out over the window's 40,000 pixels.
 float inverse_depth_unit(int radius_px);
 
 /// Fills smooth depth, normals and slopes of `surface`, whose breaks and arms are set: least

@@ -1,0 +1,139 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The ovimap authors
+# SPDX-License-Identifier: Apache-2.0
+"""Speed of mapping on a recording beside its targets, and beside Open3D where that is installed (`make rivals`).
+
+Usage: tools/speed.py PROGRAM RECORDING [--rivals build/rivals]
+"""
+import argparse
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+
+RIVALS = pathlib.Path("build/rivals")
+
+
+def run_json(*command):
+    command = [str(word) for word in command] + ["--json"]
+    return json.loads(subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True).stdout)
+
+
+def measure_live(program, recording, *options):
+    with tempfile.TemporaryDirectory() as folder:
+        return run_json(program, "run", recording, "--live", "--fps", 30, *options, "-o", pathlib.Path(folder) / "map.ovimap")
+
+
+def measure_open3d(program, recording, rivals):
+    """Ours and theirs in turn; None where Open3D is not installed."""
+    python = rivals / "bin" / "python"
+    if not python.exists():
+        return None
+    return run_json(python, "bench/rivals/open3d_fusion.py", program.parent / "ovimap_fusion_steps", recording)
+
+
+# ---------------------------------------------------------------------------------------------- targets
+
+def row(name, target, value, unit, met):
+    return f"| {name} | {target} {unit} | {value} {unit} | {'yes' if met else 'no'} |"
+
+
+def at_most(name, target, value, unit="ms", digits=1):
+    return row(name, f"<= {target}", f"{value:.{digits}f}", unit, value <= target)
+
+
+def at_least(name, target, value, unit):
+    return row(name, f">= {target}", f"{value:.1f}", unit, value >= target)
+
+
+def target_rows(bench, sam, live, live_sam, open3d):
+    p50 = {name: stage["p50_ms"] for name, stage in bench["stages"].items()}
+    yield at_most("depth segmentation", 10, p50["surface"] + p50["regions"])
+    if open3d:
+        yield at_most("association + fusion with colour and labels, of Open3D's allocate + integrate", 0.6, open3d["fuse_ratio"], "x", 2)
+        yield at_most("ray cast guided by depth, as mapping uses it, of Open3D's ray cast", 0.15, open3d["guided_ratio"], "x", 2)
+        yield at_most("ray cast of all pixels, of Open3D's", 0.15, open3d["cast_ratio"], "x", 2)
+    yield at_most("mesh update, a frame", 10, p50["mesh_update"])
+    yield at_least("geometry alone, decoding included", 30, bench["fps"], "frames/s")
+    yield at_most("memory, a voxel", 24, bench["bytes_per_voxel"], "bytes")
+    yield at_most("peak memory without networks", 300, bench["peak_rss_mb"], "MB", 0)
+    yield at_most("map file", 30, bench["map_bytes"] / 1e6, "MB")
+    if sam:
+        yield at_most("MobileSAM keyframe", 2500, sam["stages"]["masks"]["p50_ms"], digits=0)
+    yield at_least("live at 30 frames/s, geometry alone", 29.9, fused_fps(live), "frames/s")
+    if live_sam:
+        yield at_least("live with MobileSAM and the default encoder: geometry", 15, fused_fps(live_sam), "frames/s")
+        yield at_most("... seconds from masks to masks", 4, seconds_between_masks(live_sam), "s")
+
+
+def fused_fps(run):
+    return run["live"]["frames_fused"] / (run["live"]["camera_seconds"] + 1 / run["live"]["camera_fps"])
+
+
+def seconds_between_masks(run):
+    return run["live"]["camera_seconds"] / max(run["live"]["mask_frames"], 1)
+
+
+def live_line(name, run):
+    live = run["live"]
+    lag = live["geometry_lag"]
+    masks = f"; masks on {live['mask_frames']} frames, in the map after {live['mask_lag']['p50_ms'] / 1e3:.1f} s" if live["mask_frames"] else ""
+    return (f"- {name}: {live['frames_fused']} frames fused, {live['frames_dropped']} dropped, in the map after "
+            f"{lag['p50_ms']:.0f} ms (p95 {lag['p95_ms']:.0f}, p99 {lag['p99_ms']:.0f}){masks}; "
+            f"{live['views_skipped']} looks at objects left out.")
+
+
+def open3d_lines(open3d):
+    if not open3d:
+        return ["Open3D is not installed here, so nothing is compared with it: `make rivals` installs it.", ""]
+    return [f"Beside Open3D {open3d['open3d']} (VoxelBlockGrid on the same frames, frame by frame in turn, medians of {open3d['frames']}): "
+            f"association and fusion {open3d['ours_fuse']:.1f} ms against {open3d['theirs_fuse']:.1f} ms, which knows no labels; "
+            f"ray cast {open3d['ours_cast']:.1f} ms (guided by depth {open3d['ours_guided']:.1f} ms) against {open3d['theirs_cast']:.1f} ms. "
+            f"The two surfaces lie {open3d['gap_median_mm']:.1f} mm apart in the median, {open3d['gap_p95_mm']:.1f} mm at 95 %.", ""]
+
+
+def speed_lines(program, recording, rivals=RIVALS, networks=True):
+    bench = run_json(program, "bench", recording)
+    sam = live_sam = None
+    if networks:
+        sam = run_json(program, "bench", recording, "--masks", "sam", "--encoder", "none", "--frames", "::10", "--set", "mask_interval=1")
+        live_sam = measure_live(program, recording, "--masks", "sam")
+    live = measure_live(program, recording)
+    open3d = measure_open3d(program, recording, rivals)
+    lines = [f"{bench['frames']} frames, 1 cm voxels. {bench['cpu_ms_per_frame']:.0f} ms of processor time a frame, decoding included.", "",
+             "| what | target | measured | met |", "| --- | --- | --- | --- |", *target_rows(bench, sam, live, live_sam, open3d), "",
+             *open3d_lines(open3d), live_line("Live, depth alone", live)]
+    if live_sam:
+        lines.append(live_line("Live with MobileSAM and the default encoder", live_sam))
+    lines += ["", "Every stage, depth alone:", "", "| stage | p50 ms | p95 ms | p99 ms | count |", "| --- | --- | --- | --- | --- |"]
+    for name, stage in bench["stages"].items():
+        lines.append(f"| {name} | {stage['p50_ms']:.1f} | {stage['p95_ms']:.1f} | {stage['p99_ms']:.1f} | {stage['count']} |")
+    return [*lines, ""]
+
+
+def corridor_lines(program):
+    walk = run_json(program, "bench", "--corridor", 5000)
+    first, last = walk["parts"][0], walk["parts"][-1]
+    lines = [f"A generated corridor with boxes along its walls, 320x240, 4 cm voxels. The last 500 frames cost {walk['growth']:.2f} times the first "
+             f"(target <= 1.1); {last['map_mb'] / last['surface_m2']:.3f} MB a square metre of surface at the end, "
+             f"{first['map_mb'] / first['surface_m2']:.3f} at first; peak memory {walk['peak_rss_mb']:.0f} MB.", "",
+             "| frames | frame p50 ms | p95 ms | projection ms | mesh update ms | map MB | surface, m2 | objects |", "| --- " * 8 + "|"]
+    for part in walk["parts"]:
+        lines.append(f"| {part['frames']} | {part['frame_p50_ms']:.2f} | {part['frame_p95_ms']:.2f} | {part['project_p50_ms']:.2f} "
+                     f"| {part['mesh_p50_ms']:.2f} | {part['map_mb']:.0f} | {part['surface_m2']:.0f} | {part['objects']} |")
+    return [*lines, ""]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("program", type=pathlib.Path)
+    parser.add_argument("recording", type=pathlib.Path)
+    parser.add_argument("--rivals", type=pathlib.Path, default=RIVALS)
+    arguments = parser.parse_args()
+    print(f"{os.cpu_count()} threads")
+    print("\n".join(speed_lines(arguments.program.resolve(), arguments.recording, arguments.rivals)))
+
+
+if __name__ == "__main__":
+    main()
