@@ -3,122 +3,145 @@
 #include <cstdio>
 
 #include "command.h"
+#include "export.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/image/codec.h"
-#include "ovimap/instance/instance_mesh.h"
+#include "ovimap/io/glb.h"
+#include "ovimap/io/instance_csv.h"
 #include "ovimap/io/instance_json.h"
 #include "ovimap/io/map_file.h"
+#include "ovimap/io/object_folder.h"
 #include "ovimap/io/palette.h"
 #include "ovimap/io/pictures.h"
 #include "ovimap/io/ply.h"
+#include "ovimap/pipeline/grid_files.h"
 #include "ovimap/pipeline/map_pictures.h"
 #include "ovimap/pipeline/map_search.h"
-#include "ovimap/semantics/label_set.h"
 
 namespace ovimap::apps {
 
 namespace {
 
-struct ExportOptions {
-  std::filesystem::path map, out;
-  std::string what = "mesh";
-  std::string classes = "scannet200";
-  std::string encoder = "auto";
-  std::vector<std::filesystem::path> model_dirs;
-  int threads = 0;
-  bool json = false;
-};
-
-/// The class of every instance that has an embedding.
-struct ClassedMap {
-  LabelSet set;
-  std::map<InstanceId, ClassGuess> guesses;
-};
-
-ClassedMap classify(const ExportOptions& options) {
-  constexpr std::size_t kBestOnly = 1;
-  ClassedMap result{read_label_set(options.classes), {}};
-  RuntimeConfig runtime;
-  runtime.threads = options.threads;
-  const MapSearch search = open_map_search(options.map);
-  const auto encoder =
-      needed_encoder_of_map(search.info.encoder, options.encoder, runtime, options.model_dirs);
-  const auto guesses = project_classes(search.index, *encoder, result.set, kBestOnly);
-  for (std::size_t i = 0; i < guesses.size(); ++i)
-    if (!guesses[i].empty()) result.guesses[search.index.object(i).id] = guesses[i].front();
-  return result;
-}
-
-/// The map's mesh with class ids as labels and a colour per class; 0 where no class is known.
-Mesh semantic_mesh(const MapDocument& document, const ClassedMap& classes,
-                   const ExportOptions& options) {
-  Mesh mesh = mesh_of(document, options.map);
-  for (std::uint32_t& label : mesh.labels) {
-    const auto guess = classes.guesses.find(label);
-    label = guess == classes.guesses.end()
-                ? 0
-                : static_cast<std::uint32_t>(classes.set.labels[guess->second.label].id);
-  }
-  mesh.colors = instance_colors(mesh.labels);
-  return mesh;
-}
-
-nlohmann::json semantic_json(const ExportOptions& options, const ClassedMap& classes) {
-  auto document = nlohmann::json::parse(info_json(options.map, read_map_info(options.map)));
-  document["classes"] = classes.set.name;
-  for (auto& instance : document["instances"]) {
-    const auto guess = classes.guesses.find(instance["id"].get<InstanceId>());
-    if (guess == classes.guesses.end()) {
-      instance["class"] = nullptr;
-      continue;
-    }
-    const ClassLabel& label = classes.set.labels[guess->second.label];
-    instance["class"] = {{"id", label.id}, {"name", label.name}, {"score", guess->second.score}};
-  }
-  return document;
-}
-
-void export_ply(const MapDocument& document, const ExportOptions& options) {
-  Mesh mesh = mesh_of(document, options.map);
-  if (options.what == "instances") mesh.colors = instance_colors(mesh.labels);
-  if (options.what == "points") mesh.triangles.clear();
-  write_ply(options.out, mesh);
-}
-
 void write_text(const std::filesystem::path& path, const std::string& text) {
   write_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
-void export_semantic(const ExportOptions& options, const std::string& kind) {
-  const ClassedMap classes = classify(options);
-  if (kind == ".json")
-    return write_text(options.out, json_text(semantic_json(options, classes)) + "\n");
-  const MapDocument document = load_map(options.map);
-  const Mesh mesh = semantic_mesh(document, classes, options);
-  if (kind == ".ply") return write_ply(options.out, mesh);
-  write_file(options.out, encode_png(top_down(mesh, document.up)));
+/// The map's mesh with instance ids as labels, coloured as --what says.
+Mesh colored_mesh(const MapDocument& document, const ExportOptions& options) {
+  Mesh mesh = mesh_of(document, options.map);
+  if (options.what == "instances") mesh.colors = instance_colors(mesh.labels);
+  if (options.what == "semantic") mesh.colors = class_colors(mesh, classify(options));
+  return mesh;
 }
 
-void export_plain(const ExportOptions& options, const std::string& kind) {
-  if (kind == ".json")
-    return write_text(options.out, info_json(options.map, read_map_info(options.map)) + "\n");
-  const MapDocument document = load_map(options.map);
-  if (kind == ".ply") return export_ply(document, options);
-  (void)mesh_of(document, options.map);
-  const auto coloring = options.what == "mesh" ? MeshColoring::kColors : MeshColoring::kInstances;
-  write_file(options.out, encode_png(top_down_picture(document, coloring)));
+std::vector<ObjectRelation> relations_of(const MapSearch& search) {
+  std::vector<InstanceId> ids;
+  for (const SearchObject& object : search.index.objects()) ids.push_back(object.id);
+  return find_relations(ids, search.scene.shapes);
 }
 
-int export_map(const ExportOptions& options) {
+void export_json(const ExportOptions& options) {
+  if (options.what == "semantic") return export_class_json(options);
+  const MapSearch search = open_map_search(options.map);
+  write_text(options.out, scene_json(options.map, search.info, relations_of(search)) + "\n");
+}
+
+void export_csv(const ExportOptions& options) {
+  const MapInfo info = read_map_info(options.map);
+  write_text(options.out, instances_csv(info.instances, info.names));
+}
+
+void export_ply(const ExportOptions& options) {
+  Mesh mesh = mesh_of(load_corrected_map(options.map), options.map);
+  if (options.what == "semantic") label_by_class(mesh, classify(options));
+  if (options.what == "semantic" || options.what == "instances")
+    mesh.colors = instance_colors(mesh.labels);
+  if (options.what == "points") mesh.triangles.clear();
+  write_ply(options.out, mesh);
+}
+
+void export_glb(const ExportOptions& options) {
+  const MapDocument document = load_corrected_map(options.map);
+  const Mesh mesh = colored_mesh(document, options);
+  write_file(options.out, encode_glb(mesh, document.instances, document.names, document.up));
+}
+
+void export_png(const ExportOptions& options) {
+  const MapDocument document = load_corrected_map(options.map);
+  PictureConfig config;
+  config.coloring = MeshColoring::kColors;
+  write_file(options.out,
+             encode_png(top_down(colored_mesh(document, options), document.up, config)));
+}
+
+void export_grid(const ExportOptions& options) {
+  OccupancyConfig config;
+  config.cell_m = options.cell_m;
+  const OccupancyGrid grid = make_occupancy_grid(load_corrected_map(options.map), config);
+  const std::vector<GridSlice> layers = layers_of(grid, options.heights_m);
+  write_grid_slice(options.out, grid, band_of(grid, options.band_m[0], options.band_m[1], config));
+  for (std::size_t i = 0; i < layers.size(); ++i)
+    write_grid_slice(layer_path(options.out, options.heights_m[i]), grid, layers[i]);
+}
+
+void export_folder(const ExportOptions& options) {
+  const MapDocument document = load_corrected_map(options.map);
+  const Mesh mesh = colored_mesh(document, options);
+  const MapSearch search = open_map_search(options.map);
+  const auto relations = relations_of(search);
+  write_object_folder(options.out, document, mesh, relations,
+                      scene_json(options.map, search.info, relations) + "\n");
+}
+
+struct Format {
+  const char* ending;
+  void (*write)(const ExportOptions&);
+  const char* whats;  ///< what it can show; the first is the default
+};
+constexpr Format kFormats[] = {
+    {".ply", export_ply, "mesh instances semantic points"},
+    {".glb", export_glb, "mesh instances semantic"},
+    {".png", export_png, "mesh instances semantic"},
+    {".json", export_json, "objects semantic mesh instances"},
+    {".csv", export_csv, "objects"},
+    {".yaml", export_grid, "grid"},
+    {"", export_folder, "objects mesh instances semantic"},
+};
+
+const Format& format_of(const ExportOptions& options) {
+  const std::string ending =
+      std::filesystem::is_directory(options.out) ? "" : options.out.extension().string();
+  for (const Format& format : kFormats)
+    if (ending == format.ending) return format;
+  throw Error(
+      concat("cannot export to '", options.out.string(),
+             "'; the name must end in .ply, .glb, .png, .json, .csv or .yaml, or be that of "
+             "a new folder"));
+}
+
+/// The default where --what is not given; refuses what the format cannot show.
+std::string checked_what(const Format& format, const std::string& what) {
+  std::istringstream words(format.whats);
+  std::string word, accepted, first;
+  while (words >> word) {
+    if (first.empty()) first = word;
+    if (word == what) return what;
+    accepted += (accepted.empty() ? "" : ", ") + word;
+  }
+  if (what.empty()) return first;
+  throw Error(concat("--what ", what, " does not go into ",
+                     *format.ending ? format.ending : "a folder", "; it takes ", accepted));
+}
+
+int export_map(ExportOptions options) {
   const ThreadLimit limit(options.threads);
-  const std::string kind = options.out.extension().string();
-  if (kind != ".json" && kind != ".ply" && kind != ".png")
-    throw Error(concat("cannot export to '", options.out.string(),
-                       "'; the name must end in .ply, .json or .png"));
-  if (options.what == "semantic")
-    export_semantic(options, kind);
+  const Format& format = format_of(options);
+  options.what = checked_what(format, options.what);
+  if (*format.ending)
+    check_file_target(options.out);
   else
-    export_plain(options, kind);
+    check_new_folder(options.out);
+  format.write(options);
   if (options.json)
     print_json(
         {{"map", options.map.string()}, {"out", options.out.string()}, {"what", options.what}});
@@ -127,23 +150,42 @@ int export_map(const ExportOptions& options) {
   return kDone;
 }
 
+void add_grid_options(CLI::App& command, ExportOptions& options) {
+  command.add_option("--cell", options.cell_m, "of a grid: edge of a cell, metres")
+      ->check(CLI::Range(0.001, 100.))
+      ->capture_default_str();
+  command
+      .add_option(
+          "--band", options.band_m,
+          "of a grid: heights above the floor between which things stand in the way, metres")
+      ->expected(2)
+      ->capture_default_str();
+  command
+      .add_option("--heights", options.heights_m,
+                  "of a grid: also the layers at these heights above the floor, metres")
+      ->delimiter(',')
+      ->type_size(1)
+      ->allow_extra_args(false);
+}
+
 }  // namespace
 
 Action add_export(CLI::App& command) {
   auto options = std::make_shared<ExportOptions>();
   command.add_option("MAP", options->map, "map file")->required();
   command
-      .add_option(
-          "OUT", options->out,
-          "file to write: .ply (mesh with instance ids), .json (objects), .png (from above)")
+      .add_option("OUT", options->out,
+                  "file to write: .ply or .glb (mesh), .png (from above), .json (objects and how "
+                  "they stand to each other), .csv (objects), .yaml (occupancy grid, ESDF), or a "
+                  "new folder (one folder per object)")
       ->required();
   command
       .add_option(
           "--what", options->what,
           "mesh: true colours; instances: a colour per object; semantic: a colour and id per "
-          "class; points: vertices alone")
-      ->check(CLI::IsMember({"mesh", "instances", "semantic", "points"}))
-      ->capture_default_str();
+          "class; points: vertices alone; objects; grid. Each format has its own default")
+      ->check(CLI::IsMember({"mesh", "instances", "semantic", "points", "objects", "grid"}));
+  add_grid_options(command, *options);
   command
       .add_option("--classes", options->classes,
                   "of --what semantic: replica51, scannet200, scannet20 or a file of names")

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 #include "command.h"
-#include "ovimap/instance/instance_mesh.h"
+#include "ovimap/io/map_mesh.h"
 
 namespace ovimap::apps {
 
@@ -61,7 +61,7 @@ ProgramConfig read_program_config(const MappingOptions& options) {
 }
 
 Mesh mesh_of(const MapDocument& document, const std::filesystem::path& map) {
-  Mesh mesh = extract_instance_mesh(document.map, document.instances);
+  Mesh mesh = visible_mesh(document);
   if (mesh.vertices.empty())
     throw Error(concat("map '", map.string(),
                        "' holds objects without a surface, as `ovimap embed` makes them; draw the "

@@ -112,7 +112,7 @@ std::filesystem::path heat_map_path(const std::filesystem::path& out, std::size_
 
 void write_heat_maps(const QueryOptions& options, const MapSearch& search,
                      const std::vector<QueryAnswer>& answers) {
-  const MapDocument document = load_map(options.map);
+  const MapDocument document = load_corrected_map(options.map);
   Mesh mesh = mesh_of(document, options.map);
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const auto path = heat_map_path(options.heat_map, i + 1, answers.size(), answers[i].query);

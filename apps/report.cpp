@@ -62,8 +62,9 @@ int write_report(const ReportOptions& options) {
   if (options.out.extension() != ".html")
     throw Error(concat("cannot write a report to '", options.out.string(),
                        "'; the name must end in .html"));
+  check_file_target(options.out);
   const LabelSet classes = read_label_set(options.classes);
-  const MapDocument document = load_map(options.map);
+  const MapDocument document = load_corrected_map(options.map);
   const MapReport report = make_report(document, classes, options);
   const std::string html = map_report_html(document, report, options.config);
   write_file(options.out, {reinterpret_cast<const std::uint8_t*>(html.data()), html.size()});

@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
 # Sets up what a build of ovimap needs and does not find: Debian packages, .venv, ONNX Runtime in
-# .deps, the default mask model and the default image-text encoder in .models. Does nothing for what is there already.
+# .deps, the glTF validator of the tests there, the default mask model and the default image-text encoder in .models. Does nothing for what is there already.
 # Usage: tools/setup.sh [--no-models]
 set -euo pipefail
 
@@ -12,6 +12,7 @@ VENV="$ROOT/.venv"
 ORT="$ROOT/.deps/onnxruntime"
 MODEL="$ROOT/.models/mobilesam"
 ENCODER="$ROOT/.models/default-encoder"
+VALIDATOR="$ROOT/.deps/gltf-validator"
 ORT_VERSION=1.21.1       # the library; the headers below must not be newer
 ORT_HEADER_PACKAGE=libonnxruntime-dev
 SCRATCH="$(mktemp -d)"
@@ -208,6 +209,17 @@ set_up_runtime() {
   mv "$ORT.new" "$ORT"
 }
 
+# --------------------------------------------------------------------------------- glTF validator
+
+# Khronos' own, which the tests open exports with; they skip without it.
+set_up_validator() {
+  [ ! -d "$VALIDATOR/node_modules/gltf-validator" ] && command -v npm >/dev/null || return 0
+  say "fetching the glTF validator into .deps"
+  mkdir -p "$VALIDATOR"
+  quietly "the glTF validator cannot be fetched; check the network and npm's registry" \
+    npm install --silent --no-fund --no-audit --prefix "$VALIDATOR" gltf-validator@2.0.0-dev.3.10
+}
+
 # ------------------------------------------------------------------------------- default mask model
 
 # Whether FOLDER has the model that YAML describes: the same text, files of the digests it lists.
@@ -255,6 +267,7 @@ esac
 set_up_packages
 set_up_venv
 set_up_runtime
+set_up_validator
 if [ "${1:-}" != --no-models ]; then
   set_up_model
   set_up_encoder

@@ -177,6 +177,11 @@ Bytes encode_png(const RgbImage& image) {
                     SPNG_COLOR_TYPE_TRUECOLOR, 8);
 }
 
+Bytes encode_png(const Image<std::uint8_t>& image) {
+  return encode_png(image.data(), image.size(), image.width(), image.height(),
+                    SPNG_COLOR_TYPE_GRAYSCALE, 8);
+}
+
 Bytes encode_png(const Image<std::uint16_t>& image) {
   return encode_png(image.data(), image.size() * sizeof(std::uint16_t), image.width(),
                     image.height(), SPNG_COLOR_TYPE_GRAYSCALE, 16);

@@ -30,6 +30,7 @@ GrayPng read_gray(const std::filesystem::path& path);
 GrayPng decode_gray(std::span<const std::uint8_t> bytes);
 
 Bytes encode_png(const RgbImage& image);
+Bytes encode_png(const Image<std::uint8_t>& image);   ///< 8-bit grey
 Bytes encode_png(const Image<std::uint16_t>& image);  ///< 16-bit grey
 Bytes encode_jpeg(const RgbImage& image, int quality);
 
@@ -37,5 +38,9 @@ Bytes encode_jpeg(const RgbImage& image, int quality);
 /// the old one. Both throw Error naming the path and the system's reason.
 Bytes read_file(const std::filesystem::path& path);
 void write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
+
+/// Throws what write_file would throw for a target that cannot be written, so that long work learns
+/// of it before it starts. Changes nothing.
+void check_file_target(const std::filesystem::path& path);
 
 }  // namespace ovimap

@@ -64,6 +64,12 @@ std::filesystem::path temporary_beside(const std::filesystem::path& path) {
   return temporary;
 }
 
+void refuse_folder(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored))
+    throw Error(concat("cannot write ", path.string(), ": it is a folder, give a file name"));
+}
+
 bool write_all(int fd, std::span<const std::uint8_t> bytes) {
   while (!bytes.empty()) {
     const ssize_t written = ::write(fd, bytes.data(), bytes.size());
@@ -100,11 +106,16 @@ Bytes read_file(const std::filesystem::path& path) {
   return bytes;
 }
 
+void check_file_target(const std::filesystem::path& path) {
+  refuse_folder(path);
+  const std::filesystem::path temporary = temporary_beside(path);
+  const Descriptor file(temporary, O_WRONLY | O_CREAT | O_EXCL);
+  if (file.get() < 0) fail_to_write(path, errno);
+  ::unlink(temporary.c_str());
+}
+
 void write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
-  std::error_code ignored;
-  const auto kind = std::filesystem::status(path, ignored).type();
-  if (kind == std::filesystem::file_type::directory)
-    throw Error(concat("cannot write ", path.string(), ": it is a folder, give a file name"));
+  refuse_folder(path);
   const std::filesystem::path temporary = temporary_beside(path);
   Descriptor file(temporary, O_WRONLY | O_CREAT | O_EXCL);
   if (file.get() < 0) fail_to_write(path, errno);

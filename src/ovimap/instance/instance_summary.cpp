@@ -41,6 +41,15 @@ std::map<Label, Extent> block_extents(const VoxelMap& map, const VoxelBlock& blo
   return extents;
 }
 
+/// The same of all blocks, in the order of their indices.
+std::vector<std::map<Label, Extent>> all_extents(const VoxelMap& map) {
+  const std::vector<std::uint32_t> slots = map.ordered_slots();
+  std::vector<std::map<Label, Extent>> extents(slots.size());
+  parallel_for(slots.size(), 64,
+               [&](std::size_t i) { extents[i] = block_extents(map, map.block(slots[i])); });
+  return extents;
+}
+
 }  // namespace
 
 void list_fields(InstanceSummaryConfig& config, ConfigFields& fields) {
@@ -55,10 +64,7 @@ void list_fields(InstanceSummaryConfig& config, ConfigFields& fields) {
 std::vector<InstanceSummary> summarize_instances(const VoxelMap& map,
                                                  const InstanceRegistry& registry,
                                                  const InstanceSummaryConfig& config) {
-  const std::vector<std::uint32_t> slots = map.ordered_slots();
-  std::vector<std::map<Label, Extent>> extents(slots.size());
-  parallel_for(slots.size(), 64,
-               [&](std::size_t i) { extents[i] = block_extents(map, map.block(slots[i])); });
+  const auto extents = all_extents(map);
   const std::vector<InstanceId> instance_of = registry.instance_table(map.labels());
   std::map<InstanceId, InstanceSummary> summaries;
   std::map<InstanceId, Eigen::Vector3d> sums;
@@ -89,6 +95,29 @@ std::vector<InstanceSummary> summarize_instances(const VoxelMap& map,
     result.push_back(std::move(summary));
   }
   return result;
+}
+
+void measure_instances(const VoxelMap& map, std::vector<InstanceSummary>& instances) {
+  std::map<Label, std::size_t> owner;
+  for (std::size_t i = 0; i < instances.size(); ++i)
+    for (const Label label : instances[i].super_points) owner[label] = i;
+  std::vector<Extent> totals(instances.size());
+  for (const auto& block : all_extents(map))
+    for (const auto& [label, extent] : block) {
+      const auto found = owner.find(label);
+      if (found == owner.end()) continue;
+      Extent& total = totals[found->second];
+      total.points += extent.points;
+      total.sum += extent.sum;
+      total.box.extend(extent.box);
+    }
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    instances[i].points = totals[i].points;
+    instances[i].box = totals[i].box;
+    if (totals[i].points > 0)
+      instances[i].centroid =
+          (totals[i].sum / static_cast<double>(totals[i].points)).cast<float>();
+  }
 }
 
 }  // namespace ovimap

@@ -36,4 +36,7 @@ std::vector<InstanceSummary> summarize_instances(const VoxelMap& map,
                                                  const InstanceRegistry& registry,
                                                  const InstanceSummaryConfig& config);
 
+/// Fills box, centroid and points of instances that name their super-points (roots).
+void measure_instances(const VoxelMap& map, std::vector<InstanceSummary>& instances);
+
 }  // namespace ovimap

@@ -8,6 +8,7 @@
 
 #include "ovimap/instance/instance_summary.h"
 #include "ovimap/io/map_file.h"
+#include "ovimap/semantics/scene_relations.h"
 
 namespace ovimap {
 
@@ -18,8 +19,14 @@ std::string instances_json(std::span<const InstanceSummary> instances,
                            const std::map<InstanceId, std::string>& names);
 
 /// What a map file is, as a JSON object: {"map", "schema", "frames", "mask_frames", "instances" (as
-/// above), "voxel_size_m", "blocks", "size_bytes", "content_hash" (16 hexadecimal digits),
-/// "source", "version", "config"}. `path` is how the map is called in it.
+/// above), "hidden" and "locked" (ids, as people corrected the map), "voxel_size_m", "blocks",
+/// "size_bytes", "content_hash" (16 hexadecimal digits), "source", "version", "config"}. `path` is
+/// how the map is called in it.
 std::string info_json(const std::filesystem::path& path, const MapInfo& info);
+
+/// The same and how the objects stand to each other: "up" (away from the ground, world frame) and
+/// "relations", a list of {"object", "relation", "anchor", "score", "evidence"}, ids.
+std::string scene_json(const std::filesystem::path& path, const MapInfo& info,
+                       std::span<const ObjectRelation> relations);
 
 }  // namespace ovimap

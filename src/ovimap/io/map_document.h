@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "ovimap/instance/instance_mesh.h"
 #include "ovimap/instance/instance_registry.h"
 #include "ovimap/instance/instance_summary.h"
+#include "ovimap/io/map_edits.h"
 #include "ovimap/map/voxel_map.h"
 #include "ovimap/semantics/view_selection.h"
 
@@ -42,6 +44,9 @@ struct MapRecord {
   InstanceSurfaces surfaces;  ///< of `instances`, thinned: what relations are judged by
   Eigen::Vector3f up = Eigen::Vector3f::UnitZ();  ///< in the world
   std::map<InstanceId, std::string> names;  ///< given by people or queries; none for most instances
+  MapEdits edits;  ///< what people corrected, oldest first; the rest is as mapping found it
+  std::vector<InstanceSummary> hidden;  ///< corrected maps: objects that people hid
+  std::set<InstanceId> locked;          ///< corrected maps: objects that must stay as they are
   SemanticRecord semantics;
   std::vector<FrameLogEntry> frames;  ///< in the order they were fused
   PinholeCamera depth_camera;

@@ -3,11 +3,15 @@
 #include "ovimap/io/map_file.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "ovimap/base/error.h"
 #include "ovimap/base/parallel.h"
+#include "ovimap/io/map_edit_log.h"
 #include "ovimap/io/map_file_access.h"
 #include "ovimap/io/map_file_blocks.h"
+#include "ovimap/io/map_file_corrections.h"
+#include "ovimap/io/map_file_parts.h"
 #include "ovimap/io/map_file_record.h"
 #include "ovimap/io/map_file_rows.h"
 #include "ovimap/io/map_file_semantics.h"
@@ -37,20 +41,6 @@ void write_forest(SQLite::Database& database, const LabelForest& forest) {
   RowWriter rows(database, kLabelForest);
   rows.insert(forest.epoch(), roots);
   rows.finish();
-}
-
-LabelForest read_forest(SQLite::Database& database) {
-  std::vector<Label> roots;
-  std::uint32_t epoch = 0;
-  RowReader rows(database, kLabelForest);
-  while (rows.next()) {
-    epoch = rows.integer<std::uint32_t>();
-    const std::span<const std::uint8_t> bytes = rows.blob();
-    roots.assign(bytes.size() / 4, 0);
-    for (std::size_t i = 0; i < roots.size() * 4; ++i)
-      roots[i / 4] |= Label{bytes[i]} << 8 * (i % 4);
-  }
-  return LabelForest::from_roots(std::move(roots), epoch);
 }
 
 void write_blocks(SQLite::Database& database, const VoxelMap& map) {
@@ -90,7 +80,10 @@ void decode_tiles(const std::vector<StoredTile>& stored, VoxelMap& map) {
       throw Error(concat("tile ", stored[i].tile.key, " of its voxels: ", faults[i]));
 }
 
-void read_blocks(SQLite::Database& database, VoxelMap& map) {
+/// `blocks`: how many were written. Checked before they are made, so that a damaged table cannot
+/// ask for more memory than the map had.
+void read_blocks(SQLite::Database& database, std::uint64_t blocks, VoxelMap& map) {
+  if (blocks > kMostBlocks) throw Error("it has more blocks than fit into memory");
   std::vector<StoredTile> batch;
   std::int64_t last_key = -1;
   RowReader rows(database, kBlocks);
@@ -101,8 +94,9 @@ void read_blocks(SQLite::Database& database, VoxelMap& map) {
       if (key <= last_key || !valid_tile_key(static_cast<std::uint64_t>(key)))
         rows.fail(concat("has a tile ", key, " out of place"));
       last_key = key;
+      if (map.block_count() + static_cast<std::uint64_t>(std::popcount(present)) > blocks)
+        rows.fail(concat("has more than the ", blocks, " blocks that were written"));
       Tile tile = create_tile(map, static_cast<std::uint64_t>(key), present);
-      if (map.block_count() > kMostBlocks) rows.fail("has more blocks than fit into memory");
       const auto hash = rows.integer<std::int64_t>();
       const std::span<const std::uint8_t> data = rows.blob();
       batch.push_back({std::move(tile), hash, Bytes(data.begin(), data.end())});
@@ -112,24 +106,17 @@ void read_blocks(SQLite::Database& database, VoxelMap& map) {
       batch.clear();
     }
   }
-}
-
-VoxelMap read_voxels(SQLite::Database& database, const MapMeta& meta) {
-  VoxelMap map(meta.map_config);
-  map.labels() = read_forest(database);
-  read_blocks(database, map);
-  if (map.block_count() != meta.blocks)
-    throw Error(
-        concat("it has ", map.block_count(), " blocks, but ", meta.blocks, " were written"));
-  if (map.content_hash() != meta.content_hash)
-    throw Error("its voxels are not those that were written");
-  return map;
+  if (map.block_count() != blocks)
+    throw Error(concat("it has ", map.block_count(), " blocks, but ", blocks, " were written"));
 }
 
 MapInfo read_info(SQLite::Database& database, const OpenMap& file) {
   MapRecord record;
   const MapMeta meta = read_meta(database, record);
-  read_instances(database, record);
+  if (has_corrections(database))
+    read_corrected_instances(database, record);
+  else
+    read_instances(database, record, kFoundInstanceTables);
   MapInfo info;
   info.schema = file.schema();
   info.version = std::move(record.version);
@@ -138,6 +125,8 @@ MapInfo read_info(SQLite::Database& database, const OpenMap& file) {
   info.frames = meta.frames;
   info.mask_frames = record.mask_frames;
   info.instances = std::move(record.instances);
+  info.hidden = std::move(record.hidden);
+  info.locked = std::move(record.locked);
   info.names = std::move(record.names);
   info.encoder = std::move(record.semantics.encoder);
   info.up = record.up;
@@ -151,6 +140,52 @@ MapInfo read_info(SQLite::Database& database, const OpenMap& file) {
 
 }  // namespace
 
+LabelForest read_forest(SQLite::Database& database) {
+  std::vector<Label> roots;
+  std::uint32_t epoch = 0;
+  RowReader rows(database, kLabelForest);
+  while (rows.next()) {
+    epoch = rows.integer<std::uint32_t>();
+    const std::span<const std::uint8_t> bytes = rows.blob();
+    roots.assign(bytes.size() / 4, 0);
+    for (std::size_t i = 0; i < roots.size() * 4; ++i)
+      roots[i / 4] |= Label{bytes[i]} << 8 * (i % 4);
+  }
+  return LabelForest::from_roots(std::move(roots), epoch);
+}
+
+VoxelMap read_voxels(SQLite::Database& database, const MapMeta& meta, const LabelForest& forest) {
+  VoxelMap map(meta.map_config);
+  map.labels() = forest;
+  read_blocks(database, meta.blocks, map);
+  if (map.content_hash() != meta.content_hash)
+    throw Error("its voxels are not those that were written");
+  return map;
+}
+
+MapMeta read_found(SQLite::Database& database, int schema, const LabelForest& forest,
+                   MapRecord& record) {
+  const MapMeta meta = read_meta(database, record);
+  read_registry(database, schema, forest, record);
+  read_instances(database, record, kFoundInstanceTables);
+  read_frames(database, record);
+  if (schema >= kSchemaWithSemantics) {
+    record.semantics.appearances = read_appearances(database, record.semantics.encoder);
+    record.surfaces = read_surfaces(database, map_tables::kSurfaces);
+  }
+  if (static_cast<std::int64_t>(record.frames.size()) != meta.frames)
+    throw Error("its frame log is not complete");
+  record.edits = read_edits(database);
+  record.registry.last_id = last_instance(record);
+  return meta;
+}
+
+InstanceId last_instance(const MapRecord& record) {
+  InstanceId last = record.registry.last_id;
+  for (const MapEdit& edit : record.edits) last = std::max(last, edit.new_instance);
+  return last;
+}
+
 void save_map(const std::filesystem::path& path, const VoxelMap& map, const MapRecord& record) {
   PendingMap pending(path);
   const MapMeta meta{map.config(), static_cast<std::int64_t>(record.frames.size()),
@@ -158,9 +193,10 @@ void save_map(const std::filesystem::path& path, const VoxelMap& map, const MapR
   pending.write([&](SQLite::Database& database) {
     write_record(database, record, meta);
     write_semantics(database, record);
-    write_surfaces(database, record.surfaces);
+    write_surfaces(database, record.surfaces, map_tables::kSurfaces);
     write_forest(database, map.labels());
     write_blocks(database, map);
+    write_corrections(database, record, map.labels(), [&]() -> const VoxelMap& { return map; });
   });
   pending.commit();
 }
@@ -177,17 +213,9 @@ MapDocument load_map(const std::filesystem::path& path) {
   MapDocument document;
   OpenMap file(path);
   file.read([&](SQLite::Database& database) {
-    const MapMeta meta = read_meta(database, document);
-    document.map = read_voxels(database, meta);
-    read_registry(database, file.schema(), document.map.labels(), document);
-    read_instances(database, document);
-    read_frames(database, document);
-    if (file.schema() >= kSchemaWithSemantics) {
-      document.semantics.appearances = read_appearances(database, document.semantics.encoder);
-      document.surfaces = read_surfaces(database);
-    }
-    if (static_cast<std::int64_t>(document.frames.size()) != meta.frames)
-      throw Error("its frame log is not complete");
+    const LabelForest forest = read_forest(database);
+    const MapMeta meta = read_found(database, file.schema(), forest, document);
+    document.map = read_voxels(database, meta, forest);
   });
   return document;
 }
@@ -206,8 +234,12 @@ SearchableMap read_searchable_map(const std::filesystem::path& path) {
     map.info = read_info(database, file);
     std::map<InstanceId, Eigen::VectorXf> embeddings;
     if (file.schema() >= kSchemaWithSemantics) {
-      embeddings = read_embeddings(database, map.info.encoder);
-      map.surfaces = read_surfaces(database);
+      const bool corrected = has_corrections(database);
+      embeddings =
+          read_embeddings(database, map.info.encoder,
+                          corrected ? map_tables::kCorrectedEmbeddings : map_tables::kEmbeddings);
+      map.surfaces = read_surfaces(
+          database, corrected ? map_tables::kCorrectedSurfaces : map_tables::kSurfaces);
     }
     MapRecord record;
     read_frames(database, record);

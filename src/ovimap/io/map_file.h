@@ -17,7 +17,9 @@ struct MapInfo {
   std::string version, source, config_text;  ///< as in MapRecord
   std::int64_t frames = 0;
   int mask_frames = 0;
-  std::vector<InstanceSummary> instances;
+  std::vector<InstanceSummary> instances;  ///< as people corrected them
+  std::vector<InstanceSummary> hidden;     ///< objects that people hid; not in `instances`
+  std::set<InstanceId> locked;             ///< objects that must stay as they are
   std::map<InstanceId, std::string> names;
   EncoderIdentity encoder;                        ///< of the embeddings; no name: there are none
   Eigen::Vector3f up = Eigen::Vector3f::UnitZ();  ///< in the world
@@ -38,7 +40,8 @@ void save_map(const std::filesystem::path& path, const MapDocument& document);
 /// itself, no permission), so that a long run learns of it before it starts. Changes nothing.
 void check_map_target(const std::filesystem::path& path);
 
-/// Reads a whole map and verifies every part of it against its stored hash. Throws Error when the
+/// Reads a whole map as mapping found it, with the log of corrections (map_edits.h has the
+/// corrected one), and verifies every part of it against its stored hash. Throws Error when the
 /// file is missing, no ovimap map, of a newer schema, or damaged; never returns altered content.
 MapDocument load_map(const std::filesystem::path& path);
 

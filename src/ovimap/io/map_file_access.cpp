@@ -82,9 +82,13 @@ int system_error(const SQLite::Database& database, const SQLite::Exception& faul
   return fault.getErrorCode() == SQLITE_IOERR ? sqlite3_system_errno(database.getHandle()) : 0;
 }
 
-/// The database through a URI. A file with no log beside it is declared immutable: it is then read
-/// without locks, which need a writable folder.
-std::string read_uri(const fs::path& path) {
+/// Whether something beside the map has not found its way into it.
+bool has_log(const fs::path& path) {
+  return fs::exists(with_suffix(path, "-wal")) || fs::exists(with_suffix(path, "-journal"));
+}
+
+/// The file through a URI, for reading.
+std::string read_uri(const fs::path& path, bool immutable) {
   static constexpr std::string_view kHex = "0123456789abcdef";
   std::string uri = "file://";
   for (const char c : fs::absolute(path).string()) {
@@ -95,9 +99,47 @@ std::string read_uri(const fs::path& path) {
     else
       (uri += '%') += {kHex[byte >> 4], kHex[byte & 15]};
   }
-  const bool logged =
-      fs::exists(with_suffix(path, "-wal")) || fs::exists(with_suffix(path, "-journal"));
-  return uri + (logged ? "?mode=ro" : "?mode=ro&immutable=1");
+  return uri + (immutable ? "?mode=ro&immutable=1" : "?mode=ro");
+}
+
+bool is_busy(const SQLite::Exception& fault) {
+  return fault.getErrorCode() == SQLITE_BUSY || fault.getErrorCode() == SQLITE_LOCKED;
+}
+
+/// Does what the next writer would do with a log that an end cut short: a journal is taken back, a
+/// write-ahead log taken in. A change that is under way is left alone, and so is a file that cannot
+/// be written: reading then says so.
+void settle_log(const fs::path& path) {
+  try {
+    SQLite::Database database(path.string(), SQLite::OPEN_READWRITE);
+    (void)database.execAndGet("SELECT count(*) FROM sqlite_master").getInt();
+  } catch (const SQLite::Exception&) {
+  }
+}
+
+int pragma(SQLite::Database& database, const char* name) {
+  return database.execAndGet(concat("PRAGMA ", name)).getInt();
+}
+
+std::unique_ptr<SQLite::Database> open_through(const fs::path& path, bool immutable) {
+  constexpr int kPatience_ms = 5000;  // for a change to be written
+  auto database = std::make_unique<SQLite::Database>(
+      read_uri(path, immutable), SQLite::OPEN_READONLY | SQLite::OPEN_URI, kPatience_ms);
+  database->exec("PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON");
+  (void)pragma(*database, "user_version");
+  return database;
+}
+
+/// Where locks cannot be had (some network file systems, write-ahead logging in a folder that
+/// cannot be written), a file with no log beside it is read without.
+std::unique_ptr<SQLite::Database> open_for_reading(const fs::path& path) {
+  if (fs::exists(with_suffix(path, "-journal"))) settle_log(path);
+  try {
+    return open_through(path, false);
+  } catch (const SQLite::Exception& fault) {
+    if (is_busy(fault) || has_log(path)) throw;
+    return open_through(path, true);
+  }
 }
 
 /// Throws unless the path is a readable file that begins as SQLite files do.
@@ -121,16 +163,23 @@ void check_file(const fs::path& path) {
                        "' is not an ovimap map; give a map file that `ovimap run` wrote"));
 }
 
-int pragma(SQLite::Database& database, const char* name) {
-  return database.execAndGet(concat("PRAGMA ", name)).getInt();
-}
-
 /// `fault` may quote the file's own bytes, so what would break the line becomes a blank.
 [[noreturn]] void fail_as_damaged(const fs::path& path, std::string fault) {
   std::replace_if(
       fault.begin(), fault.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
   throw Error(concat("map '", path.string(), "' is damaged: ", fault,
                      "; restore it from a copy or map again"));
+}
+
+[[noreturn]] void fail_to_read(const fs::path& path, const SQLite::Exception& fault) {
+  if (is_busy(fault))
+    throw Error(concat("map '", path.string(),
+                       "' is in use by another program; try again when that is done"));
+  if (fault.getExtendedErrorCode() == SQLITE_READONLY_ROLLBACK)
+    throw Error(concat("map '", path.string(),
+                       "' was being changed when that was cut short; copy it with the -journal "
+                       "beside it into a folder that you can write to"));
+  fail_as_damaged(path, fault.what());
 }
 
 /// A map consists of plain tables; anything else could make reading do work of the file's choosing.
@@ -193,7 +242,9 @@ void PendingMap::write(const std::function<void(SQLite::Database&)>& fill) {
 
 void PendingMap::commit() {
   if (!flush(temporary_, O_RDWR)) fail_to_write(target_, errno);
-  // A log left beside the old map would be taken for the new one's.
+  // A log left beside the old map would be taken for the new one's. It is settled first: should the
+  // machine stop before the renaming, the old map must be whole without it.
+  if (has_log(target_)) settle_log(target_);
   for (const char* sidecar : kSidecars) ::unlink(with_suffix(target_, sidecar).c_str());
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail_to_write(target_, errno);
   // Some file systems cannot flush a folder; the map is whole either way.
@@ -205,11 +256,11 @@ OpenMap::OpenMap(const fs::path& path) : path_(path) {
   int application = 0;
   try {
     size_bytes_ = fs::file_size(path);
-    database_ = std::make_unique<SQLite::Database>(read_uri(path),
-                                                   SQLite::OPEN_READONLY | SQLite::OPEN_URI);
-    database_->exec("PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON");
+    database_ = open_for_reading(path);
     application = pragma(*database_, "application_id");
     schema_ = pragma(*database_, "user_version");
+  } catch (const SQLite::Exception& fault) {
+    fail_to_read(path, fault);
   } catch (const std::exception& fault) {
     fail_as_damaged(path, fault.what());
   }
@@ -225,16 +276,22 @@ OpenMap::OpenMap(const fs::path& path) : path_(path) {
 OpenMap::~OpenMap() = default;
 
 void OpenMap::read(const std::function<void(SQLite::Database&)>& read) {
+  read_as_map(path_, *database_, [&](SQLite::Database& database) {
+    SQLite::Transaction transaction(database);  // a change meanwhile must not show half-way
+    read(database);
+    transaction.commit();
+  });
+}
+
+void read_as_map(const fs::path& path, SQLite::Database& database,
+                 const std::function<void(SQLite::Database&)>& read) {
   try {
-    check_plain_tables(*database_);
-    read(*database_);
+    check_plain_tables(database);
+    read(database);
   } catch (const SQLite::Exception& fault) {
-    if (fault.getErrorCode() == SQLITE_BUSY || fault.getErrorCode() == SQLITE_LOCKED)
-      throw Error(concat("map '", path_.string(),
-                         "' is in use by another program; try again when that is done"));
-    fail_as_damaged(path_, fault.what());
+    fail_to_read(path, fault);
   } catch (const Error& fault) {
-    fail_as_damaged(path_, fault.what());
+    fail_as_damaged(path, fault.what());
   }
 }
 

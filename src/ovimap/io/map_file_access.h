@@ -31,6 +31,10 @@ class PendingMap {
   std::filesystem::path target_, temporary_;
 };
 
+/// Calls `read`; what it throws about the content becomes "map 'x' is damaged: ...".
+void read_as_map(const std::filesystem::path& path, SQLite::Database& database,
+                 const std::function<void(SQLite::Database&)>& read);
+
 /// An existing map, opened for reading only; also from folders and media that cannot be written.
 /// Throws Error when there is none, or it is no ovimap map of a schema this program knows.
 class OpenMap {

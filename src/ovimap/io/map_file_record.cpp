@@ -95,23 +95,6 @@ void write_meta(SQLite::Database& database, const MapRecord& record, const MapMe
   rows.finish();
 }
 
-void write_instances(SQLite::Database& database, const MapRecord& record) {
-  RowWriter instances(database, kInstances);
-  for (const InstanceSummary& instance : record.instances) {
-    const auto &low = instance.box.min(), &high = instance.box.max(), &center = instance.centroid;
-    instances.insert(instance.id, low.x(), low.y(), low.z(), high.x(), high.y(), high.z(),
-                     center.x(), center.y(), center.z(), instance.points, instance.views);
-  }
-  instances.finish();
-  RowWriter super_points(database, kInstanceSuperPoints);
-  for (const InstanceSummary& instance : record.instances)
-    for (Label label : instance.super_points) super_points.insert(instance.id, label);
-  super_points.finish();
-  RowWriter names(database, kInstanceNames);
-  for (const auto& [id, name] : record.names) names.insert(id, name);
-  names.finish();
-}
-
 /// Pose as bytes: the upper three rows, row by row, 12 little-endian doubles. A column each would
 /// cost readers more than it tells them.
 std::array<std::uint8_t, 96> pose_bytes(const Pose& pose) {
@@ -195,9 +178,27 @@ std::string hash_text(std::uint64_t hash) {
   return text;
 }
 
+void write_instances(SQLite::Database& database, const MapRecord& record,
+                     const InstanceTables& tables) {
+  RowWriter instances(database, tables.instances);
+  for (const InstanceSummary& instance : record.instances) {
+    const auto &low = instance.box.min(), &high = instance.box.max(), &center = instance.centroid;
+    instances.insert(instance.id, low.x(), low.y(), low.z(), high.x(), high.y(), high.z(),
+                     center.x(), center.y(), center.z(), instance.points, instance.views);
+  }
+  instances.finish();
+  RowWriter super_points(database, tables.super_points);
+  for (const InstanceSummary& instance : record.instances)
+    for (Label label : instance.super_points) super_points.insert(instance.id, label);
+  super_points.finish();
+  RowWriter names(database, tables.names);
+  for (const auto& [id, name] : record.names) names.insert(id, name);
+  names.finish();
+}
+
 void write_record(SQLite::Database& database, const MapRecord& record, const MapMeta& meta) {
   write_meta(database, record, meta);
-  write_instances(database, record);
+  write_instances(database, record, kFoundInstanceTables);
   write_frames(database, record);
   write_registry(database, record.registry);
 }
@@ -225,9 +226,9 @@ MapMeta read_meta(SQLite::Database& database, MapRecord& record) {
   return meta;
 }
 
-void read_instances(SQLite::Database& database, MapRecord& record) {
+void read_instances(SQLite::Database& database, MapRecord& record, const InstanceTables& tables) {
   std::map<InstanceId, InstanceSummary> instances;
-  RowReader rows(database, kInstances);
+  RowReader rows(database, tables.instances);
   while (rows.next()) {
     InstanceSummary instance;
     instance.id = rows.integer<InstanceId>();
@@ -237,7 +238,7 @@ void read_instances(SQLite::Database& database, MapRecord& record) {
     instance.views = rows.integer<int>();
     instances.emplace(instance.id, std::move(instance));
   }
-  RowReader super_points(database, kInstanceSuperPoints);
+  RowReader super_points(database, tables.super_points);
   while (super_points.next()) {
     const auto found = instances.find(super_points.integer<InstanceId>());
     const auto label = super_points.integer<Label>();
@@ -245,7 +246,7 @@ void read_instances(SQLite::Database& database, MapRecord& record) {
     found->second.super_points.push_back(label);
   }
   for (auto& [id, instance] : instances) record.instances.push_back(std::move(instance));
-  RowReader names(database, kInstanceNames);
+  RowReader names(database, tables.names);
   while (names.next()) {
     const auto id = names.integer<InstanceId>();
     record.names[id] = names.text();

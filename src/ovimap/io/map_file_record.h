@@ -6,6 +6,7 @@
 #include <string>
 
 #include "ovimap/io/map_document.h"
+#include "ovimap/io/map_file_rows.h"
 
 namespace SQLite {
 class Database;
@@ -21,13 +22,25 @@ struct MapMeta {
   std::uint64_t content_hash = 0;
 };
 
+/// Where objects are described: as mapping found them, and as people corrected them.
+struct InstanceTables {
+  const MapTable &instances, &super_points, &names;
+};
+inline constexpr InstanceTables kFoundInstanceTables{
+    map_tables::kInstances, map_tables::kInstanceSuperPoints, map_tables::kInstanceNames};
+inline constexpr InstanceTables kCorrectedInstanceTables{map_tables::kCorrectedInstances,
+                                                         map_tables::kCorrectedSuperPoints,
+                                                         map_tables::kCorrectedNames};
+
 /// Writes everything of a map but its blocks and its forest of labels.
 void write_record(SQLite::Database& database, const MapRecord& record, const MapMeta& meta);
 
 /// The parts of the way back. Each fills its part of `record` and throws Error with a phrase when
 /// the file does not hold what was written.
 MapMeta read_meta(SQLite::Database& database, MapRecord& record);
-void read_instances(SQLite::Database& database, MapRecord& record);  ///< with their names
+void write_instances(SQLite::Database& database, const MapRecord& record,
+                     const InstanceTables& tables);  ///< with their names
+void read_instances(SQLite::Database& database, MapRecord& record, const InstanceTables& tables);
 void read_frames(SQLite::Database& database, MapRecord& record);
 /// `forest`: the labels that the state may speak of.
 void read_registry(SQLite::Database& database, int schema, const LabelForest& forest,

@@ -32,6 +32,18 @@ void create(SQLite::Database& database, const MapTable& table) {
 
 }  // namespace
 
+bool has_table(SQLite::Database& database, const MapTable& table) {
+  return database.tableExists(table.name);
+}
+
+void drop_table(SQLite::Database& database, const MapTable& table) {
+  if (!has_table(database, table)) return;
+  database.exec(concat("DROP TABLE ", table.name));
+  SQLite::Statement check(database, "DELETE FROM checks WHERE name = ?");
+  check.bind(1, table.name);
+  check.exec();
+}
+
 std::int64_t stored_hash(std::span<const std::uint8_t> bytes) {
   return static_cast<std::int64_t>(XXH64(bytes.data(), bytes.size(), 0));
 }

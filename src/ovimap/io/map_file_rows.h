@@ -95,6 +95,24 @@ inline constexpr MapTable kSurfaces{"surfaces", "instance, points",
 inline constexpr MapTable kBlocks{"blocks", "tile, present, hash, data",
                                   "tile INTEGER PRIMARY KEY, present INTEGER NOT NULL, hash "
                                   "INTEGER NOT NULL, data BLOB NOT NULL"};
+/// The log of corrections, and what it makes of the tables above.
+inline constexpr MapTable kEdits{"edits", "id, time_s, action, arguments, undone_by",
+                                 "id INTEGER PRIMARY KEY, time_s REAL, action TEXT NOT NULL, "
+                                 "arguments TEXT NOT NULL, undone_by INTEGER NOT NULL"};
+inline constexpr MapTable kCorrectedInstances{"corrected_instances", kInstances.columns,
+                                              kInstances.definition};
+inline constexpr MapTable kCorrectedSuperPoints{
+    "corrected_super_points", kInstanceSuperPoints.columns, kInstanceSuperPoints.definition,
+    kInstanceSuperPoints.options};
+inline constexpr MapTable kCorrectedNames{"corrected_names", kInstanceNames.columns,
+                                          kInstanceNames.definition};
+inline constexpr MapTable kCorrectedSurfaces{"corrected_surfaces", kSurfaces.columns,
+                                             kSurfaces.definition};
+inline constexpr MapTable kCorrectedEmbeddings{"corrected_embeddings", kEmbeddings.columns,
+                                               kEmbeddings.definition};
+inline constexpr MapTable kCorrectedFlags{
+    "corrected_flags", "id, hidden, locked",
+    "id INTEGER PRIMARY KEY, hidden INTEGER NOT NULL, locked INTEGER NOT NULL"};
 /// Number of rows and hash of every other table; filled by RowWriter, read by RowReader.
 inline constexpr MapTable kChecks{
     "checks", "name, rows, hash",
@@ -126,6 +144,11 @@ class TableHash {
   std::int64_t rows_ = 0;
   std::uint64_t sum_ = 0;
 };
+
+bool has_table(SQLite::Database& database, const MapTable& table);
+
+/// Removes a table and its check, if it is there.
+void drop_table(SQLite::Database& database, const MapTable& table);
 
 /// Creates a table and inserts rows into it. SQLite's exceptions pass through.
 class RowWriter {

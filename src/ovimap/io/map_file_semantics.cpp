@@ -135,8 +135,9 @@ std::vector<Eigen::Vector3f> take_surface(RowReader& rows) {
 
 }  // namespace
 
-void write_surfaces(SQLite::Database& database, const InstanceSurfaces& surfaces) {
-  RowWriter rows(database, kSurfaces);
+void write_surfaces(SQLite::Database& database, const InstanceSurfaces& surfaces,
+                    const MapTable& table) {
+  RowWriter rows(database, table);
   for (const auto& [id, points] : surfaces) {
     if (points.empty()) continue;
     const Bytes bytes = surface_bytes(points);
@@ -145,9 +146,9 @@ void write_surfaces(SQLite::Database& database, const InstanceSurfaces& surfaces
   rows.finish();
 }
 
-InstanceSurfaces read_surfaces(SQLite::Database& database) {
+InstanceSurfaces read_surfaces(SQLite::Database& database, const MapTable& table) {
   InstanceSurfaces surfaces;
-  RowReader rows(database, kSurfaces);
+  RowReader rows(database, table);
   while (rows.next()) {
     const auto id = rows.integer<InstanceId>();
     surfaces.emplace(id, take_surface(rows));
@@ -166,7 +167,12 @@ void write_semantics(SQLite::Database& database, const MapRecord& record) {
     for (std::size_t i = 0; i < appearance.views.size(); ++i)
       insert_view(views, id, i, appearance.views[i]);
   views.finish();
-  RowWriter embeddings(database, kEmbeddings);
+  write_embeddings(database, record, kEmbeddings);
+}
+
+void write_embeddings(SQLite::Database& database, const MapRecord& record, const MapTable& table) {
+  const SemanticRecord& semantics = record.semantics;
+  RowWriter embeddings(database, table);
   for (const InstanceSummary& instance : record.instances) {
     const auto known = semantics.appearances.find(instance.id);
     if (known == semantics.appearances.end()) continue;
@@ -197,9 +203,10 @@ Appearances read_appearances(SQLite::Database& database, const EncoderIdentity& 
 }
 
 std::map<InstanceId, Eigen::VectorXf> read_embeddings(SQLite::Database& database,
-                                                      const EncoderIdentity& encoder) {
+                                                      const EncoderIdentity& encoder,
+                                                      const MapTable& table) {
   std::map<InstanceId, Eigen::VectorXf> result;
-  RowReader rows(database, kEmbeddings);
+  RowReader rows(database, table);
   while (rows.next()) {
     const auto id = rows.integer<InstanceId>();
     result.emplace(id, take_embedding(rows, encoder));

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "ovimap/io/map_document.h"
+#include "ovimap/io/map_file_rows.h"
 
 namespace SQLite {
 class Database;
@@ -22,10 +23,14 @@ Appearances read_appearances(SQLite::Database& database, const EncoderIdentity& 
 
 /// The fused embeddings by instance.
 std::map<InstanceId, Eigen::VectorXf> read_embeddings(SQLite::Database& database,
-                                                      const EncoderIdentity& encoder);
+                                                      const EncoderIdentity& encoder,
+                                                      const MapTable& table);
+/// Of each instance of the record the views' embeddings, fused.
+void write_embeddings(SQLite::Database& database, const MapRecord& record, const MapTable& table);
 
 /// Points of the objects' surfaces, in steps of 1/65535 of their boxes.
-void write_surfaces(SQLite::Database& database, const InstanceSurfaces& surfaces);
-InstanceSurfaces read_surfaces(SQLite::Database& database);
+void write_surfaces(SQLite::Database& database, const InstanceSurfaces& surfaces,
+                    const MapTable& table);
+InstanceSurfaces read_surfaces(SQLite::Database& database, const MapTable& table);
 
 }  // namespace ovimap

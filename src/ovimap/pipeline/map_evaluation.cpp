@@ -76,7 +76,7 @@ ScanNetClasses numbering_for(const std::string& classes) {
 Draft draft_scene(const MapAndTruth& paths, const std::string& classes,
                   const EvaluationConfig& config) {
   Truth truth = load_truth(paths.source, numbering_for(classes));
-  const MapDocument map = load_map(paths.map);
+  const MapDocument map = load_corrected_map(paths.map);
   const Mesh mesh = map.map.block_count() > 0 ? extract_instance_mesh(map.map, map.instances)
                                               : true_objects(truth, map, paths);
   require_one_frame(paths, truth.mesh, mesh, config.frames);

@@ -6,7 +6,7 @@
 
 #include "ovimap/base/error.h"
 #include "ovimap/image/codec.h"
-#include "ovimap/instance/instance_mesh.h"
+#include "ovimap/io/map_mesh.h"
 #include "ovimap/map/ray_cast.h"
 #include "ovimap/map/surface_lookup.h"
 
@@ -33,7 +33,7 @@ IdImage project_instances(const MapDocument& document, const Frame& frame,
 }  // namespace
 
 RgbImage top_down_picture(const MapDocument& document, MeshColoring coloring) {
-  const Mesh mesh = extract_instance_mesh(document.map, document.instances);
+  const Mesh mesh = visible_mesh(document);
   PictureConfig config;
   config.coloring = coloring;
   return top_down(mesh, document.up, config);

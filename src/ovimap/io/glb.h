@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+
+#include "ovimap/geometry/mesh.h"
+#include "ovimap/image/codec.h"
+#include "ovimap/instance/instance_summary.h"
+
+namespace ovimap {
+
+/// A mesh with instance ids as labels as binary glTF 2.0: a root node "map" that turns the world
+/// upright (glTF has y up), under it a node per instance, named "mug 12" or "object 12", with
+/// `extras` {id, name, box, centroid, points, views} in the world frame, and a node "background"
+/// for what belongs to none. Vertices keep their world coordinates, metres. A triangle goes to the
+/// object of most of its corners, else to that of its first. Colours are those of the mesh, made
+/// linear as glTF wants them. Instances without surface have a node without mesh. Throws Error
+/// when the file would pass the 4 GiB that the format allows.
+Bytes encode_glb(const Mesh& mesh, std::span<const InstanceSummary> instances,
+                 const std::map<InstanceId, std::string>& names, const Eigen::Vector3f& up);
+
+}  // namespace ovimap

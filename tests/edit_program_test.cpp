@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+// `ovimap edit` as a user meets it.
+#include "program_fixture.h"
+
+namespace ovimap {
+namespace {
+
+class EditProgramTest : public EncodedProgramTest {
+ protected:
+  std::vector<int> ids() const {
+    std::vector<int> result;
+    for (const auto& entry : run_json("info room.ovimap --json")["instances"])
+      result.push_back(entry["id"]);
+    return result;
+  }
+  void edit(const std::string& arguments) const {
+    const ProgramResult result = run("edit room.ovimap " + arguments);
+    EXPECT_EQ(result.code, 0) << arguments << result.err;
+  }
+};
+
+TEST_F(EditProgramTest, EverythingSeesTheCorrectedMap) {
+  map_with(golden_model("minilm"));
+  const std::vector<int> found = ids();
+  ASSERT_GE(found.size(), 3u);
+  const std::string first = std::to_string(found[0]), second = std::to_string(found[1]),
+                    third = std::to_string(found[2]);
+  edit("rename " + first + " 'tea pot'");
+  edit("merge " + first + " " + second);
+  EXPECT_EQ(ids().size(), found.size() - 1);
+  ASSERT_EQ(run("export room.ovimap a.csv").code, 0);
+  EXPECT_NE(slurp(path("a.csv")).find(first + ",tea pot,"), std::string::npos);
+  ASSERT_EQ(run("report room.ovimap a.html --encoder none").code, 0);
+  EXPECT_NE(slurp(path("a.html")).find("tea pot"), std::string::npos);
+  const auto answer = nlohmann::json::parse(
+      run("query room.ovimap thing --top 99 --json --encoder " + golden_model("minilm")).out);
+  for (const auto& instance : answer["results"][0]["instances"])
+    EXPECT_NE(instance["id"], found[1]);
+  ASSERT_EQ(run("export room.ovimap whole.ply").code, 0);
+  edit("hide " + third);
+  ASSERT_EQ(run("export room.ovimap part.ply").code, 0);
+  EXPECT_LT(std::filesystem::file_size(path("part.ply")),
+            std::filesystem::file_size(path("whole.ply")));
+  EXPECT_EQ(run_json("info room.ovimap --json")["hidden"], nlohmann::json({found[2]}));
+  // Another encoder's embeddings, and the corrections are still there.
+  ASSERT_EQ(run("reembed room.ovimap --encoder " + golden_model("clip")).code, 0);
+  EXPECT_EQ(ids().size(), found.size() - 2);
+  for (int i = 0; i < 3; ++i) edit("undo");
+  EXPECT_EQ(ids(), found);
+  expect_complaint("edit room.ovimap undo", {"nothing to undo"});
+}
+
+TEST_F(EditProgramTest, TellsWhatWasDone) {
+  map_with("none");
+  const std::string id = std::to_string(ids()[0]);
+  const auto done = run_json("edit room.ovimap lock " + id + " --json");
+  EXPECT_EQ(done["edit"]["id"], 1);
+  EXPECT_EQ(done["edit"]["action"], "lock");
+  EXPECT_EQ(done["instances"], ids().size());
+  expect_complaint("edit room.ovimap rename " + id + " x", {"locked", "undo 1"});
+  edit("undo 1");
+  const auto log = run_json("edit room.ovimap log --json")["edits"];
+  ASSERT_EQ(log.size(), 2u);
+  EXPECT_EQ(log[0]["undone_by"], 2);
+  EXPECT_TRUE(log[1]["undone_by"].is_null());
+  EXPECT_EQ(log[0]["time"].get<std::string>().size(), 20u);
+  expect_complaint("edit room.ovimap rename 987654 x", {"987654", "info"});
+  expect_complaint("edit room.ovimap", {"edit"});
+  expect_complaint("edit missing.ovimap log", {"missing.ovimap"});
+}
+
+}  // namespace
+}  // namespace ovimap
