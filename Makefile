@@ -6,7 +6,7 @@ OVIMAP := $(BUILD)/bin/ovimap
 JOBS ?= $(shell nproc)
 SOURCE ?= demo/tiny/room
 
-.PHONY: help setup build demo test asan tsan bench rivals benchmarks clean
+.PHONY: help setup build demo test asan tsan fuzz bench rivals benchmarks clean
 
 help:
 	@echo "make demo    set up, build, render a room, map it, show the objects"
@@ -15,6 +15,7 @@ help:
 	@echo "make bench   measure speed and memory on SOURCE (default: the demo room), beside their targets"
 	@echo "make rivals  install Open3D (1.3 GB) into build/rivals, for make bench to compare with"
 	@echo "make benchmarks KITCHEN=FOLDER [ONLY='tiny rooms']   write docs/benchmarks.md, or these parts of it"
+	@echo "make fuzz    feed the readers with odd bytes, FUZZ_SECONDS (60) each; needs clang"
 	@echo "make asan    run the tests under AddressSanitizer and UBSan;  make tsan: ThreadSanitizer"
 
 setup:
@@ -35,6 +36,13 @@ asan tsan: setup
 	@cmake --preset $@ > /dev/null
 	@cmake --build --preset $@ -j $(JOBS)
 	@tools/run_tests.sh build/$@
+
+FUZZ_SECONDS ?= 60
+fuzz: setup
+	@command -v clang++ > /dev/null || { echo "make fuzz needs clang with libFuzzer; run: apt-get install clang libclang-rt-14-dev"; exit 1; }
+	@cmake --preset fuzz > /dev/null
+	@cmake --build --preset fuzz -j $(JOBS)
+	@tools/fuzz.sh build/fuzz $(FUZZ_SECONDS)
 
 bench: build
 	@test -d "$(SOURCE)" || $(OVIMAP) synth demo/tiny --room tiny

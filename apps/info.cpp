@@ -5,6 +5,7 @@
 
 #include "command.h"
 #include "ovimap/io/instance_json.h"
+#include "ovimap/io/map_check.h"
 #include "ovimap/io/map_file.h"
 
 namespace ovimap::apps {
@@ -13,10 +14,31 @@ namespace {
 
 struct InfoOptions {
   std::filesystem::path map;
+  bool check = false;
   bool json = false;
 };
 
+/// Exit code 1: something is damaged.
+int check_file(const InfoOptions& options) {
+  const MapCheck check = check_map(options.map);
+  if (options.json) {
+    print_json({{"map", options.map.string()},
+                {"ok", check.faults.empty()},
+                {"faults", check.faults},
+                {"tables", check.tables},
+                {"tiles", check.tiles},
+                {"blocks", check.blocks}});
+  } else {
+    for (const std::string& fault : check.faults) std::printf("damaged: %s\n", fault.c_str());
+    std::printf("%s: %zu tables, %zu tiles with %zu blocks of voxels: %s\n", options.map.c_str(),
+                check.tables, check.tiles, check.blocks,
+                check.faults.empty() ? "all as written" : "restore it from a copy or map again");
+  }
+  return check.faults.empty() ? kDone : kAnswerIsNo;
+}
+
 int info(const InfoOptions& options) {
+  if (options.check) return check_file(options);
   const MapInfo map = read_map_info(options.map);
   if (options.json) {
     std::cout << info_json(options.map, map) << std::endl;
@@ -45,6 +67,9 @@ int info(const InfoOptions& options) {
 Action add_info(CLI::App& command) {
   auto options = std::make_shared<InfoOptions>();
   command.add_option("MAP", options->map, "map file")->required();
+  command.add_flag("--check", options->check,
+                   "examine the file: SQLite's own check, the hash of every table and tile; exit "
+                   "code 1 and a list where something is damaged");
   command.add_flag("--json", options->json, "print one JSON object");
   return [options] { return info(*options); };
 }

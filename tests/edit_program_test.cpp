@@ -10,8 +10,8 @@ class EditProgramTest : public EncodedProgramTest {
  protected:
   std::vector<int> ids() const {
     std::vector<int> result;
-    for (const auto& entry : run_json("info room.ovimap --json")["instances"])
-      result.push_back(entry["id"]);
+    const auto info = run_json("info room.ovimap --json");
+    for (const auto& entry : info["instances"]) result.push_back(entry["id"]);
     return result;
   }
   void edit(const std::string& arguments) const {

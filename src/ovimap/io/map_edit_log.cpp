@@ -4,6 +4,7 @@
 
 #include <array>
 #include <map>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -34,14 +35,35 @@ EditAction action_of(const std::string& name) {
   throw Error("table edits holds an action '" + name + "' that this program does not know");
 }
 
+[[noreturn]] void fail_to_take() {
+  throw Error("table edits holds arguments that are not readable");
+}
+
+/// Numbers out of range must not wrap around to others.
+template <class Number>
+void take(const Json& json, Number& value) {
+  const auto number = json.is_number_integer() ? json.get<std::int64_t>() : -1;
+  if (!std::in_range<Number>(number) || number < 0) fail_to_take();
+  value = static_cast<Number>(number);
+}
+void take(const Json& json, std::string& value) {
+  json.get_to(value);
+}
+template <class Number>
+void take(const Json& json, std::vector<Number>& values) {
+  if (!json.is_array()) fail_to_take();
+  for (const Json& item : json) take(item, values.emplace_back());
+}
+
 void take_arguments(const std::string& text, MapEdit& edit) {
   try {
     const Json arguments = Json::parse(text);
+    if (!arguments.is_object()) fail_to_take();
     visit_arguments(edit, [&](const char* key, auto& value) {
-      if (arguments.contains(key)) arguments.at(key).get_to(value);
+      if (arguments.contains(key)) take(arguments.at(key), value);
     });
   } catch (const Json::exception&) {
-    throw Error("table edits holds arguments that are not readable");
+    fail_to_take();
   }
 }
 

@@ -168,6 +168,11 @@ MapMeta read_found(SQLite::Database& database, int schema, const LabelForest& fo
   const MapMeta meta = read_meta(database, record);
   read_registry(database, schema, forest, record);
   read_instances(database, record, kFoundInstanceTables);
+  for (const InstanceSummary& instance : record.instances)
+    for (const Label label : instance.super_points)
+      if (label == kNoLabel || label > forest.last_label())
+        throw Error(concat("table instance_super_points names label ", label,
+                           ", which was never given"));
   read_frames(database, record);
   if (schema >= kSchemaWithSemantics) {
     record.semantics.appearances = read_appearances(database, record.semantics.encoder);

@@ -167,8 +167,8 @@ void check_file(const fs::path& path) {
 [[noreturn]] void fail_as_damaged(const fs::path& path, std::string fault) {
   std::replace_if(
       fault.begin(), fault.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
-  throw Error(concat("map '", path.string(), "' is damaged: ", fault,
-                     "; restore it from a copy or map again"));
+  throw DamagedMap(concat("map '", path.string(), "' is damaged: ", fault,
+                          "; restore it from a copy or map again"));
 }
 
 [[noreturn]] void fail_to_read(const fs::path& path, const SQLite::Exception& fault) {

@@ -6,6 +6,8 @@
 #include <functional>
 #include <memory>
 
+#include "ovimap/base/error.h"
+
 namespace SQLite {
 class Database;
 }
@@ -29,6 +31,12 @@ class PendingMap {
 
  private:
   std::filesystem::path target_, temporary_;
+};
+
+/// The file is a map, or was one, but its content is not what was written.
+class DamagedMap : public Error {
+ public:
+  using Error::Error;
 };
 
 /// Calls `read`; what it throws about the content becomes "map 'x' is damaged: ...".

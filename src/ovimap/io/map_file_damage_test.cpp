@@ -5,9 +5,12 @@
 #include <random>
 
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <sys/resource.h>
 
 #include "ovimap/image/codec.h"
+#include "ovimap/io/map_check.h"
 #include "ovimap/io/map_file_fixture.h"
+#include "ovimap/io/map_file_rows.h"
 
 namespace ovimap {
 namespace {
@@ -22,6 +25,12 @@ class MapFileDamage : public MapFolder {
   /// of the test when the content is other than what was saved.
   bool refused(const Bytes& bytes, const std::string& what) {
     write_file(path_, bytes);
+    const bool any = judge(what);
+    EXPECT_TRUE(read_file(path_) == bytes) << what << " changed the file";
+    return any;
+  }
+
+  bool judge(const std::string& what) {
     const auto instances_are_true = [&] {
       EXPECT_TRUE(same_instances(read_map_info(path_).instances, saved_.instances)) << what;
     };
@@ -30,6 +39,10 @@ class MapFileDamage : public MapFolder {
         fault_of([&] { EXPECT_EQ(difference(saved_, load_map(path_)), "") << what; });
     EXPECT_EQ(fault.find('\n'), std::string::npos) << what;
     EXPECT_TRUE(info_fault.empty() || !fault.empty()) << what << ": only info says " << info_fault;
+    bool listed = false;
+    const std::string check_fault =
+        fault_of([&] { listed = !check_map(path_).faults.empty(); });  // none may go unseen
+    EXPECT_TRUE(fault.empty() || listed || !check_fault.empty()) << what << ": " << fault;
     return !fault.empty();
   }
 
@@ -45,15 +58,15 @@ class MapFileDamage : public MapFolder {
   std::mt19937 random_{99};
 };
 
-TEST_F(MapFileDamage, AFlippedByteIsFoundOrHarmless) {
+TEST_F(MapFileDamage, AFlippedBitIsFoundOrHarmless) {
   const Bytes intact = read_file(path_);
   int refusals = 0;
-  constexpr int kTrials = 600;
+  constexpr int kTrials = 1000;
   for (int trial = 0; trial < kTrials; ++trial) {
     Bytes bytes = intact;
     // A third of the trials hit the first page: header and table definitions.
     const std::size_t at = random_() % (trial % 3 == 0 ? std::size_t{4096} : bytes.size());
-    bytes[at] = static_cast<std::uint8_t>(bytes[at] ^ (1u + random_() % 255));
+    bytes[at] = static_cast<std::uint8_t>(bytes[at] ^ (1u << random_() % 8));
     refusals += refused(bytes, concat("byte ", at));
   }
   EXPECT_GT(refusals, kTrials / 3);
@@ -74,7 +87,8 @@ TEST_F(MapFileDamage, ACutFileIsRefused) {
   const Bytes intact = read_file(path_);
   std::vector<std::size_t> lengths = {
       0, 1, 15, 16, 99, 100, 4095, 4096, 8192, intact.size() - 4096, intact.size() - 1};
-  for (int i = 0; i < 100; ++i) lengths.push_back(random_() % intact.size());
+  for (std::size_t length = 512; length < intact.size(); length += 1024) lengths.push_back(length);
+  for (int i = 0; i < 50; ++i) lengths.push_back(random_() % intact.size());
   for (const std::size_t length : lengths)
     EXPECT_TRUE(refused(Bytes(intact.begin(), intact.begin() + static_cast<std::ptrdiff_t>(length)),
                         concat("cut to ", length)));
@@ -133,6 +147,120 @@ TEST_F(MapFileDamage, SaysWhenItIsTooNew) {
           "was written by a newer ovimap (schema 7, this program reads up to 3); update ovimap"),
       std::string::npos)
       << fault;
+}
+
+/// While alive, the process may not take more than `bytes` beyond what it has.
+class MemoryLimit {
+ public:
+  explicit MemoryLimit(rlim_t bytes) {
+    ::getrlimit(RLIMIT_AS, &old_);
+    const rlimit limit{used() + bytes, old_.rlim_max};
+    ::setrlimit(RLIMIT_AS, &limit);
+  }
+  ~MemoryLimit() { ::setrlimit(RLIMIT_AS, &old_); }
+
+ private:
+  static rlim_t used() {
+    std::ifstream statm("/proc/self/statm");
+    rlim_t pages = 0;
+    statm >> pages;
+    return pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
+  }
+  rlimit old_{};
+};
+
+/// Maps whose hashes are right but whose content is a lie.
+class ForgedMap : public MapFileDamage {
+ protected:
+  /// Replaces a row's value and makes the table's check fit.
+  template <class Fill>
+  void forge(const MapTable& table, Fill&& fill) {
+    SQLite::Database database(path_.string(), SQLite::OPEN_READWRITE);
+    SQLite::Transaction transaction(database);
+    drop_table(database, table);
+    RowWriter rows(database, table);
+    fill(rows);
+    rows.finish();
+    transaction.commit();
+  }
+  /// The table `meta` with one value changed.
+  void forge_meta(const std::string& key, const std::string& value) {
+    std::vector<std::pair<std::string, std::string>> all;
+    {
+      SQLite::Database database(path_.string());
+      SQLite::Statement rows(database, "SELECT key, value FROM meta");
+      while (rows.executeStep())
+        all.emplace_back(rows.getColumn(0).getString(), rows.getColumn(1).getString());
+    }
+    forge(map_tables::kMeta, [&](RowWriter& rows) {
+      for (const auto& [name, text] : all) rows.insert(name, name == key ? value : text);
+    });
+  }
+  void expect_refused(const std::string& what) {
+    std::string fault;
+    {
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+      const MemoryLimit limit(rlim_t{600} << 20);  // sanitizers reserve more than that
+#endif
+      fault = fault_of([&] { load_map(path_); });
+      (void)fault_of([&] { check_map(path_); });
+    }
+    EXPECT_NE(fault.find("is damaged"), std::string::npos) << what << ": " << fault;
+  }
+};
+
+TEST_F(ForgedMap, ClaimedSizesCostNothing) {
+  forge_meta("blocks", "9223372036854775807");
+  expect_refused("more blocks than can be");
+  save_map(path_, saved_);
+  forge_meta("blocks", "1");
+  expect_refused("fewer blocks than there are");
+  save_map(path_, saved_);
+  forge_meta("last_instance_id", "99999999999");
+  expect_refused("an id out of range");
+  save_map(path_, saved_);
+  forge_meta("encoder.dimension", "2000000000");
+  expect_refused("an embedding of gigabytes");
+  save_map(path_, saved_);
+  forge_meta("map.voxel_size_m", "nan");
+  expect_refused("voxels without size");
+}
+
+TEST_F(ForgedMap, TilesThatClaimEverythingAreRefusedAtOnce) {
+  // A million blocks, 13 GB in memory, in a file of some hundred kilobytes.
+  forge_meta("blocks", "1048576");
+  const Bytes nothing = {0x28, 0xb5, 0x2f, 0xfd, 0x20, 0x00, 0x01, 0x00, 0x00};  // zstd of ""
+  forge(map_tables::kBlocks, [&](RowWriter& rows) {
+    for (int i = 0; i < 16384; ++i)
+      rows.insert(static_cast<std::int64_t>(pack_index({i % 128, i / 128, 0})), std::int64_t{-1},
+                  stored_hash(nothing), nothing);
+  });
+  expect_refused("tiles without content");
+}
+
+TEST_F(ForgedMap, LabelsAndRootsMustExist) {
+  forge(map_tables::kLabelForest, [](RowWriter& rows) {
+    Bytes roots(84, 0);
+    for (std::size_t i = 0; i < roots.size(); i += 4) roots[i + 3] = 0xff;  // far beyond
+    rows.insert(6, roots);
+  });
+  expect_refused("roots that were never given");
+  save_map(path_, saved_);
+  forge(map_tables::kInstanceSuperPoints, [](RowWriter& rows) { rows.insert(1, 4000000000u); });
+  expect_refused("an object of labels that were never given");
+}
+
+TEST_F(ForgedMap, TheLogOfEditsIsReadWithCare) {
+  const auto log = [&](const std::string& action, const std::string& arguments) {
+    save_map(path_, saved_);
+    forge(map_tables::kEdits, [&](RowWriter& rows) { rows.insert(1, 0.5, action, arguments, 0); });
+    expect_refused(action + arguments);
+  };
+  log("explode", "{}");
+  log("rename", "not JSON");
+  log("rename", "{\"instances\": \"all\"}");
+  log("merge", "{\"instances\": [-1, 5000000000]}");
+  log("rename", "[1]");
 }
 
 }  // namespace

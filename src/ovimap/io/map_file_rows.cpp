@@ -128,6 +128,11 @@ void RowWriter::finish() {
   check.exec();
 }
 
+void verify_table(SQLite::Database& database, const MapTable& table) {
+  RowReader rows(database, table);
+  while (rows.next()) rows.skip();
+}
+
 RowReader::RowReader(SQLite::Database& database, const MapTable& table)
     : database_(database),
       table_(table),
@@ -179,6 +184,20 @@ std::span<const std::uint8_t> RowReader::blob() {
                         static_cast<std::size_t>(column.getBytes()));
   hash_.add(value);
   return value;
+}
+
+void RowReader::skip() {
+  while (column_ < column_count(table_)) {
+    const int type = statement_->getColumn(column_).getType();
+    if (type == SQLite::INTEGER)
+      (void)integer_value();
+    else if (type == SQLite::TEXT)
+      (void)text();
+    else if (type == SQLite::BLOB)
+      (void)blob();
+    else
+      (void)real();
+  }
 }
 
 void RowReader::verify() {

@@ -147,6 +147,10 @@ class TableHash {
 
 bool has_table(SQLite::Database& database, const MapTable& table);
 
+/// Throws Error with a phrase unless the table's rows are those that were written, whatever they
+/// mean.
+void verify_table(SQLite::Database& database, const MapTable& table);
+
 /// Removes a table and its check, if it is there.
 void drop_table(SQLite::Database& database, const MapTable& table);
 
@@ -203,6 +207,7 @@ class RowReader {
   }
   double real();
   std::string text();
+  void skip();                           ///< the rest of the row, whatever it holds
   std::span<const std::uint8_t> blob();  ///< valid until the next call of next()
 
   [[noreturn]] void fail(const std::string& fault) const;

@@ -30,6 +30,7 @@ std::string grid_yaml(const OccupancyGrid& grid, const GridSlice& slice, const s
                       const std::string& esdf) {
   YAML::Emitter yaml;
   yaml.SetFloatPrecision(7);
+  yaml.SetDoublePrecision(6);
   const auto pair = [&](const char* key, const auto& value) {
     yaml << YAML::Key << key << YAML::Value << value;
   };

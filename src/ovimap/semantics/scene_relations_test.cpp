@@ -63,8 +63,9 @@ TEST(SceneRelations, AreThoseOfEveryPairJudgedAlone) {
         if (a != b && rate_relation(relation, kRoom[a], kRoom[b], kIds[b], {}, {}).score >= 0.5f)
           alone.emplace(kIds[a], kIds[b]);
   for (const ObjectRelation& r : find_relations(kIds, kRoom))
-    if (r.relation != Relation::kBeside && r.relation != Relation::kNear)
+    if (r.relation != Relation::kBeside && r.relation != Relation::kNear) {
       EXPECT_TRUE(found.emplace(r.object, r.anchor).second);
+    }
   EXPECT_EQ(found, alone);
   EXPECT_TRUE(find_relations({}, {}).empty());
 }
