@@ -29,6 +29,8 @@ Action add_check(CLI::App& command);
 Action add_info(CLI::App& command);
 Action add_query(CLI::App& command);
 Action add_edit(CLI::App& command);
+Action add_diff(CLI::App& command);
+Action add_merge(CLI::App& command);
 Action add_export(CLI::App& command);
 Action add_eval(CLI::App& command);
 Action add_bench(CLI::App& command);

@@ -26,6 +26,8 @@ constexpr Entry kCommands[] = {
     {"query", "find objects in words: MAP \"mug on the table\"", add_query},
     {"export", "write a map as mesh, scene, table, grid, picture or folder of objects", add_export},
     {"edit", "correct a map: names, objects that are one, objects that are several", add_edit},
+    {"diff", "what changed from one map of a place to another", add_diff},
+    {"merge", "make one map of two of the same place", add_merge},
     {"eval", "score maps against the truth", add_eval},
     {"ablate", "vary one choice and score the maps, beside published figures", add_ablate},
     {"bench", "measure speed and memory on a recording", add_bench},
