@@ -3,10 +3,12 @@
 #include <benchmark/benchmark.h>
 
 #include "ovimap/instance/association.h"
+#include "ovimap/instance/plain_association.h"
 #include "ovimap/map/incremental_mesh.h"
 #include "ovimap/map/integrate.h"
 #include "ovimap/map/mesh_extraction.h"
 #include "ovimap/map/plain_fusion.h"
+#include "ovimap/map/plain_ray_cast.h"
 #include "ovimap/map/ray_cast.h"
 #include "ovimap/map/surface_lookup.h"
 #include "room_scene.h"
@@ -68,12 +70,28 @@ void count_votes(benchmark::State& state) {
 }
 BENCHMARK(count_votes)->Unit(benchmark::kMillisecond)->UseRealTime();
 
+void count_votes_plain(benchmark::State& state) {
+  const MappedRoom room;
+  const auto surface =
+      surface_voxels(room.map, room.scene.depth, room.scene.camera, room.scene.pose);
+  for (auto _ : state)
+    benchmark::DoNotOptimize(plain::argmax_labels(room.segments, surface, room.map, 20));
+}
+BENCHMARK(count_votes_plain)->Unit(benchmark::kMillisecond)->UseRealTime();
+
 void cast_all_rays(benchmark::State& state) {
   const MappedRoom room;
   for (auto _ : state)
     benchmark::DoNotOptimize(cast_rays(room.map, room.scene.camera, room.scene.pose, 10.f));
 }
 BENCHMARK(cast_all_rays)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void cast_all_rays_plain(benchmark::State& state) {
+  const MappedRoom room;
+  for (auto _ : state)
+    benchmark::DoNotOptimize(plain::cast_rays(room.map, room.scene.camera, room.scene.pose, 10.f));
+}
+BENCHMARK(cast_all_rays_plain)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(1);
 
 void extract_whole_mesh(benchmark::State& state) {
   const MappedRoom room;
