@@ -86,6 +86,7 @@ class Mapper {
  private:
   std::vector<SegmentAssociation> find_labels(const PreparedFrame& prepared,
                                               const FrameSegments* cut);
+  Image<InstanceId> instances_of(const Image<Label>& labels) const;
   FrameReport observe(const Frame& frame, const FrameSegments* cut,
                       std::span<const SegmentAssociation> associations);
 
