@@ -33,6 +33,7 @@ Action add_eval(CLI::App& command);
 Action add_bench(CLI::App& command);
 Action add_synth(CLI::App& command);
 Action add_report(CLI::App& command);
+Action add_masks(CLI::App& command);
 Action add_models(CLI::App& command);
 Action add_reembed(CLI::App& command);
 Action add_embed(CLI::App& command);
