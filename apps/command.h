@@ -14,6 +14,7 @@
 #include "ovimap/inference/image_text_encoder.h"
 #include "ovimap/inference/mask_source_factory.h"
 #include "ovimap/io/map_document.h"
+#include "ovimap/pipeline/checkpointer.h"
 #include "ovimap/pipeline/live_mapper.h"
 
 namespace ovimap::apps {
@@ -62,6 +63,7 @@ struct ProgramConfig {
   MaskSourceConfig masks;
   RuntimeConfig encoder;
   LiveConfig live;
+  CheckpointConfig checkpoint;
 };
 void list_fields(ProgramConfig& config, ConfigFields& fields);
 

@@ -26,7 +26,7 @@ class AssociateTest : public ::testing::Test {
 
   void hold(int begin, int end, Label label, int support = 1) {
     for (int x = begin; x < end; ++x) {
-      VoxelBlock& block = map_.block(surface_.at(x, 0).block());
+      VoxelBlock& block = map_.writable_block(surface_.at(x, 0).block());
       for (int i = 0; i < support; ++i)
         add_support(block, surface_.at(x, 0).voxel(), palette_position(block, label));
     }

@@ -238,9 +238,9 @@ std::map<Label, Label> EntityConsensus::objects() const {
   return graph.objects();
 }
 
-void EntityConsensus::restore(EntitySightings sightings) {
+void EntityConsensus::restore(EntitySightings sightings, std::uint32_t frames) {
   sightings_ = std::move(sightings);
-  frames_ = 0;
+  frames_ = frames;
   for (const auto& [root, seen] : sightings_)
     if (!seen.empty()) frames_ = std::max(frames_, seen.back().frame + 1);
 }

@@ -24,6 +24,9 @@ struct MapMeta {
 /// Writes everything of a map but its blocks and its forest of labels.
 void write_record(SQLite::Database& database, const MapRecord& record, const MapMeta& meta);
 
+void write_forest(SQLite::Database& database, const LabelForest& forest);
+LabelForest read_forest(SQLite::Database& database);
+
 /// The parts of the way back. Each fills its part of `record` and throws Error with a phrase when
 /// the file does not hold what was written.
 MapMeta read_meta(SQLite::Database& database, MapRecord& record);

@@ -127,6 +127,10 @@ class TableHash {
   std::uint64_t sum_ = 0;
 };
 
+/// Writes the check of a table whose rows were written by hand.
+void write_check(SQLite::Database& database, const MapTable& table, std::int64_t rows,
+                 std::int64_t hash);
+
 /// Creates a table and inserts rows into it. SQLite's exceptions pass through.
 class RowWriter {
  public:

@@ -116,6 +116,15 @@ int Mapper::look_at_objects(const Frame& frame, Encoder encoder) {
   return chosen;
 }
 
+void Mapper::restore(MapDocument&& document) {
+  OVIMAP_ASSERT(frames_ == 0);
+  map_ = std::move(document.map);
+  registry_.restore(std::move(document.registry));
+  builder_->restore(std::move(document.semantics.appearances));
+  frames_ = static_cast<int>(document.frames.size());
+  mask_frames_ = document.mask_frames;
+}
+
 void Mapper::finish() {
   {
     auto t = timers_.measure("await_encoder");
