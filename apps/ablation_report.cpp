@@ -50,6 +50,7 @@ struct Point {
 
 /// Pictures of 760 x 360 units; the plot itself leaves room for a scale and a legend.
 constexpr double kWidth = 760, kHeight = 360, kLeft = 50, kRight = 20, kTop = 40, kBottom = 60;
+constexpr double kCharacter = 6.2;  ///< mean width of one
 
 double plot_y(double value, double most) {
   return kHeight - kBottom - (kHeight - kBottom - kTop) * value / most;
@@ -107,8 +108,10 @@ std::string bars(const std::vector<AblationColumn>& columns,
                     0.9 * bar, "\" height=\"", kHeight - kBottom - y, "\" fill=\"",
                     kColors[c % kColors.size()], "\"/>\n");
     }
-    // Long names take two lines by turns, so that neighbours do not meet.
-    svg += text_at({left + 0.4 * group, kHeight - kBottom + (r % 2 == 0 ? 20.0 : 38.0)},
+    // Long names take two lines by turns, so that neighbours do not meet, and end in the picture.
+    const double half = 0.5 * kCharacter * static_cast<double>(results[r].variant.size());
+    svg += text_at({std::min(left + 0.4 * group, kWidth - half),
+                    kHeight - kBottom + (r % 2 == 0 ? 20.0 : 38.0)},
                    results[r].variant);
   }
   return svg;

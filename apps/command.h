@@ -14,6 +14,7 @@
 #include "ovimap/inference/image_text_encoder.h"
 #include "ovimap/inference/mask_source_factory.h"
 #include "ovimap/io/map_document.h"
+#include "ovimap/pipeline/checkpointer.h"
 #include "ovimap/pipeline/live_mapper.h"
 
 namespace ovimap::apps {
@@ -36,6 +37,7 @@ Action add_eval(CLI::App& command);
 Action add_bench(CLI::App& command);
 Action add_synth(CLI::App& command);
 Action add_report(CLI::App& command);
+Action add_masks(CLI::App& command);
 Action add_models(CLI::App& command);
 Action add_reembed(CLI::App& command);
 Action add_embed(CLI::App& command);
@@ -64,6 +66,7 @@ struct ProgramConfig {
   MaskSourceConfig masks;
   RuntimeConfig encoder;
   LiveConfig live;
+  CheckpointConfig checkpoint;
 };
 void list_fields(ProgramConfig& config, ConfigFields& fields);
 

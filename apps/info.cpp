@@ -49,6 +49,9 @@ int info(const InfoOptions& options) {
       options.map.c_str(), map.instances.size(), static_cast<long long>(map.frames),
       static_cast<long long>(map.blocks), double{map.voxel_size_m},
       static_cast<double>(map.size_bytes) / 1e6, map.version.c_str());
+  if (map.unfinished)
+    std::printf(
+        "unfinished: a run was broken off; the same command with --resume goes on with it\n");
   std::printf("%6s  %-24s %24s %24s %8s %6s\n", "id", "name", "centroid (m)", "size (m)", "points",
               "views");
   for (const InstanceSummary& instance : map.instances) {

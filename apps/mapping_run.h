@@ -14,15 +14,24 @@ struct MappingRun {
   std::optional<LiveRunResult> live;  ///< of map_live
   StageTimers timers;
   MapDocument document;
+  std::unique_ptr<Checkpointer> checkpoints;  ///< remove them when the map is saved
+};
+
+/// Where a run leaves its map: with it, the run makes checkpoints.
+struct RunTarget {
+  std::filesystem::path map;
+  bool resume = false;  ///< go on with the checkpoint or map that is there
 };
 
 /// Opens what the options name and maps it, with progress under `title`; Ctrl-C ends it early with
 /// what was mapped so far. `keep_masks`: folder in which masks are kept and looked for; empty:
-/// nowhere. Throws what the parts throw.
+/// nowhere. Throws what the parts throw, and Error when an unfinished run left a checkpoint that
+/// `target` does not resume, or one of other settings that it does.
 MappingRun map_recording(const MappingOptions& options, const std::string& title,
-                         const std::filesystem::path& keep_masks = {});
+                         const std::filesystem::path& keep_masks = {},
+                         const RunTarget& target = {});
 
 /// The same as a camera of `fps` frames a second would have it. Networks let the mapping go first.
-MappingRun map_live(const MappingOptions& options, double fps);
+MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& target = {});
 
 }  // namespace ovimap::apps

@@ -42,6 +42,7 @@ void list_fields(ProgramConfig& config, ConfigFields& fields) {
   fields.group("masks", [&](ConfigFields& f) { list_fields(config.masks, f); });
   fields.group("encoder.runtime", [&](ConfigFields& f) { list_fields(config.encoder, f); });
   fields.group("live", [&](ConfigFields& f) { list_fields(config.live, f); });
+  fields.group("checkpoint", [&](ConfigFields& f) { list_fields(config.checkpoint, f); });
 }
 
 ProgramConfig read_program_config(const MappingOptions& options) {

@@ -17,6 +17,7 @@ struct RunOptions {
   std::filesystem::path pictures;
   bool json = false;
   bool live = false;
+  bool resume = false;
   double fps = 30;
 };
 
@@ -79,12 +80,14 @@ int run(const RunOptions& options) {
   const ThreadLimit limit(options.mapping.threads);
   check_map_target(options.map);
   if (!options.pictures.empty()) make_folder(options.pictures);
-  const MappingRun mapped = options.live ? map_live(options.mapping, options.fps)
-                                         : map_recording(options.mapping, "mapping");
+  const RunTarget target{options.map, options.resume};
+  const MappingRun mapped = options.live ? map_live(options.mapping, options.fps, target)
+                                         : map_recording(options.mapping, "mapping", {}, target);
   const SequenceResult& result = mapped.sequence;
   report_skipped(result);
   if (mapped.live) report_bad_masks(mapped.live->statistics);
   save_map(options.map, mapped.document);
+  mapped.checkpoints->remove();
   if (!options.pictures.empty())
     write_map_pictures(options.pictures, mapped.document, *mapped.source);
   const double fps = static_cast<double>(result.frames.size()) / result.seconds;
@@ -130,6 +133,8 @@ Action add_run(CLI::App& command) {
       ->check(CLI::Range(0.1, 1000.))
       ->needs(live)
       ->capture_default_str();
+  command.add_flag("--resume", options->resume,
+                   "go on with the frames that a killed run, or the map, does not have yet");
   command.add_flag("--json", options->json, "print one JSON object");
   return [options] { return run(*options); };
 }

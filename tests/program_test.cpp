@@ -55,6 +55,22 @@ TEST_F(ProgramTest, TruthMasksGiveTheTrueObjects) {
   EXPECT_GE(run_json("info room.ovimap --json")["instances"].size(), 3u);
 }
 
+TEST_F(ProgramTest, WritesAndScoresEntities) {
+  const nlohmann::json truth = run_json("masks replica/scene --masks gt -o truth --score --json");
+  EXPECT_EQ(truth["standard"]["miou"], 1.0);
+  EXPECT_EQ(truth["standard"]["ap"], 1.0);
+  EXPECT_GT(truth["standard"]["truth_entities"], truth["frames"]);
+  // What was written serves as masks, and is neither better nor worse.
+  const nlohmann::json kept = run_json("masks replica/scene --masks truth --score --json");
+  EXPECT_EQ(kept["standard"], truth["standard"]);
+  EXPECT_EQ(
+      run_json("run replica/scene --masks truth --encoder none -o a.ovimap --json")["instances"],
+      run_json("run replica/scene --masks gt --encoder none -o b.ovimap --json")["instances"]);
+  expect_complaint("masks replica/scene", {"-o FOLDER", "--score"});
+  expect_complaint("masks replica/scene --score --masks none", {"--masks none", "sam"});
+  expect_complaint("masks recording --score --masks truth", {"instance images"});
+}
+
 TEST_F(ProgramTest, ExportsMeshObjectsAndPicture) {
   ASSERT_EQ(run("run recording -o room.ovimap --pictures pictures").code, 0);
   for (const char* file : {"a.ply", "a.json", "a.png"}) {

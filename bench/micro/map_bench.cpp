@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <benchmark/benchmark.h>
 
+#include "ovimap/base/parallel.h"
 #include "ovimap/instance/association.h"
+#include "ovimap/instance/plain_association.h"
 #include "ovimap/map/incremental_mesh.h"
 #include "ovimap/map/integrate.h"
 #include "ovimap/map/mesh_extraction.h"
 #include "ovimap/map/plain_fusion.h"
+#include "ovimap/map/plain_ray_cast.h"
 #include "ovimap/map/ray_cast.h"
 #include "ovimap/map/surface_lookup.h"
 #include "room_scene.h"
@@ -40,9 +43,26 @@ struct MappedRoom {
   }
 };
 
+/// What this machine's memory can do: a frame's blocks, read and written once.
+void copy_memory(benchmark::State& state) {
+  std::vector<std::uint64_t> from(std::size_t{8} << 20, 1), to(from.size());
+  for (auto _ : state) {
+    parallel_for_ranges(from.size(), std::size_t{1} << 18, [&](std::size_t begin, std::size_t end) {
+      std::copy(from.begin() + static_cast<std::ptrdiff_t>(begin),
+                from.begin() + static_cast<std::ptrdiff_t>(end),
+                to.begin() + static_cast<std::ptrdiff_t>(begin));
+    });
+    benchmark::DoNotOptimize(to.data());
+  }
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(2 * 8 * from.size()));
+}
+BENCHMARK(copy_memory)->Unit(benchmark::kMillisecond)->UseRealTime();
+
 void integrate_frame(benchmark::State& state) {
   MappedRoom room;
-  for (auto _ : state) room.add(room.scene);
+  std::size_t blocks = 0;
+  for (auto _ : state) blocks = room.add(room.scene).size();
+  state.counters["blocks"] = static_cast<double>(blocks);
 }
 BENCHMARK(integrate_frame)->Unit(benchmark::kMillisecond)->UseRealTime();
 
@@ -68,12 +88,28 @@ void count_votes(benchmark::State& state) {
 }
 BENCHMARK(count_votes)->Unit(benchmark::kMillisecond)->UseRealTime();
 
+void count_votes_plain(benchmark::State& state) {
+  const MappedRoom room;
+  const auto surface =
+      surface_voxels(room.map, room.scene.depth, room.scene.camera, room.scene.pose);
+  for (auto _ : state)
+    benchmark::DoNotOptimize(plain::argmax_labels(room.segments, surface, room.map, 20));
+}
+BENCHMARK(count_votes_plain)->Unit(benchmark::kMillisecond)->UseRealTime();
+
 void cast_all_rays(benchmark::State& state) {
   const MappedRoom room;
   for (auto _ : state)
     benchmark::DoNotOptimize(cast_rays(room.map, room.scene.camera, room.scene.pose, 10.f));
 }
 BENCHMARK(cast_all_rays)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void cast_all_rays_plain(benchmark::State& state) {
+  const MappedRoom room;
+  for (auto _ : state)
+    benchmark::DoNotOptimize(plain::cast_rays(room.map, room.scene.camera, room.scene.pose, 10.f));
+}
+BENCHMARK(cast_all_rays_plain)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(1);
 
 void extract_whole_mesh(benchmark::State& state) {
   const MappedRoom room;

@@ -32,6 +32,44 @@ InstanceRegistry registry_of(int objects) {
   return registry;
 }
 
+/// Directions to the points of one surface, 10,000 of them.
+struct SurfaceDirections {
+  std::vector<float> x, y, z;
+
+  SurfaceDirections() {
+    const RoomScene scene(3);
+    for (std::size_t i = 0; i < scene.depth.size() && x.size() < 10000; i += 30) {
+      const Eigen::Vector3f point = scene.camera.unproject(
+          static_cast<float>(static_cast<int>(i) % scene.depth.width()),
+          static_cast<float>(static_cast<int>(i) / scene.depth.width()), scene.depth[i]);
+      x.push_back(point.x()), y.push_back(point.y()), z.push_back(point.z() - 2.f);
+    }
+  }
+};
+
+void mark_view_directions(benchmark::State& state) {
+  const SurfaceDirections directions;
+  const SphereGrid grid;
+  BinSet bins(grid.bins());
+  for (auto _ : state) {
+    mark_directions(grid, {directions.x, directions.y, directions.z}, bins);
+    benchmark::DoNotOptimize(bins);
+  }
+}
+BENCHMARK(mark_view_directions)->Unit(benchmark::kMicrosecond);
+
+void mark_view_directions_plain(benchmark::State& state) {
+  const SurfaceDirections directions;
+  const SphereGrid grid;
+  BinSet bins(grid.bins());
+  for (auto _ : state) {
+    for (std::size_t i = 0; i < directions.x.size(); ++i)
+      bins.set(bin_of(grid, {directions.x[i], directions.y[i], directions.z[i]}));
+    benchmark::DoNotOptimize(bins);
+  }
+}
+BENCHMARK(mark_view_directions_plain)->Unit(benchmark::kMicrosecond);
+
 /// One 640x480 frame in which every pixel shows one of state.range(0) objects.
 void select_views(benchmark::State& state) {
   const RoomScene scene(3);

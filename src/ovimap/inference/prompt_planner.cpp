@@ -71,6 +71,19 @@ void set_disc(BitMask& mask, Eigen::Vector2i centre, int radius) {
 
 }  // namespace
 
+std::vector<PromptPoints> grid_prompts(int width_px, int height_px, int side) {
+  const auto middle = [side](int cell, int size_px) {
+    return (static_cast<float>(cell) + 0.5f) * static_cast<float>(size_px) /
+               static_cast<float>(side) -
+           0.5f;  // pixel centres are integers
+  };
+  std::vector<PromptPoints> prompts;
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x)
+      prompts.push_back(point_prompt({middle(x, width_px), middle(y, height_px)}));
+  return prompts;
+}
+
 PromptPlanner::PromptPlanner(const SamConfig& config, const LogitGrid& grid,
                              std::span<const MaskPrompt> regions)
     : config_(config), grid_(grid), tried_(grid.width, grid.height) {

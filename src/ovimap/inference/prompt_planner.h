@@ -17,6 +17,9 @@ struct PlannedPrompt {
   int radius_grid_px = 0;  ///< of a disc as large as what it may explain
 };
 
+/// Points in the middle of side x side equal cells of the image, row by row.
+std::vector<PromptPoints> grid_prompts(int width_px, int height_px, int side);
+
 /// Chooses where to ask the network next, given the masks so far, the largest unexplained areas
 /// first: geometric regions that no mask covers, by a point inside; regions whose point did not
 /// explain them and small regions on much larger masks (a mug on a table), by their box; uncovered

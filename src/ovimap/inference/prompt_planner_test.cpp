@@ -9,6 +9,14 @@
 namespace ovimap {
 namespace {
 
+TEST(GridPrompts, LieInTheMiddleOfEqualCells) {
+  const std::vector<PromptPoints> prompts = grid_prompts(640, 480, 2);
+  ASSERT_EQ(prompts.size(), 4u);
+  EXPECT_EQ(prompts[0].front().in_image_px, Eigen::Vector2f(159.5f, 119.5f));
+  EXPECT_EQ(prompts[3].front().in_image_px, Eigen::Vector2f(479.5f, 359.5f));
+  EXPECT_EQ(prompts[3].front().label, PointLabel::kForeground);
+}
+
 constexpr int kGrid = 64;
 
 /// A 256 x 256 image on a 64 x 64 grid: four image pixels a grid pixel.

@@ -8,7 +8,13 @@ namespace ovimap {
 
 void list_fields(SamConfig& config, ConfigFields& fields) {
   constexpr int kMaxPixels = 100000000;
-  fields.add("max_decoder_prompts", config.max_decoder_prompts, 1, 4096, "prompts a frame at most");
+  fields.add_choice<Prompting>(
+      "prompting", config.prompting,
+      {{"adaptive", Prompting::kAdaptive}, {"grid", Prompting::kGrid}},
+      "where the network is asked: where something is unexplained, or everywhere");
+  fields.add("grid_side", config.grid_side, 1, 64, "points of the grid along each side");
+  fields.add("max_decoder_prompts", config.max_decoder_prompts, 1, 4096,
+             "prompts a frame at most (adaptive)");
   fields.add("decoder_batch", config.decoder_batch, 1, 256, "prompts decoded at once");
   fields.add("min_predicted_iou", config.min_predicted_iou, 0.f, 1.f,
              "masks that the network itself rates lower are dropped");

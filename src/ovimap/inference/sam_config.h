@@ -6,9 +6,16 @@ namespace ovimap {
 
 class ConfigFields;
 
+enum class Prompting {
+  kAdaptive,  ///< at geometric regions, then wherever no mask covers the image yet
+  kGrid,      ///< at the points of a regular grid, as SAM's own mask generator asks
+};
+
 /// Settings of prompting a SAM-type network (method section 2).
 struct SamConfig {
-  int max_decoder_prompts = 30;  ///< prompts a frame at most: decoding is most of the time
+  Prompting prompting = Prompting::kAdaptive;
+  int grid_side = 14;            ///< of kGrid: points along each side of the image
+  int max_decoder_prompts = 30;  ///< of kAdaptive, a frame: decoding is most of the time
   int decoder_batch = 2;         ///< prompts decoded at once; between batches they are planned anew
 
   // Which proposals are masks at all.

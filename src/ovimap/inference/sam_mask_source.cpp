@@ -18,7 +18,17 @@ Entities SamMaskSource::entities(const Frame& frame, std::span<const MaskPrompt>
   const LogitGrid grid = logit_grid(features.frame, network_.input_size_px(), network_.grid_size(),
                                     frame.color.width(), frame.color.height());
   MaskPool pool(config_, grid);
-  PromptPlanner planner(config_, grid, prompts);
+  if (config_.prompting == Prompting::kGrid)
+    ask_on_grid(features, pool);
+  else
+    ask_where_unexplained(features, prompts, pool);
+  return pool.entities();
+}
+
+void SamMaskSource::ask_where_unexplained(const ImageFeatures& features,
+                                          std::span<const MaskPrompt> regions,
+                                          MaskPool& pool) const {
+  PromptPlanner planner(config_, pool.grid(), regions);
   for (int budget = config_.max_decoder_prompts; budget > 0;) {
     const std::vector<PlannedPrompt> batch =
         planner.next(pool, std::min(budget, config_.decoder_batch));
@@ -31,7 +41,16 @@ Entities SamMaskSource::entities(const Frame& frame, std::span<const MaskPrompt>
       if (!pool.offer(answers[i], planner.region_of(batch[i]), batch[i].boxed))
         planner.failed(batch[i]);
   }
-  return pool.entities();
+}
+
+void SamMaskSource::ask_on_grid(const ImageFeatures& features, MaskPool& pool) const {
+  const std::vector<PromptPoints> points =
+      grid_prompts(pool.grid().image_width_px, pool.grid().image_height_px, config_.grid_side);
+  const auto batch = static_cast<std::size_t>(config_.decoder_batch);
+  for (std::size_t first = 0; first < points.size(); first += batch) {
+    const auto chosen = std::span(points).subspan(first, std::min(batch, points.size() - first));
+    for (const MaskProposals& answer : network_.decode(features, chosen)) pool.offer(answer);
+  }
 }
 
 }  // namespace ovimap

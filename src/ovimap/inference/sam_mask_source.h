@@ -2,14 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "ovimap/inference/mask_pool.h"
 #include "ovimap/inference/mask_source.h"
 #include "ovimap/inference/sam_config.h"
 #include "ovimap/inference/sam_network.h"
 
 namespace ovimap {
 
-/// Entities from a promptable network, prompted adaptively: at geometric regions first, then
-/// wherever no accepted mask covers the image yet (method section 2).
+/// Entities from a promptable network (method section 2), prompted adaptively: at geometric regions
+/// first, then wherever no accepted mask covers the image yet. Or on a dense grid, which takes
+/// several times as long and is what the former is measured against.
 class SamMaskSource : public MaskSource {
  public:
   SamMaskSource(const ModelFolder& model, const SamConfig& config, const RuntimeConfig& runtime);
@@ -18,6 +20,10 @@ class SamMaskSource : public MaskSource {
   Entities entities(const Frame& frame, std::span<const MaskPrompt> prompts) override;
 
  private:
+  void ask_where_unexplained(const ImageFeatures& features, std::span<const MaskPrompt> regions,
+                             MaskPool& pool) const;
+  void ask_on_grid(const ImageFeatures& features, MaskPool& pool) const;
+
   SamNetwork network_;
   SamConfig config_;
 };

@@ -84,6 +84,18 @@ TEST_P(SamSignature, FindsThePatches) {
     EXPECT_EQ(entities.ids.at(x, y), table);
 }
 
+TEST_P(SamSignature, FindsThePatchesOnAGrid) {
+  SamConfig config = small_image_config();
+  config.prompting = Prompting::kGrid;
+  config.grid_side = 8;
+  SamMaskSource source(golden(GetParam()), config, {});
+  const Entities entities = source.entities(patches(), {});
+  ASSERT_EQ(entities.scores.size(), 3u);
+  EXPECT_EQ((std::set<std::uint16_t>{entities.ids.at(50, 20), entities.ids.at(34, 24),
+                                     entities.ids.at(21, 13)}),
+            (std::set<std::uint16_t>{1, 2, 3}));
+}
+
 INSTANTIATE_TEST_SUITE_P(Signatures, SamSignature,
                          testing::Values("batched", "sam", "sam2", "efficient"),
                          [](const auto& signature) { return std::string(signature.param); });

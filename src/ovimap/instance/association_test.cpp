@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
+#include "ovimap/instance/plain_association.h"
 #include "ovimap/map/label_slots.h"
 
 namespace ovimap {
@@ -23,7 +26,7 @@ class AssociateTest : public ::testing::Test {
 
   void hold(int begin, int end, Label label, int support = 1) {
     for (int x = begin; x < end; ++x) {
-      VoxelBlock& block = map_.block(surface_.at(x, 0).block());
+      VoxelBlock& block = map_.writable_block(surface_.at(x, 0).block());
       for (int i = 0; i < support; ++i)
         add_support(block, surface_.at(x, 0).voxel(), palette_position(block, label));
     }
@@ -50,6 +53,27 @@ TEST_F(AssociateTest, TakesTheLabelWithMostVotes) {
   const auto result = associate(cut({{0, 100}}), surface_, map_, config_);
   EXPECT_EQ(result[0].label, 3u);
   EXPECT_FALSE(result[0].founded);
+}
+
+TEST_F(AssociateTest, EqualsThePlainCount) {
+  std::mt19937 random(5);
+  const auto some = [&random](int limit) { return static_cast<int>(random() % limit); };
+  config_.association = AssociationRule::kArgmax;
+  for (int round = 0; round < 50; ++round) {
+    const int begin = some(kWidth);
+    hold(begin, std::min(kWidth, begin + some(80)), static_cast<Label>(1 + some(5)), 1 + some(3));
+    if (round == 25) map_.labels().merge(2, 4);
+    const Segments segments = cut({{0, 90}, {90, 100 + some(100)}, {230, 260}, {300, kWidth}});
+    const std::vector<Label> expected =
+        plain::argmax_labels(segments, surface_, map_, config_.assoc_min_votes);
+    const auto result = associate(segments, surface_, map_, config_);
+    for (std::size_t i = 0; i < result.size(); ++i) {
+      EXPECT_EQ(result[i].founded, expected[i] == kNoLabel);
+      if (!result[i].founded) {
+        EXPECT_EQ(result[i].label, expected[i]) << "round " << round;
+      }
+    }
+  }
 }
 
 TEST_F(AssociateTest, FoundsALabelWithoutEnoughVotes) {

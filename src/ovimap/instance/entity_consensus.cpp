@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <numeric>
 #include <queue>
 #include <tuple>
 
@@ -12,6 +13,8 @@
 namespace ovimap {
 
 namespace {
+
+using Node = std::uint32_t;  ///< place of a root among all roots in order
 
 /// How many super-points of a cluster an entity shows.
 struct Presence {
@@ -36,9 +39,20 @@ Cluster united(const Cluster& a, const Cluster& b) {
   return both;
 }
 
-/// Sum of joined - apart_weight * apart over all pairs with one super-point in each cluster.
-double weight_between(const Cluster& a, const Cluster& b, double apart_weight) {
-  std::int64_t joined = 0, met = 0;
+/// What the frames say of all pairs with one super-point in each of two clusters.
+struct Evidence {
+  std::int64_t joined = 0, met = 0;  ///< sums over pairs of frames; met: joined or apart
+
+  Evidence operator+(const Evidence& other) const {
+    return {joined + other.joined, met + other.met};
+  }
+  double weight(double apart_weight) const {
+    return static_cast<double>(joined) - apart_weight * static_cast<double>(met - joined);
+  }
+};
+
+Evidence evidence_between(const Cluster& a, const Cluster& b) {
+  Evidence sum;
   for (auto i = a.begin(), j = b.begin(); i != a.end() && j != b.end();) {
     const std::uint32_t frame = std::max(i->sighting.frame, j->sighting.frame);
     while (i != a.end() && i->sighting.frame < frame) ++i;
@@ -50,11 +64,11 @@ double weight_between(const Cluster& a, const Cluster& b, double apart_weight) {
       in_a += i->count;
       while (partner != b.end() && partner->sighting < i->sighting) ++partner;
       if (partner != b.end() && partner->sighting == i->sighting)
-        joined += std::int64_t{i->count} * partner->count;
+        sum.joined += std::int64_t{i->count} * partner->count;
     }
-    met += in_a * in_b;
+    sum.met += in_a * in_b;
   }
-  return static_cast<double>(joined) - apart_weight * static_cast<double>(met - joined);
+  return sum;
 }
 
 /// Greedy additive edge contraction. Edges are kept only between clusters that some entity joins:
@@ -62,93 +76,136 @@ double weight_between(const Cluster& a, const Cluster& b, double apart_weight) {
 class Contraction {
  public:
   Contraction(const EntitySightings& sightings, double apart_weight) : apart_weight_(apart_weight) {
-    std::map<EntitySighting, std::vector<Label>> shown;
     for (const auto& [root, seen] : sightings) {
-      Cluster& cluster = clusters_[root];
-      for (const EntitySighting& sighting : seen) {
-        cluster.push_back({sighting, 1});
-        shown[sighting].push_back(root);
-      }
+      roots_.push_back(root);
+      Cluster& cluster = clusters_.emplace_back();
+      for (const EntitySighting& sighting : seen) cluster.push_back({sighting, 1});
     }
-    for (const auto& [sighting, roots] : shown)
-      for (std::size_t i = 0; i < roots.size(); ++i)
-        for (std::size_t j = i + 1; j < roots.size(); ++j)
-          if (!edges_[roots[i]].contains(roots[j]))
-            set_edge(roots[i], roots[j],
-                     weight_between(clusters_.at(roots[i]), clusters_.at(roots[j]), apart_weight_));
+    edges_.resize(roots_.size());
+    into_.resize(roots_.size());
+    std::iota(into_.begin(), into_.end(), Node{0});
+    for (const auto& [a, b] : joined_pairs()) {
+      const Evidence evidence = evidence_between(clusters_[a], clusters_[b]);
+      edges_[a].push_back({b, evidence});  // pairs ascend, so both lists do
+      edges_[b].push_back({a, evidence});
+      enqueue(a, b, evidence);
+    }
   }
 
   void run() {
     while (!queue_.empty()) {
-      const auto [weight, a, b] = queue_.top();
+      const Queued next = queue_.top();
       queue_.pop();
       // Edges change while they wait: only one that still is what it was when queued counts.
-      const auto from = edges_.find(a);
-      if (from == edges_.end()) continue;
-      const auto edge = from->second.find(b);
-      if (edge != from->second.end() && edge->second == weight) contract(a, b);
+      const auto edge = find_edge(edges_[next.a], next.b);
+      if (edge != edges_[next.a].end() && edge->other == next.b &&
+          edge->evidence.weight(apart_weight_) == next.weight)
+        contract(next.a, next.b);
     }
   }
 
   std::map<Label, Label> objects() const {
     std::map<Label, Label> result;
-    for (const auto& [root, cluster] : clusters_) result[root] = root;
-    for (const auto& [drop, keep] : into_) result[drop] = object_of(keep);
+    for (Node node = 0; node < roots_.size(); ++node)
+      result.emplace_hint(result.end(), roots_[node], roots_[object_of(node)]);
     return result;
   }
 
  private:
-  using Edges = std::map<Label, double>;
-  using Queued = std::tuple<double, Label, Label>;
+  struct Edge {
+    Node other;
+    Evidence evidence;
+  };
+  using Edges = std::vector<Edge>;  // by other
 
-  /// Among equal weights the older labels go first.
-  struct Later {
-    bool operator()(const Queued& a, const Queued& b) const {
-      if (std::get<0>(a) != std::get<0>(b)) return std::get<0>(a) < std::get<0>(b);
-      return std::tie(std::get<1>(a), std::get<2>(a)) > std::tie(std::get<1>(b), std::get<2>(b));
+  struct Queued {
+    double weight;
+    Node a, b;  ///< a < b
+    /// Among equal weights the older labels go first.
+    bool operator<(const Queued& other) const {
+      return std::tie(weight, other.a, other.b) < std::tie(other.weight, a, b);
     }
   };
 
-  void set_edge(Label a, Label b, double weight) {
-    edges_[a][b] = edges_[b][a] = weight;
-    if (weight > 0) queue_.emplace(weight, std::min(a, b), std::max(a, b));
+  /// All pairs that some entity shows together, in order.
+  std::vector<std::pair<Node, Node>> joined_pairs() const {
+    std::vector<std::pair<EntitySighting, Node>> shown;
+    for (Node node = 0; node < clusters_.size(); ++node)
+      for (const Presence& presence : clusters_[node]) shown.emplace_back(presence.sighting, node);
+    std::sort(shown.begin(), shown.end());
+    std::vector<std::pair<Node, Node>> pairs;
+    for (std::size_t i = 0; i < shown.size(); ++i)
+      for (std::size_t j = i + 1; j < shown.size() && shown[j].first == shown[i].first; ++j)
+        pairs.emplace_back(shown[i].second, shown[j].second);
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    return pairs;
   }
 
-  double weight_to(const Edges& known, Label from, Label other) const {
-    const auto found = known.find(other);
-    return found != known.end()
-               ? found->second
-               : weight_between(clusters_.at(from), clusters_.at(other), apart_weight_);
+  static Edges::iterator find_edge(Edges& edges, Node other) {
+    return std::lower_bound(edges.begin(), edges.end(), other,
+                            [](const Edge& edge, Node node) { return edge.other < node; });
   }
 
-  void contract(Label keep, Label drop) {
-    Edges kept = std::move(edges_.at(keep)), dropped = std::move(edges_.at(drop));
-    edges_.erase(drop);
-    kept.erase(drop);
-    dropped.erase(keep);
-    edges_.at(keep).clear();
-    Edges sums;
-    for (const auto& [other, weight] : kept) sums[other] = weight + weight_to(dropped, drop, other);
-    for (const auto& [other, weight] : dropped) {
-      edges_.at(other).erase(drop);
-      if (!kept.contains(other)) sums[other] = weight + weight_to(kept, keep, other);
+  void enqueue(Node a, Node b, const Evidence& evidence) {
+    const double weight = evidence.weight(apart_weight_);
+    if (weight > 0) queue_.push({weight, std::min(a, b), std::max(a, b)});
+  }
+
+  /// Makes one cluster of two; their edges are added up.
+  void contract(Node keep, Node drop) {
+    const Edges sums = added_edges(keep, drop);
+    for (const Edge& edge : edges_[drop]) {
+      Edges& others = edges_[edge.other];
+      others.erase(find_edge(others, drop));
     }
-    for (const auto& [other, sum] : sums) set_edge(keep, other, sum);
-    clusters_.at(keep) = united(clusters_.at(keep), clusters_.at(drop));
+    Edges().swap(edges_[drop]);
+    for (const Edge& edge : sums) {
+      Edges& others = edges_[edge.other];
+      const auto found = find_edge(others, keep);
+      if (found != others.end() && found->other == keep)
+        found->evidence = edge.evidence;
+      else
+        others.insert(found, {keep, edge.evidence});
+      enqueue(keep, edge.other, edge.evidence);
+    }
+    edges_[keep] = sums;
+    clusters_[keep] = united(clusters_[keep], clusters_[drop]);
+    Cluster().swap(clusters_[drop]);
     into_[drop] = keep;
   }
 
-  Label object_of(Label label) const {
-    for (auto found = into_.find(label); found != into_.end(); found = into_.find(label))
-      label = found->second;
-    return label;
+  /// The edges of two clusters to others, as those of one. Where only one has an edge, what frames
+  /// say of the other one is counted now.
+  Edges added_edges(Node keep, Node drop) const {
+    const Edges &kept = edges_[keep], &dropped = edges_[drop];
+    Edges sums;
+    sums.reserve(kept.size() + dropped.size());
+    for (auto i = kept.begin(), j = dropped.begin(); i != kept.end() || j != dropped.end();) {
+      const bool in_kept = i != kept.end() && (j == dropped.end() || i->other <= j->other);
+      const bool in_dropped = j != dropped.end() && (i == kept.end() || j->other <= i->other);
+      const Node other = in_kept ? i->other : j->other;
+      if (other != keep && other != drop)
+        sums.push_back({other, (in_kept ? i->evidence : between(keep, other)) +
+                                   (in_dropped ? j->evidence : between(drop, other))});
+      i += in_kept, j += in_dropped;
+    }
+    return sums;
+  }
+
+  Evidence between(Node a, Node b) const { return evidence_between(clusters_[a], clusters_[b]); }
+
+  Node object_of(Node node) const {
+    while (into_[node] != node) node = into_[node];
+    return node;
   }
 
   double apart_weight_;
-  std::map<Label, Cluster> clusters_;
-  std::map<Label, Edges> edges_;
-  std::map<Label, Label> into_;
-  std::priority_queue<Queued, std::vector<Queued>, Later> queue_;
+  std::vector<Label> roots_;
+  std::vector<Cluster> clusters_;
+  std::vector<Edges> edges_;
+  std::vector<Node> into_;  ///< the cluster each went into; itself while it is one
+  std::priority_queue<Queued> queue_;
 };
 
 }  // namespace
@@ -181,9 +238,9 @@ std::map<Label, Label> EntityConsensus::objects() const {
   return graph.objects();
 }
 
-void EntityConsensus::restore(EntitySightings sightings) {
+void EntityConsensus::restore(EntitySightings sightings, std::uint32_t frames) {
   sightings_ = std::move(sightings);
-  frames_ = 0;
+  frames_ = frames;
   for (const auto& [root, seen] : sightings_)
     if (!seen.empty()) frames_ = std::max(frames_, seen.back().frame + 1);
 }

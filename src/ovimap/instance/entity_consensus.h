@@ -54,7 +54,9 @@ class EntityConsensus {
   std::map<Label, Label> objects() const;
 
   const EntitySightings& sightings() const { return sightings_; }
-  void restore(EntitySightings sightings);
+  std::uint32_t frames() const { return frames_; }
+  /// `frames`: how many were observed; more than the sightings tell when the last showed nothing.
+  void restore(EntitySightings sightings, std::uint32_t frames);
 
  private:
   ConsensusConfig config_;

@@ -108,7 +108,7 @@ TEST(EntityConsensus, MergedSuperPointsKeepTheirEvidence) {
 TEST(EntityConsensus, GoesOnWhereItStopped) {
   const std::vector<Frame> begun = {{{1, 7}, {2, 7}}, {{1, 7}, {2, 3}}};
   EntityConsensus whole = after(begun), resumed;
-  resumed.restore(whole.sightings());
+  resumed.restore(whole.sightings(), whole.frames());
   for (EntityConsensus* consensus : {&whole, &resumed}) consensus->observe({{1, 7}, {2, 3}});
   EXPECT_EQ(resumed.sightings(), whole.sightings());
   EXPECT_EQ(resumed.objects(), whole.objects());

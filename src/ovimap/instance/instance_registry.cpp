@@ -255,7 +255,8 @@ void InstanceRegistry::restore(State state) {
   records_ = std::move(state.records);
   aliases_ = std::move(state.aliases);
   merging_.restore(std::move(state.pair_counts));
-  consensus_.restore(std::move(state.entity_sightings));
+  consensus_.restore(std::move(state.entity_sightings),
+                     static_cast<std::uint32_t>(state.entity_frames));
   last_id_ = state.last_id;
 }
 

@@ -81,10 +81,17 @@ class InstanceRegistry {
     std::map<InstanceId, InstanceId> aliases;
     SuperPointMerging::PairCounts pair_counts;
     EntitySightings entity_sightings;
+    int entity_frames = 0;  ///< frames with entities; older maps do not tell
     InstanceId last_id = 0;
   };
   State state() const {
-    return {super_points_, records_, aliases_, merging_.counts(), consensus_.sightings(), last_id_};
+    return {super_points_,
+            records_,
+            aliases_,
+            merging_.counts(),
+            consensus_.sightings(),
+            static_cast<int>(consensus_.frames()),
+            last_id_};
   }
   void restore(State state);
 

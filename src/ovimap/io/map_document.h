@@ -54,6 +54,7 @@ struct MapRecord {
   std::string timings;      ///< of the run, a line "stage p50_ms p95_ms count" each; may be empty
   std::string source;       ///< where the frames came from
   int mask_frames = 0;      ///< frames with 2D masks
+  bool unfinished = false;  ///< a checkpoint: `instances`, `surfaces` and `up` are yet to be found
   std::string version;      ///< of the program that wrote the map
   std::uint64_t content_hash = 0;  ///< VoxelMap::content_hash; set by load_map, ignored by save_map
 };

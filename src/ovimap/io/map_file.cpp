@@ -21,7 +21,6 @@ namespace ovimap {
 namespace {
 
 using map_tables::kBlocks;
-using map_tables::kLabelForest;
 
 // Tiles in memory at a time between voxels and file, and how many a thread takes at once.
 constexpr std::size_t kTilesPerBatch = 256;
@@ -33,16 +32,6 @@ constexpr int kSchemaWithSemantics = 2;
 /// VoxelRef counts voxels in 32 bits.
 constexpr std::size_t kMostBlocks = VoxelRef::kNone / kBlockVoxels;
 
-void write_forest(SQLite::Database& database, const LabelForest& forest) {
-  Bytes roots;
-  roots.reserve(forest.roots().size() * 4);
-  for (Label root : forest.roots())
-    for (int i = 0; i < 4; ++i) roots.push_back(static_cast<std::uint8_t>(root >> 8 * i));
-  RowWriter rows(database, kLabelForest);
-  rows.insert(forest.epoch(), roots);
-  rows.finish();
-}
-
 void write_blocks(SQLite::Database& database, const VoxelMap& map) {
   const std::vector<Tile> tiles = tiles_of(map);
   RowWriter rows(database, kBlocks);
@@ -51,7 +40,8 @@ void write_blocks(SQLite::Database& database, const VoxelMap& map) {
     const std::size_t count = std::min(kTilesPerBatch, tiles.size() - first);
     parallel_for_ranges(count, kTilesPerTask, [&](std::size_t begin, std::size_t end) {
       TileEncoder encoder;
-      for (std::size_t i = begin; i < end; ++i) data[i] = encoder.encode(map, tiles[first + i]);
+      for (std::size_t i = begin; i < end; ++i)
+        data[i] = encoder.encode(blocks_of(map, tiles[first + i]));
     });
     for (std::size_t i = 0; i < count; ++i)
       rows.insert(tiles[first + i].key, tiles[first + i].present, stored_hash(data[i]), data[i]);
@@ -124,6 +114,7 @@ MapInfo read_info(SQLite::Database& database, const OpenMap& file) {
   info.config_text = std::move(record.config_text);
   info.frames = meta.frames;
   info.mask_frames = record.mask_frames;
+  info.unfinished = record.unfinished;
   info.instances = std::move(record.instances);
   info.hidden = std::move(record.hidden);
   info.locked = std::move(record.locked);
@@ -140,25 +131,12 @@ MapInfo read_info(SQLite::Database& database, const OpenMap& file) {
 
 }  // namespace
 
-LabelForest read_forest(SQLite::Database& database) {
-  std::vector<Label> roots;
-  std::uint32_t epoch = 0;
-  RowReader rows(database, kLabelForest);
-  while (rows.next()) {
-    epoch = rows.integer<std::uint32_t>();
-    const std::span<const std::uint8_t> bytes = rows.blob();
-    roots.assign(bytes.size() / 4, 0);
-    for (std::size_t i = 0; i < roots.size() * 4; ++i)
-      roots[i / 4] |= Label{bytes[i]} << 8 * (i % 4);
-  }
-  return LabelForest::from_roots(std::move(roots), epoch);
-}
-
 VoxelMap read_voxels(SQLite::Database& database, const MapMeta& meta, const LabelForest& forest) {
   VoxelMap map(meta.map_config);
   map.labels() = forest;
   read_blocks(database, meta.blocks, map);
-  if (map.content_hash() != meta.content_hash)
+  // Checkpoints have no hash over all voxels, which would take longer than they may.
+  if (!meta.unfinished && map.content_hash() != meta.content_hash)
     throw Error("its voxels are not those that were written");
   return map;
 }
@@ -171,8 +149,8 @@ MapMeta read_found(SQLite::Database& database, int schema, const LabelForest& fo
   for (const InstanceSummary& instance : record.instances)
     for (const Label label : instance.super_points)
       if (label == kNoLabel || label > forest.last_label())
-        throw Error(concat("table instance_super_points names label ", label,
-                           ", which was never given"));
+        throw Error(
+            concat("table instance_super_points names label ", label, ", which was never given"));
   read_frames(database, record);
   if (schema >= kSchemaWithSemantics) {
     record.semantics.appearances = read_appearances(database, record.semantics.encoder);

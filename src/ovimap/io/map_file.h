@@ -17,6 +17,7 @@ struct MapInfo {
   std::string version, source, config_text;  ///< as in MapRecord
   std::int64_t frames = 0;
   int mask_frames = 0;
+  bool unfinished = false;                 ///< a checkpoint of a run: without instances
   std::vector<InstanceSummary> instances;  ///< as people corrected them
   std::vector<InstanceSummary> hidden;     ///< objects that people hid; not in `instances`
   std::set<InstanceId> locked;             ///< objects that must stay as they are

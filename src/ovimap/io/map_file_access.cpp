@@ -87,6 +87,15 @@ bool has_log(const fs::path& path) {
   return fs::exists(with_suffix(path, "-wal")) || fs::exists(with_suffix(path, "-journal"));
 }
 
+void mark_as_map(SQLite::Database& database) {
+  database.exec(
+      concat("PRAGMA application_id = ", kApplicationId, "; PRAGMA user_version = ", kMapSchema));
+}
+
+void remove_sidecars(const fs::path& path) {
+  for (const char* sidecar : kSidecars) ::unlink(with_suffix(path, sidecar).c_str());
+}
+
 /// The file through a URI, for reading.
 std::string read_uri(const fs::path& path, bool immutable) {
   static constexpr std::string_view kHex = "0123456789abcdef";
@@ -210,6 +219,40 @@ fs::path writable_target(const fs::path& path) {
 
 }  // namespace
 
+std::unique_ptr<SQLite::Database> open_growing_map(const fs::path& path) {
+  auto database = std::make_unique<SQLite::Database>(path.string(),
+                                                     SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+  // A log written ahead: a transaction that is cut off never was.
+  database->exec(
+      "PRAGMA page_size = 4096; PRAGMA locking_mode = EXCLUSIVE; PRAGMA journal_mode = WAL; "
+      "PRAGMA synchronous = FULL");
+  mark_as_map(*database);
+  return database;
+}
+
+void remove_map(const fs::path& path) {
+  ::unlink(path.c_str());
+  remove_sidecars(path);
+}
+
+void reporting_write_faults(const fs::path& path, const SQLite::Database* database,
+                            const std::function<void()>& write) {
+  try {
+    write();
+  } catch (const SQLite::Exception& fault) {
+    const int code = fault.getErrorCode();
+    if (code == SQLITE_BUSY || code == SQLITE_LOCKED)
+      throw Error(concat("map '", path.string(),
+                         "' is in use by another program; try again when that is done"));
+    if (code == SQLITE_READONLY || code == SQLITE_CANTOPEN || code == SQLITE_PERM)
+      fail_to_write(path, EACCES);
+    const int error = database ? system_error(*database, fault) : 0;
+    if (error != 0) fail_to_write(path, error);
+    throw Error(
+        concat("cannot write map '", path.string(), "': ", fault.what(), "; choose another place"));
+  }
+}
+
 PendingMap::PendingMap(const fs::path& target)
     : target_(writable_target(target)), temporary_(temporary_beside(target_)) {
   const int descriptor = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -224,20 +267,15 @@ PendingMap::~PendingMap() {
 void PendingMap::write(const std::function<void(SQLite::Database&)>& fill) {
   // No journal and no waiting for the disk: until the commit the file is nobody's.
   SQLite::Database database(temporary_.string(), SQLite::OPEN_READWRITE);
-  try {
+  reporting_write_faults(target_, &database, [&] {
     database.exec(
         "PRAGMA page_size = 4096; PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF; "
         "PRAGMA locking_mode = EXCLUSIVE");
-    database.exec(
-        concat("PRAGMA application_id = ", kApplicationId, "; PRAGMA user_version = ", kMapSchema));
+    mark_as_map(database);
     SQLite::Transaction transaction(database);
     fill(database);
     transaction.commit();
-  } catch (const SQLite::Exception& fault) {
-    if (const int error = system_error(database, fault); error != 0) fail_to_write(target_, error);
-    throw Error(concat("cannot write map '", target_.string(), "': ", fault.what(),
-                       "; choose another place"));
-  }
+  });
 }
 
 void PendingMap::commit() {
@@ -245,7 +283,7 @@ void PendingMap::commit() {
   // A log left beside the old map would be taken for the new one's. It is settled first: should the
   // machine stop before the renaming, the old map must be whole without it.
   if (has_log(target_)) settle_log(target_);
-  for (const char* sidecar : kSidecars) ::unlink(with_suffix(target_, sidecar).c_str());
+  remove_sidecars(target_);
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail_to_write(target_, errno);
   // Some file systems cannot flush a folder; the map is whole either way.
   (void)flush(target_.parent_path(), O_RDONLY | O_DIRECTORY);

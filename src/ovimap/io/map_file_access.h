@@ -43,6 +43,19 @@ class DamagedMap : public Error {
 void read_as_map(const std::filesystem::path& path, SQLite::Database& database,
                  const std::function<void(SQLite::Database&)>& read);
 
+/// Creates a map file that grows in place, or opens it to go on, for this program alone. Every
+/// transaction is on disk when it is committed, and whole or not there at all whatever happens.
+/// SQLite's exceptions pass through; throws Error when the file is in use.
+std::unique_ptr<SQLite::Database> open_growing_map(const std::filesystem::path& path);
+
+/// Deletes a map file and SQLite's files beside it.
+void remove_map(const std::filesystem::path& path);
+
+/// Calls `write`; SQLite's exceptions become an Error that names the file, the reason and the
+/// remedy. `database` may be null.
+void reporting_write_faults(const std::filesystem::path& path, const SQLite::Database* database,
+                            const std::function<void()>& write);
+
 /// An existing map, opened for reading only; also from folders and media that cannot be written.
 /// Throws Error when there is none, or it is no ovimap map of a schema this program knows.
 class OpenMap {

@@ -19,6 +19,7 @@ constexpr int kCompressionLevel = 1;
 constexpr std::size_t kMaskBytes = kBlockVoxels / 8;
 constexpr std::size_t kPaletteLimit = 256;
 constexpr std::size_t kVoxelBytes = 24;
+constexpr int kTileBlocks = kTileSide * kTileSide * kTileSide;
 
 /// The order in which voxels are stored: a path through the block whose every step goes to a
 /// neighbour, so that the voxel before is a good prediction.
@@ -136,21 +137,20 @@ using LoadedPlace = Place<VoxelBlock>;
 
 /// Writes the blocks' heads (epochs, palettes, which voxels are stored) and lists the stored
 /// voxels.
-std::vector<SavedPlace> put_heads(const VoxelMap& map, const Tile& tile, Bytes& body) {
+std::vector<SavedPlace> put_heads(std::span<const VoxelBlock* const> blocks, Bytes& body) {
   std::vector<SavedPlace> places;
-  for (std::uint32_t slot : tile.slots) append(body, map.block(slot).forest_epoch, 4);
-  for (std::uint32_t slot : tile.slots)
-    append(body, static_cast<std::uint32_t>(map.block(slot).palette.size()), 2);
-  for (std::uint32_t slot : tile.slots)
-    for (Label label : map.block(slot).palette) append(body, label, 4);
-  for (std::uint32_t slot : tile.slots) {
-    const VoxelBlock& block = map.block(slot);
+  for (const VoxelBlock* block : blocks) append(body, block->forest_epoch, 4);
+  for (const VoxelBlock* block : blocks)
+    append(body, static_cast<std::uint32_t>(block->palette.size()), 2);
+  for (const VoxelBlock* block : blocks)
+    for (Label label : block->palette) append(body, label, 4);
+  for (const VoxelBlock* block : blocks) {
     const std::size_t mask = body.size();
     body.resize(mask + kMaskBytes);
     for (std::size_t i = 0; i < kBlockVoxels; ++i) {
-      if (!stored(block, kPath[i])) continue;
+      if (!stored(*block, kPath[i])) continue;
       body[mask + i / 8] = static_cast<std::uint8_t>(body[mask + i / 8] | 1u << i % 8);
-      places.push_back({&block, kPath[i]});
+      places.push_back({block, kPath[i]});
     }
   }
   return places;
@@ -202,17 +202,17 @@ std::string take_heads(HeadCursor& head, const Tile& tile, VoxelMap& map,
                        std::vector<LoadedPlace>& places) {
   if (!head.has(tile.slots.size() * 6)) return "its heads are cut off";
   for (std::uint32_t slot : tile.slots) {
-    map.block(slot).forest_epoch = head.take(4);
-    if (map.block(slot).forest_epoch > map.labels().epoch())
+    map.writable_block(slot).forest_epoch = head.take(4);
+    if (map.writable_block(slot).forest_epoch > map.labels().epoch())
       return "it is newer than the table of merged labels";
   }
   for (std::uint32_t slot : tile.slots) {
     const std::uint32_t size = head.take(2);
     if (size == 0 || size > kPaletteLimit) return concat("a palette cannot have ", size, " labels");
-    map.block(slot).palette.resize(size);
+    map.writable_block(slot).palette.resize(size);
   }
   for (std::uint32_t slot : tile.slots) {
-    std::vector<Label>& palette = map.block(slot).palette;
+    std::vector<Label>& palette = map.writable_block(slot).palette;
     if (!head.has(palette.size() * 4)) return "its palettes are cut off";
     for (Label& label : palette) {
       label = head.take(4);
@@ -224,7 +224,7 @@ std::string take_heads(HeadCursor& head, const Tile& tile, VoxelMap& map,
     if (!head.has(kMaskBytes)) return "its voxel masks are cut off";
     for (std::size_t i = 0; i < kBlockVoxels; i += 8)
       for (std::uint32_t bits = head.take(1), k = 0; bits != 0; bits >>= 1, ++k)
-        if (bits & 1) places.push_back({&map.block(slot), kPath[i + k]});
+        if (bits & 1) places.push_back({&map.writable_block(slot), kPath[i + k]});
   }
   return {};
 }
@@ -278,6 +278,13 @@ int bit_of(const BlockIndex& place) {
   return place.x() + kTileSide * (place.y() + kTileSide * place.z());
 }
 
+/// The way back from bit_of.
+BlockIndex block_in_tile(std::uint64_t key, int bit) {
+  const BlockIndex place(bit % kTileSide, bit / kTileSide % kTileSide,
+                         bit / (kTileSide * kTileSide));
+  return unpack_index(key) * kTileSide + place;
+}
+
 }  // namespace
 
 std::vector<Tile> tiles_of(const VoxelMap& map) {
@@ -304,6 +311,27 @@ std::vector<Tile> tiles_of(const VoxelMap& map) {
   return tiles;
 }
 
+std::uint64_t tile_key(const BlockIndex& block) {
+  return pack_index(tile_of(block));
+}
+
+Tile tile_at(const VoxelMap& map, std::uint64_t key) {
+  Tile tile{key, 0, {}};
+  for (int bit = 0; bit < kTileBlocks; ++bit) {
+    const std::uint32_t slot = map.find_slot(block_in_tile(key, bit));
+    if (slot == kNoBlock) continue;
+    tile.present |= std::uint64_t{1} << bit;
+    tile.slots.push_back(slot);
+  }
+  return tile;
+}
+
+std::vector<const VoxelBlock*> blocks_of(const VoxelMap& map, const Tile& tile) {
+  std::vector<const VoxelBlock*> blocks;
+  for (const std::uint32_t slot : tile.slots) blocks.push_back(&map.block(slot));
+  return blocks;
+}
+
 bool valid_tile_key(std::uint64_t key) {
   constexpr int kLimit = (1 << 20) / kTileSide;  // pack_index takes block indices of 21 bits
   const BlockIndex tile = unpack_index(key);
@@ -312,13 +340,8 @@ bool valid_tile_key(std::uint64_t key) {
 
 Tile create_tile(VoxelMap& map, std::uint64_t key, std::uint64_t present) {
   Tile tile{key, present, {}};
-  const BlockIndex first = unpack_index(key) * kTileSide;
-  for (int bit = 0; bit < kTileSide * kTileSide * kTileSide; ++bit) {
-    if ((present >> bit & 1) == 0) continue;
-    const BlockIndex place(bit % kTileSide, bit / kTileSide % kTileSide,
-                           bit / (kTileSide * kTileSide));
-    tile.slots.push_back(map.find_or_create(first + place));
-  }
+  for (int bit = 0; bit < kTileBlocks; ++bit)
+    if (present >> bit & 1) tile.slots.push_back(map.find_or_create(block_in_tile(key, bit)));
   return tile;
 }
 
@@ -326,9 +349,9 @@ TileEncoder::TileEncoder()
     : context_(ZSTD_createCCtx(), [](ZSTD_CCtx* context) { ZSTD_freeCCtx(context); }) {}
 TileEncoder::~TileEncoder() = default;
 
-Bytes TileEncoder::encode(const VoxelMap& map, const Tile& tile) {
+Bytes TileEncoder::encode(std::span<const VoxelBlock* const> blocks) {
   body_.clear();
-  const std::vector<SavedPlace> places = put_heads(map, tile, body_);
+  const std::vector<SavedPlace> places = put_heads(blocks, body_);
   std::size_t supports = 0;
   for (const auto [block, v] : places)
     for (const auto& slot : block->label) supports += slot[v] != 0;

@@ -30,19 +30,25 @@ struct Tile {
 /// All tiles with blocks, ascending by key.
 std::vector<Tile> tiles_of(const VoxelMap& map);
 
+/// Key of the tile that a block belongs to.
+std::uint64_t tile_key(const BlockIndex& block);
+/// The tile of that key as the map has it now.
+Tile tile_at(const VoxelMap& map, std::uint64_t key);
+std::vector<const VoxelBlock*> blocks_of(const VoxelMap& map, const Tile& tile);
+
 /// Whether blocks of such a tile have indices that can be packed.
 bool valid_tile_key(std::uint64_t key);
 
 /// Creates the blocks of a tile, empty.
 Tile create_tile(VoxelMap& map, std::uint64_t key, std::uint64_t present);
 
-/// Turns the blocks of a tile into bytes (docs/map-format.md, "Tiles"). Keeps its buffers between
-/// calls; one per thread.
+/// Turns the blocks of a tile, in the order of their bits, into bytes (docs/map-format.md,
+/// "Tiles"). Keeps its buffers between calls; one per thread.
 class TileEncoder {
  public:
   TileEncoder();
   ~TileEncoder();
-  Bytes encode(const VoxelMap& map, const Tile& tile);
+  Bytes encode(std::span<const VoxelBlock* const> blocks);
 
  private:
   std::unique_ptr<ZSTD_CCtx_s, void (*)(ZSTD_CCtx_s*)> context_;

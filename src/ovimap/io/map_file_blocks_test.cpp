@@ -19,7 +19,7 @@ VoxelMap through_tiles(const VoxelMap& map) {
   TileDecoder decoder;
   for (const Tile& tile : tiles_of(map)) {
     const Tile fresh = create_tile(result, tile.key, tile.present);
-    EXPECT_EQ(decoder.decode(encoder.encode(map, tile), fresh, result), "");
+    EXPECT_EQ(decoder.decode(encoder.encode(blocks_of(map, tile)), fresh, result), "");
   }
   return result;
 }
@@ -73,7 +73,7 @@ TEST(MapFileBlocks, ExtremeBlocksReturnBitForBit) {
   VoxelMap map;
   for (int i = 0; i < 300; ++i) map.labels().create();
   (void)map.find_or_create({0, 0, 0});  // empty
-  VoxelBlock& full = map.block(map.find_or_create({1, 0, 0}));
+  VoxelBlock& full = map.writable_block(map.find_or_create({1, 0, 0}));
   for (Label label = 1; label < 256; ++label) full.palette.push_back(label);
   for (std::size_t v = 0; v < kBlockVoxels; ++v) {
     full.tsdf[v] = v % 2 == 0 ? std::numeric_limits<std::int16_t>::min()
@@ -85,7 +85,7 @@ TEST(MapFileBlocks, ExtremeBlocksReturnBitForBit) {
     for (auto& slot : full.support) slot[v] = v % 256 == 255 ? 0 : 0xffff;
   }
   VoxelBlock& lone =
-      map.block(map.find_or_create({2, 0, 0}));  // one voxel, known by its colour alone
+      map.writable_block(map.find_or_create({2, 0, 0}));  // one voxel, known by its colour alone
   lone.color[2][511] = 1;
   EXPECT_TRUE(same_voxels(map, through_tiles(map)));
 }
@@ -95,7 +95,7 @@ TEST(MapFileBlocks, ExtremeBlocksReturnBitForBit) {
 class TileBody : public ::testing::Test {
  protected:
   TileBody() : map_(random_map(40, 7)), tile_(tiles_of(map_)[1]) {
-    const Bytes data = TileEncoder().encode(map_, tile_);
+    const Bytes data = TileEncoder().encode(blocks_of(map_, tile_));
     body_.resize(std::size_t{1} << 20);
     body_.resize(ZSTD_decompress(body_.data(), body_.size(), data.data(), data.size()));
   }

@@ -84,7 +84,7 @@ inline VoxelMap random_map(int block_count, std::uint32_t seed) {
                          static_cast<int>(random() % 12) - 6);
   for (const BlockIndex& index : indices) {
     if (map.find(index) != nullptr) continue;
-    fill_randomly(map.block(map.find_or_create(index)), map.labels(), random);
+    fill_randomly(map.writable_block(map.find_or_create(index)), map.labels(), random);
   }
   return map;
 }

@@ -6,9 +6,6 @@
 
 namespace ovimap {
 
-/// Which labels are merged.
-LabelForest read_forest(SQLite::Database& database);
-
 /// Everything that mapping found but the voxels, and the log of corrections. Throws Error with a
 /// phrase when the file does not hold what was written.
 MapMeta read_found(SQLite::Database& database, int schema, const LabelForest& forest,

@@ -27,6 +27,9 @@ void list_meta(MapRecord& record, VoxelMapConfig& map_config, ConfigFields& fiel
   fields.add("timings", record.timings, "how long the stages of a frame took");
   fields.add("mask_frames", record.mask_frames, 0, std::numeric_limits<int>::max(),
              "frames with 2D masks");
+  fields.add("entity_frames", record.registry.entity_frames, 0, std::numeric_limits<int>::max(),
+             "frames that entity_sightings counts");
+  fields.add("unfinished", record.unfinished, "the map is a checkpoint of a run");
   fields.group("up", [&](ConfigFields& up) {
     up.add("x", record.up.x(), -1.f, 1.f, "away from the ground, in the world");
     up.add("y", record.up.y(), -1.f, 1.f, "away from the ground, in the world");
@@ -73,6 +76,8 @@ void write_meta(SQLite::Database& database, const MapRecord& record, const MapMe
   plain.config_text = record.config_text;
   plain.timings = record.timings;
   plain.mask_frames = record.mask_frames;
+  plain.registry.entity_frames = record.registry.entity_frames;
+  plain.unfinished = record.unfinished;
   plain.up = record.up;
   plain.depth_camera = record.depth_camera;
   plain.instance_config = record.instance_config;
@@ -203,6 +208,30 @@ void write_record(SQLite::Database& database, const MapRecord& record, const Map
   write_registry(database, record.registry);
 }
 
+void write_forest(SQLite::Database& database, const LabelForest& forest) {
+  Bytes roots;
+  roots.reserve(forest.roots().size() * 4);
+  for (Label root : forest.roots())
+    for (int i = 0; i < 4; ++i) roots.push_back(static_cast<std::uint8_t>(root >> 8 * i));
+  RowWriter rows(database, kLabelForest);
+  rows.insert(forest.epoch(), roots);
+  rows.finish();
+}
+
+LabelForest read_forest(SQLite::Database& database) {
+  std::vector<Label> roots;
+  std::uint32_t epoch = 0;
+  RowReader rows(database, kLabelForest);
+  while (rows.next()) {
+    epoch = rows.integer<std::uint32_t>();
+    const std::span<const std::uint8_t> bytes = rows.blob();
+    roots.assign(bytes.size() / 4, 0);
+    for (std::size_t i = 0; i < roots.size() * 4; ++i)
+      roots[i / 4] |= Label{bytes[i]} << 8 * (i % 4);
+  }
+  return LabelForest::from_roots(std::move(roots), epoch);
+}
+
 MapMeta read_meta(SQLite::Database& database, MapRecord& record) {
   std::map<std::string, std::string> texts;
   RowReader rows(database, kMeta);
@@ -223,6 +252,7 @@ MapMeta read_meta(SQLite::Database& database, MapRecord& record) {
   meta.content_hash =
       parse_number(texts, "content_hash", 16, std::numeric_limits<std::uint64_t>::max());
   record.content_hash = meta.content_hash;
+  meta.unfinished = record.unfinished;
   return meta;
 }
 

@@ -19,7 +19,8 @@ struct MapMeta {
   VoxelMapConfig map_config;
   std::int64_t frames = 0;
   std::uint64_t blocks = 0;
-  std::uint64_t content_hash = 0;
+  std::uint64_t content_hash = 0;  ///< 0 when unfinished
+  bool unfinished = false;         ///< as in MapRecord
 };
 
 /// Where objects are described: as mapping found them, and as people corrected them.
@@ -34,6 +35,10 @@ inline constexpr InstanceTables kCorrectedInstanceTables{map_tables::kCorrectedI
 
 /// Writes everything of a map but its blocks and its forest of labels.
 void write_record(SQLite::Database& database, const MapRecord& record, const MapMeta& meta);
+
+/// Which labels are merged.
+void write_forest(SQLite::Database& database, const LabelForest& forest);
+LabelForest read_forest(SQLite::Database& database);
 
 /// The parts of the way back. Each fills its part of `record` and throws Error with a phrase when
 /// the file does not hold what was written.

@@ -44,6 +44,16 @@ void drop_table(SQLite::Database& database, const MapTable& table) {
   check.exec();
 }
 
+void write_check(SQLite::Database& database, const MapTable& table, std::int64_t rows,
+                 std::int64_t hash) {
+  create(database, map_tables::kChecks);
+  SQLite::Statement check(database, insert_sql(map_tables::kChecks));
+  check.bind(1, table.name);
+  check.bind(2, rows);
+  check.bind(3, hash);
+  check.exec();
+}
+
 std::int64_t stored_hash(std::span<const std::uint8_t> bytes) {
   return static_cast<std::int64_t>(XXH64(bytes.data(), bytes.size(), 0));
 }
@@ -120,12 +130,7 @@ void RowWriter::end_row() {
 }
 
 void RowWriter::finish() {
-  create(database_, map_tables::kChecks);
-  SQLite::Statement check(database_, insert_sql(map_tables::kChecks));
-  check.bind(1, table_.name);
-  check.bind(2, hash_.rows());
-  check.bind(3, hash_.sum());
-  check.exec();
+  write_check(database_, table_, hash_.rows(), hash_.sum());
 }
 
 void verify_table(SQLite::Database& database, const MapTable& table) {

@@ -154,6 +154,10 @@ void verify_table(SQLite::Database& database, const MapTable& table);
 /// Removes a table and its check, if it is there.
 void drop_table(SQLite::Database& database, const MapTable& table);
 
+/// Writes the check of a table whose rows were written by hand.
+void write_check(SQLite::Database& database, const MapTable& table, std::int64_t rows,
+                 std::int64_t hash);
+
 /// Creates a table and inserts rows into it. SQLite's exceptions pass through.
 class RowWriter {
  public:

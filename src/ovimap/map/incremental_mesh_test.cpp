@@ -79,7 +79,7 @@ TEST(IncrementalMesh, EqualsTheWholeMeshOnARandomField) {
   std::uint32_t seed = 5;
   for (int i = 0; i < 27; ++i) {
     slots.push_back(map.find_or_create({i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1}));
-    VoxelBlock& block = map.block(slots.back());
+    VoxelBlock& block = map.writable_block(slots.back());
     for (std::size_t v = 0; v < kBlockVoxels; ++v) {
       seed = seed * 1664525u + 1013904223u;
       block.tsdf[v] = static_cast<std::int16_t>(seed >> 16);
@@ -112,7 +112,7 @@ TEST(IncrementalMesh, VersionsTellWhatChanged) {
 TEST(IncrementalMesh, AVanishedSurfaceLeavesNoPatch) {
   VoxelMap map;
   const std::uint32_t slot = map.find_or_create({0, 0, 0});
-  VoxelBlock& block = map.block(slot);
+  VoxelBlock& block = map.writable_block(slot);
   block.weight.fill(1.f);
   block.tsdf.fill(100);
   block.tsdf[static_cast<std::size_t>(voxel_offset(4, 4, 4))] = -100;

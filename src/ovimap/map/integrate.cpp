@@ -19,7 +19,7 @@ std::vector<std::uint32_t> update_blocks(VoxelMap& map, const Observation& obser
       allocate_blocks(map, observation.depth, observation.camera, observation.world_from_camera);
   const FusionView view(map.config(), observation);
   parallel_for(slots.size(), kBlocksPerTask, [&](std::size_t i) {
-    VoxelBlock& block = map.block(slots[i]);
+    VoxelBlock& block = map.writable_block(slots[i]);
     resolve_labels(block, map.labels());
     update(view, block);
   });

@@ -41,7 +41,7 @@ VoxelMap random_map(std::uint32_t seed) {
   for (int z = 0; z < 2; ++z)
     for (int y = 0; y < 2; ++y)
       for (int x = 0; x < 2; ++x) {
-        VoxelBlock& block = map.block(map.find_or_create({x, y, z}));
+        VoxelBlock& block = map.writable_block(map.find_or_create({x, y, z}));
         for (int v = 0; v < kBlockVoxels; ++v) {
           seed = seed * 1664525u + 1013904223u;
           const bool border = (x * 8 + (v & 7)) % 15 == 0 || (y * 8 + (v >> 3 & 7)) % 15 == 0 ||

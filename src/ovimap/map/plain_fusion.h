@@ -99,8 +99,8 @@ inline void integrate(VoxelMap& map, const Observation& observation) {
   const FusionView view(map.config(), observation);
   for (const std::uint32_t slot :
        allocate_blocks(map, observation.depth, observation.camera, observation.world_from_camera)) {
-    resolve_labels(map.block(slot), map.labels());
-    VoxelFusion(view, map.block(slot)).fuse();
+    resolve_labels(map.writable_block(slot), map.labels());
+    VoxelFusion(view, map.writable_block(slot)).fuse();
   }
 }
 

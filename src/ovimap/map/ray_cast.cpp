@@ -63,36 +63,46 @@ class RayMarcher {
   }
 
  private:
-  /// Narrows a crossing between two ranges by interpolated distances (false position).
+  /// Distance to the surface at a place of a ray, metres, and how it changes along the ray.
+  struct Sample {
+    float distance_m, slope;
+  };
+
+  /// The crossing between two ranges: first by the distances of the voxels there, then by
+  /// interpolated distances and slopes (Newton). Voxels' own distances are off by up to half a
+  /// voxel, so it may lie a little outside. Within one cell a step needs no second look.
   Hit refine(const Eigen::Vector3f& direction, float front, float front_distance, float back,
              float back_distance) {
     const VoxelRef behind = finder_.ref();
-    float crossing = front;
+    float crossing = front + (back - front) * front_distance / (front_distance - back_distance);
     for (int step = 0; step < kRefinements; ++step) {
-      crossing = front + (back - front) * front_distance / (front_distance - back_distance);
-      const std::optional<float> distance = interpolate(origin_ + direction * crossing);
-      if (!distance || std::fabs(*distance) < kCloseEnough * voxel_) break;
-      if (*distance > 0.f)
-        front = crossing, front_distance = *distance;
-      else
-        back = crossing, back_distance = *distance;
+      const std::optional<Sample> at = interpolate(origin_ + direction * crossing, direction);
+      if (!at || at->slope >= 0.f) break;
+      const float moved = std::clamp(-at->distance_m / at->slope, -voxel_, voxel_);
+      crossing += moved;
+      if (std::fabs(moved) < kCloseEnough * voxel_) break;
     }
     const bool found = finder_.seek(Eigen::Vector3f(origin_ + direction * crossing));
     return {crossing, found ? finder_.ref() : behind};
   }
 
-  /// Trilinear distance, metres; that of the nearest voxel when one of the eight was never
-  /// observed; nullopt when that is so itself.
-  std::optional<float> interpolate(const Eigen::Vector3f& point) {
+  /// Trilinear; nullopt when one of the eight voxels was never observed.
+  std::optional<Sample> interpolate(const Eigen::Vector3f& point,
+                                    const Eigen::Vector3f& direction) {
     const Eigen::Vector3f grid = point.array() * inverse_voxel_ - 0.5f;
     const Eigen::Vector3i low = floor_to_int(grid);
     const Eigen::Vector3f share = grid - low.cast<float>();
-    float corners[8];
-    if (!read_cell(low, corners)) return nearest(point);
-    for (int axis = 0, width = 1; axis < 3; ++axis, width *= 2)
-      for (int i = 0; i < 8; i += 2 * width)
-        corners[i] += share[axis] * (corners[i + width] - corners[i]);
-    return corners[0];
+    float value[8], slope[8] = {};  // of corners, edges, faces, then of the point
+    if (!read_cell(low, value)) return std::nullopt;
+    for (int axis = 0, width = 1; axis < 3; ++axis, width *= 2) {
+      const float moving = direction[axis] * inverse_voxel_;
+      for (int i = 0; i < 8; i += 2 * width) {
+        const float rise = value[i + width] - value[i];
+        slope[i] += share[axis] * (slope[i + width] - slope[i]) + moving * rise;
+        value[i] += share[axis] * rise;
+      }
+    }
+    return Sample{value[0], slope[0]};
   }
 
   /// Distances of the eight voxels from `low` upwards; false when one was never observed.
@@ -113,11 +123,6 @@ class RayMarcher {
     return true;
   }
 
-  std::optional<float> nearest(const Eigen::Vector3f& point) {
-    if (!finder_.seek(point) || !finder_.observed()) return std::nullopt;
-    return finder_.distance_m();
-  }
-
   /// Distance along the ray to the far side of the empty block, or of the empty cube of blocks, at
   /// `point`, where the finder is.
   float leap(const Eigen::Vector3f& point, const Eigen::Vector3f& inverse_direction) const {
@@ -135,7 +140,7 @@ class RayMarcher {
   }
 
   static constexpr int kRefinements = 3;
-  static constexpr float kCloseEnough = 0.05f;  // voxels
+  static constexpr float kCloseEnough = 0.5f;  ///< voxels; a shorter step of Newton is the last
   VoxelFinder finder_;
   Eigen::Vector3f origin_;
   float unobserved_step_;  ///< shorter than the band in front of a surface, so none is stepped over

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
+#include "ovimap/map/plain_ray_cast.h"
 #include "ovimap/map/sphere_fixture.h"
 #include "ovimap/map/surface_lookup.h"
 
@@ -55,6 +58,59 @@ TEST_F(RayCastTest, SensorDepthGuidesWithoutChangingTheAnswer) {
       EXPECT_NEAR(guided.depth.at(x, y), marched.depth.at(x, y), 0.008f);
       EXPECT_EQ(guided.labels.at(x, y), marched.labels.at(x, y));
     }
+}
+
+/// How often two projections disagree, among the pixels where either has a surface.
+struct Disagreement {
+  int surface = 0, one_sided = 0, depth = 0, label = 0;
+
+  Disagreement(const Projection& a, const Projection& b, float tolerance_m) {
+    for (std::size_t i = 0; i < a.depth.size(); ++i) {
+      if (a.depth[i] <= 0.f && b.depth[i] <= 0.f) continue;
+      ++surface;
+      if (a.depth[i] <= 0.f || b.depth[i] <= 0.f)
+        ++one_sided;
+      else if (std::fabs(a.depth[i] - b.depth[i]) > tolerance_m)
+        ++depth;
+      else
+        label += a.labels[i] != b.labels[i];
+    }
+  }
+};
+
+TEST_F(RayCastTest, AgreesWithThePlainMarch) {
+  for (const double azimuth : {0.1, 1.3, 2.9}) {
+    const Pose pose = scene_.pose(azimuth);
+    const Disagreement found(cast_rays(map_, scene_.camera, pose, 5.f),
+                             plain::cast_rays(map_, scene_.camera, pose, 5.f), 0.001f);
+    EXPECT_GT(found.surface, 3000);
+    // Rays that graze the rim may miss what the other march just meets.
+    EXPECT_LE(found.one_sided, found.surface / 30);
+    EXPECT_LE(found.depth, found.surface / 30);
+    EXPECT_LE(found.label, found.surface / 200);
+  }
+}
+
+TEST(RayCast, AgreesWithThePlainMarchOnNoisyDepth) {
+  const SphereScene scene;
+  VoxelMap map;
+  const Label label = map.labels().create();
+  std::mt19937 random(3);
+  std::normal_distribution<float> noise(0.f, 0.01f);
+  for (int view = 0; view < 6; ++view) {
+    DepthImage depth = scene.depth();
+    for (float& d : depth) d = d > 0.f && random() % 10 != 0 ? d + noise(random) : 0.f;
+    const IdImage segments(depth.width(), depth.height(), 1);
+    const std::array<Label, 1> labels{label};
+    integrate(map,
+              {depth, scene.camera, scene.pose(0.2 * view), nullptr, nullptr, &segments, labels});
+  }
+  const Pose pose = scene.pose(0.5);
+  const Disagreement found(cast_rays(map, scene.camera, pose, 5.f),
+                           plain::cast_rays(map, scene.camera, pose, 5.f), 0.005f);
+  EXPECT_GT(found.surface, 3000);
+  EXPECT_LE(found.one_sided, found.surface / 20);
+  EXPECT_LE(found.depth, found.surface / 20);
 }
 
 TEST(RayCast, EmptyMapIsNothingAndEnds) {

@@ -3,6 +3,7 @@
 #include "ovimap/map/voxel_map.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <xxhash.h>
 
@@ -79,6 +80,29 @@ std::uint32_t VoxelMap::find_or_create(const BlockIndex& index) {
     blocks_.back()->forest_epoch = labels_.epoch();
   }
   return slot;
+}
+
+std::vector<const VoxelBlock*> VoxelMap::freeze(std::span<const std::uint32_t> slots) {
+  OVIMAP_ASSERT(frozen_.empty());
+  frozen_.assign(blocks_.size(), 0);
+  kept_.resize(blocks_.size());
+  std::vector<const VoxelBlock*> blocks;
+  blocks.reserve(slots.size());
+  for (const std::uint32_t slot : slots) {
+    frozen_[slot] = 1;
+    blocks.push_back(blocks_[slot].get());
+  }
+  return blocks;
+}
+
+void VoxelMap::thaw() {
+  frozen_.clear();
+  kept_.clear();
+}
+
+void VoxelMap::replace_frozen(std::uint32_t slot) {
+  frozen_[slot] = 0;
+  kept_[slot] = std::exchange(blocks_[slot], std::make_unique<VoxelBlock>(*blocks_[slot]));
 }
 
 std::vector<std::uint32_t> VoxelMap::ordered_slots() const {

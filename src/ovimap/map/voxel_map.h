@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include <tsl/robin_map.h>
@@ -89,7 +90,18 @@ class VoxelMap {
   }
 
   const VoxelBlock& block(std::uint32_t slot) const { return *blocks_[slot]; }
-  VoxelBlock& block(std::uint32_t slot) { return *blocks_[slot]; }
+  /// To change it. Threads may ask for different slots at the same time.
+  VoxelBlock& writable_block(std::uint32_t slot) {
+    if (slot < frozen_.size() && frozen_[slot]) replace_frozen(slot);
+    return *blocks_[slot];
+  }
+
+  /// Until `thaw`, these blocks stay as they are where the returned pointers lead: the map goes on
+  /// with a copy of each block that it writes to. So they can be stored beside the mapping. Not
+  /// while blocks are frozen already.
+  std::vector<const VoxelBlock*> freeze(std::span<const std::uint32_t> slots);
+  /// Frees what `freeze` kept.
+  void thaw();
 
   /// Slot of the block at `index`, created when absent.
   std::uint32_t find_or_create(const BlockIndex& index);
@@ -116,6 +128,7 @@ class VoxelMap {
   };
   using RegionPositions = tsl::robin_map<std::uint64_t, std::uint32_t, KeyHash>;
   BlockRegion& find_or_create_region(const BlockIndex& region);
+  void replace_frozen(std::uint32_t slot);
 
   VoxelMapConfig config_;
   float metres_per_unit_;
@@ -123,6 +136,9 @@ class VoxelMap {
   std::vector<std::unique_ptr<BlockRegion>> regions_;
   RegionPositions region_positions_;  ///< in regions_, by packed index
   LabelForest labels_;
+  std::vector<std::uint8_t> frozen_;  ///< by slot; empty: none is
+  /// By slot as well: frozen blocks that were written to since, as they were.
+  std::vector<std::unique_ptr<VoxelBlock>> kept_;
 };
 
 /// Block that holds the point.

@@ -39,7 +39,7 @@ TEST(VoxelMap, ContentHashIgnoresCreationOrderAndSeesEveryVoxel) {
   b.find_or_create({1, 0, 0});
   b.find_or_create({0, 0, 0});
   EXPECT_EQ(a.content_hash(), b.content_hash());
-  b.block(0).tsdf[511] = 1;
+  b.writable_block(0).tsdf[511] = 1;
   EXPECT_NE(a.content_hash(), b.content_hash());
 }
 

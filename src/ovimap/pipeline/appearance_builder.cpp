@@ -15,6 +15,45 @@ void list_fields(SemanticsConfig& config, ConfigFields& fields) {
   fields.group("embedding", [&](ConfigFields& f) { list_fields(config.queue, f); });
 }
 
+namespace {
+
+/// Gives a view what the encoder answered. Views drawn at random may yet be thrown out: which crops
+/// stay is settled in the end.
+void fill_view(ObjectView& view, EmbeddingAnswer answer, const SemanticsConfig& config,
+               Appearance& appearance) {
+  view.embedding = std::move(answer.embedding);
+  view.crop = std::move(answer.crop);
+  if (config.views.strategy != ViewStrategy::kRandom)
+    prune_crops(appearance, config.crops.kept_views);
+}
+
+ObjectView* find_view(Appearance& appearance, std::uint64_t ticket) {
+  const auto found = std::find_if(appearance.views.begin(), appearance.views.end(),
+                                  [&](const ObjectView& view) { return view.ticket == ticket; });
+  return found == appearance.views.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+PendingAppearances::PendingAppearances(
+    Appearances appearances, const std::unordered_map<std::uint64_t, InstanceId>& asked_for,
+    const SemanticsConfig& config)
+    : config_(config), appearances_(std::move(appearances)) {
+  for (const auto& [ticket, id] : asked_for) open_.insert(ticket);
+  for (const auto& [id, appearance] : appearances_)
+    for (const ObjectView& view : appearance.views)
+      if (asked_for.contains(view.ticket)) owners_[view.ticket] = id;
+}
+
+void PendingAppearances::apply(const EmbeddingAnswer& answer) {
+  if (open_.erase(answer.ticket) == 0) return;  // asked later
+  const auto owner = owners_.find(answer.ticket);
+  if (owner == owners_.end()) return;  // a better view had taken its place
+  Appearance& appearance = appearances_.at(owner->second);
+  if (ObjectView* view = find_view(appearance, answer.ticket))
+    fill_view(*view, answer, config_, appearance);
+}
+
 AppearanceBuilder::AppearanceBuilder(const SemanticsConfig& config,
                                      std::shared_ptr<ImageTextEncoder> encoder)
     : config_(config),
@@ -44,24 +83,22 @@ void AppearanceBuilder::finish(const InstanceRegistry& registry) {
   for (auto& [id, appearance] : appearances_) prune_crops(appearance, config_.crops.kept_views);
 }
 
+std::shared_ptr<PendingAppearances> AppearanceBuilder::remember() {
+  return remembered_ = std::make_shared<PendingAppearances>(appearances_, asked_for_, config_);
+}
+
 void AppearanceBuilder::apply(std::vector<EmbeddingAnswer> answers,
                               const InstanceRegistry& registry) {
   follow_merges(appearances_, registry);
   for (EmbeddingAnswer& answer : answers) {
     if (encoder_) durations_ms_.push_back(answer.milliseconds);
+    if (remembered_) remembered_->apply(answer);
     const InstanceId asked = asked_for_.extract(answer.ticket).mapped();
     const auto owner = appearances_.find(registry.resolve(asked));
     if (owner == appearances_.end()) continue;
-    auto& views = owner->second.views;
-    const auto view = std::find_if(views.begin(), views.end(), [&](const ObjectView& candidate) {
-      return candidate.ticket == answer.ticket;
-    });
-    if (view == views.end()) continue;  // a better one took its place meanwhile
-    view->embedding = std::move(answer.embedding);
-    view->crop = std::move(answer.crop);
-    // Views drawn at random may yet be thrown out: which crops stay is settled in the end.
-    if (config_.views.strategy != ViewStrategy::kRandom)
-      prune_crops(owner->second, config_.crops.kept_views);
+    ObjectView* view = find_view(owner->second, answer.ticket);
+    if (!view) continue;  // a better one took its place meanwhile
+    fill_view(*view, std::move(answer), config_, owner->second);
   }
 }
 

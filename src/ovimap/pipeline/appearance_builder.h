@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -20,6 +21,26 @@ struct SemanticsConfig {
   EmbeddingQueueConfig queue;
 };
 void list_fields(SemanticsConfig& config, ConfigFields& fields);
+
+/// What objects look like at one moment of the mapping, some of it still with the encoder.
+class PendingAppearances {
+ public:
+  /// `asked_for`: the open tickets.
+  PendingAppearances(Appearances appearances,
+                     const std::unordered_map<std::uint64_t, InstanceId>& asked_for,
+                     const SemanticsConfig& config);
+
+  void apply(const EmbeddingAnswer& answer);
+  /// Whether the encoder has answered all of it.
+  bool complete() const { return open_.empty(); }
+  Appearances take() { return std::move(appearances_); }
+
+ private:
+  SemanticsConfig config_;
+  Appearances appearances_;
+  std::unordered_map<std::uint64_t, InstanceId> owners_;  ///< of views with open tickets
+  std::unordered_set<std::uint64_t> open_;                ///< tickets
+};
 
 /// Gathers what objects look like while a map is built: chooses views, cuts them out, has them
 /// embedded beside the mapping, and follows the registry's merges. What comes out does not depend
@@ -41,6 +62,12 @@ class AppearanceBuilder {
   /// All that was gathered; call finish() first.
   Appearances take() { return std::move(appearances_); }
 
+  /// The present moment, to be stored: what the encoder answers later still comes to it while views
+  /// are chosen. One at a time.
+  std::shared_ptr<PendingAppearances> remember();
+  /// Goes on where another builder stopped.
+  void restore(Appearances appearances) { appearances_ = std::move(appearances); }
+
   /// What the encoder took for each view since the last call.
   std::vector<double> take_durations_ms() { return std::exchange(durations_ms_, {}); }
 
@@ -56,6 +83,7 @@ class AppearanceBuilder {
   Appearances appearances_;
   std::vector<EmbeddingRequest> chosen_;
   std::unordered_map<std::uint64_t, InstanceId> asked_for_;  ///< open tickets
+  std::shared_ptr<PendingAppearances> remembered_;
   std::vector<double> durations_ms_;
   EmbeddingQueue queue_;
 };

@@ -124,6 +124,11 @@ void LiveMapper::prepare_frames() {
   prepared_.close();
 }
 
+void LiveMapper::restore(MapDocument&& document) {
+  frames_ = document.frames;
+  mapper_->restore(std::move(document));
+}
+
 // ------------------------------------------------------------------------------------------ fusing
 
 void LiveMapper::fuse_frames() {
@@ -164,6 +169,7 @@ void LiveMapper::fuse(Prepared prepared) {
     begin("views");
     mapper_->look_at_objects(frame, Mapper::Encoder::kRunOn);
   }
+  if (after_frame) after_frame(*mapper_, frames_, frame.depth_camera);
   const std::lock_guard lock(mutex_);
   ++statistics_.frames_fused;
   statistics_.views_skipped += look && no_time;
@@ -185,6 +191,7 @@ void LiveMapper::apply_masks(Prepared late) {
       entry.labelled = true;
       break;
     }
+  if (after_frame) after_frame(*mapper_, frames_, late.frame->frame->depth_camera);
   const std::lock_guard lock(mutex_);
   ++statistics_.mask_frames;
   ++statistics_.masks_late;

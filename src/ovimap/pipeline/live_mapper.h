@@ -57,6 +57,9 @@ class LiveMapper {
   /// Waits for room instead. Throws what a stage threw.
   void push_and_wait(Frame frame);
 
+  /// Goes on where a stored map stopped, made with the same config. Before the first push only.
+  void restore(MapDocument&& document);
+
   /// Waits until everything pushed is in the map, with its masks and embeddings; then no more
   /// frames are taken. Throws what a stage threw.
   void drain();
@@ -73,6 +76,9 @@ class LiveMapper {
 
   /// Called by every stage before it works, on its thread. For tests; set before the first push.
   std::function<void(const char* stage)> before_stage;
+  /// Called after every frame and every change of labels, on the fusing thread, with all frames so
+  /// far. For checkpoints; set before the first push. What it throws ends the run.
+  std::function<void(Mapper&, const std::vector<FrameLogEntry>&, const PinholeCamera&)> after_frame;
 
  private:
   using Clock = std::chrono::steady_clock;

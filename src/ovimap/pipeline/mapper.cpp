@@ -116,6 +116,15 @@ int Mapper::look_at_objects(const Frame& frame, Encoder encoder) {
   return chosen;
 }
 
+void Mapper::restore(MapDocument&& document) {
+  OVIMAP_ASSERT(frames_ == 0);
+  map_ = std::move(document.map);
+  registry_.restore(std::move(document.registry));
+  builder_->restore(std::move(document.semantics.appearances));
+  frames_ = static_cast<int>(document.frames.size());
+  mask_frames_ = document.mask_frames;
+}
+
 void Mapper::finish() {
   {
     auto t = timers_.measure("await_encoder");
@@ -136,12 +145,21 @@ InstanceView Mapper::project(const Frame& frame) {
       surface_voxels(map_, frame.depth, frame.depth_camera, frame.world_from_camera);
   Projection seen = cast_rays_with_depth(map_, frame.depth, voxels, frame.depth_camera,
                                          frame.world_from_camera, config_.max_range_m);
-  const std::vector<InstanceId> instance_of = registry_.instance_table(map_.labels());
-  InstanceView view{std::move(seen.depth),
-                    Image<InstanceId>(frame.depth.width(), frame.depth.height())};
-  for (std::size_t i = 0; i < seen.labels.size(); ++i)
-    view.instances[i] = instance_of[seen.labels[i]];
-  return view;
+  return {std::move(seen.depth), instances_of(seen.labels)};
+}
+
+/// Asks the registry once per label in sight: a frame shows a few of the map's labels.
+Image<InstanceId> Mapper::instances_of(const Image<Label>& labels) const {
+  constexpr InstanceId kUnasked = ~InstanceId{0};
+  const LabelForest& forest = map_.labels();
+  std::vector<InstanceId> known(forest.roots().size(), kUnasked);
+  Image<InstanceId> instances(labels.width(), labels.height());
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    InstanceId& id = known[labels[i]];
+    if (id == kUnasked) id = registry_.instance_of(forest.root(labels[i]));
+    instances[i] = id;
+  }
+  return instances;
 }
 
 }  // namespace ovimap

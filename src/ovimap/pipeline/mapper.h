@@ -8,6 +8,7 @@
 #include "ovimap/frames/frame.h"
 #include "ovimap/inference/mask_source.h"
 #include "ovimap/instance/instance_registry.h"
+#include "ovimap/io/map_document.h"
 #include "ovimap/map/ray_cast.h"
 #include "ovimap/map/voxel_map.h"
 #include "ovimap/pipeline/appearance_builder.h"
@@ -65,6 +66,12 @@ class Mapper {
   /// The map seen from a frame's depth camera, guided by its depth (method section 8).
   InstanceView project(const Frame& frame);
 
+  /// What objects look like now, to be stored (AppearanceBuilder::remember).
+  std::shared_ptr<PendingAppearances> remember_appearances() { return builder_->remember(); }
+  /// Goes on where the mapper of a stored map stopped, which had the same config; on a fresh mapper
+  /// only.
+  void restore(MapDocument&& document);
+
   /// Waits until every chosen view is embedded. Throws what the encoder threw.
   void finish();
   /// What the objects look like; waits likewise. Call once, after the last frame.
@@ -74,6 +81,7 @@ class Mapper {
   /// Null when there is none.
   const std::shared_ptr<ImageTextEncoder>& encoder() const { return builder_->encoder(); }
   const VoxelMap& map() const { return map_; }
+  VoxelMap& map() { return map_; }
   VoxelMap take_map() && { return std::move(map_); }
   const InstanceRegistry& registry() const { return registry_; }
   const StageTimers& timers() const { return timers_; }
@@ -86,6 +94,7 @@ class Mapper {
  private:
   std::vector<SegmentAssociation> find_labels(const PreparedFrame& prepared,
                                               const FrameSegments* cut);
+  Image<InstanceId> instances_of(const Image<Label>& labels) const;
   FrameReport observe(const Frame& frame, const FrameSegments* cut,
                       std::span<const SegmentAssociation> associations);
 

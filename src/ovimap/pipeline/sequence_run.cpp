@@ -57,12 +57,13 @@ std::vector<Pose> poses_of(const std::vector<FrameLogEntry>& frames) {
 }
 
 SequenceResult run_sequence(const FrameSource& source, const std::vector<std::int64_t>& positions,
-                            Mapper& mapper, const SequenceProgress& progress) {
+                            Mapper& mapper, const SequenceProgress& progress, SequenceResult begun,
+                            Checkpointer* checkpoints) {
   const auto start = std::chrono::steady_clock::now();
   const auto read = [&source](std::int64_t position) {
     return std::async(std::launch::async, [&source, position] { return source.read(position); });
   };
-  SequenceResult result;
+  SequenceResult result = std::move(begun);
   std::future<FrameRead> next;
   if (!positions.empty()) next = read(positions[0]);
   for (std::size_t i = 0; i < positions.size(); ++i) {
@@ -78,6 +79,7 @@ SequenceResult run_sequence(const FrameSource& source, const std::vector<std::in
       if (result.frames.empty()) result.depth_camera = frame.depth_camera;
       result.frames.push_back(
           {frame.index, frame.timestamp_s, frame.name, frame.world_from_camera, report.labelled});
+      if (checkpoints) checkpoints->after_frame(mapper, result.frames, result.depth_camera);
     } else {
       result.skipped.push_back({positions[i], current.fault});
     }

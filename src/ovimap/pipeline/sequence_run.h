@@ -9,6 +9,7 @@
 
 #include "ovimap/frames/frame_source.h"
 #include "ovimap/io/map_document.h"
+#include "ovimap/pipeline/checkpointer.h"
 #include "ovimap/pipeline/mapper.h"
 
 namespace ovimap {
@@ -36,8 +37,10 @@ using SequenceProgress =
 /// throws.
 /// Throws Error as well when every frame has the same pose (unless
 /// MapperConfig::allow_still_camera).
+/// `begun`: what an earlier run did that this one goes on with. `checkpoints` may be null.
 SequenceResult run_sequence(const FrameSource& source, const std::vector<std::int64_t>& positions,
-                            Mapper& mapper, const SequenceProgress& progress = nullptr);
+                            Mapper& mapper, const SequenceProgress& progress = nullptr,
+                            SequenceResult begun = {}, Checkpointer* checkpoints = nullptr);
 
 /// The fault that most skipped frames have, by the first of them.
 std::string commonest_fault(const std::vector<SkippedFrame>& skipped);

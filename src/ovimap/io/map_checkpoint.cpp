@@ -1,0 +1,135 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/io/map_checkpoint.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include "ovimap/base/error.h"
+#include "ovimap/io/map_edit_log.h"
+#include "ovimap/io/map_file_access.h"
+#include "ovimap/io/map_file_blocks.h"
+#include "ovimap/io/map_file_record.h"
+#include "ovimap/io/map_file_rows.h"
+#include "ovimap/io/map_file_semantics.h"
+
+namespace ovimap {
+
+namespace {
+
+using map_tables::kBlocks;
+
+/// The check of a row of `blocks`.
+std::uint64_t row_hash(std::int64_t key, std::int64_t present, std::int64_t hash,
+                       std::span<const std::uint8_t> data) {
+  TableHash row;
+  row.add(key);
+  row.add(present);
+  row.add(hash);
+  row.add(data);
+  row.end_row();
+  return static_cast<std::uint64_t>(row.sum());
+}
+
+/// Everything but voxels is small, and written anew.
+void clear_all_but_blocks(SQLite::Database& database) {
+  std::vector<std::string> names;
+  SQLite::Statement tables(database,
+                           "SELECT name FROM sqlite_master WHERE type = 'table' AND name != ?");
+  tables.bind(1, kBlocks.name);
+  while (tables.executeStep()) names.push_back(tables.getColumn(0).getString());
+  for (const std::string& name : names) database.exec(concat("DELETE FROM ", name));
+}
+
+}  // namespace
+
+std::filesystem::path checkpoint_path(const std::filesystem::path& map) {
+  std::filesystem::path path = map;
+  return path += ".partial";
+}
+
+bool holds_checkpoint(const std::filesystem::path& path) {
+  if (!std::filesystem::exists(path)) return false;
+  bool found = false;
+  reporting_write_faults(path, nullptr, [&] {
+    SQLite::Database database(path.string(), SQLite::OPEN_READWRITE);
+    found = database.tableExists(map_tables::kMeta.name);
+  });
+  return found;
+}
+
+CheckpointFile::CheckpointFile(std::filesystem::path path, Start start) : path_(std::move(path)) {
+  reporting_write_faults(path_, nullptr, [&] { open(start); });
+}
+CheckpointFile::~CheckpointFile() = default;
+CheckpointFile::CheckpointFile(CheckpointFile&&) noexcept = default;
+
+void CheckpointFile::open(Start start) {
+  if (start == Start::kAnew) remove_map(path_);
+  database_ = open_growing_map(path_);
+  database_->exec(concat("CREATE TABLE IF NOT EXISTS ", kBlocks.name, " (", kBlocks.definition,
+                         ") ", kBlocks.options));
+  if (start == Start::kGoOn) note_stored_tiles();
+}
+
+void CheckpointFile::note_stored_tiles() {
+  SQLite::Statement rows(*database_, "SELECT tile, present, hash, data FROM blocks");
+  while (rows.executeStep()) {
+    const SQLite::Column data = rows.getColumn(3);
+    const std::int64_t key = rows.getColumn(0).getInt64();
+    row_hashes_[static_cast<std::uint64_t>(key)] =
+        row_hash(key, rows.getColumn(1).getInt64(), rows.getColumn(2).getInt64(),
+                 {static_cast<const std::uint8_t*>(data.getBlob()),
+                  static_cast<std::size_t>(data.getBytes())});
+  }
+}
+
+void CheckpointFile::write(const MapCheckpoint& checkpoint) {
+  reporting_write_faults(path_, database_.get(), [&] {
+    SQLite::Transaction transaction(*database_);
+    clear_all_but_blocks(*database_);
+    const MapMeta meta{checkpoint.map_config,
+                       static_cast<std::int64_t>(checkpoint.record.frames.size()),
+                       checkpoint.blocks, 0, true};
+    write_record(*database_, checkpoint.record, meta);
+    write_semantics(*database_, checkpoint.record);
+    write_surfaces(*database_, checkpoint.record.surfaces);
+    write_forest(*database_, checkpoint.labels);
+    if (!checkpoint.record.edits.empty()) write_edits(*database_, checkpoint.record.edits);
+    write_tiles(checkpoint.tiles);
+    transaction.commit();
+  });
+}
+
+void CheckpointFile::write_tiles(std::span<const ChangedTile> tiles) {
+  SQLite::Statement insert(
+      *database_, "INSERT OR REPLACE INTO blocks (tile, present, hash, data) VALUES (?, ?, ?, ?)");
+  TileEncoder encoder;
+  for (const ChangedTile& tile : tiles) {
+    const Bytes data = encoder.encode(tile.blocks);
+    const auto key = static_cast<std::int64_t>(tile.key),
+               present = static_cast<std::int64_t>(tile.present);
+    const std::int64_t hash = stored_hash(data);
+    insert.bind(1, key);
+    insert.bind(2, present);
+    insert.bind(3, hash);
+    insert.bindNoCopy(4, data.data(), static_cast<int>(data.size()));
+    insert.exec();
+    insert.reset();
+    row_hashes_[tile.key] = row_hash(key, present, hash, data);
+  }
+  const std::uint64_t sum =
+      std::accumulate(row_hashes_.begin(), row_hashes_.end(), std::uint64_t{0},
+                      [](std::uint64_t total, const auto& entry) { return total + entry.second; });
+  write_check(*database_, kBlocks, static_cast<std::int64_t>(row_hashes_.size()),
+              static_cast<std::int64_t>(sum));
+}
+
+void CheckpointFile::remove() {
+  database_.reset();
+  remove_map(path_);
+}
+
+}  // namespace ovimap

@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <future>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "ovimap/io/map_checkpoint.h"
+#include "ovimap/pipeline/mapper.h"
+
+namespace ovimap {
+
+struct CheckpointConfig {
+  float seconds = 10;  ///< between checkpoints; 0: time makes none
+  int frames = 0;      ///< between checkpoints; 0: their number makes none
+};
+void list_fields(CheckpointConfig& config, ConfigFields& fields);
+
+/// Stores a map while it is made, beside the mapping: what changed since the last time is frozen in
+/// a moment (VoxelMap::freeze) and written by another thread while the mapper goes on. One
+/// checkpoint at a time; when the disk is slow there are fewer.
+class Checkpointer {
+ public:
+  /// What does not change from one checkpoint to the next.
+  struct Header {
+    std::string source, config_text;          ///< as in MapRecord
+    std::size_t frames = 0;                   ///< that the map already has
+    std::map<InstanceId, std::string> names;  ///< what people gave it
+    MapEdits edits;                           ///< likewise
+  };
+  /// Opens nothing before the first checkpoint is due. `go_on`: the map was loaded from `path`.
+  Checkpointer(std::filesystem::path path, const CheckpointConfig& config, Header header,
+               CheckpointFile::Start start);
+  /// Waits for what is being written.
+  ~Checkpointer();
+
+  /// Call after every frame and every change of labels. Throws Error when the checkpoint before
+  /// could not be written; the one before that stays.
+  void after_frame(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
+                   const PinholeCamera& depth_camera);
+  /// The map is saved: no checkpoint is needed any more.
+  void remove();
+
+ private:
+  bool due(std::size_t frames) const;
+  void note_changes(const Mapper& mapper);
+  void begin(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
+             const PinholeCamera& depth_camera);
+  void freeze_changes(VoxelMap& map);
+  void go_on_writing(Mapper& mapper);
+
+  std::filesystem::path path_;
+  CheckpointConfig config_;
+  Header header_;
+  CheckpointFile::Start start_;
+  std::optional<CheckpointFile> file_;
+  std::set<std::uint64_t> changed_;  ///< keys of tiles, since the last checkpoint
+  std::chrono::steady_clock::time_point last_;
+  std::size_t last_frames_;
+
+  // The checkpoint under way.
+  std::optional<MapCheckpoint> next_;
+  std::shared_ptr<PendingAppearances> looks_;  ///< of next_, until the encoder has answered
+  std::future<void> writing_;                  ///< valid while next_ is being written
+};
+
+}  // namespace ovimap

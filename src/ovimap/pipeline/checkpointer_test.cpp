@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/pipeline/checkpointer.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "ovimap/frames/sequence_fixture.h"
+#include "ovimap/image/codec.h"
+#include "ovimap/io/map_file.h"
+#include "ovimap/pipeline/desk_fixture.h"
+#include "ovimap/pipeline/sequence_run.h"
+#include "ovimap/semantics/color_encoder_fixture.h"
+
+namespace ovimap {
+namespace {
+
+namespace fs = std::filesystem;
+
+MapperConfig small_views() {
+  MapperConfig config;
+  config.view_interval = 1;
+  config.mask_interval = 2;
+  config.semantics.views.min_mask_px = 20;
+  config.semantics.views.min_first_depth_px = config.semantics.views.min_depth_px = 10;
+  config.semantics.views.min_frames_seen = 1;
+  config.semantics.queue.capacity = 3;
+  return config;
+}
+
+class CheckpointerTest : public ::testing::Test {
+ protected:
+  Mapper mapper() const {
+    return Mapper(small_views(), std::make_shared<DeskMasks>(), std::make_shared<ColorEncoder>());
+  }
+
+  Checkpointer checkpointer(int frames, CheckpointFile::Start start, std::size_t done = 0) const {
+    return Checkpointer(partial_, {0.f, frames}, {"desk", "a: 1\n", done}, start);
+  }
+
+  /// The bytes of the finished map.
+  Bytes finish(Mapper&& mapper, const SequenceResult& sequence) const {
+    MapDocument document = make_document(std::move(mapper), sequence, "desk", "a: 1\n");
+    document.timings.clear();
+    save_map(folder_.path() / "map.ovimap", document);
+    return read_file(folder_.path() / "map.ovimap");
+  }
+
+  /// What a run does until it is killed after `frames` frames.
+  void begin(int frames) const {
+    Mapper begun = mapper();
+    Checkpointer checkpoints = checkpointer(2, CheckpointFile::Start::kAnew);
+    run_sequence(
+        scene_, positions({}, scene_.size()), begun,
+        [&](std::size_t done, std::size_t, const FrameReport*) {
+          return static_cast<int>(done) < frames;
+        },
+        {}, &checkpoints);
+  }
+
+  /// ... and what the run does that resumes it.
+  Bytes resume() const {
+    MapDocument document = load_map(partial_);
+    SequenceResult sequence;
+    sequence.frames = document.frames;
+    sequence.depth_camera = document.depth_camera;
+    Mapper resumed = mapper();
+    resumed.restore(std::move(document));
+    Checkpointer checkpoints =
+        checkpointer(3, CheckpointFile::Start::kGoOn, sequence.frames.size());
+    std::vector<std::int64_t> left;
+    for (std::int64_t i = sequence.frames.back().index + 1; i < scene_.size(); ++i)
+      left.push_back(i);
+    sequence = run_sequence(scene_, left, resumed, nullptr, std::move(sequence), &checkpoints);
+    const Bytes map = finish(std::move(resumed), sequence);
+    checkpoints.remove();
+    return map;
+  }
+
+  DeskScene scene_;
+  fixture::TemporaryFolder folder_;
+  fs::path partial_ = checkpoint_path(folder_.path() / "map.ovimap");
+};
+
+TEST_F(CheckpointerTest, AResumedRunEndsAsIfNeverInterrupted) {
+  Mapper whole = mapper();
+  const SequenceResult sequence = run_sequence(scene_, positions({}, scene_.size()), whole);
+  const Bytes expected = finish(std::move(whole), sequence);
+  for (const int frames : {3, 6, 9, DeskScene::kFrames}) {
+    begin(frames);
+    ASSERT_TRUE(holds_checkpoint(partial_)) << frames;
+    EXPECT_EQ(resume(), expected) << "killed after " << frames << " frames";
+    EXPECT_FALSE(fs::exists(partial_));
+  }
+}
+
+TEST_F(CheckpointerTest, CheckpointsDoNotChangeTheMap) {
+  Mapper plain = mapper(), watched = mapper();
+  const SequenceResult sequence = run_sequence(scene_, positions({}, scene_.size()), plain);
+  Checkpointer checkpoints = checkpointer(1, CheckpointFile::Start::kAnew);
+  run_sequence(scene_, positions({}, scene_.size()), watched, nullptr, {}, &checkpoints);
+  EXPECT_EQ(finish(std::move(plain), sequence), finish(std::move(watched), sequence));
+}
+
+TEST_F(CheckpointerTest, ACheckpointThatCannotBeWrittenEndsTheRun) {
+  Mapper begun = mapper();
+  Checkpointer checkpoints(folder_.path() / "nowhere" / "map.partial", {0.f, 1}, {}, {});
+  try {
+    run_sequence(scene_, positions({}, scene_.size()), begun, nullptr, {}, &checkpoints);
+    FAIL() << "12 checkpoints, and none failed";
+  } catch (const Error& fault) {
+    EXPECT_NE(std::string(fault.what()).find("map.partial"), std::string::npos) << fault.what();
+  }
+}
+
+}  // namespace
+}  // namespace ovimap
