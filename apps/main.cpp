@@ -34,6 +34,7 @@ constexpr Entry kCommands[] = {
     {"reembed", "give a map's objects the embeddings of another encoder", add_reembed},
     {"embed", "embeddings for a finished mesh with instance ids", add_embed},
     {"report", "write a map as one HTML page: pictures, objects, timings", add_report},
+    {"serve", "show a map in a browser, and to programs over HTTP", add_serve},
     {"models", "list, verify and find networks", add_models},
     {"config", "list every setting with its default", add_config},
 };
