@@ -19,12 +19,19 @@ struct ServeOptions {
   ServerConfig server;
   ServedMapConfig served;
   std::string viewer = "auto";
-  bool json = false;
+  bool no_limits = false, json = false;
 };
 
 std::filesystem::path viewer_folder(const std::string& option) {
   if (option != "auto") return option == "none" ? "" : option;
   return find_viewer(std::filesystem::read_symlink("/proc/self/exe"));
+}
+
+/// Connections and sizes stay limited.
+void lift_limits(ServerConfig& config) {
+  constexpr double kMany = 1e9;
+  config.requests_per_second = config.request_burst = kMany;
+  config.work_per_second = config.work_burst = kMany;
 }
 
 void announce(const ServeOptions& options, const HttpServer& server) {
@@ -48,6 +55,7 @@ int serve(ServeOptions options) {
   ServerConfig& config = options.server;
   if (config.token.empty() && !is_loopback(config.host)) config.token = random_token();
   config.viewer = viewer_folder(options.viewer);
+  if (options.no_limits) lift_limits(config);
   ServedMap map(options.map, options.served);
   HttpServer server(map, config);
   watch_for_interrupt();
@@ -90,6 +98,8 @@ Action add_serve(CLI::App& command) {
   add_model_dirs(command, options->served.model_dirs);
   command.add_option("--threads", options->served.threads, "threads to use; 0: all cores")
       ->check(CLI::Range(0, 1024));
+  command.add_flag("--no-limits", options->no_limits,
+                   "answer as often as one asks: for tests, and where everybody is trusted");
   command.add_flag("--json", options->json, "print one JSON object once the map can be reached");
   return [options] { return serve(*options); };
 }

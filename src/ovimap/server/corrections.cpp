@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/server/corrections.h"
 
+#include <algorithm>
 #include <array>
 
 #include "ovimap/base/error.h"
@@ -11,6 +12,7 @@ namespace ovimap {
 
 namespace {
 
+constexpr std::size_t kLongestName = 200;  // bytes
 constexpr std::array<const char*, 5> kNames = {"rename", "merge", "hide", "lock", "delete"};
 
 class MapFileNames : public CorrectionStore {
@@ -34,6 +36,15 @@ class MapFileNames : public CorrectionStore {
 };
 
 }  // namespace
+
+void check_name(const std::string& name) {
+  if (name.size() > kLongestName)
+    throw Error(
+        concat("a name of ", name.size(), " bytes is too long; ", kLongestName, " are allowed"));
+  if (std::any_of(name.begin(), name.end(),
+                  [](unsigned char letter) { return letter < 0x20 || letter == 0x7f; }))
+    throw Error("a name must not hold control characters such as line breaks; leave them out");
+}
 
 const char* correction_name(CorrectionKind kind) {
   return kNames[static_cast<std::size_t>(kind)];

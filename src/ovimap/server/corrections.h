@@ -27,6 +27,9 @@ struct Correction {
   bool on = true;       ///< hide, lock: false takes it back
 };
 
+/// Throws Error for a name that is too long or holds control characters.
+void check_name(const std::string& name);
+
 /// Where corrections are kept. Calls come one at a time.
 class CorrectionStore {
  public:

@@ -94,7 +94,7 @@ std::vector<std::string> texts_field(const json& body, const char* name) {
 
 HttpReply show_instance(const ServedMap& map, const HttpRequest& request) {
   const InstanceId id = instance_of(request);
-  if (!map.index().find(id))
+  if (!map.snapshot()->index().find(id))
     return fault(404, concat("the map has no object ", id, "; GET /api/instances lists them"));
   return json_reply(instance_detail_json(map, id));
 }
@@ -130,7 +130,7 @@ HttpReply answer_query(const ServedMap& map, const HttpRequest& request) {
   question.query.text = text.value_or("");
   if (map.snapshot()->search == SearchState::kUnavailable)
     return fault(409, "this map cannot be searched: " + map.snapshot()->why_no_search);
-  return json_reply(answer_json(map, map.ask(question)));
+  return json_reply(answer_json(map.ask(question)));
 }
 
 int level_of(const std::string& text, int status) {
@@ -179,8 +179,14 @@ HttpReply correct(ServedMap& map, const HttpRequest& request) {
     return fault(501, concat("this map cannot keep a '", *name,
                              "' yet; GET /api/map lists under "
                              "'corrections' what it keeps"));
-  if (!map.index().find(*instance)) return fault(404, concat("the map has no object ", *instance));
-  map.correct(correction);
+  if (!map.snapshot()->index().find(*instance))
+    return fault(404, concat("the map has no object ", *instance));
+  check_name(correction.name);
+  try {
+    map.correct(correction);
+  } catch (const Error& error) {  // the request is sound; the file is not as it should be
+    return fault(409, error.what());
+  }
   return json_reply({{"version", map.snapshot()->version}});
 }
 

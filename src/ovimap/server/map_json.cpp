@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <span>
 
 #include <nlohmann/json.hpp>
 
@@ -49,18 +50,25 @@ json heat_ramp() {
   return ramp;
 }
 
-json guesses_of(const MapSnapshot& now, std::size_t position) {
+std::span<const ClassGuess> guesses_of(const MapSnapshot& now, InstanceId id) {
+  if (!now.guesses) return {};
+  const auto found = now.guesses->of_object.find(id);
+  if (found == now.guesses->of_object.end()) return {};
+  return found->second;
+}
+
+json guesses_json(const MapSnapshot& now, InstanceId id) {
   json list = json::array();
-  if (!now.guesses) return list;
-  for (const ClassGuess& guess : now.guesses->of_object[position])
+  for (const ClassGuess& guess : guesses_of(now, id))
     list.push_back(
         {{"name", now.guesses->set.labels[guess.label].name}, {"cosine", number(guess.score)}});
   return list;
 }
 
-json class_of(const MapSnapshot& now, std::size_t position) {
-  if (!now.guesses || now.guesses->of_object[position].empty()) return nullptr;
-  const ClassLabel& label = now.guesses->set.labels[now.guesses->of_object[position][0].label];
+json class_of(const MapSnapshot& now, InstanceId id) {
+  const auto guesses = guesses_of(now, id);
+  if (guesses.empty()) return nullptr;
+  const ClassLabel& label = now.guesses->set.labels[guesses.front().label];
   return {{"id", label.id},
           {"name", label.name},
           {"color", color(instance_color(static_cast<std::uint32_t>(label.id)))}};
@@ -81,8 +89,8 @@ json instance_json(const MapSnapshot& now, std::size_t position) {
   const InstanceSummary& instance = now.record->instances[position];
   return {{"id", instance.id},
           {"name", now.name_of(instance.id)},
-          {"guesses", guesses_of(now, position)},
-          {"class", class_of(now, position)},
+          {"guesses", guesses_json(now, instance.id)},
+          {"class", class_of(now, instance.id)},
           {"color", color(instance_color(instance.id))},
           {"box", box(instance.box)},
           {"centroid", point(instance.centroid)},
@@ -91,8 +99,8 @@ json instance_json(const MapSnapshot& now, std::size_t position) {
           {"crops", crops_of(now, instance.id)}};
 }
 
-std::size_t position_of(const ServedMap& map, InstanceId id) {
-  if (const auto position = map.index().find(id)) return *position;
+std::size_t position_of(const MapSnapshot& now, InstanceId id) {
+  if (const auto position = now.index().find(id)) return *position;
   throw Error(concat("the map has no object ", id, "; GET /api/instances lists those it has"));
 }
 
@@ -121,7 +129,7 @@ json camera_json(const PinholeCamera& camera) {
 
 json map_json(const ServedMap& map) {
   const auto now = map.snapshot();
-  const MapInfo& info = map.info();
+  const MapInfo& info = now->objects->info;
   json kinds = json::array();
   for (const CorrectionKind kind : map.correctable()) kinds.push_back(correction_name(kind));
   return {{"title", map.path().stem().string()},
@@ -153,14 +161,15 @@ json instances_json(const ServedMap& map) {
 }
 
 json instance_detail_json(const ServedMap& map, InstanceId id) {
-  const std::size_t position = position_of(map, id);
   const auto now = map.snapshot();
+  const std::size_t position = position_of(*now, id);
+  const QueryScene& scene = now->objects->scene;
   json detail = instance_json(*now, position);
-  const ObjectShape& shape = map.scene().shapes[position];
+  const ObjectShape& shape = scene.shapes[position];
   detail["height_m"] = number(shape.height_m());
   detail["footprint_m2"] = number(area_m2(shape.footprint));
   detail["neighbors"] = json::array();
-  for (const Neighbor& other : neighbors_of(map.index(), map.scene(), position, map.relations()))
+  for (const Neighbor& other : neighbors_of(now->index(), scene, position, map.relations()))
     detail["neighbors"].push_back({{"id", other.id},
                                    {"relation", other.relation},
                                    {"gap_m", number(other.gap_m)},
@@ -168,8 +177,8 @@ json instance_detail_json(const ServedMap& map, InstanceId id) {
   return detail;
 }
 
-json answer_json(const ServedMap& map, const QueryAnswer& answer) {
-  const auto now = map.snapshot();
+json answer_json(const MapAnswer& answered) {
+  const auto& [answer, now] = answered;
   json matches = json::array();
   for (const QueryMatch& match : answer.matches) matches.push_back(match_json(*now, match));
   json result = {{"query", answer.query},
@@ -179,9 +188,9 @@ json answer_json(const ServedMap& map, const QueryAnswer& answer) {
                  {"matches", matches}};
   if (answer.relevance.size() > 0) {
     result["heat"] = json::array();
-    for (std::size_t i = 0; i < map.index().size(); ++i)
+    for (std::size_t i = 0; i < now->index().size(); ++i)
       result["heat"].push_back(
-          {map.index().object(i).id, number(answer.relevance[static_cast<Eigen::Index>(i)])});
+          {now->index().object(i).id, number(answer.relevance[static_cast<Eigen::Index>(i)])});
   }
   return result;
 }

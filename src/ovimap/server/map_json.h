@@ -15,7 +15,7 @@ nlohmann::json map_json(const ServedMap& map);
 nlohmann::json instances_json(const ServedMap& map);
 /// Throws Error where the map has no such object.
 nlohmann::json instance_detail_json(const ServedMap& map, InstanceId id);
-nlohmann::json answer_json(const ServedMap& map, const QueryAnswer& answer);
+nlohmann::json answer_json(const MapAnswer& answered);
 nlohmann::json mesh_json(const ServedMap& map, int level, std::uint64_t since);
 nlohmann::json cameras_json(const ServedMap& map);
 

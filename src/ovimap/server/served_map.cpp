@@ -10,21 +10,6 @@
 
 namespace ovimap {
 
-namespace {
-
-constexpr std::size_t kLongestName = 200;  // bytes
-
-void check_name(const std::string& name) {
-  if (name.size() > kLongestName)
-    throw Error(
-        concat("a name of ", name.size(), " bytes is too long; ", kLongestName, " are allowed"));
-  if (std::any_of(name.begin(), name.end(),
-                  [](unsigned char letter) { return letter < 0x20 || letter == 0x7f; }))
-    throw Error("a name must not hold control characters such as line breaks; leave them out");
-}
-
-}  // namespace
-
 const char* search_state_name(SearchState state) {
   switch (state) {
     case SearchState::kPreparing:
@@ -36,14 +21,6 @@ const char* search_state_name(SearchState state) {
   }
 }
 
-const InstanceSummary* MapSnapshot::find(InstanceId id) const {
-  const auto& all = record->instances;
-  const auto found = std::lower_bound(
-      all.begin(), all.end(), id,
-      [](const InstanceSummary& instance, InstanceId wanted) { return instance.id < wanted; });
-  return found != all.end() && found->id == id ? &*found : nullptr;
-}
-
 std::string MapSnapshot::name_of(InstanceId id) const {
   const auto found = names.find(id);
   return found == names.end() ? "" : found->second;
@@ -52,10 +29,10 @@ std::string MapSnapshot::name_of(InstanceId id) const {
 ServedMap::ServedMap(const std::filesystem::path& map, const ServedMapConfig& config)
     : path_(map), config_(config), corrections_(corrections_in_map_file(map)) {
   MapDocument document = load_map(map);
-  search_ = open_map_search(map, config.query.shapes);
   mesh_ = std::make_unique<MeshStore>(ChunkGrid{document.map.config().voxel_size_m}, config.levels);
   mesh_->replace(extract_instance_mesh(document.map, document.instances));
   auto first = std::make_shared<MapSnapshot>();
+  first->objects = std::make_shared<MapSearch>(open_map_search(map, config.query.shapes));
   first->names = document.names;
   first->record = std::make_shared<MapRecord>(std::move(static_cast<MapRecord&>(document)));
   snapshot_ = first;
@@ -87,20 +64,20 @@ void ServedMap::change(Change&& change) {
 }
 
 void ServedMap::prepare_search() {
+  const auto now = snapshot();
   try {
-    require_embeddings(search_.index);
+    require_embeddings(now->index());
     RuntimeConfig runtime;
     runtime.threads = config_.threads;
-    auto encoder =
-        needed_encoder_of_map(search_.info.encoder, config_.encoder, runtime, config_.model_dirs);
-    auto engine = std::make_unique<const QueryEngine>(search_.index, encoder.get(), config_.query,
-                                                      Embeddings{}, search_.scene);
+    encoder_ = needed_encoder_of_map(now->objects->info.encoder, config_.encoder, runtime,
+                                     config_.model_dirs);
+    auto engine = std::make_shared<const QueryEngine>(now->index(), encoder_.get(), config_.query,
+                                                      Embeddings{}, now->objects->scene);
     change([&](MapSnapshot& next) {
-      encoder_ = std::move(encoder);
-      engine_ = std::move(engine);
+      next.engine = std::move(engine);
       next.search = SearchState::kReady;
     });
-    guess_names(*encoder_);
+    guess_names();
   } catch (const std::exception& error) {
     change([&](MapSnapshot& next) {
       if (next.search == SearchState::kReady) return;  // only names are lacking
@@ -110,24 +87,29 @@ void ServedMap::prepare_search() {
   }
 }
 
-void ServedMap::guess_names(ImageTextEncoder& encoder) {
+void ServedMap::guess_names() {
+  const auto now = snapshot();
   auto guesses = std::make_shared<ObjectGuesses>();
   guesses->set = read_label_set(config_.classes);
-  guesses->of_object = project_classes(search_.index, encoder, guesses->set,
-                                       static_cast<std::size_t>(config_.guesses));
+  auto all = project_classes(now->index(), *encoder_, guesses->set,
+                             static_cast<std::size_t>(config_.guesses));
+  for (std::size_t i = 0; i < all.size(); ++i)
+    guesses->of_object[now->index().object(i).id] = std::move(all[i]);
   change([&](MapSnapshot& next) { next.guesses = std::move(guesses); });
 }
 
-QueryAnswer ServedMap::ask(const MapQuestion& question) const {
-  const QueryEngine* engine = nullptr;
+MapAnswer ServedMap::ask(const MapQuestion& question) const {
+  std::shared_ptr<const MapSnapshot> now;
   {
     std::unique_lock lock(mutex_);
     prepared_.wait(lock, [&] { return snapshot_->search != SearchState::kPreparing; });
-    if (!engine_) throw Error(snapshot_->why_no_search);
-    engine = engine_.get();
+    now = snapshot_;
   }
-  if (question.like) return engine->find_like(*question.like, question.query.relevance);
-  return engine->find(question.query);
+  if (!now->engine) throw Error(now->why_no_search);
+  const bool relevance = question.query.relevance;
+  return {question.like ? now->engine->find_like(*question.like, relevance)
+                        : now->engine->find(question.query),
+          now};
 }
 
 void ServedMap::correct(const Correction& correction) {
@@ -135,9 +117,8 @@ void ServedMap::correct(const Correction& correction) {
   if (std::find(kinds.begin(), kinds.end(), correction.kind) == kinds.end())
     throw Error(concat("this map cannot keep a '", correction_name(correction.kind),
                        "'; it keeps names (rename) alone"));
-  check_name(correction.name);
   const std::lock_guard one_at_a_time(correcting_);
-  if (snapshot()->find(correction.instance) == nullptr)
+  if (!snapshot()->index().find(correction.instance))
     throw Error(concat("the map has no object ", correction.instance,
                        "; GET /api/instances lists those it has"));
   corrections_->append(correction);

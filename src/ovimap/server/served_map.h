@@ -30,10 +30,10 @@ struct ServedMapConfig {
   MeshLevelConfig levels;
 };
 
-/// The names that fit objects best, by position in the search index.
+/// The names that fit objects best, best first.
 struct ObjectGuesses {
   LabelSet set;
-  std::vector<std::vector<ClassGuess>> of_object;
+  std::map<InstanceId, std::vector<ClassGuess>> of_object;
 };
 
 enum class SearchState { kPreparing, kReady, kUnavailable };
@@ -43,18 +43,26 @@ const char* search_state_name(SearchState state);  ///< "preparing", "ready", "u
 struct MapSnapshot {
   std::uint64_t version = 1;
   std::shared_ptr<const MapRecord> record;
+  std::shared_ptr<const MapSearch> objects;      ///< in the order of record->instances
   std::map<InstanceId, std::string> names;       ///< given by people
-  std::shared_ptr<const ObjectGuesses> guesses;  ///< null: there are none, or not yet
+  std::shared_ptr<const QueryEngine> engine;     ///< of `objects`; null: there is none, or not yet
+  std::shared_ptr<const ObjectGuesses> guesses;  ///< null: likewise
   SearchState search = SearchState::kPreparing;
   std::string why_no_search;  ///< a sentence
 
-  const InstanceSummary* find(InstanceId id) const;
+  const SearchIndex& index() const { return objects->index; }
   std::string name_of(InstanceId id) const;  ///< as given; empty: none
 };
 
 struct MapQuestion {
   Query query;                     ///< what to look for in words
   std::optional<InstanceId> like;  ///< instead: what looks like this object
+};
+
+/// An answer, and the state of the map that it speaks of.
+struct MapAnswer {
+  QueryAnswer answer;
+  std::shared_ptr<const MapSnapshot> map;
 };
 
 /// One map as clients see it: its surface, its objects, answers to queries, corrections. Whoever
@@ -69,31 +77,27 @@ class ServedMap {
   ServedMap& operator=(const ServedMap&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
-  const MapInfo& info() const { return search_.info; }
   const MeshStore& mesh() const { return *mesh_; }
-  const SearchIndex& index() const { return search_.index; }
-  const QueryScene& scene() const { return search_.scene; }
   const RelationConfig& relations() const { return config_.query.relations; }
   EventHub& events() const { return events_; }
   std::shared_ptr<const MapSnapshot> snapshot() const;
 
   /// Waits until search is ready. Throws Error for what the asker can mend, and where this map
   /// cannot be searched.
-  QueryAnswer ask(const MapQuestion& question) const;
+  MapAnswer ask(const MapQuestion& question) const;
 
   std::vector<CorrectionKind> correctable() const { return corrections_->kinds(); }
-  /// Throws Error when the correction makes no sense or could not be kept; then nothing changed.
+  /// Throws Error when the correction could not be kept; then nothing changed.
   void correct(const Correction& correction);
 
  private:
   void prepare_search();
-  void guess_names(ImageTextEncoder& encoder);
+  void guess_names();
   template <class Change>
   void change(Change&& change);
 
   const std::filesystem::path path_;
   const ServedMapConfig config_;
-  MapSearch search_;
   std::unique_ptr<MeshStore> mesh_;
   std::unique_ptr<CorrectionStore> corrections_;
   std::mutex correcting_;
@@ -102,8 +106,7 @@ class ServedMap {
   mutable std::mutex mutex_;
   mutable std::condition_variable prepared_;
   std::shared_ptr<const MapSnapshot> snapshot_;
-  std::unique_ptr<ImageTextEncoder> encoder_;
-  std::unique_ptr<const QueryEngine> engine_;
+  std::unique_ptr<ImageTextEncoder> encoder_;  // engines of snapshots use it
   std::thread preparation_;
 };
 

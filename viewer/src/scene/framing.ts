@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
-import { type Box3, type PerspectiveCamera, Vector3 } from 'three';
+import { Box3, Vector3 } from 'three';
 
 /** Two horizontal directions and up: right-handed, unit length. */
 export function groundAxes(up: Vector3): { east: Vector3; north: Vector3; up: Vector3 } {
@@ -10,11 +10,10 @@ export function groundAxes(up: Vector3): { east: Vector3; north: Vector3; up: Ve
   return { east, north, up: up.clone().normalize() };
 }
 
-/** How far away a camera must be to see a ball whole. */
-export function distanceToSee(radius: number, camera: PerspectiveCamera): number {
-  const vertical = (camera.fov * Math.PI) / 360;
-  const horizontal = Math.atan(Math.tan(vertical) * camera.aspect);
-  return radius / Math.sin(Math.min(vertical, horizontal));
+/** What a camera sees at a distance of 1: half of the height and half of the width. */
+export interface Lens {
+  halfWidth: number;
+  halfHeight: number;
 }
 
 export interface Viewpoint {
@@ -22,12 +21,48 @@ export interface Viewpoint {
   target: Vector3;
 }
 
-/** From where to see `box`: from the direction `from`, or as the camera looks now. */
-export function viewpointOf(box: Box3, camera: PerspectiveCamera, from: Vector3): Viewpoint {
-  const target = box.getCenter(new Vector3());
-  const radius = Math.max(box.getSize(new Vector3()).length() / 2, 0.05);
-  const distance = distanceToSee(radius, camera);
-  return { target, position: target.clone().addScaledVector(from.clone().normalize(), distance) };
+export function cornersOf({ min, max }: Box3): Vector3[] {
+  const pick = (bits: number): Vector3 =>
+    new Vector3(bits & 1 ? max.x : min.x, bits & 2 ? max.y : min.y, bits & 4 ? max.z : min.z);
+  return [0, 1, 2, 3, 4, 5, 6, 7].map(pick);
+}
+
+/**
+ * From where to see the points, looking from the direction `from`: as near as the lens allows.
+ * `outliers` is the share of points that need not be seen.
+ */
+export function viewpointOf(
+  points: readonly Vector3[],
+  lens: Lens,
+  from: Vector3,
+  up: Vector3,
+  outliers = 0,
+): Viewpoint {
+  const target = trimmedBox(points, outliers).getCenter(new Vector3());
+  const back = from.clone().normalize();
+  const right = new Vector3().crossVectors(up, back).normalize();
+  const top = new Vector3().crossVectors(back, right);
+  const needed = points
+    .map((point) => {
+      const arm = point.clone().sub(target);
+      const aside = Math.abs(arm.dot(right)) / lens.halfWidth;
+      return arm.dot(back) + Math.max(aside, Math.abs(arm.dot(top)) / lens.halfHeight);
+    })
+    .sort((a, b) => a - b);
+  const distance = needed[Math.floor((1 - outliers) * (needed.length - 1))] ?? 1;
+  return { target, position: target.clone().addScaledVector(back, Math.max(distance, 0.1)) };
+}
+
+/** The box of the points without that share of them at each end of each axis. */
+export function trimmedBox(points: readonly Vector3[], share: number): Box3 {
+  if (points.length === 0) return new Box3();
+  const ends = (['x', 'y', 'z'] as const).map((axis) => {
+    const values = points.map((point) => point[axis]).sort((a, b) => a - b);
+    const skipped = Math.floor(share * (values.length - 1));
+    return [values[skipped]!, values[values.length - 1 - skipped]!] as const;
+  });
+  const corner = (end: 0 | 1): Vector3 => new Vector3(...ends.map((pair) => pair[end]));
+  return new Box3(corner(0), corner(1));
 }
 
 /** Slanted from above, from the side that the recording looked from. */

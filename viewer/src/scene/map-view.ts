@@ -5,15 +5,17 @@ import type { Cameras, Instance, MapInfo } from '../api/types';
 import type { Chunk } from '../mesh/chunk-format';
 import { CameraPath, meanDirection, viewpointOfFrame } from './camera-path';
 import { type ColoringInput, paint } from './coloring';
-import { overviewDirection, viewpointOf } from './framing';
+import { cornersOf, overviewDirection, viewpointOf } from './framing';
 import { Measure } from './measure';
 import { Movement } from './movement';
 import { type Pick, pick } from './picking';
 import { type Section, sectionPlane } from './section';
-import { Stage } from './stage';
+import { type Covered, Stage } from './stage';
 import { Surface } from './surface';
 
 const CLICK_SLACK_PX = 5;
+const OUTLIER_SHARE = 0.02; // of the surface: what was seen through doors
+const FOCUS_MARGIN_M = 0.3;
 
 export interface MapViewHooks {
   onClick: (hit: Pick | null) => void;
@@ -35,6 +37,7 @@ export class MapView {
   private path: CameraPath | null = null;
   private cameras: Cameras | null = null;
   private section: Section | null = null;
+  private still = false;
 
   /** Throws NoWebGlError where nothing can be drawn. */
   constructor(canvas: HTMLCanvasElement, info: MapInfo, largestId: number, hooks: MapViewHooks) {
@@ -55,25 +58,31 @@ export class MapView {
 
   put(key: string, chunk: Chunk): void {
     this.surface.put(key, chunk);
-    this.stage.draw();
+    if (!this.still) this.stage.drawSoon();
   }
 
-  /** Where the map lies, from the list of chunks: before any surface is there. */
-  frameAll(box: Box3, animated: boolean): void {
-    const size = box.getSize(new Vector3()).length();
-    this.movement.speed = Math.min(Math.max(size / 4, 0.5), 5);
+  /** Draws nothing until called again with false: the first picture should come in one go. */
+  holdStill(still: boolean): void {
+    this.still = still;
+    if (!still) this.stage.draw();
+  }
+
+  /** Shows the whole map. */
+  frameAll(animated: boolean): void {
+    const points = this.surface.samples();
+    if (points.length === 0) return;
     const direction = overviewDirection(this.up, this.cameras && meanDirection(this.cameras));
-    const view = viewpointOf(box, this.stage.camera, direction);
-    view.position.lerp(view.target, 0.28); // rooms are no balls
+    const view = viewpointOf(points, this.stage.lens(), direction, this.up, OUTLIER_SHARE);
+    const reach = view.position.distanceTo(view.target);
+    this.movement.speed = Math.min(Math.max(reach / 3, 0.5), 5);
     this.movement.goTo(view, animated);
   }
 
+  /** Goes near an object without changing the direction of view. */
   focus(instance: Instance): void {
-    const { camera } = this.stage;
-    const box = boxOfInstance(instance);
-    const from = camera.position.clone().sub(this.movement.orbit.target);
-    const view = viewpointOf(box.clone().expandByScalar(0.25), camera, from);
-    this.movement.goTo(view, true);
+    const from = this.stage.camera.position.clone().sub(this.movement.orbit.target);
+    const box = boxOfInstance(instance).expandByScalar(FOCUS_MARGIN_M);
+    this.movement.goTo(viewpointOf(cornersOf(box), this.stage.lens(), from, this.up), true);
   }
 
   select(instance: Instance | null): void {
@@ -88,7 +97,7 @@ export class MapView {
     paint(this.surface.table, input);
     this.surface.tableChanged();
     this.uniform('ownColors', input.mode === 'color');
-    this.stage.draw();
+    this.stage.moved(); // quickly first, in detail soon after
   }
 
   hide(id: number, hidden: boolean): void {
@@ -141,6 +150,16 @@ export class MapView {
     const distance = this.measure.add(point);
     this.stage.draw();
     return distance;
+  }
+
+  /** Resolves once what is there now is drawn. */
+  whenDrawn(): Promise<void> {
+    return this.stage.whenDrawn();
+  }
+
+  /** How much of the canvas panels cover at each side, in pixels. */
+  setCovered(covered: Covered): void {
+    this.stage.setCovered(covered);
   }
 
   picture(): Promise<Blob | null> {

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
+import type { Lens } from './framing';
 import { Color, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from 'three';
 
 /** WebGL 2 is missing or switched off. */
@@ -15,6 +16,13 @@ export class NoWebGlError extends Error {
 
 const SLOW_FRAME_MS = 45;
 const SETTLE_MS = 220;
+const LOADING_FRAME_MS = 250;
+
+/** Pixels of the canvas that panels lie over. */
+export interface Covered {
+  left: number;
+  bottom: number;
+}
 
 export interface StageHooks {
   /** Before each frame; whether another one must follow. */
@@ -24,9 +32,20 @@ export interface StageHooks {
   onLost: () => void;
 }
 
+/** Whether the browser draws on the processor, where smooth edges cost too much. */
+function drawsInSoftware(): boolean {
+  const gl = document.createElement('canvas').getContext('webgl2');
+  if (!gl) return false;
+  const info = gl.getExtension('WEBGL_debug_renderer_info');
+  const name = String(gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
+  gl.getExtension('WEBGL_lose_context')?.loseContext();
+  return /swiftshader|llvmpipe|softpipe|basic render/i.test(name);
+}
+
 function makeRenderer(canvas: HTMLCanvasElement): WebGLRenderer {
-  // three.js writes the fault to the console, and we say it to the person.
-  const context = canvas.getContext('webgl2', { antialias: true, powerPreference: 'high-performance' });
+  const antialias = !drawsInSoftware();
+  // Without a context three.js writes to the console alone, where nobody looks.
+  const context = canvas.getContext('webgl2', { antialias, powerPreference: 'high-performance' });
   if (!context) throw new NoWebGlError();
   return new WebGLRenderer({ canvas, context });
 }
@@ -40,6 +59,9 @@ export class Stage {
   private frameMs = 0;
   private settle = 0;
   private moving = false;
+  private lastFrame = 0;
+  private covered: Covered = { left: 0, bottom: 0 };
+  private waiting: (() => void)[] = [];
 
   constructor(
     readonly canvas: HTMLCanvasElement,
@@ -59,11 +81,38 @@ export class Stage {
     this.draw();
   }
 
+  /** The middle of what is seen goes to the middle of what no panel covers. */
+  setCovered(covered: Covered): void {
+    this.covered = covered;
+    this.resize();
+  }
+
+  /** Of the part of the canvas that is free. */
+  lens(): Lens {
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    const halfHeight = Math.tan((this.camera.fov * Math.PI) / 360);
+    return {
+      halfHeight: halfHeight * (1 - this.covered.bottom / height),
+      halfWidth: (halfHeight * (width - this.covered.left)) / height,
+    };
+  }
+
+  whenDrawn(): Promise<void> {
+    this.draw();
+    return new Promise((resolve) => this.waiting.push(resolve));
+  }
+
   /** Asks for a new frame. */
   draw(): void {
     if (this.wanted) return;
     this.wanted = true;
     requestAnimationFrame((now) => this.frame(now));
+  }
+
+  /** Asks for a frame that need not come at once: while the map loads. */
+  drawSoon(): void {
+    const pause = Math.max(LOADING_FRAME_MS, 3 * this.frameMs);
+    if (performance.now() - this.lastFrame > pause) this.draw();
   }
 
   /** The view began to move: detail may go until it rests. */
@@ -88,11 +137,20 @@ export class Stage {
 
   private frame(now: number): void {
     this.wanted = false;
+    this.lastFrame = now;
     const more = this.hooks.onFrame(now);
     const start = performance.now();
     this.renderer.render(this.scene, this.camera);
     if (!this.moving) this.measure(start);
+    if (this.waiting.length > 0) this.finish();
     if (more) this.draw();
+  }
+
+  /** Reading a pixel back waits until the frame is drawn. */
+  private finish(): void {
+    const gl = this.renderer.getContext();
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+    this.waiting.splice(0).forEach((resolve) => resolve());
   }
 
   /** How long a detailed frame takes; the next task runs once it is drawn, in software at least. */
@@ -111,7 +169,8 @@ export class Stage {
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
-    this.camera.updateProjectionMatrix();
+    const { left, bottom } = this.covered;
+    this.camera.setViewOffset(width, height, -left / 2, bottom / 2, width, height);
     this.draw();
   }
 }

@@ -17,6 +17,7 @@ import { InstanceTable } from './instance-table';
 import { surfaceMaterial } from './surface-material';
 
 const STEPS = 65535;
+const SAMPLE_STEP = 29; // vertices
 
 /** The box of the vertices within the chunk's unit cube. */
 function boxOf(positions: Uint16Array): Box3 {
@@ -113,6 +114,18 @@ export class Surface {
       box.union(mesh.geometry.boundingBox.clone().applyMatrix4(mesh.matrix));
     }
     return box;
+  }
+
+  /** Points all over the surface. */
+  samples(): Vector3[] {
+    const samples: Vector3[] = [];
+    for (const levels of this.chunks.values()) {
+      const mesh = levels[1] ?? levels[0];
+      const position = mesh?.geometry.getAttribute('position');
+      for (let v = 0; mesh && position && v < position.count; v += SAMPLE_STEP)
+        samples.push(new Vector3().fromBufferAttribute(position, v).applyMatrix4(mesh.matrix));
+    }
+    return samples;
   }
 
   private choose(levels: (Mesh | undefined)[]): void {

@@ -30,7 +30,7 @@ function heatLegend(ramp: readonly Color[], query: string): HTMLElement[] {
 
 /** What the colours mean; hidden where they speak for themselves. */
 export class Legend {
-  readonly element = h('aside', { class: 'panel legend', 'aria-label': 'Legend' });
+  readonly element = h('section', { class: 'panel legend', 'aria-label': 'Legend' });
 
   show(mode: Mode, instances: readonly Instance[], ramp: readonly Color[], query: string): void {
     this.element.hidden = mode === 'color' || mode === 'instances';

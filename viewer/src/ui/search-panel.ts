@@ -111,6 +111,15 @@ export class SearchPanel {
     this.box.input.value = text;
   }
 
+  /** Back to the list of all objects. */
+  reset(): void {
+    this.box.input.value = '';
+    this.clear.hidden = true;
+    this.verdict.textContent = '';
+    this.verdict.className = 'verdict note';
+    this.hooks.onClear();
+  }
+
   private submit(): void {
     const text = this.box.input.value.trim();
     if (text === '') return this.reset();
@@ -119,14 +128,6 @@ export class SearchPanel {
     this.recent.splice(MOST_RECENT);
     this.box.close();
     this.hooks.onQuery(text, this.not.value.split(',').map((word) => word.trim()).filter(Boolean));
-  }
-
-  private reset(): void {
-    this.box.input.value = '';
-    this.clear.hidden = true;
-    this.verdict.textContent = '';
-    this.verdict.className = 'verdict note';
-    this.hooks.onClear();
   }
 
   private fill(rows: HTMLElement[], selected: number): void {

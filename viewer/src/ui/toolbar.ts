@@ -56,7 +56,7 @@ export class Toolbar {
       return button;
     });
     const commands = COMMANDS.map(([name, label, key]) => this.iconButton(name, label, key, () => hooks.onCommand(name)));
-    this.element = h('div', { class: 'panel toolbar', role: 'toolbar', 'aria-label': 'View' },
+    this.element = h('div', { class: 'panel toolbar', role: 'group', 'aria-label': 'View' },
       h('div', { class: 'modes', role: 'group', 'aria-label': 'Colouring' }, ...modes),
       h('div', { class: 'tools', role: 'group', 'aria-label': 'Tools' }, ...tools),
       h('div', { class: 'tools', role: 'group', 'aria-label': 'Commands' }, ...commands));
