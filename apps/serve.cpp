@@ -36,10 +36,12 @@ void lift_limits(ServerConfig& config) {
 
 void announce(const ServeOptions& options, const HttpServer& server) {
   if (options.json) {
-    print_json({{"map", options.map.string()},
-                {"address", server.address()},
-                {"port", server.port()},
-                {"viewer", !options.server.viewer.empty()}});
+    const nlohmann::json said = {{"map", options.map.string()},
+                                 {"address", server.address()},
+                                 {"port", server.port()},
+                                 {"viewer", !options.server.viewer.empty()}};
+    std::printf("%s\n", said.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)
+                            .c_str());  // one line: whoever waits for it reads lines
   } else {
     if (options.server.viewer.empty() && options.viewer == "auto")
       std::fprintf(stderr,

@@ -11,33 +11,39 @@ using nlohmann::json;
 
 class ServeProgramTest : public EncodedProgramTest {};
 
-/// A program whose standard output is read line by line, and which Ctrl-C ends.
+/// A program whose standard output is read line by line, and which is ended as Ctrl-C does.
 class RunningProgram {
  public:
-  explicit RunningProgram(const std::string& command)
-      : pipe_(popen(("exec " + command).c_str(), "r")) {}
-  ~RunningProgram() {
-    if (pipe_ != nullptr) pclose(pipe_);
-  }
+  RunningProgram(const std::string& arguments, const std::filesystem::path& pid_file)
+      : pid_file_(pid_file),
+        pipe_(
+            popen(("echo $$ > '" + pid_file.string() + "'; exec '" OVIMAP_PROGRAM "' " + arguments)
+                      .c_str(),
+                  "r")) {}
+  ~RunningProgram() { end(); }
+
   std::string line() const {
     char text[4096] = "";
     return std::fgets(text, sizeof text, pipe_) != nullptr ? text : "";
   }
-  int exit_code() {
+  /// Its exit code; -1 when it was ended before.
+  int end() {
+    if (pipe_ == nullptr) return -1;
+    (void)!std::system(("kill -INT $(cat '" + pid_file_.string() + "')").c_str());
     const int status = pclose(pipe_);
     pipe_ = nullptr;
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
 
  private:
+  std::filesystem::path pid_file_;
   FILE* pipe_;
 };
 
 TEST_F(ServeProgramTest, ServesUntilItIsInterrupted) {
   ASSERT_EQ(run("run recording -o bare.ovimap").code, 0);
-  const std::string map = path("bare.ovimap").string(), pid = path("pid").string();
-  RunningProgram program("sh -c 'echo $$ > \"" + pid + "\"; exec \"" OVIMAP_PROGRAM "\" serve \"" +
-                         map + "\" --port 0 --json --viewer none'");
+  RunningProgram program(
+      "serve '" + path("bare.ovimap").string() + "' --port 0 --json --viewer none", path("pid"));
   const json said = json::parse(program.line(), nullptr, false);
   ASSERT_TRUE(said.contains("address"));
   EXPECT_EQ(said["viewer"], false);
@@ -53,8 +59,7 @@ TEST_F(ServeProgramTest, ServesUntilItIsInterrupted) {
 
   expect_complaint("serve bare.ovimap --port " + std::to_string(said["port"].get<int>()),
                    {"taken", "--port 0"});
-  ASSERT_EQ(std::system(("kill -INT $(cat '" + pid + "')").c_str()), 0);
-  EXPECT_EQ(program.exit_code(), 0);
+  EXPECT_EQ(program.end(), 0);
 }
 
 TEST_F(ServeProgramTest, SaysWhatIsWrong) {

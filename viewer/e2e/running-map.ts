@@ -32,13 +32,9 @@ export class RunningMap {
 
   /** Ends the program as Ctrl-C does. */
   async stop(): Promise<void> {
-    if (this.program.exitCode !== null) return;
     const ended = new Promise((resolve) => this.program.once('exit', resolve));
     this.program.kill('SIGINT');
     await ended;
-  }
-
-  cleanUp(): void {
     rmSync(this.folder, { recursive: true, force: true });
   }
 }
@@ -47,15 +43,23 @@ export async function wholePicture(page: Page): Promise<void> {
   await page.waitForFunction(() => performance.getEntriesByName('whole-picture').length > 0, null, { timeout: 40_000 });
 }
 
-/** Tests get a server of their own, and fail when the page reports a fault. */
-export const test = base.extend<{ map: RunningMap }>({
-  map: async ({ page }, use) => {
-    const faults: string[] = [];
-    page.on('pageerror', (error) => faults.push(error.message));
-    const map = await RunningMap.start();
-    await use(map);
-    await map.stop();
-    map.cleanUp();
-    if (faults.length > 0) throw new Error(`the page failed: ${faults.join('; ')}`);
-  },
+/** Tests share a server, as people do, and fail when the page reports a fault. */
+export const test = base.extend<{ faults: void }, { map: RunningMap }>({
+  map: [
+    async ({}, use) => {
+      const map = await RunningMap.start();
+      await use(map);
+      await map.stop();
+    },
+    { scope: 'worker', timeout: 60_000 },
+  ],
+  faults: [
+    async ({ page }, use) => {
+      const faults: string[] = [];
+      page.on('pageerror', (error) => faults.push(error.message));
+      await use();
+      if (faults.length > 0) throw new Error(`the page failed: ${faults.join('; ')}`);
+    },
+    { auto: true },
+  ],
 });

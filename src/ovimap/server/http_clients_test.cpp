@@ -90,9 +90,8 @@ TEST_F(HttpClientsTest, TwoHundredAreServedAtOnce) {
   for (int i = 0; i < 200; ++i) {
     open.push_back(std::make_unique<RawConnection>(running_->port()));
     ASSERT_TRUE(open.back()->connected());
+    open.back()->send("GET /api/instances HTTP/1.1\r\nHost: localhost\r\n\r\n");
   }
-  for (const auto& connection : open)
-    connection->send("GET /api/instances HTTP/1.1\r\nHost: localhost\r\n\r\n");
   for (const auto& connection : open)
     EXPECT_EQ(connection->receive().substr(0, 15), "HTTP/1.1 200 OK");
   expect_alive();

@@ -19,6 +19,7 @@ namespace {
 
 constexpr const char* kEverything = ".*";
 constexpr std::size_t kRequestsPerConnection = 10000;
+constexpr int kIdleSeconds = 1;  // an idle connection holds a thread, and up the end of the server
 
 std::string lower_case(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
@@ -98,11 +99,13 @@ struct HttpServer::Sockets {
     http.new_task_queue = [most] { return new ConnectionThreads(most); };
     http.set_payload_max_length(config.max_body_bytes);
     http.set_keep_alive_max_count(kRequestsPerConnection);
+    http.set_keep_alive_timeout(kIdleSeconds);
     http.set_read_timeout(config.patience_s);
     http.set_write_timeout(config.patience_s);
     http.set_tcp_nodelay(true);
     // httplib's own choice lets a second server bind the same port and take half of the requests.
-    http.set_socket_options([](socket_t socket) {
+    http.set_socket_options([this](socket_t socket) {
+      listener = socket;
       const int yes = 1;
       setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
     });
@@ -145,7 +148,11 @@ struct HttpServer::Sockets {
       throw Error(concat("'", config.host, "' lets other machines in; set a token"));
     const bool any = config.port == 0;
     port = any ? http.bind_to_any_port(config.host) : config.port;
-    if (any ? port > 0 : http.bind_to_port(config.host, config.port)) return;
+    if (any ? port > 0 : http.bind_to_port(config.host, config.port)) {
+      // httplib lets five clients wait to be accepted; a browser or two have more connections.
+      ::listen(listener, config.max_connections);
+      return;
+    }
     throw Error(concat("cannot listen at ", config.host, ":", config.port,
                        "; the port is taken, or the host is none of this machine's: try --port 0 "
                        "for a free one"));
@@ -155,6 +162,7 @@ struct HttpServer::Sockets {
   const ServerConfig config;
   RequestDesk desk;
   httplib::Server http;
+  socket_t listener = INVALID_SOCKET;
   int port = 0;
 };
 

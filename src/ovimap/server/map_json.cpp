@@ -30,6 +30,8 @@ json point(const Eigen::Vector3f& p) {
 }
 
 json box(const Eigen::AlignedBox3f& b) {
+  const json nowhere = {nullptr, nullptr, nullptr};
+  if (b.isEmpty()) return {{"min", nowhere}, {"max", nowhere}};
   return {{"min", point(b.min())}, {"max", point(b.max())}};
 }
 

@@ -3,7 +3,8 @@
 // The JSON of the server, as docs/http-api.md describes it.
 
 export type Color = [number, number, number];
-export type Point = [number, number, number];
+/** Null where the map knows no number. */
+export type Point = [number | null, number | null, number | null];
 export type CorrectionKind = 'rename' | 'merge' | 'hide' | 'lock' | 'delete';
 
 export interface MapInfo {

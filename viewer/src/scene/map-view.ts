@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 import { Box3, Box3Helper, Color, Vector2, Vector3, Vector4 } from 'three';
-import type { Cameras, Instance, MapInfo } from '../api/types';
+import type { Cameras, Instance, MapInfo, Point } from '../api/types';
 import type { Chunk } from '../mesh/chunk-format';
 import { CameraPath, meanDirection, viewpointOfFrame } from './camera-path';
 import { type ColoringInput, paint } from './coloring';
@@ -15,6 +15,7 @@ import { Surface } from './surface';
 
 const CLICK_SLACK_PX = 5;
 const OUTLIER_SHARE = 0.02; // of the surface: what was seen through doors
+const OVERVIEW_AIR = 1.08; // the bar at the bottom needs some room
 const FOCUS_MARGIN_M = 0.3;
 
 export interface MapViewHooks {
@@ -22,8 +23,12 @@ export interface MapViewHooks {
   onLost: () => void;
 }
 
+function vectorOf(point: Point): Vector3 {
+  return new Vector3(...point.map((value) => value ?? 0));
+}
+
 function boxOfInstance(instance: Instance): Box3 {
-  return new Box3(new Vector3(...instance.box.min), new Vector3(...instance.box.max));
+  return new Box3(vectorOf(instance.box.min), vectorOf(instance.box.max));
 }
 
 /** The map in 3D: its surface, the selected object, the camera's way, a measured line. */
@@ -41,7 +46,7 @@ export class MapView {
 
   /** Throws NoWebGlError where nothing can be drawn. */
   constructor(canvas: HTMLCanvasElement, info: MapInfo, largestId: number, hooks: MapViewHooks) {
-    this.up = new Vector3(...info.up).normalize();
+    this.up = vectorOf(info.up).normalize();
     this.surface = new Surface(largestId);
     this.stage = new Stage(canvas, this.up, {
       onFrame: (now) => this.frame(now),
@@ -73,6 +78,7 @@ export class MapView {
     if (points.length === 0) return;
     const direction = overviewDirection(this.up, this.cameras && meanDirection(this.cameras));
     const view = viewpointOf(points, this.stage.lens(), direction, this.up, OUTLIER_SHARE);
+    view.position.sub(view.target).multiplyScalar(OVERVIEW_AIR).add(view.target);
     const reach = view.position.distanceTo(view.target);
     this.movement.speed = Math.min(Math.max(reach / 3, 0.5), 5);
     this.movement.goTo(view, animated);

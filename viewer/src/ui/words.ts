@@ -18,6 +18,7 @@ export function percent(share: number | null): string {
 
 export function sizeOf({ box }: Instance): string {
   const sides = [0, 1, 2].map((axis) => box.max[axis]! - box.min[axis]!);
+  if (box.min[0] === null) return '–';
   return `${sides.map((side) => side.toFixed(2)).join(' × ')} m`;
 }
 
