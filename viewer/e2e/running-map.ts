@@ -22,7 +22,9 @@ export class RunningMap {
     const folder = mkdtempSync(join(tmpdir(), 'ovimap-e2e-'));
     const map = join(folder, 'tiny room.ovimap');
     copyFileSync(MAP, map);
-    const program = spawn(PROGRAM, ['serve', map, '--port', '0', '--json', '--no-limits'], { stdio: ['ignore', 'pipe', 'inherit'] });
+    const program = spawn(PROGRAM, ['serve', map, '--port', '0', '--json', '--no-limits'], {
+      stdio: ['ignore', 'pipe', 'inherit'],
+    });
     const line = await new Promise<string>((resolve, reject) => {
       program.stdout!.once('data', (data: Buffer) => resolve(data.toString()));
       program.once('exit', (code) => reject(new Error(`ovimap serve ended with code ${code}`)));
@@ -40,7 +42,9 @@ export class RunningMap {
 }
 
 export async function wholePicture(page: Page): Promise<void> {
-  await page.waitForFunction(() => performance.getEntriesByName('whole-picture').length > 0, null, { timeout: 40_000 });
+  await page.waitForFunction(() => performance.getEntriesByName('whole-picture').length > 0, null, {
+    timeout: 40_000,
+  });
 }
 
 /** Tests share a server, as people do, and fail when the page reports a fault. */

@@ -12,21 +12,29 @@ if (!program || !map) {
 }
 
 const median = (values) => [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)];
-const row = (what, values) => console.log(`| ${what} | ${median(values).toFixed(0)} | ${Math.max(...values).toFixed(0)} |`);
+const row = (what, values) =>
+  console.log(`| ${what} | ${median(values).toFixed(0)} | ${Math.max(...values).toFixed(0)} |`);
 
 async function serve() {
-  const server = spawn(program, ['serve', map, '--port', '0', '--json', '--no-limits'], { stdio: ['ignore', 'pipe', 'inherit'] });
-  const line = await new Promise((resolve) => server.stdout.once('data', (data) => resolve(data.toString())));
+  const server = spawn(program, ['serve', map, '--port', '0', '--json', '--no-limits'], {
+    stdio: ['ignore', 'pipe', 'inherit'],
+  });
+  const line = await new Promise((resolve) =>
+    server.stdout.once('data', (data) => resolve(data.toString())),
+  );
   return { server, address: JSON.parse(line).address };
 }
 
 async function searchReady(address) {
-  while ((await (await fetch(`${address}api/map`)).json()).search.state === 'preparing') await new Promise((resolve) => setTimeout(resolve, 100));
+  while ((await (await fetch(`${address}api/map`)).json()).search.state === 'preparing')
+    await new Promise((resolve) => setTimeout(resolve, 100));
   await new Promise((resolve) => setTimeout(resolve, 3000)); // names are guessed right after
 }
 
-const markOf = (page, name) => page.evaluate((wanted) => performance.getEntriesByName(wanted).at(-1)?.startTime ?? 0, name);
-const drawn = (page, name) => page.waitForFunction((wanted) => performance.getEntriesByName(wanted).length > 0, name);
+const markOf = (page, name) =>
+  page.evaluate((wanted) => performance.getEntriesByName(wanted).at(-1)?.startTime ?? 0, name);
+const drawn = (page, name) =>
+  page.waitForFunction((wanted) => performance.getEntriesByName(wanted).length > 0, name);
 
 async function ask(page, text) {
   await page.evaluate(() => performance.clearMarks('answer-drawn'));
@@ -43,7 +51,9 @@ async function ask(page, text) {
 async function answerTime(address, text) {
   const start = performance.now();
   const reply = await fetch(`${address}api/query`, {
-    method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify({ text, heat: true }),
+    method: 'POST',
+    headers: { 'Content-Type': 'application/json' },
+    body: JSON.stringify({ text, heat: true }),
   });
   await reply.json();
   return performance.now() - start;
@@ -51,7 +61,10 @@ async function answerTime(address, text) {
 
 const { server, address } = await serve();
 await searchReady(address);
-const browser = await chromium.launch({ executablePath: process.env.OVIMAP_CHROMIUM ?? '/usr/bin/chromium', args: ['--no-sandbox', '--enable-unsafe-swiftshader'] });
+const browser = await chromium.launch({
+  executablePath: process.env.OVIMAP_CHROMIUM ?? '/usr/bin/chromium',
+  args: ['--no-sandbox', '--enable-unsafe-swiftshader'],
+});
 const times = { first: [], whole: [], still: [], words: [], bare: [], encoded: [] };
 for (let run = 0; run < Number(runs); ++run) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 } });

@@ -13,7 +13,15 @@ async function open(page: Page, address: string): Promise<void> {
 
 /** Clicks places of the 3D view, some of which may be empty, until something is shown. */
 async function clickUntil(page: Page, shown: string): Promise<void> {
-  for (const [x, y] of [[800, 420], [760, 500], [880, 380], [700, 380], [940, 480], [820, 300], [780, 260]] as const) {
+  for (const [x, y] of [
+    [800, 420],
+    [760, 500],
+    [880, 380],
+    [700, 380],
+    [940, 480],
+    [820, 300],
+    [780, 260],
+  ] as const) {
     await page.mouse.click(x, y);
     if (await page.locator(shown).isVisible()) return;
   }
@@ -32,9 +40,17 @@ test('shows the map and lists its objects', async ({ page, map }) => {
   expect(await page.locator('.row').count()).toBeGreaterThan(5);
   const picture = await page.screenshot({ path: `${PICTURES}/color.png` });
   expect(picture.byteLength).toBeGreaterThan(60_000); // an empty view has a fifth of that
-  for (const [key, name] of [['2', 'Objects'], ['3', 'Classes'], ['4', 'Heat'], ['1', 'Colour']] as const) {
+  for (const [key, name] of [
+    ['2', 'Objects'],
+    ['3', 'Classes'],
+    ['4', 'Heat'],
+    ['1', 'Colour'],
+  ] as const) {
     await page.keyboard.press(key);
-    await expect(page.getByRole('button', { name, exact: true })).toHaveAttribute('aria-pressed', 'true');
+    await expect(page.getByRole('button', { name, exact: true })).toHaveAttribute(
+      'aria-pressed',
+      'true',
+    );
   }
 });
 
@@ -53,12 +69,17 @@ test('answers queries, and says what is not there', async ({ page, map }) => {
   await expect(page.locator('#list-title')).toHaveText('What comes nearest');
   await page.getByRole('button', { name: 'Clear the query' }).click();
   await expect(page.locator('#list-title')).toHaveText('All objects');
-  await expect(page.getByRole('button', { name: 'Colour' })).toHaveAttribute('aria-pressed', 'true');
+  await expect(page.getByRole('button', { name: 'Colour' })).toHaveAttribute(
+    'aria-pressed',
+    'true',
+  );
 });
 
 test('says what is wrong with a query', async ({ page, map }) => {
   await open(page, map.address);
-  await page.route('**/api/query', (route) => route.fulfill({ status: 429, json: { error: 'too many queries' } }));
+  await page.route('**/api/query', (route) =>
+    route.fulfill({ status: 429, json: { error: 'too many queries' } }),
+  );
   await page.getByRole('combobox').fill('sofa');
   await page.keyboard.press('Enter');
   await expect(page.locator('.verdict')).toHaveText('too many queries');
@@ -74,7 +95,9 @@ test('selects in both directions', async ({ page, map }) => {
   await page.screenshot({ path: `${PICTURES}/selected.png` });
   const other = page.locator(`.row:not([data-id="${id}"])`).first();
   await other.click();
-  await expect(page.locator('.card h2 small')).toHaveText(`#${await other.getAttribute('data-id')}`);
+  await expect(page.locator('.card h2 small')).toHaveText(
+    `#${await other.getAttribute('data-id')}`,
+  );
   await page.keyboard.press('Escape');
   await expect(page.locator('.card')).toBeHidden();
 });
@@ -139,7 +162,9 @@ for (const theme of ['dark', 'light'] as const)
     await page.locator('.row').first().click();
     await expect(page.locator('.facts-table')).toContainText('Height');
     const { violations } = await new AxeBuilder({ page }).analyze();
-    expect(violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html).join(' ')}`)).toEqual([]);
+    expect(
+      violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html).join(' ')}`),
+    ).toEqual([]);
   });
 
 test('fits a phone', async ({ page, map }) => {
@@ -161,7 +186,10 @@ test('hands over a picture, and says why there is no GLB', async ({ page, map })
   expect(picture.suggestedFilename()).toBe('tiny room.png');
   const offered = await page.request.get(new URL('/api/export.glb', map.address).href);
   if (offered.ok()) {
-    const [file] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Download as GLB' }).click()]);
+    const [file] = await Promise.all([
+      page.waitForEvent('download'),
+      page.getByRole('button', { name: 'Download as GLB' }).click(),
+    ]);
     expect(file.suggestedFilename()).toBe('tiny room.glb');
   } else {
     await page.getByRole('button', { name: 'Download as GLB' }).click();

@@ -3,6 +3,7 @@
 import { api } from './api/client';
 import { listen } from './api/events';
 import type { Instance, MapInfo, MeshListing, Question } from './api/types';
+import { Commands } from './commands';
 import { Corrections } from './corrections';
 import { listenToKeys } from './keyboard';
 import { MapState } from './map-state';
@@ -10,25 +11,26 @@ import type { Mode } from './scene/coloring';
 import { MapView } from './scene/map-view';
 import { SurfaceLoader } from './surface-loader';
 import { Tools } from './tools';
-import { download, h } from './ui/dom';
-import { Help } from './ui/help';
+import { h } from './ui/dom';
 import { Legend } from './ui/legend';
 import { type CardContext, ObjectCard } from './ui/object-card';
 import { SearchPanel } from './ui/search-panel';
 import { Status } from './ui/status';
-import { applyTheme, backgroundOf, initialTheme, type Theme } from './ui/theme';
-import { type Command, Toolbar } from './ui/toolbar';
+import { Toolbar } from './ui/toolbar';
 import { faultText } from './ui/words';
 
 /** Ties the page together: what the server tells, what is shown, what the person does. */
 export class App {
   private readonly state = new MapState();
   private readonly canvas = h('canvas', {
-    class: 'view', tabindex: 0, role: 'application',
-    'aria-label': 'The map in 3D. Arrow keys turn it, W A S D move. The list holds the same objects.',
+    class: 'view',
+    tabindex: 0,
+    role: 'application',
+    'aria-label':
+      'The map in 3D. Arrow keys turn it, W A S D move. The list holds the same objects.',
   });
   private readonly status = new Status();
-  private readonly help = new Help();
+  private readonly commands = new Commands(this.status, () => this.state.info?.title ?? 'map');
   private readonly legend = new Legend();
   private readonly search = new SearchPanel({
     onQuery: (text, not) => void this.ask({ text, not }, text),
@@ -54,20 +56,28 @@ export class App {
   private readonly toolbar = new Toolbar({
     onMode: (mode) => this.setMode(mode),
     onTool: (tool) => this.tools.toggle(tool),
-    onCommand: (command) => this.run(command),
+    onCommand: (command) => this.commands.run(command),
   });
   private readonly tools = new Tools(this.canvas, this.toolbar, this.status);
   private view: MapView | null = null;
   private modeBefore: Mode = 'color';
   private asking: AbortController | null = null;
-  private theme: Theme = initialTheme();
 
   constructor(root: HTMLElement) {
     root.append(
-      h('main', {}, this.canvas, this.search.element, this.card.element, this.toolbar.element,
-        this.legend.element, this.tools.sectionPanel.element, this.tools.pathPanel.element,
-        ...this.status.elements),
-      this.help.element,
+      h(
+        'main',
+        {},
+        this.canvas,
+        this.search.element,
+        this.card.element,
+        this.toolbar.element,
+        this.legend.element,
+        this.tools.sectionPanel.element,
+        this.tools.pathPanel.element,
+        ...this.status.elements,
+      ),
+      this.commands.help.element,
     );
     this.toolbar.setMode(this.state.mode);
     this.listenToKeys();
@@ -120,8 +130,7 @@ export class App {
       this.canvas.hidden = true;
       return this.status.setBanner(faultText(error));
     }
-    this.tools.view = this.corrections.view = this.view;
-    this.view.setTheme(backgroundOf(this.theme));
+    this.tools.view = this.corrections.view = this.commands.view = this.view;
     this.canvas.after(this.view.measure.label);
     const observer = new ResizeObserver(() => this.coverView());
     for (const panel of [this.search.element, this.card.element]) observer.observe(panel);
@@ -257,34 +266,6 @@ export class App {
     this.view?.paint({ mode, instances, ramp, heat: new Map(answer?.heat ?? []) });
   }
 
-  private run(command: Command): void {
-    if (command === 'help') this.help.toggle();
-    if (command === 'home') this.view?.frameAll(true);
-    if (command === 'theme') this.switchTheme();
-    if (command === 'picture') void this.savePicture();
-    if (command === 'download') void this.saveGlb();
-  }
-
-  private switchTheme(): void {
-    this.theme = this.theme === 'dark' ? 'light' : 'dark';
-    applyTheme(this.theme);
-    this.view?.setTheme(backgroundOf(this.theme));
-  }
-
-  private async savePicture(): Promise<void> {
-    const picture = await this.view?.picture();
-    if (picture) download(picture, `${this.state.info?.title ?? 'map'}.png`);
-    else this.status.toast('There is no picture to save');
-  }
-
-  private async saveGlb(): Promise<void> {
-    try {
-      download(await api.glb(), `${this.state.info?.title ?? 'map'}.glb`);
-    } catch (error) {
-      this.status.toast(faultText(error));
-    }
-  }
-
   /** Ends what was begun last: a merge, a tool, the selection, the query. */
   private escape(): void {
     if (this.corrections.endMerge() || this.tools.endLast()) return;
@@ -309,10 +290,10 @@ export class App {
       x: () => this.tools.toggle('section'),
       c: () => this.tools.toggle('path'),
       g: () => this.tools.toggle('fly'),
-      p: () => this.run('picture'),
-      t: () => this.run('theme'),
-      Home: () => this.run('home'),
-      '?': () => this.run('help'),
+      p: () => this.commands.run('picture'),
+      t: () => this.commands.run('theme'),
+      Home: () => this.commands.run('home'),
+      '?': () => this.commands.run('help'),
       Escape: () => this.escape(),
     });
   }

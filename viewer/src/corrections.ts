@@ -54,7 +54,9 @@ export class Corrections {
 
   startMerge(id: number): void {
     this.merging = id;
-    this.status.setBanner(`Choose the object that ${this.state.titleOf(id)} #${id} is a part of, or press Esc.`);
+    this.status.setBanner(
+      `Choose the object that ${this.state.titleOf(id)} #${id} is a part of, or press Esc.`,
+    );
   }
 
   /** Takes a selection as the object to merge into, when one is asked for. */

@@ -25,7 +25,12 @@ export class SurfaceLoader {
   async loadFirst(coarse: MeshListing): Promise<Cameras> {
     const { view } = this;
     view.holdStill(true);
-    const surface = loadChunks(COARSE, coarse.chunks, (chunk, at) => view.put(chunkKey(at), chunk), () => this.onProgress(0.05));
+    const surface = loadChunks(
+      COARSE,
+      coarse.chunks,
+      (chunk, at) => view.put(chunkKey(at), chunk),
+      () => this.onProgress(0.05),
+    );
     const [cameras] = await Promise.all([api.cameras(), surface]);
     view.setCameras(cameras);
     view.frameAll(false);
@@ -36,7 +41,12 @@ export class SurfaceLoader {
   async loadAll(): Promise<void> {
     const fine = await api.chunks(FINE);
     this.version = fine.version;
-    await loadChunks(FINE, fine.chunks, (chunk, at) => this.view.put(chunkKey(at), chunk), (done, total) => this.onProgress(total === 0 ? 1 : done / total));
+    await loadChunks(
+      FINE,
+      fine.chunks,
+      (chunk, at) => this.view.put(chunkKey(at), chunk),
+      (done, total) => this.onProgress(total === 0 ? 1 : done / total),
+    );
     this.onProgress(1);
     this.view.surface.keepOnly(new Set(fine.chunks.map(chunkKey)));
     this.view.surfaceChanged();

@@ -33,11 +33,20 @@ test('unfolds normals as the shader does', () => {
   const unfold = (bits: number): number[] => {
     let [x, y] = [bits >> 8, bits & 255].map((value) => (value / 255) * 2 - 1) as [number, number];
     const z = 1 - Math.abs(x) - Math.abs(y);
-    if (z < 0) [x, y] = [(1 - Math.abs(y)) * (x < 0 ? -1 : 1), (1 - Math.abs(x)) * (y < 0 ? -1 : 1)];
+    if (z < 0)
+      [x, y] = [(1 - Math.abs(y)) * (x < 0 ? -1 : 1), (1 - Math.abs(x)) * (y < 0 ? -1 : 1)];
     const length = Math.hypot(x, y, z);
     return [x / length, y / length, z / length];
   };
-  const expected = [[0, 0, 1], [1, 0, 0], [0, -1, 0], [0, 0, -1], [0.6, 0, 0.8], [-0.6, 0, -0.8], [0, 0.6, -0.8]];
+  const expected = [
+    [0, 0, 1],
+    [1, 0, 0],
+    [0, -1, 0],
+    [0, 0, -1],
+    [0.6, 0, 0.8],
+    [-0.6, 0, -0.8],
+    [0, 0.6, -0.8],
+  ];
   expected.forEach((normal, vertex) => {
     const found = unfold(positions[vertex * 4 + 3]!);
     normal.forEach((value, axis) => expect(found[axis]).toBeCloseTo(value, 1));

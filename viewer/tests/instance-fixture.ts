@@ -4,7 +4,16 @@ import type { Instance } from '../src/api/types';
 
 export function instance(id: number, more: Partial<Instance> = {}): Instance {
   return {
-    id, name: '', guesses: [], class: null, color: [id, 0, 0], box: { min: [0, 0, 0], max: [1, 2, 3] },
-    centroid: [0.5, 1, 1.5], points: 10, views: 3, crops: [], ...more,
+    id,
+    name: '',
+    guesses: [],
+    class: null,
+    color: [id, 0, 0],
+    box: { min: [0, 0, 0], max: [1, 2, 3] },
+    centroid: [0.5, 1, 1.5],
+    points: 10,
+    views: 3,
+    crops: [],
+    ...more,
   };
 }

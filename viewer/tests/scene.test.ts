@@ -5,13 +5,23 @@ import { describe, expect, test } from 'vitest';
 import type { Cameras, Color } from '../src/api/types';
 import { frustumEdges, meanDirection, viewpointOfFrame } from '../src/scene/camera-path';
 import { paint, rampColor } from '../src/scene/coloring';
-import { cornersOf, groundAxes, overviewDirection, trimmedBox, viewpointOf } from '../src/scene/framing';
+import {
+  cornersOf,
+  groundAxes,
+  overviewDirection,
+  trimmedBox,
+  viewpointOf,
+} from '../src/scene/framing';
 import { InstanceTable, NO_INSTANCE } from '../src/scene/instance-table';
 import { metres } from '../src/scene/measure';
 import { sectionPlane } from '../src/scene/section';
 import { instance } from './instance-fixture';
 
-const RAMP: Color[] = [[0, 0, 0], [100, 200, 40], [200, 200, 200]];
+const RAMP: Color[] = [
+  [0, 0, 0],
+  [100, 200, 40],
+  [200, 200, 200],
+];
 
 describe('colours', () => {
   test('a ramp is interpolated and never left', () => {
@@ -23,7 +33,10 @@ describe('colours', () => {
   test('each mode paints its own colour', () => {
     const table = new InstanceTable(300);
     expect([table.width, table.height]).toEqual([256, 2]);
-    const instances = [instance(2, { class: { id: 9, name: 'mug', color: [9, 9, 9] } }), instance(300)];
+    const instances = [
+      instance(2, { class: { id: 9, name: 'mug', color: [9, 9, 9] } }),
+      instance(300),
+    ];
     const at = (id: number): number[] => [...table.pixels.slice(id * 4, id * 4 + 4)];
     const heat = new Map([[2, 1]]);
     paint(table, { mode: 'instances', instances, heat, ramp: RAMP });
@@ -68,7 +81,10 @@ describe('framing', () => {
     const reach = cornersOf(box).map((corner) => {
       const arm = corner.clone().sub(view.position);
       const depth = -arm.dot(back);
-      return Math.max(Math.abs(arm.dot(right)) / depth / lens.halfWidth, Math.abs(arm.dot(top)) / depth / lens.halfHeight);
+      return Math.max(
+        Math.abs(arm.dot(right)) / depth / lens.halfWidth,
+        Math.abs(arm.dot(top)) / depth / lens.halfHeight,
+      );
     });
     expect(Math.max(...reach)).toBeCloseTo(1);
   });
@@ -102,7 +118,14 @@ describe('framing', () => {
 describe('cameras', () => {
   const cameras: Cameras = {
     camera: { width: 101, height: 101, fx: 50, fy: 50, cx: 50, cy: 50 },
-    frames: [{ index: 0, timestamp_s: 0, labelled: true, world_from_camera: [1, 0, 0, 5, 0, 1, 0, 6, 0, 0, 1, 7] }],
+    frames: [
+      {
+        index: 0,
+        timestamp_s: 0,
+        labelled: true,
+        world_from_camera: [1, 0, 0, 5, 0, 1, 0, 6, 0, 0, 1, 7],
+      },
+    ],
   };
 
   test('a frustum begins at the camera and opens forward', () => {

@@ -22,7 +22,9 @@ describe('words', () => {
 
   test('numbers of the server become names', () => {
     const find = (id: number) => [mug, table].find((entry) => entry.id === id);
-    expect(withTitles('0.02 m above the top of #3, near #99', find)).toBe('0.02 m above the top of table #3, near #99');
+    expect(withTitles('0.02 m above the top of #3, near #99', find)).toBe(
+      '0.02 m above the top of table #3, near #99',
+    );
   });
 
   test('figures read well', () => {
@@ -58,7 +60,7 @@ describe('suggestions', () => {
 });
 
 describe('requests', () => {
-  test('a refusal is said in the server\'s words', async () => {
+  test("a refusal is said in the server's words", async () => {
     globalThis.fetch = async () => new Response('{"error":"no such object"}', { status: 404 });
     await expect(api.instance(7)).rejects.toThrow('no such object');
     globalThis.fetch = async () => new Response('<html>', { status: 502 });
@@ -80,6 +82,8 @@ describe('requests', () => {
     });
     expect(most).toBe(2);
     expect(done.sort()).toEqual([1, 2, 3, 4, 5]);
-    await expect(forEachAtOnce([1], 2, async () => Promise.reject(new Error('x')))).rejects.toThrow('x');
+    await expect(forEachAtOnce([1], 2, async () => Promise.reject(new Error('x')))).rejects.toThrow(
+      'x',
+    );
   });
 });

@@ -22,9 +22,13 @@ export function frustumEdges(cameras: Cameras, frame: number, depth = FRUSTUM_DE
   const { width, height, fx, fy, cx, cy } = cameras.camera;
   const pose = poseOf(cameras, frame);
   const apex = new Vector3().applyMatrix4(pose);
-  const corners = [[0, 0], [width - 1, 0], [width - 1, height - 1], [0, height - 1]].map(
-    ([u, v]) =>
-      new Vector3(((u! - cx) / fx) * depth, ((v! - cy) / fy) * depth, depth).applyMatrix4(pose),
+  const corners = [
+    [0, 0],
+    [width - 1, 0],
+    [width - 1, height - 1],
+    [0, height - 1],
+  ].map(([u, v]) =>
+    new Vector3(((u! - cx) / fx) * depth, ((v! - cy) / fy) * depth, depth).applyMatrix4(pose),
   );
   return corners.flatMap((corner, i) => [apex, corner, corner, corners[(i + 1) % 4]!]);
 }

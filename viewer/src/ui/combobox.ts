@@ -20,12 +20,26 @@ export class Combobox {
     placeholder: string,
     private readonly hooks: ComboboxHooks,
   ) {
-    this.list = h('ul', { id: `${id}-list`, class: 'suggestions', role: 'listbox', 'aria-label': 'Suggestions' });
+    this.list = h('ul', {
+      id: `${id}-list`,
+      class: 'suggestions',
+      role: 'listbox',
+      'aria-label': 'Suggestions',
+    });
     this.list.hidden = true;
     this.input = h('input', {
-      id, type: 'text', placeholder, maxlength: 2000, autocomplete: 'off', spellcheck: 'false',
-      enterkeyhint: 'search', role: 'combobox', 'aria-label': label, 'aria-expanded': 'false',
-      'aria-controls': `${id}-list`, 'aria-autocomplete': 'list',
+      id,
+      type: 'text',
+      placeholder,
+      maxlength: 2000,
+      autocomplete: 'off',
+      spellcheck: 'false',
+      enterkeyhint: 'search',
+      role: 'combobox',
+      'aria-label': label,
+      'aria-expanded': 'false',
+      'aria-controls': `${id}-list`,
+      'aria-autocomplete': 'list',
     });
     this.element = h('div', { class: 'combobox' }, this.input, this.list);
     this.input.addEventListener('input', () => this.open());
@@ -50,7 +64,11 @@ export class Combobox {
   }
 
   private option(text: string, place: number): HTMLElement {
-    const option = h('li', { id: `${this.list.id}-${place}`, role: 'option', 'aria-selected': 'false' }, text);
+    const option = h(
+      'li',
+      { id: `${this.list.id}-${place}`, role: 'option', 'aria-selected': 'false' },
+      text,
+    );
     // Not "click": the field would lose the focus, and the list go, before it.
     option.addEventListener('pointerdown', (event) => {
       event.preventDefault();
@@ -72,7 +90,11 @@ export class Combobox {
       event.preventDefault();
       if (!open) return this.open();
       const step = event.key === 'ArrowDown' ? 1 : -1;
-      this.mark(options, (this.active + step + options.length + (this.active < 0 && step < 0 ? 1 : 0)) % options.length);
+      this.mark(
+        options,
+        (this.active + step + options.length + (this.active < 0 && step < 0 ? 1 : 0)) %
+          options.length,
+      );
     } else if (event.key === 'Enter') {
       event.preventDefault();
       this.take(options[this.active]?.textContent ?? this.input.value);

@@ -28,10 +28,26 @@ export class Help {
   readonly element: HTMLDialogElement;
 
   constructor() {
-    const rows = KEYS.map(([key, what]) => h('tr', {}, h('th', { scope: 'row' }, ...key.split(' ').map((part) => h('kbd', {}, part))), h('td', {}, what)));
-    const close = h('button', { class: 'primary', type: 'button', onclick: () => this.element.close() }, 'Close');
-    this.element = h('dialog', { class: 'panel help', 'aria-labelledby': 'help-title' },
-      h('h2', { id: 'help-title' }, 'Keys'), h('table', {}, h('tbody', {}, ...rows)), close);
+    const rows = KEYS.map(([key, what]) =>
+      h(
+        'tr',
+        {},
+        h('th', { scope: 'row' }, ...key.split(' ').map((part) => h('kbd', {}, part))),
+        h('td', {}, what),
+      ),
+    );
+    const close = h(
+      'button',
+      { class: 'primary', type: 'button', onclick: () => this.element.close() },
+      'Close',
+    );
+    this.element = h(
+      'dialog',
+      { class: 'panel help', 'aria-labelledby': 'help-title' },
+      h('h2', { id: 'help-title' }, 'Keys'),
+      h('table', {}, h('tbody', {}, ...rows)),
+      close,
+    );
   }
 
   toggle(): void {

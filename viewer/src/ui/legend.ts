@@ -15,16 +15,29 @@ function classLegend(instances: readonly Instance[]): HTMLElement[] {
     classes.set(own.id, entry);
   }
   const list = [...classes.values()].sort((a, b) => b.points - a.points);
-  const rows = list.slice(0, MOST_CLASSES).map(({ name, color }) => h('li', {}, swatch(color), name));
-  if (list.length > MOST_CLASSES) rows.push(h('li', { class: 'detail' }, `and ${list.length - MOST_CLASSES} more`));
-  return rows.length > 0 ? [h('ul', {}, ...rows)] : [h('p', { class: 'detail' }, 'No classes: the map has no embeddings, or they are still being compared.')];
+  const rows = list
+    .slice(0, MOST_CLASSES)
+    .map(({ name, color }) => h('li', {}, swatch(color), name));
+  if (list.length > MOST_CLASSES)
+    rows.push(h('li', { class: 'detail' }, `and ${list.length - MOST_CLASSES} more`));
+  return rows.length > 0
+    ? [h('ul', {}, ...rows)]
+    : [
+        h(
+          'p',
+          { class: 'detail' },
+          'No classes: the map has no embeddings, or they are still being compared.',
+        ),
+      ];
 }
 
 function heatLegend(ramp: readonly Color[], query: string): HTMLElement[] {
   const bar = h('span', { class: 'ramp', 'aria-hidden': 'true' });
   bar.style.background = `linear-gradient(to right, ${ramp.map(cssColor).join(', ')})`;
   const ends = h('span', { class: 'ramp-ends' }, h('span', {}, 'unlike'), h('span', {}, 'match'));
-  const what = query ? `How well objects match “${query}”` : 'Ask for something to see how well objects match.';
+  const what = query
+    ? `How well objects match “${query}”`
+    : 'Ask for something to see how well objects match.';
   return [h('p', {}, what), bar, ends];
 }
 

@@ -8,7 +8,14 @@ import { isGuess, percent, plural, titleOf } from './words';
 export function thumbnail(instance: Instance): HTMLElement {
   const crop = instance.crops[0];
   if (crop === undefined) return h('span', { class: 'thumb empty', 'aria-hidden': 'true' });
-  return h('img', { class: 'thumb', src: api.cropUrl(instance.id, crop), alt: '', loading: 'lazy', width: 44, height: 44 });
+  return h('img', {
+    class: 'thumb',
+    src: api.cropUrl(instance.id, crop),
+    alt: '',
+    loading: 'lazy',
+    width: 44,
+    height: 44,
+  });
 }
 
 /** How sure the search is, as a bar and in figures. */
@@ -23,18 +30,36 @@ function certainty(match: Match): HTMLElement {
 
 function nameOf(instance: Instance): HTMLElement {
   const guess = isGuess(instance);
-  return h('span', { class: guess ? 'name guess' : 'name', title: guess ? 'guessed by the encoder' : '' },
-    titleOf(instance), ' ', h('small', {}, `#${instance.id}`));
+  return h(
+    'span',
+    { class: guess ? 'name guess' : 'name', title: guess ? 'guessed by the encoder' : '' },
+    titleOf(instance),
+    ' ',
+    h('small', {}, `#${instance.id}`),
+  );
 }
 
 /** A line of a list: what the object looks like and is called, and how well it matches. */
-export function objectRow(instance: Instance, match: Match | null, evidence: string, onSelect: (id: number) => void): HTMLElement {
-  const details = match ? certainty(match) : h('span', { class: 'detail' }, `seen in ${plural(instance.views, 'frame')}`);
-  const button = h('button', { class: 'row', type: 'button', 'data-id': instance.id, onclick: () => onSelect(instance.id) },
+export function objectRow(
+  instance: Instance,
+  match: Match | null,
+  evidence: string,
+  onSelect: (id: number) => void,
+): HTMLElement {
+  const details = match
+    ? certainty(match)
+    : h('span', { class: 'detail' }, `seen in ${plural(instance.views, 'frame')}`);
+  const button = h(
+    'button',
+    { class: 'row', type: 'button', 'data-id': instance.id, onclick: () => onSelect(instance.id) },
     thumbnail(instance),
-    h('span', { class: 'row-text' },
+    h(
+      'span',
+      { class: 'row-text' },
       h('span', { class: 'row-head' }, swatch(instance.color), nameOf(instance)),
       details,
-      evidence !== '' && h('span', { class: 'detail' }, evidence)));
+      evidence !== '' && h('span', { class: 'detail' }, evidence),
+    ),
+  );
   return h('li', {}, button);
 }

@@ -10,14 +10,30 @@ export interface PathHooks {
 /** Walks along the frames of the recording. */
 export class PathPanel {
   readonly element: HTMLElement;
-  private readonly slider = h('input', { id: 'frame', type: 'range', min: 0, max: 0, step: 1, value: 0 });
+  private readonly slider = h('input', {
+    id: 'frame',
+    type: 'range',
+    min: 0,
+    max: 0,
+    step: 1,
+    value: 0,
+  });
   private readonly shown = h('output', { for: 'frame' });
 
   constructor(private readonly hooks: PathHooks) {
     this.slider.addEventListener('input', () => this.report());
-    this.element = h('div', { class: 'panel tool-panel', role: 'group', 'aria-label': 'Camera path' },
-      h('label', { for: 'frame' }, 'Frame'), this.slider, this.shown,
-      h('button', { class: 'primary', type: 'button', onclick: () => hooks.onLook(this.frame) }, 'Look from here'));
+    this.element = h(
+      'div',
+      { class: 'panel tool-panel', role: 'group', 'aria-label': 'Camera path' },
+      h('label', { for: 'frame' }, 'Frame'),
+      this.slider,
+      this.shown,
+      h(
+        'button',
+        { class: 'primary', type: 'button', onclick: () => hooks.onLook(this.frame) },
+        'Look from here',
+      ),
+    );
     this.element.hidden = true;
   }
 

@@ -20,7 +20,12 @@ export interface SearchHooks {
 export class SearchPanel {
   readonly element: HTMLElement;
   private readonly box: Combobox;
-  private readonly not = h('input', { id: 'not', type: 'text', placeholder: 'e.g. armchair, stool', autocomplete: 'off' });
+  private readonly not = h('input', {
+    id: 'not',
+    type: 'text',
+    placeholder: 'e.g. armchair, stool',
+    autocomplete: 'off',
+  });
   private readonly heading = h('h1', {}, 'ovimap');
   private readonly facts = h('p', { class: 'facts' });
   private readonly verdict = h('div', { class: 'verdict', role: 'status', 'aria-live': 'polite' });
@@ -36,7 +41,16 @@ export class SearchPanel {
       suggest: (typed) => suggest(typed, this.vocabulary, this.recent),
       onSubmit: () => this.submit(),
     });
-    this.clear = h('button', { class: 'icon-button', type: 'button', 'aria-label': 'Clear the query', onclick: () => this.reset() }, icon('close'));
+    this.clear = h(
+      'button',
+      {
+        class: 'icon-button',
+        type: 'button',
+        'aria-label': 'Clear the query',
+        onclick: () => this.reset(),
+      },
+      icon('close'),
+    );
     this.clear.hidden = true;
     this.element = this.build();
   }
@@ -65,7 +79,10 @@ export class SearchPanel {
   showAll(selected: number): void {
     const bySize = [...this.instances.values()].sort((a, b) => b.points - a.points);
     this.listTitle.textContent = 'All objects';
-    this.fill(bySize.map((instance) => objectRow(instance, null, '', this.hooks.onSelect)), selected);
+    this.fill(
+      bySize.map((instance) => objectRow(instance, null, '', this.hooks.onSelect)),
+      selected,
+    );
   }
 
   showAnswer(answer: Answer, selected: number): void {
@@ -74,9 +91,13 @@ export class SearchPanel {
     this.verdict.dataset.kind = 'answer';
     this.verdict.className = `verdict ${found ? 'found' : 'absent'}`;
     this.verdict.textContent = found ? 'Found' : 'Not in the map';
-    const more = [answer.reading && `read as ${answer.reading}`, withTitles(answer.reason, (id) => this.instances.get(id))];
+    const more = [
+      answer.reading && `read as ${answer.reading}`,
+      withTitles(answer.reason, (id) => this.instances.get(id)),
+    ];
     for (const text of more) if (text) this.verdict.append(h('small', {}, text));
-    this.listTitle.textContent = answer.matches.length === 0 ? '' : found ? 'Best matches' : 'What comes nearest';
+    this.listTitle.textContent =
+      answer.matches.length === 0 ? '' : found ? 'Best matches' : 'What comes nearest';
     const rows = answer.matches.flatMap((match) => {
       const instance = this.instances.get(match.id);
       const evidence = withTitles(match.evidence, (id) => this.instances.get(id));
@@ -127,7 +148,13 @@ export class SearchPanel {
     this.recent.unshift(text);
     this.recent.splice(MOST_RECENT);
     this.box.close();
-    this.hooks.onQuery(text, this.not.value.split(',').map((word) => word.trim()).filter(Boolean));
+    this.hooks.onQuery(
+      text,
+      this.not.value
+        .split(',')
+        .map((word) => word.trim())
+        .filter(Boolean),
+    );
   }
 
   private fill(rows: HTMLElement[], selected: number): void {
@@ -137,14 +164,39 @@ export class SearchPanel {
   }
 
   private build(): HTMLElement {
-    const form = h('form', { role: 'search', class: 'query', onsubmit: (event: Event) => { event.preventDefault(); this.submit(); } },
-      icon('search'), this.box.element, this.clear,
-      h('button', { class: 'primary', type: 'submit' }, 'Find'));
-    this.not.addEventListener('keydown', (event) => { if (event.key === 'Enter') this.submit(); });
-    return h('section', { class: 'panel search', 'aria-label': 'Search' },
+    const form = h(
+      'form',
+      {
+        role: 'search',
+        class: 'query',
+        onsubmit: (event: Event) => {
+          event.preventDefault();
+          this.submit();
+        },
+      },
+      icon('search'),
+      this.box.element,
+      this.clear,
+      h('button', { class: 'primary', type: 'submit' }, 'Find'),
+    );
+    this.not.addEventListener('keydown', (event) => {
+      if (event.key === 'Enter') this.submit();
+    });
+    return h(
+      'section',
+      { class: 'panel search', 'aria-label': 'Search' },
       h('header', {}, this.heading, this.facts),
       form,
-      h('details', { class: 'refine' }, h('summary', {}, 'But not …'), h('label', { for: 'not' }, 'Leave out'), this.not),
-      this.verdict, this.listTitle, this.list);
+      h(
+        'details',
+        { class: 'refine' },
+        h('summary', {}, 'But not …'),
+        h('label', { for: 'not' }, 'Leave out'),
+        this.not,
+      ),
+      this.verdict,
+      this.listTitle,
+      this.list,
+    );
   }
 }

@@ -6,7 +6,12 @@ const TOAST_MS = 5000;
 
 /** Progress while the map loads, passing notes, and what stays until it is mended. */
 export class Status {
-  private readonly bar = h('progress', { class: 'progress', max: 1, value: 0, 'aria-label': 'Loading the map' });
+  private readonly bar = h('progress', {
+    class: 'progress',
+    max: 1,
+    value: 0,
+    'aria-label': 'Loading the map',
+  });
   private readonly toasts = h('div', { class: 'toasts', role: 'status', 'aria-live': 'polite' });
   private readonly banner = h('div', { class: 'panel banner', role: 'alert' });
   readonly elements = [this.bar, this.toasts, this.banner];

@@ -45,7 +45,18 @@ export class Toolbar {
 
   constructor(hooks: ToolbarHooks) {
     const modes = MODES.map(([mode, label, key]) => {
-      const button = h('button', { class: 'mode', type: 'button', 'aria-pressed': 'false', title: hint(label, key), onclick: () => hooks.onMode(mode) }, icon(mode), h('span', {}, label));
+      const button = h(
+        'button',
+        {
+          class: 'mode',
+          type: 'button',
+          'aria-pressed': 'false',
+          title: hint(label, key),
+          onclick: () => hooks.onMode(mode),
+        },
+        icon(mode),
+        h('span', {}, label),
+      );
       this.modes.set(mode, button);
       return button;
     });
@@ -55,22 +66,43 @@ export class Toolbar {
       this.tools.set(tool, button);
       return button;
     });
-    const commands = COMMANDS.map(([name, label, key]) => this.iconButton(name, label, key, () => hooks.onCommand(name)));
-    this.element = h('div', { class: 'panel toolbar', role: 'group', 'aria-label': 'View' },
+    const commands = COMMANDS.map(([name, label, key]) =>
+      this.iconButton(name, label, key, () => hooks.onCommand(name)),
+    );
+    this.element = h(
+      'div',
+      { class: 'panel toolbar', role: 'group', 'aria-label': 'View' },
       h('div', { class: 'modes', role: 'group', 'aria-label': 'Colouring' }, ...modes),
       h('div', { class: 'tools', role: 'group', 'aria-label': 'Tools' }, ...tools),
-      h('div', { class: 'tools', role: 'group', 'aria-label': 'Commands' }, ...commands));
+      h('div', { class: 'tools', role: 'group', 'aria-label': 'Commands' }, ...commands),
+    );
   }
 
   setMode(mode: Mode): void {
-    for (const [name, button] of this.modes) button.setAttribute('aria-pressed', String(name === mode));
+    for (const [name, button] of this.modes)
+      button.setAttribute('aria-pressed', String(name === mode));
   }
 
   setTool(tool: Tool, on: boolean): void {
     this.tools.get(tool)?.setAttribute('aria-pressed', String(on));
   }
 
-  private iconButton(name: IconName, label: string, key: string, run: () => void): HTMLButtonElement {
-    return h('button', { class: 'icon-button', type: 'button', 'aria-label': label, title: hint(label, key), onclick: run }, icon(name));
+  private iconButton(
+    name: IconName,
+    label: string,
+    key: string,
+    run: () => void,
+  ): HTMLButtonElement {
+    return h(
+      'button',
+      {
+        class: 'icon-button',
+        type: 'button',
+        'aria-label': label,
+        title: hint(label, key),
+        onclick: run,
+      },
+      icon(name),
+    );
   }
 }
