@@ -20,8 +20,8 @@ EXAMPLES = "40"  # of each operation
 
 
 def fuzz(address):
-    """Event streams never end, so they are left to the C++ tests."""
-    command = [sys.executable, "-m", "schemathesis.cli", "run", address + "api/openapi.json", "--exclude-path", "/api/events",
+    """Event streams never end, and GLB may be left out: the C++ tests take these."""
+    command = [sys.executable, "-m", "schemathesis.cli", "run", address + "api/openapi.json", "--exclude-path", "/api/events", "--exclude-path", "/api/export.glb",
                "--max-examples", EXAMPLES, "--seed", "7", "--phases", "examples,coverage,fuzzing", "--generation-database", "none"]
     return subprocess.run(command, check=False, cwd=tempfile.gettempdir()).returncode
 

@@ -98,7 +98,7 @@ TEST_F(ServeProgramTest, AnswersInWords) {
   ask({{"text", "thing"}, {"not", {"thing"}}}, 200);
   ask({{"text", "  "}}, 400);
   ask({{"text", std::string(3000, 'a')}}, 400);
-  ask({{"like", 987654}}, 400);
+  ask({{"like", 987654}}, 404);
 }
 
 }  // namespace

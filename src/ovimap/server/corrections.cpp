@@ -12,7 +12,7 @@ namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kLongestName = 200;  // bytes
+constexpr std::ptrdiff_t kLongestName = 200;  // letters
 constexpr std::array<const char*, 5> kNames = {"rename", "merge", "hide", "lock", "delete"};
 
 class MapFileNames : public CorrectionStore {
@@ -38,9 +38,11 @@ class MapFileNames : public CorrectionStore {
 }  // namespace
 
 void check_name(const std::string& name) {
-  if (name.size() > kLongestName)
+  const auto begins_letter = [](char byte) { return (byte & 0xc0) != 0x80; };  // of UTF-8
+  const std::ptrdiff_t letters = std::count_if(name.begin(), name.end(), begins_letter);
+  if (letters > kLongestName)
     throw Error(
-        concat("a name of ", name.size(), " bytes is too long; ", kLongestName, " are allowed"));
+        concat("a name of ", letters, " letters is too long; ", kLongestName, " are allowed"));
   if (std::any_of(name.begin(), name.end(),
                   [](unsigned char letter) { return letter < 0x20 || letter == 0x7f; }))
     throw Error("a name must not hold control characters such as line breaks; leave them out");

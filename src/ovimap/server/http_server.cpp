@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <set>
 
 #include <httplib.h>
 
@@ -77,6 +78,26 @@ std::string why_refused(int status) {
   }
 }
 
+bool is_unknown_method(const std::string& method) {
+  static const std::set<std::string> kKnown = {"GET",    "HEAD",    "POST",  "PUT",    "PATCH",
+                                               "DELETE", "OPTIONS", "TRACE", "CONNECT"};
+  const auto is_capital = [](char letter) { return letter >= 'A' && letter <= 'Z'; };
+  return !method.empty() && std::all_of(method.begin(), method.end(), is_capital) &&
+         !kKnown.contains(method);
+}
+
+/// In our words what httplib refuses by itself. What is left of the request may still be on its
+/// way, so that the connection cannot be used again.
+HttpReply refusal(const httplib::Request& request, int status) {
+  HttpReply reply = fault(status, why_refused(status));
+  if (status == 400 && is_unknown_method(request.method)) {
+    reply = fault(405, "nothing here takes " + request.method);
+    reply.headers["Allow"] = "GET, HEAD, POST";
+  }
+  reply.headers["Connection"] = "close";
+  return reply;
+}
+
 bool needs_length(const httplib::Request& request) {
   const bool has_body =
       request.method == "POST" || request.method == "PUT" || request.method == "PATCH";
@@ -130,10 +151,10 @@ struct HttpServer::Sockets {
           handle(request, response);
           return httplib::Server::HandlerResponse::Handled;
         });
-    const httplib::Server::HandlerWithResponse explain = [](const httplib::Request&,
+    const httplib::Server::HandlerWithResponse explain = [](const httplib::Request& request,
                                                             httplib::Response& response) {
       if (response.has_header("Content-Type")) return httplib::Server::HandlerResponse::Unhandled;
-      send(fault(response.status, why_refused(response.status)), response);
+      send(refusal(request, response.status), response);
       return httplib::Server::HandlerResponse::Handled;
     };
     http.set_error_handler(explain);

@@ -159,8 +159,9 @@ TEST_F(HttpServerTest, RefusesBadCorrections) {
   post("/api/corrections", R"({"kind":"paint","instance":1})", 400);
   post("/api/corrections", R"({"kind":"merge","instance":1})", 400);
   for (const char* kind : {"hide", "lock", "delete"})
-    post("/api/corrections", json{{"kind", kind}, {"instance", 1}}.dump(), 501);
-  post("/api/corrections", R"({"kind":"merge","instance":1,"into":3})", 501);
+    post("/api/corrections", json{{"kind", kind}, {"instance", 1}}.dump(), 409);
+  post("/api/corrections", R"({"kind":"merge","instance":1,"into":3})", 409);
+  post("/api/corrections", R"({"kind":"rename","instance":1,"name":"x","into":3})", 400);
 }
 
 TEST_F(HttpServerTest, GoesOnWhenTheMapIsDeleted) {

@@ -130,7 +130,14 @@ HttpReply answer_query(const ServedMap& map, const HttpRequest& request) {
   question.query.text = text.value_or("");
   if (map.snapshot()->search == SearchState::kUnavailable)
     return fault(409, "this map cannot be searched: " + map.snapshot()->why_no_search);
-  return json_reply(answer_json(map.ask(question)));
+  if (!question.like) return json_reply(answer_json(map.ask(question)));
+  if (!map.snapshot()->index().find(*question.like))
+    return fault(404, concat("the map has no object ", *question.like));
+  try {
+    return json_reply(answer_json(map.ask(question)));
+  } catch (const Error& error) {  // the object is there, but nobody knows what it looks like
+    return fault(409, error.what());
+  }
 }
 
 int level_of(const std::string& text, int status) {
@@ -159,29 +166,48 @@ HttpReply show_chunk(const ServedMap& map, const HttpRequest& request) {
                                  query_number<std::uint64_t>(request, "since", 0)));
 }
 
-HttpReply correct(ServedMap& map, const HttpRequest& request) {
-  const json body = body_of(request);
-  check_keys(body, {"kind", "instance", "name", "into", "on"});
+/// The correction that a body asks for; each kind has fields of its own.
+Correction correction_of(const json& body) {
   const auto name = field<std::string>(body, "kind");
   const auto kind = name ? correction_kind(*name) : std::nullopt;
-  if (!kind) throw BadRequest(400, "'kind' is one of rename, merge, hide, lock, delete");
   const auto instance = field<InstanceId>(body, "instance");
+  if (!kind) throw BadRequest(400, "'kind' is one of rename, merge, hide, lock, delete");
   if (!instance) throw BadRequest(400, "'instance' is missing: the id of an object");
-  Correction correction{*kind, *instance, field<std::string>(body, "name").value_or(""),
-                        field<InstanceId>(body, "into").value_or(0),
-                        field<bool>(body, "on").value_or(true)};
-  if (*kind == CorrectionKind::kRename && !body.contains("name"))
-    throw BadRequest(400, "'name' is missing; an empty one takes the name away");
-  if (*kind == CorrectionKind::kMerge && correction.into == 0)
-    throw BadRequest(400, "'into' is missing: the id of the object that stays");
+  Correction correction{*kind, *instance, {}, 0, true};
+  switch (*kind) {
+    case CorrectionKind::kRename:
+      check_keys(body, {"kind", "instance", "name"});
+      if (!body.contains("name"))
+        throw BadRequest(400, "'name' is missing; an empty one takes the name away");
+      correction.name = *field<std::string>(body, "name");
+      check_name(correction.name);
+      break;
+    case CorrectionKind::kMerge:
+      check_keys(body, {"kind", "instance", "into"});
+      correction.into = field<InstanceId>(body, "into").value_or(0);
+      if (correction.into == 0)
+        throw BadRequest(400, "'into' is missing: the id of the object that stays");
+      break;
+    case CorrectionKind::kHide:
+    case CorrectionKind::kLock:
+      check_keys(body, {"kind", "instance", "on"});
+      correction.on = field<bool>(body, "on").value_or(true);
+      break;
+    case CorrectionKind::kDelete:
+      check_keys(body, {"kind", "instance"});
+      break;
+  }
+  return correction;
+}
+
+HttpReply correct(ServedMap& map, const HttpRequest& request) {
+  const Correction correction = correction_of(body_of(request));
   const auto kinds = map.correctable();
-  if (std::find(kinds.begin(), kinds.end(), *kind) == kinds.end())
-    return fault(501, concat("this map cannot keep a '", *name,
-                             "' yet; GET /api/map lists under "
-                             "'corrections' what it keeps"));
-  if (!map.snapshot()->index().find(*instance))
-    return fault(404, concat("the map has no object ", *instance));
-  check_name(correction.name);
+  if (std::find(kinds.begin(), kinds.end(), correction.kind) == kinds.end())
+    return fault(409, concat("this map cannot keep a '", correction_name(correction.kind),
+                             "' yet; GET /api/map lists under 'corrections' what it keeps"));
+  if (!map.snapshot()->index().find(correction.instance))
+    return fault(404, concat("the map has no object ", correction.instance));
   try {
     map.correct(correction);
   } catch (const Error& error) {  // the request is sound; the file is not as it should be
