@@ -25,6 +25,12 @@ async function serve() {
   return { server, address: JSON.parse(line).address };
 }
 
+const launch = () =>
+  chromium.launch({
+    executablePath: process.env.OVIMAP_CHROMIUM ?? '/usr/bin/chromium',
+    args: ['--no-sandbox', '--enable-unsafe-swiftshader'],
+  });
+
 async function searchReady(address) {
   while ((await (await fetch(`${address}api/map`)).json()).search.state === 'preparing')
     await new Promise((resolve) => setTimeout(resolve, 100));
@@ -61,14 +67,10 @@ async function answerTime(address, text) {
 
 const { server, address } = await serve();
 await searchReady(address);
-const browser = await chromium.launch({
-  executablePath: process.env.OVIMAP_CHROMIUM ?? '/usr/bin/chromium',
-  args: ['--no-sandbox', '--enable-unsafe-swiftshader'],
-});
 const times = { first: [], whole: [], still: [], words: [], bare: [], encoded: [] };
 for (let run = 0; run < Number(runs); ++run) {
-  const context = await browser.newContext({ viewport: { width: 1280, height: 800 } });
-  const page = await context.newPage();
+  const browser = await launch();
+  const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
   await page.goto(address);
   await drawn(page, 'whole-picture');
   times.first.push(await markOf(page, 'first-picture'));
@@ -79,9 +81,8 @@ for (let run = 0; run < Number(runs); ++run) {
   times.words.push(await ask(page, 'chair'));
   times.bare.push(await answerTime(address, 'largest object'));
   times.encoded.push(await answerTime(address, 'chair'));
-  await context.close();
+  await browser.close();
 }
-await browser.close();
 server.kill('SIGINT');
 
 console.log('| 1280 x 800, software rendering | median, ms | slowest, ms |\n| --- | --- | --- |');

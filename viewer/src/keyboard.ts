@@ -5,7 +5,7 @@
 export type Shortcuts = Record<string, () => void>;
 
 function isTyping(target: EventTarget | null): boolean {
-  return target instanceof HTMLElement && target.matches('input, textarea, select');
+  return target instanceof HTMLElement && target.matches('input[type=text], textarea, select');
 }
 
 /** Runs shortcuts, but not while somebody types, nor where the browser has a use for the key. */
