@@ -38,7 +38,9 @@ class HttpServerTest : public MapFolder {
     if (!reply) return {};
     EXPECT_EQ(reply->status, status) << body << reply->body;
     const json parsed = json::parse(reply->body, nullptr, false);
-    if (status >= 400) EXPECT_FALSE(parsed.value("error", "").empty()) << reply->body;
+    if (status >= 400) {
+      EXPECT_FALSE(parsed.value("error", "").empty()) << reply->body;
+    }
     return parsed;
   }
 
@@ -114,7 +116,7 @@ TEST_F(HttpServerTest, RefusesBadBodies) {
   serve();
   for (const char* body :
        {"", "{", "[]", "7", "{\"text\":7}", "{\"text\":\"a\",\"like\":1}", "{}",
-        "{\"texts\":\"a\"}", "{\"like\":-1}", "{\"like\":1e3}", "{\"like\":99999999999}",
+        "{\"texts\":\"a\"}", "{\"like\":-1}", "{\"like\":1.5}", "{\"like\":99999999999}",
         "{\"text\":\"a\",\"not\":\"b\"}", "{\"text\":\"a\",\"not\":[7]}",
         "{\"text\":\"a\",\"heat\":1}", "\xff\xfe", "{\"text\":\"\xff\"}"})
     post("/api/query", body, 400);

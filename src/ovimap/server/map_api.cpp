@@ -3,6 +3,7 @@
 #include "ovimap/server/map_api.h"
 
 #include <charconv>
+#include <cmath>
 
 #include <nlohmann/json.hpp>
 
@@ -66,6 +67,13 @@ void check_keys(const json& body, std::initializer_list<const char*> known) {
   }
 }
 
+/// Whether JSON counts it as a whole number in [0, most]: 12.0 is one as well.
+bool is_whole(const json& value, double most) {
+  if (!value.is_number()) return false;
+  const double number = value.get<double>();
+  return number >= 0 && number <= most && number == std::floor(number);
+}
+
 /// Field `name` of a body. Throws BadRequest when its type is another.
 template <class Value>
 std::optional<Value> field(const json& body, const char* name) {
@@ -75,8 +83,7 @@ std::optional<Value> field(const json& body, const char* name) {
   if constexpr (std::is_same_v<Value, bool>)
     fits = value.is_boolean();
   else if constexpr (std::is_integral_v<Value>)
-    fits = value.is_number_unsigned() &&
-           value.get<std::uint64_t>() <= std::numeric_limits<Value>::max();
+    fits = is_whole(value, static_cast<double>(std::numeric_limits<Value>::max()));
   if (!fits)
     throw BadRequest(400, concat("'", name, "' is of the wrong type; see /api/openapi.json"));
   return value.get<Value>();
@@ -168,13 +175,13 @@ HttpReply show_chunk(const ServedMap& map, const HttpRequest& request) {
 
 /// The correction that a body asks for; each kind has fields of its own.
 Correction correction_of(const json& body) {
-  const auto name = field<std::string>(body, "kind");
-  const auto kind = name ? correction_kind(*name) : std::nullopt;
+  const auto known = correction_kind(field<std::string>(body, "kind").value_or(""));
   const auto instance = field<InstanceId>(body, "instance");
-  if (!kind) throw BadRequest(400, "'kind' is one of rename, merge, hide, lock, delete");
+  if (!known) throw BadRequest(400, "'kind' is one of rename, merge, hide, lock, delete");
   if (!instance) throw BadRequest(400, "'instance' is missing: the id of an object");
-  Correction correction{*kind, *instance, {}, 0, true};
-  switch (*kind) {
+  const CorrectionKind kind = *known;
+  Correction correction{kind, *instance, {}, 0, true};
+  switch (kind) {
     case CorrectionKind::kRename:
       check_keys(body, {"kind", "instance", "name"});
       if (!body.contains("name"))

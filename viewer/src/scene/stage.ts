@@ -153,14 +153,22 @@ export class Stage {
     this.waiting.splice(0).forEach((resolve) => resolve());
   }
 
-  /** How long a detailed frame takes; the next task runs once it is drawn, in software at least. */
+  /** How long a detailed frame takes, until the last pixel is drawn. */
   private measure(start: number): void {
-    const gl = this.renderer.getContext();
+    const gl = this.renderer.getContext() as WebGL2RenderingContext;
+    const drawn = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     gl.flush();
-    setTimeout(() => {
+    const check = (): void => {
+      if (!drawn || gl.isContextLost()) return;
+      if (gl.clientWaitSync(drawn, 0, 0) === gl.TIMEOUT_EXPIRED) {
+        setTimeout(check, 2);
+        return;
+      }
+      gl.deleteSync(drawn);
       const took = performance.now() - start;
       this.frameMs = this.frameMs === 0 ? took : 0.5 * this.frameMs + 0.5 * took;
-    });
+    };
+    setTimeout(check);
   }
 
   private resize(): void {
