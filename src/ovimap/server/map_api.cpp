@@ -135,8 +135,6 @@ HttpReply answer_query(const ServedMap& map, const HttpRequest& request) {
   if (question.like && !question.query.not_texts.empty())
     throw BadRequest(400, "'not' goes with 'text' alone");
   question.query.text = text.value_or("");
-  if (map.snapshot()->search == SearchState::kUnavailable)
-    return fault(409, "this map cannot be searched: " + map.snapshot()->why_no_search);
   if (!question.like) return json_reply(answer_json(map.ask(question)));
   if (!map.snapshot()->index().find(*question.like))
     return fault(404, concat("the map has no object ", *question.like));
@@ -232,6 +230,8 @@ HttpHandler guarded(HttpHandler handler) {
   return [handler = std::move(handler)](const HttpRequest& request) {
     try {
       return handler(request);
+    } catch (const SearchUnavailable& why) {
+      return fault(409, concat("this map cannot be searched: ", why.what()));
     } catch (const BadRequest& bad) {
       return fault(bad.status, bad.what());
     } catch (const Error& error) {

@@ -105,7 +105,7 @@ MapAnswer ServedMap::ask(const MapQuestion& question) const {
     prepared_.wait(lock, [&] { return snapshot_->search != SearchState::kPreparing; });
     now = snapshot_;
   }
-  if (!now->engine) throw Error(now->why_no_search);
+  if (!now->engine) throw SearchUnavailable(now->why_no_search);
   const bool relevance = question.query.relevance;
   return {question.like ? now->engine->find_like(*question.like, relevance)
                         : now->engine->find(question.query),

@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "ovimap/base/error.h"
 #include "ovimap/io/map_document.h"
 #include "ovimap/pipeline/map_search.h"
 #include "ovimap/semantics/label_set.h"
@@ -54,6 +55,12 @@ struct MapSnapshot {
   std::string name_of(InstanceId id) const;  ///< as given; empty: none
 };
 
+/// This map cannot be searched, whatever is asked.
+class SearchUnavailable : public Error {
+ public:
+  using Error::Error;
+};
+
 struct MapQuestion {
   Query query;                     ///< what to look for in words
   std::optional<InstanceId> like;  ///< instead: what looks like this object
@@ -82,8 +89,8 @@ class ServedMap {
   EventHub& events() const { return events_; }
   std::shared_ptr<const MapSnapshot> snapshot() const;
 
-  /// Waits until search is ready. Throws Error for what the asker can mend, and where this map
-  /// cannot be searched.
+  /// Waits until search is ready. Throws Error for what the asker can mend, SearchUnavailable where
+  /// this map cannot be searched.
   MapAnswer ask(const MapQuestion& question) const;
 
   std::vector<CorrectionKind> correctable() const { return corrections_->kinds(); }
