@@ -19,7 +19,7 @@ constexpr std::size_t kSmallestPacked = 1024;  // bytes; below, compression save
 HttpReply too_many(const char* what) {
   HttpReply reply =
       fault(429, std::string("too many ") + what + " from this address; wait a second");
-  reply.headers["Retry-After"] = "1";
+  reply.headers.emplace("Retry-After", "1");
   return reply;
 }
 
