@@ -6,16 +6,17 @@ OVIMAP := $(BUILD)/bin/ovimap
 JOBS ?= $(shell nproc)
 SOURCE ?= demo/tiny/room
 
-.PHONY: help setup build demo test asan tsan fuzz bench rivals benchmarks clean
+.PHONY: help setup build demo test asan tsan fuzz bench rivals benchmarks viewer-speed clean
 
 help:
-	@echo "make demo    set up, build, render a room, map it, show the objects"
+	@echo "make demo    set up, build, render a room, map it, show the objects; VIEW=1: then in a browser"
 	@echo "make test    set up, build, run every test"
 	@echo "make build   build the program: $(OVIMAP)"
 	@echo "make bench   measure speed and memory on SOURCE (default: the demo room), beside their targets"
 	@echo "make rivals  install Open3D (1.3 GB) into build/rivals, for make bench to compare with"
 	@echo "make benchmarks KITCHEN=FOLDER [ONLY='tiny rooms']   write docs/benchmarks.md, or these parts of it"
 	@echo "make fuzz    feed the readers with odd bytes, FUZZ_SECONDS (60) each; needs clang"
+	@echo "make viewer-speed MAP=FILE   when the viewer shows its first picture, and how fast it answers"
 	@echo "make asan    run the tests under AddressSanitizer and UBSan;  make tsan: ThreadSanitizer"
 
 setup:
@@ -27,7 +28,7 @@ build: setup
 	@cmake --build --preset release -j $(JOBS)
 
 demo: build
-	@tools/demo.sh $(OVIMAP)
+	@VIEW=$(VIEW) tools/demo.sh $(OVIMAP)
 
 test: build
 	@tools/run_tests.sh $(BUILD)
@@ -54,6 +55,10 @@ rivals:
 
 benchmarks: build
 	@python3 tools/benchmarks.py $(OVIMAP) $(if $(KITCHEN),--kitchen "$(KITCHEN)") $(if $(ONLY),--only $(ONLY))
+
+viewer-speed: build
+	@test -f "$(MAP)" || { echo "name a map: make viewer-speed MAP=room.ovimap"; exit 1; }
+	@cd viewer && node e2e/speed.mjs "$(abspath $(OVIMAP))" "$(abspath $(MAP))"
 
 clean:
 	rm -rf build demo

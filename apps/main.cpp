@@ -38,6 +38,7 @@ constexpr Entry kCommands[] = {
     {"embed", "embeddings for a finished mesh with instance ids", add_embed},
     {"report", "write a map as one HTML page: pictures, objects, timings", add_report},
     {"masks", "write the 2D entities of frames, or score them against the truth", add_masks},
+    {"serve", "show a map in a browser, and to programs over HTTP", add_serve},
     {"models", "list, verify and find networks", add_models},
     {"config", "list every setting with its default", add_config},
 };

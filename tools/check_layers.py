@@ -10,7 +10,7 @@ ROW = re.compile(r"^\| (\d+) \| (\w+) \| [^|]* \| ([^|]*) \|$")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]')
 HEADERS = {"unzip": "minizip", "sentencepiece_processor": "sentencepiece"}  # where it is not the library's name
 TEST_LIBRARIES = {"gtest"}
-SYSTEM = {"unistd.h", "sys", "fcntl.h", "dirent.h"}  # POSIX
+SYSTEM = {"unistd.h", "sys", "fcntl.h", "dirent.h", "arpa", "netinet"}  # POSIX
 
 
 def read_table(text):

@@ -21,9 +21,11 @@ echo "== how good it is (exact truth comes with the rendered room)"
 cat <<EOT
 
 Look at   demo/report.html in a browser; demo/pictures/top_view.png, demo/pictures/contact_sheet.png
+See       $ovimap serve demo/tiny.ovimap                 in a browser; or make demo VIEW=1
 Ask       $ovimap query demo/tiny.ovimap "something to sit on" "largest cabinet"
 Open      demo/tiny.ply in any mesh viewer; demo/tiny.json in any editor
 Go on     $ovimap run YOUR_RECORDING -o my.ovimap        depth alone, real time
           $ovimap run YOUR_RECORDING --masks sam -o my.ovimap --pictures pictures
           $ovimap check YOUR_RECORDING                   what is wrong with a recording
 EOT
+[ "${VIEW:-0}" != 1 ] || exec "$ovimap" serve demo/tiny.ovimap

@@ -2,7 +2,8 @@
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
 # Sets up what a build of ovimap needs and does not find: Debian packages, .venv, ONNX Runtime in
-# .deps, the glTF validator of the tests there, the default mask model and the default image-text encoder in .models. Does nothing for what is there already.
+# .deps, the glTF validator of the tests there, the packages of the viewer, the default mask model and the default image-text
+# encoder in .models. Does nothing for what is there already.
 # Usage: tools/setup.sh [--no-models]
 set -euo pipefail
 
@@ -36,7 +37,7 @@ quietly() {
 # A program that came from elsewhere (a newer CMake, Node.js with npm) makes its package needless.
 have_program_of() {
   case "$1" in
-    ccache | cmake | curl | git | mold | npm | pkg-config | unzip) command -v "$1" >/dev/null ;;
+    ccache | chromium | cmake | curl | git | mold | npm | pkg-config | unzip) command -v "$1" >/dev/null ;;
     ninja-build) command -v ninja >/dev/null ;;
     python3-venv) python3 -c 'import ensurepip, venv' 2>/dev/null ;;
     *) return 1 ;;
@@ -260,6 +261,24 @@ set_up_encoder() {
     "$VENV/bin/python" "$TOOLS/models/build_default_encoder.py" "$SCRATCH/encoder" "$ENCODER"
 }
 
+# ------------------------------------------------------------------------------------------- viewer
+
+VIEWER="$ROOT/viewer"
+
+install_viewer_packages() (cd "$VIEWER" && npm ci --silent --ignore-scripts --no-audit --no-fund)
+
+set_up_viewer() {
+  cmp -s "$VIEWER/package-lock.json" "$VIEWER/node_modules/.installed-lock.json" && return
+  if ! command -v npm >/dev/null; then
+    say "npm is missing, so the viewer is left out; install Node.js 18 with npm"
+    return
+  fi
+  say "fetching the packages that the viewer is built from"
+  quietly "the viewer's packages cannot be fetched; check the network and npm's registry" \
+    install_viewer_packages
+  cp "$VIEWER/package-lock.json" "$VIEWER/node_modules/.installed-lock.json"  # last: it marks the whole as done
+}
+
 case "${1:-}" in
   "" | --no-models) ;;
   *) fail "unknown argument '$1'; accepted is --no-models" ;;
@@ -268,6 +287,7 @@ set_up_packages
 set_up_venv
 set_up_runtime
 set_up_validator
+set_up_viewer
 if [ "${1:-}" != --no-models ]; then
   set_up_model
   set_up_encoder

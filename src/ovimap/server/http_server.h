@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "ovimap/server/served_map.h"
+
+namespace ovimap {
+
+struct ServerConfig {
+  std::string host = "127.0.0.1";  ///< address to bind
+  int port = 8080;                 ///< 0: any free one
+  std::string token;               ///< who does not show it is refused; empty: nobody is asked
+  std::filesystem::path viewer;    ///< folder of the web page; empty: none
+
+  int max_connections = 256;   ///< served at once; more wait
+  int max_event_streams = 64;  ///< of these connections
+  std::size_t max_body_bytes = 1 << 16;
+  double requests_per_second = 400;  ///< of one address, on average
+  double request_burst = 2000;       ///< ... and at once: a large map's chunks
+  double work_per_second = 10;       ///< queries and corrections, which cost the most
+  double work_burst = 40;
+  int patience_s = 5;  ///< for a client that stops reading or writing in the middle
+};
+
+/// Serves one map to browsers and programs (docs/http-api.md).
+class HttpServer {
+ public:
+  /// Binds the port. `map` must outlive the server. Throws Error when the port is taken, the host
+  /// is none of this machine's, or other machines could reach it and no token is set.
+  HttpServer(ServedMap& map, const ServerConfig& config);
+  ~HttpServer();
+  HttpServer(const HttpServer&) = delete;
+  HttpServer& operator=(const HttpServer&) = delete;
+
+  int port() const;
+  /// What to open in a browser, the token included.
+  std::string address() const;
+
+  /// Answers requests until stop() is called from another thread.
+  void run();
+  /// Ends event streams and run(). The map gives no events from then on.
+  void stop();
+
+ private:
+  struct Sockets;
+  std::unique_ptr<Sockets> sockets_;
+};
+
+}  // namespace ovimap

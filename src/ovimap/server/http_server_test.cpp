@@ -1,0 +1,262 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/server/http_server.h"
+
+#include <gtest/gtest.h>
+
+#include "ovimap/io/map_file_fixture.h"
+#include "ovimap/server/server_fixture.h"
+
+namespace ovimap {
+namespace {
+
+using nlohmann::json;
+
+class HttpServerTest : public MapFolder {
+ protected:
+  HttpServerTest() { save_map(map_, random_document(40, 3)); }
+
+  fixture::RunningServer& serve(ServerConfig config = {}) {
+    ServedMapConfig served;
+    served.encoder = "none";
+    running_ = std::make_unique<fixture::RunningServer>(map_, std::move(config), served);
+    return *running_;
+  }
+
+  json get(const std::string& path, int status = 200) {
+    const auto reply = running_->client().Get(path);
+    EXPECT_TRUE(reply) << path;
+    if (!reply) return {};
+    EXPECT_EQ(reply->status, status) << path << reply->body;
+    return json::parse(reply->body, nullptr, false);
+  }
+
+  json post(const std::string& path, const std::string& body, int status,
+            const std::string& type = "application/json") {
+    const auto reply = running_->client().Post(path, body, type);
+    EXPECT_TRUE(reply) << path;
+    if (!reply) return {};
+    EXPECT_EQ(reply->status, status) << body << reply->body;
+    const json parsed = json::parse(reply->body, nullptr, false);
+    if (status >= 400) {
+      EXPECT_FALSE(parsed.value("error", "").empty()) << reply->body;
+    }
+    return parsed;
+  }
+
+  const std::filesystem::path map_ = root_ / "room.ovimap";
+  std::unique_ptr<fixture::RunningServer> running_;
+};
+
+TEST_F(HttpServerTest, DescribesTheMap) {
+  serve();
+  const json map = get("/api/map");
+  EXPECT_EQ(map["title"], "room");
+  EXPECT_EQ(map["instances"], 2);
+  EXPECT_EQ(map["frames"], 3);
+  EXPECT_EQ(map["corrections"], json({"rename"}));
+  EXPECT_EQ(map["heat_ramp"].size(), 16u);
+  const json cameras = get("/api/cameras");
+  EXPECT_EQ(cameras["frames"].size(), 3u);
+  EXPECT_EQ(cameras["frames"][0]["world_from_camera"].size(), 12u);
+  EXPECT_EQ(get("/api/openapi.json")["info"]["title"], "ovimap");
+}
+
+TEST_F(HttpServerTest, ListsObjects) {
+  serve();
+  const json instances = get("/api/instances")["instances"];
+  ASSERT_EQ(instances.size(), 2u);
+  EXPECT_EQ(instances[0]["id"], 1);
+  EXPECT_EQ(instances[0]["name"], random_document(1, 1).names.at(1));
+  EXPECT_EQ(instances[0]["crops"], json({0}));
+  EXPECT_TRUE(instances[1]["box"]["min"][0].is_null());  // an empty box has no corners
+  const json detail = get("/api/instances/1");
+  EXPECT_GT(detail["height_m"], 0.0);
+  EXPECT_TRUE(detail["neighbors"].is_array());
+}
+
+TEST_F(HttpServerTest, SendsCropsAndChunks) {
+  serve();
+  const auto crop = running_->client().Get("/api/instances/1/crops/0");
+  ASSERT_TRUE(crop);
+  EXPECT_EQ(crop->get_header_value("Content-Type"), "image/jpeg");
+  EXPECT_EQ(crop->body, std::string("\x01\x02"));
+  for (const int level : {0, 1}) {
+    const json list = get("/api/mesh?level=" + std::to_string(level));
+    ASSERT_GT(list["chunks"].size(), 0u);
+    for (const json& chunk : list["chunks"]) {
+      const auto reply =
+          running_->client().Get("/api/mesh/" + std::to_string(level) + "/" + chunk["x"].dump() +
+                                 "/" + chunk["y"].dump() + "/" + chunk["z"].dump());
+      ASSERT_TRUE(reply);
+      EXPECT_EQ(reply->body.size(), 56 + 28 * chunk["patches"].get<std::size_t>() +
+                                        16 * chunk["vertices"].get<std::size_t>() +
+                                        12 * chunk["triangles"].get<std::size_t>());
+    }
+  }
+  EXPECT_EQ(get("/api/mesh?since=1")["chunks"].size(), 0u);
+}
+
+TEST_F(HttpServerTest, RefusesWhatDoesNotExist) {
+  serve();
+  for (const char* path :
+       {"/api/instances/2", "/api/instances/0", "/api/instances/x", "/api/instances/-1",
+        "/api/instances/99999999999999999999", "/api/instances/1/crops/1",
+        "/api/instances/1/crops/x", "/api/instances/7/crops/0", "/api/mesh/0/500/0/0",
+        "/api/mesh/2/0/0/0", "/api/mesh/0/0/0/x", "/api/nothing", "/../../etc/passwd",
+        "/%2e%2e/%2e%2e/etc/passwd", "/assets/../secret"})
+    EXPECT_FALSE(get(path, 404)["error"].get<std::string>().empty()) << path;
+  for (const char* path : {"/api/mesh?level=x", "/api/mesh?level=5", "/api/mesh?since=-1"})
+    EXPECT_FALSE(get(path, 400)["error"].get<std::string>().empty()) << path;
+  EXPECT_NE(get("/api/export.glb", 501)["error"].get<std::string>().find("export"),
+            std::string::npos);
+}
+
+TEST_F(HttpServerTest, RefusesBadBodies) {
+  serve();
+  for (const char* body :
+       {"", "{", "[]", "7", "{\"text\":7}", "{\"text\":\"a\",\"like\":1}", "{}",
+        "{\"texts\":\"a\"}", "{\"like\":-1}", "{\"like\":1.5}", "{\"like\":99999999999}",
+        "{\"text\":\"a\",\"not\":\"b\"}", "{\"text\":\"a\",\"not\":[7]}",
+        "{\"text\":\"a\",\"heat\":1}", "\xff\xfe", "{\"text\":\"\xff\"}"})
+    post("/api/query", body, 400);
+  post("/api/query", std::string(60000, '['), 400);
+  post("/api/query", "{\"text\":\"a\"}", 415, "text/plain");
+  post("/api/query", std::string(200000, 'x'), 413);
+  post("/api/map", "{}", 405);
+  post("/api/nothing", "{}", 404);
+}
+
+TEST_F(HttpServerTest, SaysWhyItCannotSearch) {
+  serve();
+  EXPECT_NE(
+      post("/api/query", "{\"text\":\"mug\"}", 409)["error"].get<std::string>().find("encoder"),
+      std::string::npos);
+  EXPECT_EQ(get("/api/map")["search"]["state"], "unavailable");
+}
+
+TEST_F(HttpServerTest, KeepsNamesInTheMapFile) {
+  serve();
+  const auto rename = [](const std::string& name) {
+    return json{{"kind", "rename"}, {"instance", 3}, {"name", name}}.dump();
+  };
+  const json before = get("/api/map");
+  const json done = post("/api/corrections", rename("Küchentisch"), 200);
+  EXPECT_GT(done["version"], before["version"]);
+  EXPECT_EQ(get("/api/instances")["instances"][1]["name"], "Küchentisch");
+  EXPECT_EQ(load_map(map_).names.at(3), "Küchentisch");
+  EXPECT_EQ(load_map(map_).names.size(), 3u);  // the other ones stay
+  post("/api/corrections", rename(""), 200);
+  EXPECT_FALSE(load_map(map_).names.contains(3));
+  post("/api/corrections", rename("two\nlines"), 400);
+  post("/api/corrections", rename(std::string(300, 'x')), 400);
+  EXPECT_EQ(get("/api/instances")["instances"][1]["name"], "");
+}
+
+TEST_F(HttpServerTest, RefusesBadCorrections) {
+  serve();
+  post("/api/corrections", R"({"kind":"rename","instance":2,"name":"x"})", 404);
+  post("/api/corrections", R"({"kind":"rename","instance":1})", 400);
+  post("/api/corrections", R"({"kind":"rename","name":"x"})", 400);
+  post("/api/corrections", R"({"kind":"paint","instance":1})", 400);
+  post("/api/corrections", R"({"kind":"merge","instance":1})", 400);
+  for (const char* kind : {"hide", "lock", "delete"})
+    post("/api/corrections", json{{"kind", kind}, {"instance", 1}}.dump(), 409);
+  post("/api/corrections", R"({"kind":"merge","instance":1,"into":3})", 409);
+  post("/api/corrections", R"({"kind":"rename","instance":1,"name":"x","into":3})", 400);
+}
+
+TEST_F(HttpServerTest, GoesOnWhenTheMapIsDeleted) {
+  serve();
+  std::filesystem::remove(map_);
+  EXPECT_EQ(get("/api/instances")["instances"].size(), 2u);
+  EXPECT_GT(get("/api/mesh")["chunks"].size(), 0u);
+  const json refused =
+      post("/api/corrections", R"({"kind":"rename","instance":1,"name":"lost"})", 409);
+  EXPECT_NE(refused["error"].get<std::string>().find("room.ovimap"), std::string::npos);
+  EXPECT_NE(get("/api/instances")["instances"][0]["name"], "lost");
+}
+
+TEST_F(HttpServerTest, SavesTheTripAndBytes) {
+  serve();
+  auto client = running_->client();
+  const auto first = client.Get("/api/cameras");
+  ASSERT_TRUE(first);
+  const auto again =
+      client.Get("/api/cameras", {{"If-None-Match", first->get_header_value("ETag")}});
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->status, 304);
+  EXPECT_TRUE(again->body.empty());
+  client.set_decompress(false);
+  const auto zstd = client.Get("/api/openapi.json", {{"Accept-Encoding", "zstd"}});
+  EXPECT_EQ(zstd->get_header_value("Content-Encoding"), "zstd");
+  EXPECT_LT(zstd->body.size(), 8000u);
+  client.set_decompress(true);
+  const auto gzip = client.Get("/api/openapi.json", {{"Accept-Encoding", "gzip"}});
+  EXPECT_EQ(gzip->get_header_value("Content-Encoding"), "gzip");
+  EXPECT_EQ(gzip->body, client.Get("/api/openapi.json", {{"Accept-Encoding", "identity"}})->body);
+  EXPECT_EQ(client.Get("/api/openapi.json", {{"Range", "bytes=5-9"}})->status, 200);
+  EXPECT_TRUE(client.Head("/api/map")->body.empty());
+}
+
+TEST_F(HttpServerTest, KeepsOtherPagesOut) {
+  serve();
+  auto client = running_->client();
+  EXPECT_EQ(client.Get("/api/map", {{"Host", "rebound.example"}})->status, 403);
+  EXPECT_EQ(client.Get("/api/map", {{"Origin", "http://evil.example"}})->status, 403);
+  const auto reply = client.Get("/api/map");
+  EXPECT_FALSE(reply->has_header("Access-Control-Allow-Origin"));
+  EXPECT_NE(reply->get_header_value("Content-Security-Policy").find("script-src 'self'"),
+            std::string::npos);
+}
+
+TEST_F(HttpServerTest, DemandsTheToken) {
+  ServerConfig config;
+  config.token = "secret";
+  serve(config);
+  auto client = running_->client();
+  EXPECT_EQ(client.Get("/api/map")->status, 401);
+  EXPECT_EQ(client.Get("/")->status, 401);
+  const auto opened = client.Get("/?token=secret");
+  EXPECT_EQ(opened->status, 303);
+  EXPECT_EQ(client.Get("/api/map", {{"Cookie", "ovimap_token=secret"}})->status, 200);
+  EXPECT_EQ(client.Get("/api/map", {{"Authorization", "Bearer secret"}})->status, 200);
+  EXPECT_NE(running_->server().address().find("?token=secret"), std::string::npos);
+}
+
+TEST_F(HttpServerTest, DoesNotOpenUpWithoutToken) {
+  ServedMapConfig served;
+  served.encoder = "none";
+  ServedMap map(map_, served);
+  ServerConfig config;
+  config.host = "0.0.0.0";
+  config.port = 0;
+  EXPECT_NE(fault_of([&] { HttpServer(map, config); }).find("token"), std::string::npos);
+  config.token = "secret";
+  EXPECT_GT(HttpServer(map, config).port(), 0);
+}
+
+TEST_F(HttpServerTest, SaysWhenThePortIsTaken) {
+  serve();
+  ServedMapConfig served;
+  served.encoder = "none";
+  ServedMap map(map_, served);
+  ServerConfig config;
+  config.port = running_->port();
+  const std::string fault = fault_of([&] { HttpServer(map, config); });
+  EXPECT_NE(fault.find(std::to_string(config.port)), std::string::npos);
+  EXPECT_NE(fault.find("--port 0"), std::string::npos);
+}
+
+TEST_F(HttpServerTest, LimitsHowOftenOneAsks) {
+  ServerConfig config;
+  config.work_burst = 3;
+  config.work_per_second = 0.001;
+  serve(config);
+  for (int i = 0; i < 3; ++i) post("/api/query", "{}", 400);
+  post("/api/query", "{}", 429);
+  get("/api/map");
+}
+
+}  // namespace
+}  // namespace ovimap

@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "ovimap/server/http_message.h"
+#include "ovimap/server/served_map.h"
+
+namespace ovimap {
+
+/// The routes under /api/, which docs/http-api.md and openapi.json describe. `map` must outlive the
+/// router.
+Router map_api(ServedMap& map);
+
+/// The OpenAPI description as it is served.
+const char* openapi_json();
+
+}  // namespace ovimap

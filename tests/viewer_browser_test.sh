@@ -1,0 +1,10 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The ovimap authors
+# SPDX-License-Identifier: Apache-2.0
+# The viewer in Chromium, on a served map. Usage: viewer_browser_test.sh MAP, in the folder viewer
+set -eu
+export OVIMAP_MAP=$1
+export OVIMAP_CHROMIUM=${OVIMAP_CHROMIUM:-$(command -v chromium || true)}
+[ -n "$OVIMAP_CHROMIUM" ] || { echo "Chromium is missing; run tools/setup.sh"; exit 77; }
+[ -s "$OVIMAP_MAP" ] || { echo "there is no map to show: the encoder is missing; run tools/setup.sh"; exit 77; }
+exec npx --no-install playwright test

@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+// Measures the viewer on a map, on loopback and with software rendering: when the first picture is drawn, and how long a query takes until
+// its answer is drawn. Usage, in viewer/: node e2e/speed.mjs PROGRAM MAP [runs]
+import { spawn } from 'node:child_process';
+import { chromium } from '@playwright/test';
+
+const [program, map, runs = '7'] = process.argv.slice(2);
+if (!program || !map) {
+  console.error('usage: node e2e/speed.mjs PROGRAM MAP [runs]');
+  process.exit(2);
+}
+
+const median = (values) => [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)];
+const row = (what, values) =>
+  console.log(`| ${what} | ${median(values).toFixed(0)} | ${Math.max(...values).toFixed(0)} |`);
+
+async function serve() {
+  const server = spawn(program, ['serve', map, '--port', '0', '--json', '--no-limits'], {
+    stdio: ['ignore', 'pipe', 'inherit'],
+  });
+  const line = await new Promise((resolve) =>
+    server.stdout.once('data', (data) => resolve(data.toString())),
+  );
+  return { server, address: JSON.parse(line).address };
+}
+
+const launch = () =>
+  chromium.launch({
+    executablePath: process.env.OVIMAP_CHROMIUM ?? '/usr/bin/chromium',
+    args: ['--no-sandbox', '--enable-unsafe-swiftshader'],
+  });
+
+async function searchReady(address) {
+  while ((await (await fetch(`${address}api/map`)).json()).search.state === 'preparing')
+    await new Promise((resolve) => setTimeout(resolve, 100));
+  await new Promise((resolve) => setTimeout(resolve, 3000)); // names are guessed right after
+}
+
+const markOf = (page, name) =>
+  page.evaluate((wanted) => performance.getEntriesByName(wanted).at(-1)?.startTime ?? 0, name);
+const drawn = (page, name) =>
+  page.waitForFunction((wanted) => performance.getEntriesByName(wanted).length > 0, name);
+
+async function ask(page, text) {
+  await page.evaluate(() => performance.clearMarks('answer-drawn'));
+  await page.fill('#query', text);
+  const start = await page.evaluate(() => {
+    const now = performance.now();
+    document.querySelector('form[role=search]').requestSubmit();
+    return now;
+  });
+  await drawn(page, 'answer-drawn');
+  return (await markOf(page, 'answer-drawn')) - start;
+}
+
+async function answerTime(address, text) {
+  const start = performance.now();
+  const reply = await fetch(`${address}api/query`, {
+    method: 'POST',
+    headers: { 'Content-Type': 'application/json' },
+    body: JSON.stringify({ text, heat: true }),
+  });
+  await reply.json();
+  return performance.now() - start;
+}
+
+const { server, address } = await serve();
+await searchReady(address);
+const times = { first: [], whole: [], still: [], words: [], bare: [], encoded: [] };
+for (let run = 0; run < Number(runs); ++run) {
+  const browser = await launch();
+  const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
+  await page.goto(address);
+  await drawn(page, 'whole-picture');
+  times.first.push(await markOf(page, 'first-picture'));
+  times.whole.push(await markOf(page, 'whole-picture'));
+  await page.waitForTimeout(500);
+  times.still.push(await ask(page, 'largest object'));
+  await page.waitForTimeout(500);
+  times.words.push(await ask(page, 'chair'));
+  times.bare.push(await answerTime(address, 'largest object'));
+  times.encoded.push(await answerTime(address, 'chair'));
+  await browser.close();
+}
+server.kill('SIGINT');
+
+console.log('| 1280 x 800, software rendering | median, ms | slowest, ms |\n| --- | --- | --- |');
+row('first picture after opening the page', times.first);
+row('whole surface', times.whole);
+row('query without words ("largest object"), answered and drawn', times.still);
+row('query in words ("chair"), answered and drawn', times.words);
+row('of which the answer without words, on the server', times.bare);
+row('of which the answer in words, text encoding included', times.encoded);

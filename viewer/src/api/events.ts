@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+
+export interface EventHandlers {
+  /** Names, objects or the state of search changed. */
+  onMap: () => void;
+  onMesh: () => void;
+  /** The connection was lost (false) or came back (true). */
+  onConnection: (connected: boolean) => void;
+}
+
+/** Listens to the server's events; the browser connects again by itself. */
+export function listen(handlers: EventHandlers): void {
+  const source = new EventSource('/api/events');
+  let lost = false;
+  source.addEventListener('map', handlers.onMap);
+  source.addEventListener('mesh', handlers.onMesh);
+  source.addEventListener('reset', () => {
+    handlers.onMap();
+    handlers.onMesh();
+  });
+  source.addEventListener('hello', () => {
+    if (lost) {
+      handlers.onConnection(true);
+      handlers.onMap(); // a new server knows nothing of what this page missed
+    }
+    lost = false;
+  });
+  source.addEventListener('error', () => {
+    if (!lost) handlers.onConnection(false);
+    lost = true;
+  });
+}

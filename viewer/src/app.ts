@@ -1,0 +1,300 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+import { api } from './api/client';
+import { listen } from './api/events';
+import type { Instance, MapInfo, MeshListing, Question } from './api/types';
+import { Commands } from './commands';
+import { Corrections } from './corrections';
+import { listenToKeys } from './keyboard';
+import { MapState } from './map-state';
+import type { Mode } from './scene/coloring';
+import { MapView } from './scene/map-view';
+import { SurfaceLoader } from './surface-loader';
+import { Tools } from './tools';
+import { h } from './ui/dom';
+import { Legend } from './ui/legend';
+import { type CardContext, ObjectCard } from './ui/object-card';
+import { SearchPanel } from './ui/search-panel';
+import { Status } from './ui/status';
+import { Toolbar } from './ui/toolbar';
+import { faultText } from './ui/words';
+
+/** Ties the page together: what the server tells, what is shown, what the person does. */
+export class App {
+  private readonly state = new MapState();
+  private readonly canvas = h('canvas', {
+    class: 'view',
+    tabindex: 0,
+    role: 'application',
+    'aria-label':
+      'The map in 3D. Arrow keys turn it, W A S D move. The list holds the same objects.',
+  });
+  private readonly status = new Status();
+  private readonly commands = new Commands(this.status, () => this.state.info?.title ?? 'map');
+  private readonly legend = new Legend();
+  private readonly search = new SearchPanel({
+    onQuery: (text, not) => void this.ask({ text, not }, text),
+    onClear: () => this.clearQuery(),
+    onSelect: (id) => this.select(id, true),
+  });
+  private readonly corrections = new Corrections(this.state, this.status, {
+    refresh: () => this.refresh(),
+    show: (id) => this.showCard(id),
+    select: (id) => this.select(id, false),
+  });
+  private readonly card = new ObjectCard({
+    onFocus: (id) => this.focus(id),
+    onAlike: (id) => void this.ask({ like: id }, `like ${this.state.titleOf(id)} #${id}`),
+    onRename: (id, name) => void this.corrections.rename(id, name),
+    onMerge: (id) => this.corrections.startMerge(id),
+    onHide: (id) => void this.corrections.toggleHidden(id),
+    onLock: (id) => void this.corrections.lock(id),
+    onDelete: (id) => void this.corrections.remove(id),
+    onSelect: (id) => this.select(id, true),
+    onClose: () => this.select(0, false),
+  });
+  private readonly toolbar = new Toolbar({
+    onMode: (mode) => this.setMode(mode),
+    onTool: (tool) => this.tools.toggle(tool),
+    onCommand: (command) => this.commands.run(command),
+  });
+  private readonly tools = new Tools(this.canvas, this.toolbar, this.status);
+  private view: MapView | null = null;
+  private modeBefore: Mode = 'color';
+  private asking: AbortController | null = null;
+
+  constructor(root: HTMLElement) {
+    root.append(
+      h(
+        'main',
+        {},
+        this.canvas,
+        this.search.element,
+        this.card.element,
+        this.toolbar.element,
+        this.legend.element,
+        this.tools.sectionPanel.element,
+        this.tools.pathPanel.element,
+        ...this.status.elements,
+      ),
+      this.commands.help.element,
+    );
+    this.toolbar.setMode(this.state.mode);
+    this.listenToKeys();
+  }
+
+  /** Loads the map and shows it; faults are shown, never thrown. */
+  async start(): Promise<void> {
+    try {
+      const coarse = SurfaceLoader.coarse();
+      const [info, instances] = await Promise.all([api.map(), api.instances()]);
+      this.takeMap(info, instances);
+      this.makeView(info, instances);
+      this.repaint();
+      this.follow(await this.loadSurface(await coarse));
+    } catch (error) {
+      this.status.setBanner(faultText(error));
+      this.status.progress(1);
+    }
+  }
+
+  // ---------------------------------------------------------------------------- what the map is
+
+  private takeMap(info: MapInfo, instances: readonly Instance[]): void {
+    this.state.take(info, instances);
+    document.title = `${info.title} – ovimap`;
+    this.search.setMap(info);
+    this.search.setInstances(instances);
+  }
+
+  /** Names or guesses changed. */
+  private async refresh(): Promise<void> {
+    const [info, instances] = await Promise.all([api.map(), api.instances()]);
+    this.takeMap(info, instances);
+    this.showList();
+    this.repaint();
+    const editing = this.card.element.querySelector('form') !== null;
+    if (this.state.selected !== 0 && !editing) this.showCard(this.state.selected);
+  }
+
+  private makeView(info: MapInfo, instances: readonly Instance[]): void {
+    const largestId = instances.reduce((most, { id }) => Math.max(most, id), 0);
+    try {
+      this.view = new MapView(this.canvas, info, largestId, {
+        onClick: (hit) => {
+          if (!this.tools.takeClick(hit)) this.select(hit?.instance ?? 0, false);
+        },
+        onLost: () => this.status.setBanner('The graphics driver gave up; reload this page.'),
+      });
+    } catch (error) {
+      this.canvas.hidden = true;
+      return this.status.setBanner(faultText(error));
+    }
+    this.tools.view = this.corrections.view = this.commands.view = this.view;
+    this.canvas.after(this.view.measure.label);
+    const observer = new ResizeObserver(() => this.coverView());
+    for (const panel of [this.search.element, this.card.element]) observer.observe(panel);
+    this.coverView();
+  }
+
+  /** Panels lie at the left, on phones at the bottom, where one of them is shown at a time. */
+  private coverView(): void {
+    const search = this.search.element.getBoundingClientRect();
+    const card = this.card.element.getBoundingClientRect();
+    const phone = window.matchMedia('(max-width: 760px)').matches;
+    const bottom = Math.max(search.height, card.height);
+    this.view?.setCovered(phone ? { left: 0, bottom } : { left: search.right, bottom: 0 });
+  }
+
+  private async loadSurface(coarse: MeshListing): Promise<SurfaceLoader | null> {
+    const { view } = this;
+    if (!view) {
+      this.search.showAll(0);
+      this.status.progress(1);
+      return null;
+    }
+    const loader = new SurfaceLoader(view, (share) => this.status.progress(share));
+    const cameras = await loader.loadFirst(coarse);
+    this.tools.pathPanel.setCount(cameras.frames.length);
+    await this.mark('first-picture');
+    this.showList(); // its pictures wait until the map is there
+    await loader.loadAll();
+    await this.mark('whole-picture');
+    return loader;
+  }
+
+  /** For measurements: notes the time when what is there now is drawn. */
+  private async mark(name: string): Promise<void> {
+    await this.view?.whenDrawn();
+    performance.mark(name);
+  }
+
+  private follow(loader: SurfaceLoader | null): void {
+    const failed = (error: unknown): void => this.status.toast(faultText(error));
+    const lost = 'The connection to the server is lost; trying again. What is loaded stays usable.';
+    listen({
+      onMap: () => void this.refresh().catch(failed),
+      onMesh: () => void loader?.followChanges().catch(failed),
+      onConnection: (connected) => this.status.setBanner(connected ? '' : lost),
+    });
+  }
+
+  // ------------------------------------------------------------------------------------ selection
+
+  private select(id: number, fly: boolean): void {
+    if (this.corrections.takeSelection(id)) return;
+    const instance = this.state.instances.get(id) ?? null;
+    this.state.selected = instance ? id : 0;
+    document.body.classList.toggle('has-selection', instance !== null);
+    this.view?.select(instance);
+    this.search.mark(this.state.selected);
+    if (!instance) return this.card.close();
+    this.showCard(id);
+    if (fly) this.view?.focus(instance);
+  }
+
+  private focus(id: number): void {
+    const instance = this.state.instances.get(id);
+    if (instance) this.view?.focus(instance);
+  }
+
+  private showCard(id: number): void {
+    const instance = this.state.instances.get(id);
+    if (!instance) return;
+    const context: CardContext = {
+      find: (other) => this.state.instances.get(other),
+      can: (kind) => this.state.can(kind),
+      hidden: this.view?.surface.table.isHidden(id) ?? false,
+    };
+    this.card.show(instance, context);
+    api.instance(id).then(
+      (detail) => {
+        if (this.state.selected === id) this.card.showDetail(detail, context);
+      },
+      (error: unknown) => this.status.toast(faultText(error)),
+    );
+  }
+
+  // --------------------------------------------------------------------------------------- search
+
+  private async ask(question: Question, shown: string): Promise<void> {
+    this.asking?.abort();
+    const asking = (this.asking = new AbortController());
+    this.search.setQuery(shown);
+    this.search.showBusy();
+    try {
+      this.state.answer = await api.query(question, asking.signal);
+    } catch (error) {
+      if (!asking.signal.aborted) this.search.showFault(faultText(error));
+      return;
+    }
+    if (this.state.mode !== 'heat') this.modeBefore = this.state.mode;
+    this.select(0, false);
+    this.showList();
+    this.setMode('heat');
+    await this.mark('answer-drawn');
+  }
+
+  private clearQuery(): void {
+    this.asking?.abort();
+    const had = this.state.answer !== null;
+    this.state.answer = null;
+    this.showList();
+    if (had && this.state.mode === 'heat') this.setMode(this.modeBefore);
+    else this.repaint();
+  }
+
+  private showList(): void {
+    const { answer, selected } = this.state;
+    if (answer) this.search.showAnswer(answer, selected);
+    else this.search.showAll(selected);
+  }
+
+  // ----------------------------------------------------------------------------------------- view
+
+  private setMode(mode: Mode): void {
+    this.state.mode = mode;
+    this.toolbar.setMode(mode);
+    this.repaint();
+  }
+
+  private repaint(): void {
+    const { mode, answer, info } = this.state;
+    const instances = [...this.state.instances.values()];
+    const ramp = info?.heat_ramp ?? [];
+    this.legend.show(mode, instances, ramp, answer?.query ?? '');
+    this.view?.paint({ mode, instances, ramp, heat: new Map(answer?.heat ?? []) });
+  }
+
+  /** Ends what was begun last: a merge, a tool, the selection, the query. */
+  private escape(): void {
+    if (this.corrections.endMerge() || this.tools.endLast()) return;
+    if (this.state.selected !== 0) return this.select(0, false);
+    if (this.state.answer) this.search.reset();
+  }
+
+  private listenToKeys(): void {
+    const selected = (run: (id: number) => void) => () => {
+      if (this.state.selected !== 0) run(this.state.selected);
+    };
+    listenToKeys({
+      '/': () => this.search.focus(),
+      '1': () => this.setMode('color'),
+      '2': () => this.setMode('instances'),
+      '3': () => this.setMode('classes'),
+      '4': () => this.setMode('heat'),
+      f: selected((id) => this.focus(id)),
+      h: selected((id) => void this.corrections.toggleHidden(id)),
+      n: selected(() => this.card.startRename()),
+      m: () => this.tools.toggle('measure'),
+      x: () => this.tools.toggle('section'),
+      c: () => this.tools.toggle('path'),
+      g: () => this.tools.toggle('fly'),
+      p: () => this.commands.run('picture'),
+      t: () => this.commands.run('theme'),
+      Home: () => this.commands.run('home'),
+      '?': () => this.commands.run('help'),
+      Escape: () => this.escape(),
+    });
+  }
+}

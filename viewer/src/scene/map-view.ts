@@ -1,0 +1,207 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+import { Box3, Box3Helper, Color, Vector2, Vector3, Vector4 } from 'three';
+import type { Cameras, Instance, MapInfo, Point } from '../api/types';
+import type { Chunk } from '../mesh/chunk-format';
+import { CameraPath, meanDirection, viewpointOfFrame } from './camera-path';
+import { type ColoringInput, paint } from './coloring';
+import { cornersOf, overviewDirection, viewpointOf } from './framing';
+import { Measure } from './measure';
+import { Movement } from './movement';
+import { type Pick, pick } from './picking';
+import { type Section, sectionPlane } from './section';
+import { type Covered, Stage } from './stage';
+import { Surface } from './surface';
+
+const CLICK_SLACK_PX = 5;
+const OUTLIER_SHARE = 0.02; // of the surface: what was seen through doors
+const OVERVIEW_AIR = 1.08; // the bar at the bottom needs some room
+const FOCUS_MARGIN_M = 0.3;
+
+export interface MapViewHooks {
+  onClick: (hit: Pick | null) => void;
+  onLost: () => void;
+}
+
+function vectorOf(point: Point): Vector3 {
+  return new Vector3(...point.map((value) => value ?? 0));
+}
+
+function boxOfInstance(instance: Instance): Box3 {
+  return new Box3(vectorOf(instance.box.min), vectorOf(instance.box.max));
+}
+
+/** The map in 3D: its surface, the selected object, the camera's way, a measured line. */
+export class MapView {
+  readonly surface: Surface;
+  readonly measure: Measure;
+  readonly movement: Movement;
+  private readonly stage: Stage;
+  private readonly up: Vector3;
+  private readonly selection = new Box3Helper(new Box3(), new Color('#2f6fed'));
+  private path: CameraPath | null = null;
+  private cameras: Cameras | null = null;
+  private section: Section | null = null;
+  private still = false;
+
+  /** Throws NoWebGlError where nothing can be drawn. */
+  constructor(canvas: HTMLCanvasElement, info: MapInfo, largestId: number, hooks: MapViewHooks) {
+    this.up = vectorOf(info.up).normalize();
+    this.surface = new Surface(largestId);
+    this.stage = new Stage(canvas, this.up, {
+      onFrame: (now) => this.frame(now),
+      onDetail: (coarse) => this.surface.showCoarse(coarse),
+      onLost: hooks.onLost,
+    });
+    this.measure = new Measure(() => 1.5 * info.voxel_size_m);
+    this.movement = new Movement(this.stage.camera, canvas, () => this.stage.moved());
+    this.selection.visible = false;
+    this.stage.scene.add(this.surface.group, this.selection, this.measure.group);
+    this.uniform('light', this.up.toArray());
+    this.listen(canvas, hooks);
+  }
+
+  put(key: string, chunk: Chunk): void {
+    this.surface.put(key, chunk);
+    if (!this.still) this.stage.drawSoon();
+  }
+
+  /** Draws nothing until called again with false: the first picture should come in one go. */
+  holdStill(still: boolean): void {
+    this.still = still;
+    if (!still) this.stage.draw();
+  }
+
+  /** Shows the whole map. */
+  frameAll(animated: boolean): void {
+    const points = this.surface.samples();
+    if (points.length === 0) return;
+    const direction = overviewDirection(this.up, this.cameras && meanDirection(this.cameras));
+    const view = viewpointOf(points, this.stage.lens(), direction, this.up, OUTLIER_SHARE);
+    view.position.sub(view.target).multiplyScalar(OVERVIEW_AIR).add(view.target);
+    const reach = view.position.distanceTo(view.target);
+    this.movement.speed = Math.min(Math.max(reach / 3, 0.5), 5);
+    this.movement.goTo(view, animated);
+  }
+
+  /** Goes near an object without changing the direction of view. */
+  focus(instance: Instance): void {
+    const from = this.stage.camera.position.clone().sub(this.movement.orbit.target);
+    const box = boxOfInstance(instance).expandByScalar(FOCUS_MARGIN_M);
+    this.movement.goTo(viewpointOf(cornersOf(box), this.stage.lens(), from, this.up), true);
+  }
+
+  select(instance: Instance | null): void {
+    this.uniform('selected', instance?.id ?? 0);
+    this.selection.visible = instance !== null;
+    if (instance) this.selection.box.copy(boxOfInstance(instance));
+    this.selection.updateMatrixWorld(true);
+    this.stage.draw();
+  }
+
+  paint(input: ColoringInput): void {
+    paint(this.surface.table, input);
+    this.surface.tableChanged();
+    this.uniform('ownColors', input.mode === 'color');
+    this.stage.moved(); // quickly first, in detail soon after
+  }
+
+  hide(id: number, hidden: boolean): void {
+    this.surface.table.hide(id, hidden);
+    this.surface.tableChanged();
+    this.stage.draw();
+  }
+
+  setTheme(background: string): void {
+    this.stage.setBackground(background);
+    this.uniform('fade', new Color(background).convertLinearToSRGB().toArray());
+    this.stage.draw();
+  }
+
+  setSection(section: Section | null): void {
+    this.section = section;
+    const plane = section && sectionPlane(section, this.surface.box(), this.up);
+    this.uniform('section', plane ?? new Vector4(0, 0, 0, 0));
+    this.stage.draw();
+  }
+
+  /** The surface changed: planes lie by its box. */
+  surfaceChanged(): void {
+    this.setSection(this.section);
+  }
+
+  setCameras(cameras: Cameras): void {
+    this.cameras = cameras;
+    this.path = cameras.frames.length > 0 ? new CameraPath(cameras) : null;
+    if (this.path) this.stage.scene.add(this.path.group);
+  }
+
+  showPath(visible: boolean, frame: number): void {
+    if (!this.path) return;
+    this.path.group.visible = visible;
+    if (visible) this.path.show(frame);
+    this.stage.draw();
+  }
+
+  lookFromFrame(frame: number): void {
+    if (this.cameras) this.movement.goTo(viewpointOfFrame(this.cameras, frame), true);
+  }
+
+  clearMeasure(): void {
+    this.measure.clear();
+    this.stage.draw();
+  }
+
+  addMeasurePoint(point: Vector3): number | null {
+    const distance = this.measure.add(point);
+    this.stage.draw();
+    return distance;
+  }
+
+  /** Resolves once what is there now is drawn. */
+  whenDrawn(): Promise<void> {
+    return this.stage.whenDrawn();
+  }
+
+  /** How much of the canvas panels cover at each side, in pixels. */
+  setCovered(covered: Covered): void {
+    this.stage.setCovered(covered);
+  }
+
+  picture(): Promise<Blob | null> {
+    return this.stage.picture();
+  }
+
+  private frame(now: number): boolean {
+    const more = this.movement.advance(now);
+    const { canvas, camera } = this.stage;
+    camera.updateMatrixWorld();
+    this.measure.follow(camera, canvas.clientWidth, canvas.clientHeight);
+    return more;
+  }
+
+  private uniform(name: string, value: unknown): void {
+    this.surface.material.uniforms[name]!.value = value;
+    this.surface.material.uniformsNeedUpdate = true;
+  }
+
+  private pickAt(canvas: HTMLCanvasElement, event: MouseEvent): Pick | null {
+    const { left, top, width, height } = canvas.getBoundingClientRect();
+    const x = ((event.clientX - left) / width) * 2 - 1;
+    const y = 1 - ((event.clientY - top) / height) * 2;
+    return pick(this.surface, this.stage.camera, new Vector2(x, y));
+  }
+
+  private listen(canvas: HTMLCanvasElement, hooks: MapViewHooks): void {
+    let down: { x: number; y: number } | null = null;
+    canvas.addEventListener('pointerdown', (event) => {
+      down = event.isPrimary && event.button === 0 ? { x: event.clientX, y: event.clientY } : null;
+    });
+    canvas.addEventListener('pointerup', (event) => {
+      if (!down) return;
+      const far = Math.hypot(event.clientX - down.x, event.clientY - down.y) > CLICK_SLACK_PX;
+      down = null;
+      if (!far) hooks.onClick(this.pickAt(canvas, event));
+    });
+  }
+}

@@ -1,0 +1,140 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+import {
+  Box3,
+  BufferAttribute,
+  BufferGeometry,
+  DataTexture,
+  Group,
+  IntType,
+  Mesh,
+  type RawShaderMaterial,
+  Sphere,
+  Vector3,
+} from 'three';
+import { type Chunk } from '../mesh/chunk-format';
+import { InstanceTable } from './instance-table';
+import { surfaceMaterial } from './surface-material';
+
+const STEPS = 65535;
+const SAMPLE_STEP = 29; // vertices
+
+/** The box of the vertices within the chunk's unit cube. */
+function boxOf(positions: Uint16Array): Box3 {
+  const low = [STEPS, STEPS, STEPS];
+  const high = [0, 0, 0];
+  for (let at = 0; at < positions.length; at += 4)
+    for (let axis = 0; axis < 3; ++axis) {
+      const value = positions[at + axis]!;
+      if (value < low[axis]!) low[axis] = value;
+      if (value > high[axis]!) high[axis] = value;
+    }
+  const corner = (values: number[]): Vector3 => new Vector3(...values).divideScalar(STEPS);
+  return new Box3(corner(low), corner(high));
+}
+
+function geometryOf(chunk: Chunk): BufferGeometry {
+  const geometry = new BufferGeometry();
+  const instances = new BufferAttribute(chunk.instances, 1);
+  instances.gpuType = IntType;
+  geometry.setAttribute('position', new BufferAttribute(chunk.positions, 4, true));
+  geometry.setAttribute('color', new BufferAttribute(chunk.colors, 4, true));
+  geometry.setAttribute('instance', instances);
+  geometry.setIndex(new BufferAttribute(chunk.indices, 1));
+  geometry.boundingBox = boxOf(chunk.positions);
+  geometry.boundingSphere = geometry.boundingBox.getBoundingSphere(new Sphere());
+  return geometry;
+}
+
+/** The map's surface: chunks in up to two levels, of which one is drawn. */
+export class Surface {
+  readonly group = new Group();
+  readonly table: InstanceTable;
+  readonly material: RawShaderMaterial;
+  private readonly texture: DataTexture;
+  private readonly chunks = new Map<string, (Mesh | undefined)[]>();
+  private coarse = false;
+
+  constructor(largestId: number) {
+    this.table = new InstanceTable(largestId);
+    this.texture = new DataTexture(this.table.pixels, this.table.width, this.table.height);
+    this.material = surfaceMaterial(this.texture);
+    this.tableChanged();
+  }
+
+  tableChanged(): void {
+    this.texture.needsUpdate = true;
+  }
+
+  put(key: string, chunk: Chunk): void {
+    const levels = this.chunks.get(key) ?? [];
+    const old = levels[chunk.level];
+    if (old) this.drop(old);
+    const mesh = new Mesh(geometryOf(chunk), this.material);
+    mesh.position.set(...chunk.origin);
+    mesh.scale.setScalar(chunk.edge_m);
+    mesh.matrixAutoUpdate = false;
+    mesh.updateMatrix();
+    levels[chunk.level] = mesh;
+    this.chunks.set(key, levels);
+    this.group.add(mesh);
+    mesh.updateMatrixWorld();
+    this.choose(levels);
+  }
+
+  /** Removes chunks that the map no longer has. */
+  keepOnly(keys: ReadonlySet<string>): void {
+    for (const [key, levels] of this.chunks) {
+      if (keys.has(key)) continue;
+      for (const mesh of levels) if (mesh) this.drop(mesh);
+      this.chunks.delete(key);
+    }
+  }
+
+  /** Few triangles, where there are such: while the view moves on slow machines. */
+  showCoarse(coarse: boolean): void {
+    if (coarse === this.coarse) return;
+    this.coarse = coarse;
+    for (const levels of this.chunks.values()) this.choose(levels);
+  }
+
+  get trianglesDrawn(): number {
+    let count = 0;
+    this.group.traverseVisible((object) => {
+      if (object instanceof Mesh) count += (object.geometry.index?.count ?? 0) / 3;
+    });
+    return count;
+  }
+
+  box(): Box3 {
+    const box = new Box3();
+    for (const levels of this.chunks.values()) {
+      const mesh = levels[0] ?? levels[1];
+      if (!mesh?.geometry.boundingBox) continue;
+      box.union(mesh.geometry.boundingBox.clone().applyMatrix4(mesh.matrix));
+    }
+    return box;
+  }
+
+  /** Points all over the surface. */
+  samples(): Vector3[] {
+    const samples: Vector3[] = [];
+    for (const levels of this.chunks.values()) {
+      const mesh = levels[1] ?? levels[0];
+      const position = mesh?.geometry.getAttribute('position');
+      for (let v = 0; mesh && position && v < position.count; v += SAMPLE_STEP)
+        samples.push(new Vector3().fromBufferAttribute(position, v).applyMatrix4(mesh.matrix));
+    }
+    return samples;
+  }
+
+  private choose(levels: (Mesh | undefined)[]): void {
+    const shown = this.coarse ? (levels[1] ?? levels[0]) : (levels[0] ?? levels[1]);
+    for (const mesh of levels) if (mesh) mesh.visible = mesh === shown;
+  }
+
+  private drop(mesh: Mesh): void {
+    this.group.remove(mesh);
+    mesh.geometry.dispose();
+  }
+}

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+import type { Instance } from '../api/types';
+
+/** What an object is called: as a person named it, else the best guess, else by its number. */
+export function titleOf(instance: Instance): string {
+  return instance.name || instance.guesses[0]?.name || `Object ${instance.id}`;
+}
+
+/** Whether the title is only a guess. */
+export function isGuess(instance: Instance): boolean {
+  return instance.name === '' && instance.guesses.length > 0;
+}
+
+export function percent(share: number | null): string {
+  return share === null ? '' : `${Math.round(share * 100)} %`;
+}
+
+export function sizeOf({ box }: Instance): string {
+  const sides = [0, 1, 2].map((axis) => box.max[axis]! - box.min[axis]!);
+  if (box.min[0] === null) return '–';
+  return `${sides.map((side) => side.toFixed(2)).join(' × ')} m`;
+}
+
+export function placeOf({ centroid }: Instance): string {
+  return centroid.map((value) => value?.toFixed(2) ?? '–').join(', ');
+}
+
+export function plural(count: number, one: string, many = `${one}s`): string {
+  return `${count.toLocaleString('en')} ${count === 1 ? one : many}`;
+}
+
+/** "#12" in a sentence of the server becomes what the object is called. */
+export function withTitles(sentence: string, find: (id: number) => Instance | undefined): string {
+  return sentence.replace(/#(\d+)/g, (number, id: string) => {
+    const instance = find(Number(id));
+    return instance ? `${titleOf(instance)} ${number}` : number;
+  });
+}
+
+export function faultText(error: unknown): string {
+  return error instanceof Error ? error.message : String(error);
+}

@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+import type { Instance } from '../src/api/types';
+
+export function instance(id: number, more: Partial<Instance> = {}): Instance {
+  return {
+    id,
+    name: '',
+    guesses: [],
+    class: null,
+    color: [id, 0, 0],
+    box: { min: [0, 0, 0], max: [1, 2, 3] },
+    centroid: [0.5, 1, 1.5],
+    points: 10,
+    views: 3,
+    crops: [],
+    ...more,
+  };
+}

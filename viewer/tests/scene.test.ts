@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+import { Box3, Vector3 } from 'three';
+import { describe, expect, test } from 'vitest';
+import type { Cameras, Color } from '../src/api/types';
+import { frustumEdges, meanDirection, viewpointOfFrame } from '../src/scene/camera-path';
+import { paint, rampColor } from '../src/scene/coloring';
+import {
+  cornersOf,
+  groundAxes,
+  overviewDirection,
+  trimmedBox,
+  viewpointOf,
+} from '../src/scene/framing';
+import { InstanceTable, NO_INSTANCE } from '../src/scene/instance-table';
+import { metres } from '../src/scene/measure';
+import { sectionPlane } from '../src/scene/section';
+import { instance } from './instance-fixture';
+
+const RAMP: Color[] = [
+  [0, 0, 0],
+  [100, 200, 40],
+  [200, 200, 200],
+];
+
+describe('colours', () => {
+  test('a ramp is interpolated and never left', () => {
+    expect(rampColor(RAMP, 0.25)).toEqual([50, 100, 20]);
+    expect(rampColor(RAMP, -3)).toEqual([0, 0, 0]);
+    expect(rampColor(RAMP, 3)).toEqual([200, 200, 200]);
+  });
+
+  test('each mode paints its own colour', () => {
+    const table = new InstanceTable(300);
+    expect([table.width, table.height]).toEqual([256, 2]);
+    const instances = [
+      instance(2, { class: { id: 9, name: 'mug', color: [9, 9, 9] } }),
+      instance(300),
+    ];
+    const at = (id: number): number[] => [...table.pixels.slice(id * 4, id * 4 + 4)];
+    const heat = new Map([[2, 1]]);
+    paint(table, { mode: 'instances', instances, heat, ramp: RAMP });
+    expect(at(2)).toEqual([2, 0, 0, 255]);
+    expect(at(3)).toEqual([...NO_INSTANCE, 255]);
+    paint(table, { mode: 'classes', instances, heat, ramp: RAMP });
+    expect(at(2)).toEqual([9, 9, 9, 255]);
+    expect(at(300)).toEqual([...NO_INSTANCE, 255]);
+    paint(table, { mode: 'heat', instances, heat, ramp: RAMP });
+    expect(at(2)).toEqual([200, 200, 200, 255]);
+    expect(at(300)).toEqual([0, 0, 0, 255]);
+  });
+
+  test('what is hidden stays so when colours change', () => {
+    const table = new InstanceTable(5);
+    table.hide(2, true);
+    paint(table, { mode: 'instances', instances: [instance(2)], heat: new Map(), ramp: RAMP });
+    expect(table.pixels[11]).toBe(0);
+    table.hide(2, false);
+    expect(table.pixels[11]).toBe(255);
+    table.hide(99999, true); // an object that came after the table was made
+    expect(table.isHidden(99999)).toBe(true);
+  });
+});
+
+describe('framing', () => {
+  const up = new Vector3(0, -0.9, -0.43).normalize();
+
+  test('ground axes are a right-handed frame with the given up', () => {
+    const axes = groundAxes(up);
+    expect(new Vector3().crossVectors(axes.east, axes.north).dot(axes.up)).toBeCloseTo(1);
+    expect(axes.east.dot(up)).toBeCloseTo(0);
+  });
+
+  test('all corners of a box are seen, and one of them only just', () => {
+    const box = new Box3(new Vector3(-1, -2, 0), new Vector3(3, 2, 1));
+    const lens = { halfWidth: 0.8, halfHeight: 0.5 };
+    const view = viewpointOf(cornersOf(box), lens, new Vector3(1, 1, 1), new Vector3(0, 0, 1));
+    const back = view.position.clone().sub(view.target).normalize();
+    const right = new Vector3().crossVectors(new Vector3(0, 0, 1), back).normalize();
+    const top = new Vector3().crossVectors(back, right);
+    const reach = cornersOf(box).map((corner) => {
+      const arm = corner.clone().sub(view.position);
+      const depth = -arm.dot(back);
+      return Math.max(
+        Math.abs(arm.dot(right)) / depth / lens.halfWidth,
+        Math.abs(arm.dot(top)) / depth / lens.halfHeight,
+      );
+    });
+    expect(Math.max(...reach)).toBeCloseTo(1);
+  });
+
+  test('outliers do not count', () => {
+    const points = Array.from({ length: 101 }, (_, i) => new Vector3(i / 100, 0, 0));
+    points.push(new Vector3(1000, 0, 0));
+    expect(trimmedBox(points, 0.02).max.x).toBeLessThan(1.1);
+    expect(trimmedBox([], 0.02).isEmpty()).toBe(true);
+  });
+
+  test('an overview looks down, also without cameras', () => {
+    expect(overviewDirection(up, null).dot(up)).toBeGreaterThan(0.5);
+    expect(overviewDirection(up, up).dot(up)).toBeGreaterThan(0.5);
+  });
+
+  test('a section plane moves from one side to the other', () => {
+    const box = new Box3(new Vector3(0, 0, 0), new Vector3(1, 1, 2));
+    const z = new Vector3(0, 0, 1);
+    const cutsAway = (share: number, flipped: boolean, height: number): boolean => {
+      const plane = sectionPlane({ axis: 'height', share, flipped }, box, z);
+      return plane.z * height + plane.w > 0;
+    };
+    expect(cutsAway(0.5, false, 1.5)).toBe(true);
+    expect(cutsAway(0.5, false, 0.5)).toBe(false);
+    expect(cutsAway(0.5, true, 0.5)).toBe(true);
+    expect(cutsAway(1, false, 1.99)).toBe(false);
+  });
+});
+
+describe('cameras', () => {
+  const cameras: Cameras = {
+    camera: { width: 101, height: 101, fx: 50, fy: 50, cx: 50, cy: 50 },
+    frames: [
+      {
+        index: 0,
+        timestamp_s: 0,
+        labelled: true,
+        world_from_camera: [1, 0, 0, 5, 0, 1, 0, 6, 0, 0, 1, 7],
+      },
+    ],
+  };
+
+  test('a frustum begins at the camera and opens forward', () => {
+    const edges = frustumEdges(cameras, 0, 1);
+    expect(edges).toHaveLength(16);
+    expect(edges[0]!.toArray()).toEqual([5, 6, 7]);
+    expect(edges[1]!.toArray()).toEqual([4, 5, 8]);
+    expect(viewpointOfFrame(cameras, 0).target.toArray()).toEqual([5, 6, 8]);
+    expect(meanDirection(cameras)!.toArray()).toEqual([0, 0, 1]);
+    expect(meanDirection({ ...cameras, frames: [] })).toBeNull();
+  });
+});
+
+describe('measuring', () => {
+  test('lengths are written in a unit that fits', () => {
+    expect(metres(0.1234)).toBe('12.3 cm');
+    expect(metres(2.345)).toBe('2.35 m');
+  });
+});
