@@ -95,7 +95,7 @@ void CheckpointFile::write(const MapCheckpoint& checkpoint) {
                        checkpoint.blocks, 0, true};
     write_record(*database_, checkpoint.record, meta);
     write_semantics(*database_, checkpoint.record);
-    write_surfaces(*database_, checkpoint.record.surfaces);
+    write_surfaces(*database_, checkpoint.record.surfaces, map_tables::kSurfaces);
     write_forest(*database_, checkpoint.labels);
     if (!checkpoint.record.edits.empty()) write_edits(*database_, checkpoint.record.edits);
     write_tiles(checkpoint.tiles);

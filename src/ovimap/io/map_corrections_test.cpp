@@ -46,7 +46,7 @@ class MapCorrections : public ::testing::Test {
   MapCorrections() {
     for (Label label = 1; label <= 6; ++label) {
       map_.labels().create();
-      VoxelBlock& block = map_.block(map_.find_or_create({static_cast<int>(label), 0, 0}));
+      VoxelBlock& block = map_.writable_block(map_.find_or_create({static_cast<int>(label), 0, 0}));
       block.palette = {0, label};
       for (std::size_t v = 0; v < 64; ++v) {
         block.weight[v] = 1.f;

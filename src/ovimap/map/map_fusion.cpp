@@ -213,7 +213,7 @@ void fuse_map(VoxelMap& map, const VoxelMap& other, const Pose& map_from_other,
   parallel_for_ranges(slots.size(), kBlocksPerTask, [&](std::size_t begin, std::size_t end) {
     Sampler sampler(map, other, map_from_other);
     for (std::size_t i = begin; i < end; ++i) {
-      VoxelBlock& block = map.block(slots[i]);
+      VoxelBlock& block = map.writable_block(slots[i]);
       resolve_labels(block, map.labels());
       for (int v = 0; v < kBlockVoxels; ++v)
         if (const auto sample = sampler.at(voxel_of(block.index, v)))

@@ -36,7 +36,7 @@ class CheckpointerTest : public ::testing::Test {
   }
 
   Checkpointer checkpointer(int frames, CheckpointFile::Start start, std::size_t done = 0) const {
-    return Checkpointer(partial_, {0.f, frames}, {"desk", "a: 1\n", done}, start);
+    return Checkpointer(partial_, {0.f, frames}, {"desk", "a: 1\n", done, {}, {}}, start);
   }
 
   /// The bytes of the finished map.
