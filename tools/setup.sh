@@ -265,7 +265,8 @@ set_up_encoder() {
 
 VIEWER="$ROOT/viewer"
 
-install_viewer_packages() (cd "$VIEWER" && npm ci --silent --ignore-scripts --no-audit --no-fund)
+# Not "npm ci": npm 11 refuses a lock file that lacks the optional packages of other platforms.
+install_viewer_packages() (cd "$VIEWER" && npm install --silent --ignore-scripts --no-audit --no-fund)
 
 set_up_viewer() {
   cmp -s "$VIEWER/package-lock.json" "$VIEWER/node_modules/.installed-lock.json" && return
