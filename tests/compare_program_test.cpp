@@ -48,7 +48,7 @@ TEST_F(CompareProgramTest, ATransformIsRefusedWhenItIsNone) {
   fixture::write_text(path("t.txt"), "2 0 0 0  0 2 0 0  0 0 2 0  0 0 0 1");
   expect_complaint(command, {"orthonormal"});
   expect_complaint(command + " --align", {"--align"});
-  fixture::write_text(path("t.txt"), "1 0 0 1.3  0 1 0 0  0 0 1 0.2  0 0 0 1");
+  fixture::write_text(path("t.txt"), "1 0 0 0  0 1 0 0.3  0 0 1 0  0 0 0 1");
   expect_complaint(command, {"contradict", "--align"});
   EXPECT_FALSE(std::filesystem::exists(path("both.ovimap")));
 }
