@@ -46,3 +46,7 @@ endif()
 if(OVIMAP_SANITIZE OR CMAKE_BUILD_TYPE STREQUAL "Debug")
   target_compile_definitions(ovimap_options INTERFACE OVIMAP_CHECKS=1)
 endif()
+
+# The program's commands and the tests only call what is fast: optimised lightly, they compile in two thirds of the time.
+add_library(ovimap_glue_options INTERFACE)
+target_compile_options(ovimap_glue_options INTERFACE $<$<CONFIG:Release>:-O1>)

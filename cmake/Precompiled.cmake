@@ -19,7 +19,7 @@ if(OVIMAP_PCH)
   # And for programs, whose code is of the other kind.
   if(OVIMAP_TESTS)
     add_executable(ovimap_test_headers "${PROJECT_BINARY_DIR}/precompiled/main.cpp")
-    target_link_libraries(ovimap_test_headers PRIVATE ovimap_options Eigen3::Eigen GTest::gtest)
+    target_link_libraries(ovimap_test_headers PRIVATE ovimap_options ovimap_glue_options Eigen3::Eigen GTest::gtest)
     target_precompile_headers(ovimap_test_headers PRIVATE ${OVIMAP_COMMON_HEADERS} <gtest/gtest.h>)
   endif()
 endif()
