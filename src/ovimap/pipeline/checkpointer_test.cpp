@@ -47,13 +47,15 @@ class CheckpointerTest : public ::testing::Test {
     return read_file(folder_.path() / "map.ovimap");
   }
 
-  /// What a run does until it is killed after `frames` frames.
+  /// What a run does until it is killed after `frames` frames. A checkpoint waits for the encoder,
+  /// so for the test to be the same each time every frame does too.
   void begin(int frames) const {
     Mapper begun = mapper();
     Checkpointer checkpoints = checkpointer(2, CheckpointFile::Start::kAnew);
     run_sequence(
         scene_, positions({}, scene_.size()), begun,
         [&](std::size_t done, std::size_t, const FrameReport*) {
+          begun.finish();
           return static_cast<int>(done) < frames;
         },
         {}, &checkpoints);
