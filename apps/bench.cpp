@@ -122,7 +122,7 @@ int bench(const BenchOptions& options) {
   const double map_bytes = static_cast<double>(mapper.map().bytes());
   StageTimers timers = mapper.timers();
   measure_mesh(*source, range, config.mapper, timers);
-  const MapDocument document = make_document(std::move(mapper), result, options.mapping.source, "");
+  const MapDocument document = make_document(std::move(mapper), result, {options.mapping.source});
   const std::uintmax_t file_bytes = saved_bytes(document, timers);
   const double fps = static_cast<double>(result.frames.size()) / result.seconds;
   if (options.json) {

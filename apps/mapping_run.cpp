@@ -52,15 +52,7 @@ struct MappingInputs {
 struct BegunRun {
   std::optional<MapDocument> document;
   CheckpointFile::Start start = CheckpointFile::Start::kAnew;
-  std::map<InstanceId, std::string> names;  ///< what people gave the map: no run makes that anew
-  MapEdits edits;
 };
-
-BegunRun begun_run(MapDocument&& document, CheckpointFile::Start start) {
-  auto names = document.names;
-  auto edits = document.edits;
-  return {std::move(document), start, std::move(names), std::move(edits)};
-}
 
 BegunRun find_begun(const RunTarget& target) {
   const std::filesystem::path partial = checkpoint_path(target.map);
@@ -70,10 +62,10 @@ BegunRun find_begun(const RunTarget& target) {
       throw Error(concat("an unfinished run left '", partial.string(), "' with ",
                          read_map_info(partial).frames,
                          " frames; --resume goes on with it, or delete it to begin anew"));
-    return begun_run(load_map(partial), CheckpointFile::Start::kGoOn);
+    return {load_map(partial), CheckpointFile::Start::kGoOn};
   }
   if (target.resume && std::filesystem::exists(target.map))
-    return begun_run(load_map(target.map), CheckpointFile::Start::kAnew);
+    return {load_map(target.map), CheckpointFile::Start::kAnew};
   return {};
 }
 
@@ -106,13 +98,16 @@ void skip_done(std::vector<std::int64_t>& range, const std::vector<FrameLogEntry
     std::erase_if(range, [&](std::int64_t position) { return position <= done.back().index; });
 }
 
-/// Gives `mapper`, a Mapper or a LiveMapper, what an earlier run had; returns its frames.
+/// Gives `mapper`, a Mapper or a LiveMapper, what an earlier run had, and `header` what people told
+/// that run's map, which no run finds anew; returns its frames.
 template <class AnyMapper>
-SequenceResult resume(BegunRun& begun, const std::string& config, MappingInputs& inputs,
+SequenceResult resume(BegunRun& begun, MapHeader& header, MappingInputs& inputs,
                       AnyMapper& mapper) {
   SequenceResult sequence;
   if (!begun.document) return sequence;
-  require_same_settings(begun.document->config_text, config);
+  require_same_settings(begun.document->config_text, header.config_text);
+  header.names = begun.document->names;
+  header.edits = begun.document->edits;
   sequence.frames = begun.document->frames;
   sequence.depth_camera = begun.document->depth_camera;
   skip_done(inputs.range, sequence.frames);
@@ -122,32 +117,27 @@ SequenceResult resume(BegunRun& begun, const std::string& config, MappingInputs&
 
 std::unique_ptr<Checkpointer> make_checkpointer(const RunTarget& target, const BegunRun& begun,
                                                 const MappingInputs& inputs,
-                                                const std::string& source,
-                                                const std::string& config,
-                                                std::size_t frames_done) {
+                                                const MapHeader& header, std::size_t frames_done) {
   if (target.map.empty()) return nullptr;
-  return std::make_unique<Checkpointer>(
-      checkpoint_path(target.map), inputs.config.checkpoint,
-      Checkpointer::Header{source, config, frames_done, begun.names, begun.edits}, begun.start);
+  return std::make_unique<Checkpointer>(checkpoint_path(target.map), inputs.config.checkpoint,
+                                        header, frames_done, begun.start);
 }
 
-std::string source_text(const MappingInputs& inputs, const MappingOptions& options) {
-  return inputs.source->kind() + ":" + options.source;
+MapHeader make_header(const MappingInputs& inputs, const MappingOptions& options,
+                      const MapperConfig& mapper) {
+  return {inputs.source->kind() + ":" + options.source,
+          effective_config(inputs.config, options, mapper, inputs.encoder)};
 }
 
-MappingRun finished_run(MappingInputs&& inputs, const MappingOptions& options, BegunRun&& begun,
-                        Mapper&& mapper, SequenceResult sequence) {
+MappingRun finished_run(MappingInputs&& inputs, MapHeader header, Mapper&& mapper,
+                        SequenceResult sequence, std::unique_ptr<Checkpointer> checkpoints) {
   MappingRun run;
-  const std::string source = source_text(inputs, options);
   run.source = std::move(inputs.source);
   run.sequence = std::move(sequence);
-  const std::string config_text =
-      effective_config(inputs.config, options, mapper.config(), mapper.encoder());
   mapper.finish();
   run.timers = mapper.timers();
-  run.document = make_document(std::move(mapper), run.sequence, source, config_text);
-  run.document.names = std::move(begun.names);
-  run.document.edits = std::move(begun.edits);
+  run.document = make_document(std::move(mapper), run.sequence, std::move(header));
+  run.checkpoints = std::move(checkpoints);
   return run;
 }
 
@@ -159,11 +149,9 @@ MappingRun map_recording(const MappingOptions& options, const std::string& title
   MappingInputs inputs(options);
   inputs.open_networks(options, keep_masks);
   Mapper mapper(inputs.config.mapper, inputs.masks, inputs.encoder);
-  const std::string config =
-      effective_config(inputs.config, options, mapper.config(), inputs.encoder);
-  SequenceResult sequence = resume(begun, config, inputs, mapper);
-  auto checkpoints = make_checkpointer(target, begun, inputs, source_text(inputs, options), config,
-                                       sequence.frames.size());
+  MapHeader header = make_header(inputs, options, mapper.config());
+  SequenceResult sequence = resume(begun, header, inputs, mapper);
+  auto checkpoints = make_checkpointer(target, begun, inputs, header, sequence.frames.size());
   watch_for_interrupt();
   {
     Progress progress(title);
@@ -175,10 +163,8 @@ MappingRun map_recording(const MappingOptions& options, const std::string& title
         },
         std::move(sequence), checkpoints.get());
   }
-  MappingRun run = finished_run(std::move(inputs), options, std::move(begun), std::move(mapper),
-                                std::move(sequence));
-  run.checkpoints = std::move(checkpoints);
-  return run;
+  return finished_run(std::move(inputs), std::move(header), std::move(mapper), std::move(sequence),
+                      std::move(checkpoints));
 }
 
 MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& target) {
@@ -190,12 +176,10 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
     inputs.open_networks(options);
   }).get();
   LiveMapper mapper(inputs.config.mapper, inputs.config.live, inputs.masks, inputs.encoder);
-  const std::string config =
-      concat("# live, ", fps, " frames/s\n",
-             effective_config(inputs.config, options, mapper.config(), inputs.encoder));
-  const SequenceResult done = resume(begun, config, inputs, mapper);
-  auto checkpoints = make_checkpointer(target, begun, inputs, source_text(inputs, options), config,
-                                       done.frames.size());
+  MapHeader header = make_header(inputs, options, mapper.config());
+  header.config_text.insert(0, concat("# live, ", fps, " frames/s\n"));
+  const SequenceResult done = resume(begun, header, inputs, mapper);
+  auto checkpoints = make_checkpointer(target, begun, inputs, header, done.frames.size());
   if (checkpoints)
     mapper.after_frame = [&](Mapper& map, const auto& frames, const PinholeCamera& camera) {
       checkpoints->after_frame(map, frames, camera);
@@ -211,10 +195,8 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
                     });
   }
   if (inputs.range.empty()) live.sequence.depth_camera = done.depth_camera;
-  MappingRun run =
-      finished_run(std::move(inputs), options, std::move(begun), mapper.take(), live.sequence);
-  run.document.config_text = config;
-  run.checkpoints = std::move(checkpoints);
+  MappingRun run = finished_run(std::move(inputs), std::move(header), mapper.take(), live.sequence,
+                                std::move(checkpoints));
   run.live = std::move(live);
   return run;
 }

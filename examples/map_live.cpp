@@ -22,7 +22,7 @@ int main(int argc, char** argv) try {
   if (mapper.frames().empty()) throw ovimap::Error("no frame could be read");
   sequence.frames = mapper.frames();
   const ovimap::LiveStatistics done = mapper.statistics();
-  const auto document = ovimap::make_document(mapper.take(), sequence, argv[1], "");
+  const auto document = ovimap::make_document(mapper.take(), sequence, {argv[1]});
   ovimap::save_map(argv[2], document);
   std::printf("%zu objects from %zu frames, each in the map after %.0f ms\n",
               document.instances.size(), sequence.frames.size(), done.geometry_lag.p50_ms);

@@ -12,7 +12,7 @@ int main(int argc, char** argv) try {
   ovimap::Mapper mapper({});  // no 2D masks: depth alone
   const auto all_frames = ovimap::positions({}, source->size());
   const auto sequence = ovimap::run_sequence(*source, all_frames, mapper);
-  const auto document = ovimap::make_document(std::move(mapper), sequence, argv[1], "");
+  const auto document = ovimap::make_document(std::move(mapper), sequence, {argv[1]});
   ovimap::save_map(argv[2], document);
   std::printf("%zu objects from %zu frames\n", document.instances.size(), sequence.frames.size());
 } catch (const ovimap::Error& error) {

@@ -36,23 +36,28 @@ struct SemanticRecord {
   Appearances appearances;
 };
 
+/// What a map says that no frame changes: where it comes from, and what people told it.
+struct MapHeader {
+  std::string source = {};                       ///< where the frames came from
+  std::string config_text = {};                  ///< effective configuration, "name: value" lines
+                                                 ///< (ConfigFields::dump)
+  std::map<InstanceId, std::string> names = {};  ///< given by people or queries; none for most
+  MapEdits edits = {};  ///< what people corrected, oldest first; the rest is as mapping found it
+};
+
 /// Everything a saved map holds besides its voxels.
-struct MapRecord {
+struct MapRecord : MapHeader {
   InstanceConfig instance_config;
   InstanceRegistry::State registry;
   std::vector<InstanceSummary> instances;  ///< as summarised when the map was saved
   InstanceSurfaces surfaces;  ///< of `instances`, thinned: what relations are judged by
   Eigen::Vector3f up = Eigen::Vector3f::UnitZ();  ///< in the world
-  std::map<InstanceId, std::string> names;  ///< given by people or queries; none for most instances
-  MapEdits edits;  ///< what people corrected, oldest first; the rest is as mapping found it
-  std::vector<InstanceSummary> hidden;  ///< corrected maps: objects that people hid
-  std::set<InstanceId> locked;          ///< corrected maps: objects that must stay as they are
+  std::vector<InstanceSummary> hidden;            ///< corrected maps: objects that people hid
+  std::set<InstanceId> locked;  ///< corrected maps: objects that must stay as they are
   SemanticRecord semantics;
   std::vector<FrameLogEntry> frames;  ///< in the order they were fused
   PinholeCamera depth_camera;
-  std::string config_text;  ///< effective configuration, "name: value" lines (ConfigFields::dump)
   std::string timings;      ///< of the run, a line "stage p50_ms p95_ms count" each; may be empty
-  std::string source;       ///< where the frames came from
   int mask_frames = 0;      ///< frames with 2D masks
   bool unfinished = false;  ///< a checkpoint: `instances`, `surfaces` and `up` are yet to be found
   std::string version;      ///< of the program that wrote the map

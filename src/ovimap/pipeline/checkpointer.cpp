@@ -4,9 +4,8 @@
 
 #include "ovimap/base/config.h"
 #include "ovimap/base/thread_priority.h"
-#include "ovimap/base/version.h"
 #include "ovimap/io/map_file_access.h"
-#include "ovimap/io/map_file_blocks.h"
+#include "ovimap/io/map_file_tiles.h"
 
 namespace ovimap {
 
@@ -17,13 +16,13 @@ void list_fields(CheckpointConfig& config, ConfigFields& fields) {
 }
 
 Checkpointer::Checkpointer(std::filesystem::path path, const CheckpointConfig& config,
-                           Header header, CheckpointFile::Start start)
+                           MapHeader header, std::size_t frames, CheckpointFile::Start start)
     : path_(std::move(path)),
       config_(config),
       header_(std::move(header)),
       start_(start),
       last_(std::chrono::steady_clock::now()),
-      last_frames_(header_.frames) {}
+      last_frames_(frames) {}
 
 Checkpointer::~Checkpointer() {
   if (writing_.valid()) writing_.wait();
@@ -31,6 +30,7 @@ Checkpointer::~Checkpointer() {
 
 void Checkpointer::after_frame(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
                                const PinholeCamera& depth_camera) {
+  if (off()) return;
   note_changes(mapper);
   if (next_) return go_on_writing(mapper);
   if (!due(frames.size())) return;
@@ -45,29 +45,20 @@ bool Checkpointer::due(std::size_t frames) const {
 }
 
 void Checkpointer::note_changes(const Mapper& mapper) {
-  for (const std::uint32_t slot : mapper.touched_blocks())
-    changed_.insert(tile_key(mapper.map().block(slot).index));
+  std::optional<std::uint64_t> last;  // most blocks lie in the tile of the one before
+  for (const std::uint32_t slot : mapper.touched_blocks()) {
+    const std::uint64_t key = tile_key(mapper.map().block(slot).index);
+    if (key != last) changed_.insert(key);
+    last = key;
+  }
 }
 
 void Checkpointer::begin(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
                          const PinholeCamera& depth_camera) {
   auto t = mapper.timers().measure("checkpoint");
   next_.emplace();
-  MapRecord& record = next_->record;
-  record.instance_config = mapper.config().instance;
-  record.registry = mapper.registry().state();
-  record.semantics.views = mapper.config().semantics.views;
-  record.semantics.crops = mapper.config().semantics.crops;
-  if (mapper.encoder()) record.semantics.encoder = mapper.encoder()->identity();
-  record.frames = frames;
-  record.depth_camera = depth_camera;
-  record.config_text = header_.config_text;
-  record.source = header_.source;
-  record.names = header_.names;
-  record.edits = header_.edits;
-  record.mask_frames = mapper.mask_frames();
-  record.unfinished = true;
-  record.version = concat(version(), " (", commit(), ")");
+  next_->record = mapper.record(header_, frames, depth_camera);
+  next_->record.unfinished = true;
   next_->map_config = mapper.map().config();
   next_->labels = mapper.map().labels();
   next_->blocks = mapper.map().block_count();
@@ -115,7 +106,7 @@ void Checkpointer::remove() {
   if (writing_.valid()) writing_.wait();
   if (file_)
     file_->remove();
-  else if (start_ == CheckpointFile::Start::kGoOn)
+  else  // what an earlier run left, be it a checkpoint or the beginning of one
     remove_map(path_);
 }
 

@@ -7,7 +7,6 @@
 #include <future>
 #include <optional>
 #include <set>
-#include <string>
 #include <vector>
 
 #include "ovimap/io/map_checkpoint.h"
@@ -23,19 +22,13 @@ void list_fields(CheckpointConfig& config, ConfigFields& fields);
 
 /// Stores a map while it is made, beside the mapping: what changed since the last time is frozen in
 /// a moment (VoxelMap::freeze) and written by another thread while the mapper goes on. One
-/// checkpoint at a time; when the disk is slow there are fewer.
+/// checkpoint at a time; when the disk is slow there are fewer. The map must outlive it.
 class Checkpointer {
  public:
-  /// What does not change from one checkpoint to the next.
-  struct Header {
-    std::string source, config_text;          ///< as in MapRecord
-    std::size_t frames = 0;                   ///< that the map already has
-    std::map<InstanceId, std::string> names;  ///< what people gave it
-    MapEdits edits;                           ///< likewise
-  };
-  /// Opens nothing before the first checkpoint is due. `go_on`: the map was loaded from `path`.
-  Checkpointer(std::filesystem::path path, const CheckpointConfig& config, Header header,
-               CheckpointFile::Start start);
+  /// Opens nothing before the first checkpoint is due. `frames`: how many the map has already.
+  /// `kGoOn`: the map was loaded from `path`.
+  Checkpointer(std::filesystem::path path, const CheckpointConfig& config, MapHeader header,
+               std::size_t frames, CheckpointFile::Start start);
   /// Waits for what is being written.
   ~Checkpointer();
 
@@ -47,6 +40,7 @@ class Checkpointer {
   void remove();
 
  private:
+  bool off() const { return config_.seconds <= 0 && config_.frames <= 0; }
   bool due(std::size_t frames) const;
   void note_changes(const Mapper& mapper);
   void begin(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
@@ -56,7 +50,7 @@ class Checkpointer {
 
   std::filesystem::path path_;
   CheckpointConfig config_;
-  Header header_;
+  MapHeader header_;
   CheckpointFile::Start start_;
   std::optional<CheckpointFile> file_;
   std::set<std::uint64_t> changed_;  ///< keys of tiles, since the last checkpoint

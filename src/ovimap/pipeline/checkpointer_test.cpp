@@ -36,14 +36,16 @@ class CheckpointerTest : public ::testing::Test {
   }
 
   Checkpointer checkpointer(int frames, CheckpointFile::Start start, std::size_t done = 0) const {
-    return Checkpointer(partial_, {0.f, frames}, {"desk", "a: 1\n", done, {}, {}}, start);
+    return Checkpointer(partial_, {0.f, frames}, {"desk", "a: 1\n"}, done, start);
   }
 
-  /// The bytes of the finished map.
-  Bytes finish(Mapper&& mapper, const SequenceResult& sequence) const {
-    MapDocument document = make_document(std::move(mapper), sequence, "desk", "a: 1\n");
+  /// The bytes of the finished map. `checkpoints` may be null.
+  Bytes finish(Mapper&& mapper, const SequenceResult& sequence,
+               Checkpointer* checkpoints = nullptr) const {
+    MapDocument document = make_document(std::move(mapper), sequence, {"desk", "a: 1\n"});
     document.timings.clear();
     save_map(folder_.path() / "map.ovimap", document);
+    if (checkpoints) checkpoints->remove();
     return read_file(folder_.path() / "map.ovimap");
   }
 
@@ -75,9 +77,7 @@ class CheckpointerTest : public ::testing::Test {
     for (std::int64_t i = sequence.frames.back().index + 1; i < scene_.size(); ++i)
       left.push_back(i);
     sequence = run_sequence(scene_, left, resumed, nullptr, std::move(sequence), &checkpoints);
-    const Bytes map = finish(std::move(resumed), sequence);
-    checkpoints.remove();
-    return map;
+    return finish(std::move(resumed), sequence, &checkpoints);
   }
 
   DeskScene scene_;
@@ -102,12 +102,13 @@ TEST_F(CheckpointerTest, CheckpointsDoNotChangeTheMap) {
   const SequenceResult sequence = run_sequence(scene_, positions({}, scene_.size()), plain);
   Checkpointer checkpoints = checkpointer(1, CheckpointFile::Start::kAnew);
   run_sequence(scene_, positions({}, scene_.size()), watched, nullptr, {}, &checkpoints);
-  EXPECT_EQ(finish(std::move(plain), sequence), finish(std::move(watched), sequence));
+  EXPECT_EQ(finish(std::move(plain), sequence), finish(std::move(watched), sequence, &checkpoints));
 }
 
 TEST_F(CheckpointerTest, ACheckpointThatCannotBeWrittenEndsTheRun) {
   Mapper begun = mapper();
-  Checkpointer checkpoints(folder_.path() / "nowhere" / "map.partial", {0.f, 1}, {}, {});
+  Checkpointer checkpoints(folder_.path() / "nowhere" / "map.partial", {0.f, 1}, {}, 0,
+                           CheckpointFile::Start::kAnew);
   try {
     run_sequence(scene_, positions({}, scene_.size()), begun, nullptr, {}, &checkpoints);
     FAIL() << "12 checkpoints, and none failed";

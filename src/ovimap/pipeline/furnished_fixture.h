@@ -137,7 +137,7 @@ inline MapDocument map_of(const FurnishedRoom& room) {
   std::vector<std::int64_t> all(static_cast<std::size_t>(room.frames));
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<std::int64_t>(i);
   const SequenceResult result = run_sequence(room, all, mapper);
-  MapDocument document = make_document(std::move(mapper), result, "furnished", "");
+  MapDocument document = make_document(std::move(mapper), result, {"furnished"});
   document.up = room.world_from_room.linear().cast<float>() * Eigen::Vector3f::UnitZ();
   return document;
 }

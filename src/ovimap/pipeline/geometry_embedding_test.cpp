@@ -16,7 +16,7 @@ Mesh desk_mesh() {
   const DeskScene scene;
   Mapper mapper({}, std::make_shared<DeskMasks>());
   const SequenceResult result = run_sequence(scene, positions({}, scene.size()), mapper);
-  const MapDocument document = make_document(std::move(mapper), result, "desk", "");
+  const MapDocument document = make_document(std::move(mapper), result, {"desk"});
   return extract_instance_mesh(document.map, document.instances);
 }
 

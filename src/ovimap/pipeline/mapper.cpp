@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "ovimap/base/error.h"
+#include "ovimap/base/version.h"
 #include "ovimap/map/integrate.h"
 #include "ovimap/map/surface_lookup.h"
 
@@ -114,6 +116,21 @@ int Mapper::look_at_objects(const Frame& frame, Encoder encoder) {
   auto t = timers_.measure("await_encoder");
   builder_->submit(encoder == Encoder::kCatchUp);
   return chosen;
+}
+
+MapRecord Mapper::record(MapHeader header, std::vector<FrameLogEntry> frames,
+                         const PinholeCamera& depth_camera) const {
+  MapRecord record{std::move(header)};
+  record.instance_config = config_.instance;
+  record.registry = registry_.state();
+  record.semantics.views = config_.semantics.views;
+  record.semantics.crops = config_.semantics.crops;
+  if (encoder()) record.semantics.encoder = encoder()->identity();
+  record.frames = std::move(frames);
+  record.depth_camera = depth_camera;
+  record.mask_frames = mask_frames_;
+  record.version = concat(version(), " (", commit(), ")");
+  return record;
 }
 
 void Mapper::restore(MapDocument&& document) {

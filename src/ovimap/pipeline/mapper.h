@@ -68,6 +68,10 @@ class Mapper {
 
   /// What objects look like now, to be stored (AppearanceBuilder::remember).
   std::shared_ptr<PendingAppearances> remember_appearances() { return builder_->remember(); }
+  /// What is to be stored beside the voxels, but for what the objects look like and what is found
+  /// at the end: `frames` were fused, seen by `depth_camera`.
+  MapRecord record(MapHeader header, std::vector<FrameLogEntry> frames,
+                   const PinholeCamera& depth_camera) const;
   /// Goes on where the mapper of a stored map stopped, which had the same config; on a fresh mapper
   /// only.
   void restore(MapDocument&& document);

@@ -22,7 +22,7 @@ class OccupancyGridTest : public ::testing::Test {
     std::vector<std::int64_t> all(DeskScene::kFrames);
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<std::int64_t>(i);
     const SequenceResult result = run_sequence(scene, all, mapper);
-    document_ = make_document(std::move(mapper), result, "desk", "");
+    document_ = make_document(std::move(mapper), result, {"desk"});
     document_.up = Eigen::Vector3f::UnitZ();
   }
 

@@ -20,7 +20,7 @@ SemanticRecord map_desk(std::shared_ptr<ImageTextEncoder> encoder, int kept_view
   config.semantics.crops.kept_views = kept_views;
   Mapper mapper(config, std::make_shared<DeskMasks>(), std::move(encoder));
   const SequenceResult result = run_sequence(scene, positions({}, scene.size()), mapper);
-  return make_document(std::move(mapper), result, "desk", "").semantics;
+  return make_document(std::move(mapper), result, {"desk"}).semantics;
 }
 
 TEST(Reembed, GivesWhatTheEncoderWouldHaveGivenWhileMapping) {

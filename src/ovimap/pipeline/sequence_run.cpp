@@ -7,7 +7,6 @@
 #include <future>
 
 #include "ovimap/base/error.h"
-#include "ovimap/base/version.h"
 #include "ovimap/instance/instance_mesh.h"
 #include "ovimap/io/scene_axes.h"
 #include "ovimap/pipeline/timings_text.h"
@@ -96,27 +95,17 @@ SequenceResult run_sequence(const FrameSource& source, const std::vector<std::in
   return result;
 }
 
-MapDocument make_document(Mapper&& mapper, const SequenceResult& sequence, std::string source,
-                          std::string config_text) {
-  MapDocument document;
-  document.semantics.views = mapper.config().semantics.views;
-  document.semantics.crops = mapper.config().semantics.crops;
-  document.semantics.appearances = mapper.take_appearances();
-  if (mapper.encoder()) document.semantics.encoder = mapper.encoder()->identity();
+MapDocument make_document(Mapper&& mapper, const SequenceResult& sequence, MapHeader header) {
+  Appearances appearances = mapper.take_appearances();
+  MapDocument document{mapper.record(std::move(header), sequence.frames, sequence.depth_camera),
+                       {}};
+  document.semantics.appearances = std::move(appearances);
   document.instances =
       summarize_instances(mapper.map(), mapper.registry(), mapper.config().summary);
-  document.instance_config = mapper.config().instance;
   const Mesh mesh = extract_instance_mesh(mapper.map(), document.instances);
   document.surfaces = sample_surfaces(mesh, mapper.config().summary.surface_spacing_m);
   document.up = guess_up(mesh, poses_of(sequence.frames));
-  document.registry = mapper.registry().state();
-  document.frames = sequence.frames;
-  document.depth_camera = sequence.depth_camera;
-  document.mask_frames = mapper.mask_frames();
-  document.source = std::move(source);
-  document.config_text = std::move(config_text);
   document.timings = timings_text(mapper.timers().summary());
-  document.version = concat(version(), " (", commit(), ")");
   document.content_hash = mapper.map().content_hash();
   document.map = std::move(mapper).take_map();
   return document;

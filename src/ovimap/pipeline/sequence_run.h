@@ -53,7 +53,6 @@ void require_motion(const std::vector<FrameLogEntry>& frames, const MapperConfig
 std::vector<Pose> poses_of(const std::vector<FrameLogEntry>& frames);
 
 /// Packs a finished mapper for saving. The mapper must not be used afterwards.
-MapDocument make_document(Mapper&& mapper, const SequenceResult& sequence, std::string source,
-                          std::string config_text);
+MapDocument make_document(Mapper&& mapper, const SequenceResult& sequence, MapHeader header);
 
 }  // namespace ovimap

@@ -47,7 +47,7 @@ TEST(MakeDocument, HoldsTheMapAndItsInstances) {
   Mapper mapper({}, std::make_shared<DeskMasks>());
   const SequenceResult result = run_sequence(scene, positions({}, scene.size()), mapper);
   const std::uint64_t hash = mapper.map().content_hash();
-  const MapDocument document = make_document(std::move(mapper), result, "desk", "a: 1\n");
+  const MapDocument document = make_document(std::move(mapper), result, {"desk", "a: 1\n"});
   EXPECT_EQ(document.content_hash, hash);
   EXPECT_EQ(document.map.content_hash(), hash);
   EXPECT_EQ(document.instances.size(), 3u);
