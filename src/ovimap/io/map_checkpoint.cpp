@@ -69,8 +69,7 @@ CheckpointFile::CheckpointFile(CheckpointFile&&) noexcept = default;
 void CheckpointFile::open(Start start) {
   if (start == Start::kAnew) remove_map(path_);
   database_ = open_growing_map(path_);
-  database_->exec(concat("CREATE TABLE IF NOT EXISTS ", kBlocks.name, " (", kBlocks.definition,
-                         ") ", kBlocks.options));
+  create_table(*database_, kBlocks);
   if (start == Start::kGoOn) note_stored_tiles();
 }
 

@@ -25,12 +25,12 @@ std::string insert_sql(const MapTable& table) {
   return sql + ")";
 }
 
-void create(SQLite::Database& database, const MapTable& table) {
+}  // namespace
+
+void create_table(SQLite::Database& database, const MapTable& table) {
   database.exec(concat("CREATE TABLE IF NOT EXISTS ", table.name, " (", table.definition, ") ",
                        table.options));
 }
-
-}  // namespace
 
 bool has_table(SQLite::Database& database, const MapTable& table) {
   return database.tableExists(table.name);
@@ -46,7 +46,7 @@ void drop_table(SQLite::Database& database, const MapTable& table) {
 
 void write_check(SQLite::Database& database, const MapTable& table, std::int64_t rows,
                  std::int64_t hash) {
-  create(database, map_tables::kChecks);
+  create_table(database, map_tables::kChecks);
   SQLite::Statement check(database, insert_sql(map_tables::kChecks));
   check.bind(1, table.name);
   check.bind(2, rows);
@@ -93,7 +93,7 @@ void TableHash::end_row() {
 
 RowWriter::RowWriter(SQLite::Database& database, const MapTable& table)
     : database_(database), table_(table) {
-  create(database, table);
+  create_table(database, table);
   statement_ = std::make_unique<SQLite::Statement>(database, insert_sql(table));
 }
 RowWriter::~RowWriter() = default;

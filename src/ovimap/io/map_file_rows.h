@@ -145,6 +145,9 @@ class TableHash {
   std::uint64_t sum_ = 0;
 };
 
+/// Leaves a table that is there as it is.
+void create_table(SQLite::Database& database, const MapTable& table);
+
 bool has_table(SQLite::Database& database, const MapTable& table);
 
 /// Throws Error with a phrase unless the table's rows are those that were written, whatever they
