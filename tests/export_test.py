@@ -9,7 +9,6 @@ import os
 import pathlib
 import subprocess
 import sys
-import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -21,8 +20,8 @@ try:
 except ImportError as missing:  # set up by tools/setup.sh
     print(f"skipped: {missing}; tools/setup.sh installs what this test needs")
     sys.exit(77)
+from tiny_room import TinyRoom, ovimap
 
-PROGRAM = sys.argv.pop(1)
 VALIDATOR = ROOT / ".deps/gltf-validator"
 
 
@@ -31,28 +30,16 @@ def picture_of(path):
         return np.asarray(image)
 
 
-def ovimap(*arguments, code=0):
-    result = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True)
-    if result.returncode != code:
-        raise AssertionError(f"{arguments}: exit code {result.returncode}, {result.stderr}")
-    return result.stdout or result.stderr
-
-
 class Exports(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.scratch = tempfile.TemporaryDirectory()
-        cls.folder = pathlib.Path(cls.scratch.name)
-        ovimap("synth", cls.folder / "synth", "--room", "tiny", "--frames", "24")
-        cls.map = cls.folder / "room.ovimap"
-        ovimap("run", cls.folder / "synth/room", "--masks", "gt", "--encoder", "none", "-o", cls.map,
-               "--set", "map.voxel_size_m=0.02")
-        cls.info = json.loads(ovimap("info", cls.map, "--json"))
+        cls.room = TinyRoom(frames=24, voxel_size_m=0.02)
+        cls.folder, cls.map, cls.info = cls.room.folder, cls.room.map, cls.room.info
         cls.objects = {entry["id"]: entry for entry in cls.info["instances"]}
 
     @classmethod
     def tearDownClass(cls):
-        cls.scratch.cleanup()
+        cls.room.close()
 
     def export(self, name, *options):
         path = self.folder / name

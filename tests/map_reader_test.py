@@ -5,12 +5,9 @@
 what it finds with what the program says. Usage: map_reader_test.py PROGRAM"""
 import csv
 import json
-import pathlib
 import sqlite3
 import struct
-import subprocess
 import sys
-import tempfile
 import unittest
 
 try:
@@ -20,13 +17,9 @@ try:
 except ImportError as missing:  # set up by tools/setup.sh
     print(f"skipped: {missing}; tools/setup.sh installs what this test needs")
     sys.exit(77)
+from tiny_room import TinyRoom, ovimap
 
-PROGRAM = sys.argv.pop(1)
 APPLICATION_ID = 0x4F56494D
-
-
-def ovimap(*arguments):
-    return subprocess.run([PROGRAM, *map(str, arguments)], check=True, capture_output=True, text=True).stdout
 
 
 def unsigned(value):
@@ -224,19 +217,14 @@ def content_hash(map_file):
 class Reader(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.scratch = tempfile.TemporaryDirectory()
-        cls.folder = pathlib.Path(cls.scratch.name)
-        ovimap("synth", cls.folder / "synth", "--room", "tiny", "--frames", "10")
-        cls.path = cls.folder / "room.ovimap"
-        ovimap("run", cls.folder / "synth/room", "--masks", "gt", "--encoder", "none", "-o", cls.path,
-               "--set", "map.voxel_size_m=0.03")
-        cls.info = json.loads(ovimap("info", cls.path, "--json"))
+        cls.room = TinyRoom(frames=10, voxel_size_m=0.03)
+        cls.folder, cls.path, cls.info = cls.room.folder, cls.room.map, cls.room.info
         cls.map = Map(cls.path)
 
     @classmethod
     def tearDownClass(cls):
         cls.map.database.close()
-        cls.scratch.cleanup()
+        cls.room.close()
 
     def test_it_is_a_map(self):
         self.assertEqual(self.map.pragma("application_id"), APPLICATION_ID)
