@@ -7,7 +7,11 @@
 #include <csignal>
 #include <random>
 #include <thread>
+#include <utility>
 
+#include "ovimap/io/map_checkpoint.h"
+#include "ovimap/io/map_file.h"
+#include "ovimap/io/map_file_tiles.h"
 #include "program_fixture.h"
 
 namespace ovimap {
@@ -15,18 +19,48 @@ namespace {
 
 class ResumeProgramTest : public ProgramTest {
  protected:
-  static constexpr const char* kRun =
-      "run replica/scene --masks gt --encoder none --set checkpoint.frames=1 ";
+  /// Long enough for a busy disk to store a checkpoint before it ends.
+  ResumeProgramTest() {
+    sequence_.frames = 30;
+    std::filesystem::create_directories(path("long"));
+    fixture::write_replica(path("long"), sequence_);
+  }
 
-  /// Starts the program, kills it after a while unless it has ended, and returns whether it had.
-  bool run_and_kill(const std::vector<std::string>& arguments, std::chrono::milliseconds after) {
+  static constexpr const char* kRun =
+      "run long/scene --masks gt --encoder none --set checkpoint.frames=1 --set "
+      "map.voxel_size_m=0.03 ";
+
+  /// Starts the program and kills it, unless it has ended, once it has been seen writing to the log
+  /// of its checkpoint so often, and `delay` after that. Returns whether it had ended.
+  bool run_and_kill(const std::vector<std::string>& arguments, int writes,
+                    std::chrono::milliseconds delay) const {
+    auto log = checkpoint_log();
     const pid_t child = ::fork();
     if (child == 0) execute(arguments);
-    std::this_thread::sleep_for(after);
+    while (writes > 0 && !has_ended(child)) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      const auto now = checkpoint_log();
+      if (std::exchange(log, now) != now) --writes;
+    }
+    std::this_thread::sleep_for(delay);
     ::kill(child, SIGKILL);
     int status = 0;
     ::waitpid(child, &status, 0);
     return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  }
+
+  /// When the checkpoint's log was last written to; the epoch when there is none.
+  std::filesystem::file_time_type checkpoint_log() const {
+    std::error_code absent;
+    const auto time = std::filesystem::last_write_time(path("room.ovimap.partial-wal"), absent);
+    return absent ? std::filesystem::file_time_type() : time;
+  }
+
+  /// Leaves its status to waitpid.
+  static bool has_ended(pid_t child) {
+    siginfo_t info{};
+    return ::waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOHANG | WNOWAIT) != 0 ||
+           info.si_pid != 0;
   }
 
   [[noreturn]] void execute(const std::vector<std::string>& arguments) const {
@@ -37,6 +71,17 @@ class ResumeProgramTest : public ProgramTest {
     if (::chdir(folder_.path().c_str()) != 0 || ::dup2(log, 1) < 0 || ::dup2(log, 2) < 0) _exit(90);
     ::execv(OVIMAP_PROGRAM, words.data());
     _exit(91);
+  }
+
+  /// Leaves what a run leaves that is killed after the frames of `map`.
+  void store_as_checkpoint(const std::string& map, const std::string& checkpoint_file) const {
+    const MapDocument document = load_map(path(map));
+    MapCheckpoint checkpoint{
+        document, document.map.config(), document.map.labels(), document.map.block_count(), {}};
+    checkpoint.record.unfinished = true;
+    for (const Tile& tile : tiles_of(document.map))
+      checkpoint.tiles.push_back({tile.key, tile.present, blocks_of(document.map, tile)});
+    CheckpointFile(path(checkpoint_file), CheckpointFile::Start::kAnew).write(checkpoint);
   }
 
   /// What makes two maps the same, whenever they were made.
@@ -52,14 +97,19 @@ TEST_F(ResumeProgramTest, AHundredKillsLoseNothing) {
   const std::chrono::duration<double, std::milli> takes = std::chrono::steady_clock::now() - start;
   const nlohmann::json expected = essence("whole.ovimap");
   std::mt19937 random(7);
-  std::uniform_real_distribution<double> moment(0.2, 1.1);
   std::int64_t frames = 0;
   int finished = 0, with_checkpoint = 0;
   for (int kill = 0; kill < 100; ++kill) {
-    const bool done =
-        run_and_kill({"run", "replica/scene", "--masks", "gt", "--encoder", "none", "--set",
-                      "checkpoint.frames=1", "-o", "room.ovimap", "--resume"},
-                     std::chrono::duration_cast<std::chrono::milliseconds>(takes * moment(random)));
+    // A quarter at any moment, the others between the first checkpoints.
+    const bool any_moment = kill % 4 == 0;
+    const int writes = any_moment ? 0 : std::uniform_int_distribution(1, 16)(random);
+    const double longest_ms = any_moment ? takes.count() : 10;
+    const std::chrono::milliseconds delay(
+        std::uniform_int_distribution(0, static_cast<int>(longest_ms))(random));
+    const bool done = run_and_kill(
+        {"run", "long/scene", "--masks", "gt", "--encoder", "none", "--set", "checkpoint.frames=1",
+         "--set", "map.voxel_size_m=0.03", "-o", "room.ovimap", "--resume"},
+        writes, delay);
     if (done) {
       ++finished;
       frames = 0;
@@ -80,6 +130,7 @@ TEST_F(ResumeProgramTest, AHundredKillsLoseNothing) {
   EXPECT_EQ(essence("room.ovimap"), expected);
   EXPECT_FALSE(std::filesystem::exists(path("room.ovimap.partial")));
   EXPECT_GT(with_checkpoint + finished, 20) << "the kills came too early to mean anything";
+  EXPECT_GT(with_checkpoint, 10) << "hardly a kill came between two checkpoints";
 }
 
 TEST_F(ResumeProgramTest, GoesOnWithAMap) {
@@ -89,31 +140,24 @@ TEST_F(ResumeProgramTest, GoesOnWithAMap) {
   ASSERT_EQ(run(std::string(kRun) + "-o whole.ovimap").code, 0);
   EXPECT_EQ(essence("room.ovimap")[0], essence("whole.ovimap")[0]);
   EXPECT_EQ(run(std::string(kRun) + "-o room.ovimap --resume").code, 0) << "nothing is left to do";
-  expect_complaint("run replica/scene --masks none -o room.ovimap --resume",
-                   {"masks gt", "--resume"});
+  expect_complaint("run long/scene --masks none -o room.ovimap --resume", {"masks gt", "--resume"});
   expect_complaint(std::string(kRun) + "-o room.ovimap --resume --set map.voxel_size_m=0.02",
                    {"voxel_size_m", "0.02"});
 }
 
+TEST_F(ResumeProgramTest, WhatAKillLeftBeforeTheFirstCheckpointGoes) {
+  std::ofstream(path("room.ovimap.partial"));
+  ASSERT_EQ(run("run long/scene --masks gt --encoder none -o room.ovimap").code, 0);
+  EXPECT_FALSE(std::filesystem::exists(path("room.ovimap.partial")));
+}
+
 TEST_F(ResumeProgramTest, AnUnfinishedRunIsNotOverwritten) {
-  for (std::chrono::milliseconds delay(20); run("info room.ovimap.partial").code != 0;
-       delay += std::chrono::milliseconds(20)) {
-    std::filesystem::remove(path("room.ovimap"));  // it had ended before
-    const pid_t child = ::fork();
-    if (child == 0)
-      execute({"run", "replica/scene", "-o", "room.ovimap", "--resume", "--set",
-               "checkpoint.frames=1"});
-    while (!std::filesystem::exists(path("room.ovimap.partial-wal")) &&
-           ::waitpid(child, nullptr, WNOHANG) == 0)
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    std::this_thread::sleep_for(delay);
-    ::kill(child, SIGKILL);
-    ::waitpid(child, nullptr, 0);
-  }
+  ASSERT_EQ(run(std::string(kRun) + "-o part.ovimap --frames :3").code, 0);
+  store_as_checkpoint("part.ovimap", "room.ovimap.partial");
   EXPECT_NE(run("info room.ovimap.partial").out.find("unfinished"), std::string::npos);
-  expect_complaint("run replica/scene -o room.ovimap",
+  expect_complaint(std::string(kRun) + "-o room.ovimap",
                    {"room.ovimap.partial", "--resume", "delete"});
-  EXPECT_EQ(run("run replica/scene -o room.ovimap --resume").code, 0);
+  EXPECT_EQ(run(std::string(kRun) + "-o room.ovimap --resume").code, 0);
   EXPECT_FALSE(std::filesystem::exists(path("room.ovimap.partial")));
 }
 
