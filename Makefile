@@ -6,10 +6,11 @@ OVIMAP := $(BUILD)/bin/ovimap
 JOBS ?= $(shell nproc)
 SOURCE ?= demo/tiny/room
 
-.PHONY: help setup build demo test asan tsan fuzz bench rivals benchmarks viewer-speed clean
+.PHONY: help setup build demo demo-lasting test asan tsan fuzz bench rivals benchmarks viewer-speed clean
 
 help:
 	@echo "make demo    set up, build, render a room, map it, show the objects; VIEW=1: then in a browser"
+	@echo "make demo-lasting [SOURCE=..]  map half of it, kill that, resume, compare and merge with the other half, export"
 	@echo "make test    set up, build, run every test"
 	@echo "make build   build the program: $(OVIMAP)"
 	@echo "make bench   measure speed and memory on SOURCE (default: the demo room), beside their targets"
@@ -29,6 +30,10 @@ build: setup
 
 demo: build
 	@VIEW=$(VIEW) tools/demo.sh $(OVIMAP)
+
+demo-lasting: build
+	@test -d "$(SOURCE)" || $(OVIMAP) synth demo/tiny --room tiny
+	@tools/demo_lasting.sh $(OVIMAP) "$(SOURCE)" demo/lasting --masks none --encoder none
 
 test: build
 	@tools/run_tests.sh $(BUILD)
