@@ -11,7 +11,7 @@
 
 #include "ovimap/io/map_checkpoint.h"
 #include "ovimap/io/map_file.h"
-#include "ovimap/io/map_file_tiles.h"
+#include "ovimap/map/block_tiles.h"
 #include "program_fixture.h"
 
 namespace ovimap {

@@ -5,7 +5,7 @@
 #include "ovimap/base/config.h"
 #include "ovimap/base/thread_priority.h"
 #include "ovimap/io/map_file_access.h"
-#include "ovimap/io/map_file_tiles.h"
+#include "ovimap/map/block_tiles.h"
 
 namespace ovimap {
 
@@ -47,7 +47,7 @@ bool Checkpointer::due(std::size_t frames) const {
 void Checkpointer::note_changes(const Mapper& mapper) {
   std::optional<std::uint64_t> last;  // most blocks lie in the tile of the one before
   for (const std::uint32_t slot : mapper.touched_blocks()) {
-    const std::uint64_t key = tile_key(mapper.map().block(slot).index);
+    const std::uint64_t key = tile_key(mapper.map().block_index(slot));
     if (key != last) changed_.insert(key);
     last = key;
   }
