@@ -151,6 +151,29 @@ TEST_F(ResumeProgramTest, WhatAKillLeftBeforeTheFirstCheckpointGoes) {
   EXPECT_FALSE(std::filesystem::exists(path("room.ovimap.partial")));
 }
 
+TEST_F(ResumeProgramTest, ABoundOnMemoryDoesNotChangeTheMap) {
+  const std::string kFine =
+      "run replica/scene --masks gt --encoder none --set checkpoint.frames=4 ";
+  ASSERT_EQ(run(kFine + "-o whole.ovimap").code, 0);
+  const std::string bounded = kFine + "-o room.ovimap --max-memory 75M";
+  const nlohmann::json report = run_json(bounded + " --json");
+  EXPECT_GT(report["tiles_evicted"], 0);
+  EXPECT_EQ(essence("room.ovimap"), essence("whole.ovimap"));
+  const nlohmann::json info = run_json("info room.ovimap --json");
+  EXPECT_EQ(info["tiles_evicted"], report["tiles_evicted"]);
+  EXPECT_EQ(info["tiles_loaded"], report["tiles_loaded"]);
+  EXPECT_FALSE(std::filesystem::exists(path("room.ovimap.partial")));
+
+  std::filesystem::remove(path("room.ovimap"));
+  ASSERT_EQ(run(bounded + " --frames :6").code, 0);
+  ASSERT_EQ(run(bounded + " --resume").code, 0);
+  EXPECT_EQ(essence("room.ovimap"), essence("whole.ovimap"));
+
+  expect_complaint(kFine + "-o small.ovimap --max-memory 5M",
+                   {"one frame", "--max-memory", "voxel_size_m"});
+  expect_complaint(kFine + "-o small.ovimap --max-memory 300", {"'300'", "300M"});
+}
+
 TEST_F(ResumeProgramTest, AnUnfinishedRunIsNotOverwritten) {
   ASSERT_EQ(run(std::string(kRun) + "-o part.ovimap --frames :3").code, 0);
   store_as_checkpoint("part.ovimap", "room.ovimap.partial");
