@@ -67,10 +67,14 @@ struct RemoveLater {
   }
 };
 
+std::filesystem::path temporary_map() {
+  return std::filesystem::temp_directory_path() /
+         ("ovimap-bench-" + std::to_string(getpid()) + ".ovimap");
+}
+
 /// Saves the map beside other temporary files and returns its size, removing it again.
 std::uintmax_t saved_bytes(const MapDocument& document, StageTimers& timers) {
-  const auto path = std::filesystem::temp_directory_path() /
-                    ("ovimap-bench-" + std::to_string(getpid()) + ".ovimap");
+  const auto path = temporary_map();
   const RemoveLater removal{path};
   {
     auto t = timers.measure("save");
@@ -84,6 +88,18 @@ std::uintmax_t saved_bytes(const MapDocument& document, StageTimers& timers) {
   return bytes;
 }
 
+}  // namespace
+
+std::unique_ptr<Checkpointer> bound_memory(const MemoryConfig& memory) {
+  if (memory.max_mb == 0) return nullptr;
+  auto tiles = std::make_shared<TileKeeper>(checkpoint_path(temporary_map()),
+                                            TileKeeper::Start::kAnew, memory);
+  tiles->remove();
+  return std::make_unique<Checkpointer>(std::move(tiles), CheckpointConfig{0.f, 0}, MapHeader{}, 0);
+}
+
+namespace {
+
 int bench(const BenchOptions& options) {
   const ThreadLimit limit(options.mapping.threads);
   ProgramConfig config = read_program_config(options.mapping);
@@ -91,7 +107,7 @@ int bench(const BenchOptions& options) {
     throw Error(
         "name a SOURCE to measure, or --corridor N (where the program was built with rooms)");
 #ifdef OVIMAP_SYNTH
-  if (options.corridor > 0) return bench_corridor(options.corridor, config.mapper, options.json);
+  if (options.corridor > 0) return bench_corridor(options.corridor, config, options.json);
 #endif
   config.masks.runtime.threads = network_threads(config, options.mapping);
   const auto source = open_frame_source(options.mapping.source, config.source);
@@ -99,26 +115,31 @@ int bench(const BenchOptions& options) {
   auto masks = make_mask_source(options.mapping.masks, config.masks,
                                 {source.get(), options.mapping.model_dirs});
   Mapper mapper(config.mapper, std::move(masks), make_encoder(options.mapping, config));
+  const auto checkpoints = bound_memory(config.memory);
   Progress progress("measuring");
   const double cpu_before = cpu_seconds();
   const SequenceResult result = run_sequence(
-      *source, range, mapper, [&](std::size_t done, std::size_t total, const FrameReport*) {
+      *source, range, mapper,
+      [&](std::size_t done, std::size_t total, const FrameReport*) {
         progress.show(done, total);
         return true;
-      });
+      },
+      {}, checkpoints.get());
   const double cpu_ms =
       1e3 * (cpu_seconds() - cpu_before) / static_cast<double>(result.frames.size());
   for (std::size_t i = 0; i < range.size(); i += static_cast<std::size_t>(options.project_every)) {
     const FrameRead read = source->read(range[i]);
     if (read.frame) (void)mapper.project(*read.frame);
+    mapper.map().trim();
   }
   mapper.finish();
+  if (checkpoints) checkpoints->report(mapper.timers());
   const double peak_mb = peak_rss_mb();
-  {
+  if (!checkpoints) {  // it holds all blocks at once
     auto t = mapper.timers().measure("mesh");
     (void)extract_mesh(mapper.map());
   }
-  const auto voxels = static_cast<double>(mapper.map().block_count()) * kBlockVoxels;
+  const auto voxels = static_cast<double>(mapper.map().blocks_in_memory()) * kBlockVoxels;
   const double map_bytes = static_cast<double>(mapper.map().bytes());
   StageTimers timers = mapper.timers();
   measure_mesh(*source, range, config.mapper, timers);
@@ -163,6 +184,7 @@ Action add_bench(CLI::App& command) {
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   command.get_option("SOURCE")->required(false);
+  add_max_memory(command, options->mapping);
 #ifdef OVIMAP_SYNTH
   command
       .add_option("--corridor", options->corridor,

@@ -7,8 +7,12 @@
 
 namespace ovimap::apps {
 
+/// What keeps a map within the bound, in a file among other temporary ones that goes with it; null
+/// when there is no bound.
+std::unique_ptr<Checkpointer> bound_memory(const MemoryConfig& memory);
+
 /// Walks down a generated corridor, with depth alone and voxels of 4 cm, and reports every 500
 /// frames what a frame costs and how large the map is.
-int bench_corridor(int frames, const MapperConfig& config, bool json);
+int bench_corridor(int frames, const ProgramConfig& config, bool json);
 
 }  // namespace ovimap::apps

@@ -17,8 +17,14 @@ constexpr float kVoxel_m = 0.04f;    // a corridor of 300 m at 1 cm would take 1
 struct CorridorRow {
   std::int64_t frames;
   StageSummary frame, project, mesh;
-  double map_mb, wall_m2;
-  std::size_t objects;
+  double map_mb;   ///< in memory
+  double wall_m2;  ///< 0 with a bound on memory, for which all of the map would have to come back
+  std::size_t blocks, objects;
+};
+
+struct CorridorWalk {
+  std::vector<CorridorRow> rows;
+  StageTimers tiles;  ///< what leaving memory and coming back took
 };
 
 /// Square metres of observed surface, by its voxels.
@@ -34,11 +40,13 @@ double surface_m2(const VoxelMap& map) {
   return static_cast<double>(voxels) * side * side;
 }
 
-std::vector<CorridorRow> walk(const CorridorSource& corridor, MapperConfig config) {
-  config.map.voxel_size_m = kVoxel_m;
-  Mapper mapper(config);
+/// With a bound on memory no mesh is kept, which has none.
+CorridorWalk walk(const CorridorSource& corridor, ProgramConfig config) {
+  config.mapper.map.voxel_size_m = kVoxel_m;
+  Mapper mapper(config.mapper);
+  const auto checkpoints = bound_memory(config.memory);
   IncrementalMesh mesh;
-  std::vector<CorridorRow> rows;
+  CorridorWalk walked;
   Progress progress("walking");
   StageTimers part;
   for (std::int64_t i = 0; i < corridor.size() && !interrupted(); ++i) {
@@ -46,8 +54,9 @@ std::vector<CorridorRow> walk(const CorridorSource& corridor, MapperConfig confi
     {
       auto t = part.measure("frame");
       mapper.process(frame);
+      if (checkpoints) checkpoints->after_frame(mapper, {}, frame.depth_camera);
     }
-    {
+    if (!checkpoints) {
       auto t = part.measure("mesh");
       mesh.update(mapper.map(), mapper.touched_blocks());
     }
@@ -57,21 +66,23 @@ std::vector<CorridorRow> walk(const CorridorSource& corridor, MapperConfig confi
     }
     progress.show(static_cast<std::size_t>(i + 1), static_cast<std::size_t>(corridor.size()));
     if ((i + 1) % kPart != 0) continue;
-    const auto summary = part.summary();
-    rows.push_back({i + 1, summary.at("frame"), summary.at("project"), summary.at("mesh"),
-                    static_cast<double>(mapper.map().bytes()) / 1e6, surface_m2(mapper.map()),
-                    mapper.registry().records().size()});
+    auto summary = part.summary();
+    walked.rows.push_back({i + 1, summary["frame"], summary["project"], summary["mesh"],
+                           static_cast<double>(mapper.map().bytes()) / 1e6,
+                           checkpoints ? 0. : surface_m2(mapper.map()), mapper.map().block_count(),
+                           mapper.registry().records().size()});
     part = {};
   }
-  return rows;
+  if (checkpoints) checkpoints->report(walked.tiles);
+  return walked;
 }
 
 }  // namespace
 
-int bench_corridor(int frames, const MapperConfig& config, bool json) {
+int bench_corridor(int frames, const ProgramConfig& config, bool json) {
   watch_for_interrupt();
   const CorridorSource corridor({.frames = frames});
-  const std::vector<CorridorRow> rows = walk(corridor, config);
+  const auto [rows, tiles] = walk(corridor, config);
   const double growth = rows.empty() ? 0 : rows.back().frame.p50_ms / rows.front().frame.p50_ms;
   if (json) {
     nlohmann::json parts = nlohmann::json::array();
@@ -82,20 +93,26 @@ int bench_corridor(int frames, const MapperConfig& config, bool json) {
                        {"project_p50_ms", row.project.p50_ms},
                        {"mesh_p50_ms", row.mesh.p50_ms},
                        {"map_mb", row.map_mb},
+                       {"blocks", row.blocks},
                        {"surface_m2", row.wall_m2},
                        {"objects", row.objects}});
     print_json({{"parts", parts},
+                {"stages", stages_json(tiles)},
                 {"growth", growth},
                 {"interrupted", interrupted()},
                 {"peak_rss_mb", peak_rss_mb()}});
     return kDone;
   }
-  std::printf("%8s %9s %9s %11s %9s %9s %10s %8s\n", "frames", "p50 ms", "p95 ms", "project ms",
-              "mesh ms", "map MB", "surface m2", "objects");
+  std::printf("%8s %9s %9s %11s %9s %9s %9s %10s %8s\n", "frames", "p50 ms", "p95 ms", "project ms",
+              "mesh ms", "map MB", "blocks", "surface m2", "objects");
   for (const CorridorRow& row : rows)
-    std::printf("%8lld %9.2f %9.2f %11.2f %9.2f %9.1f %10.0f %8zu\n",
+    std::printf("%8lld %9.2f %9.2f %11.2f %9.2f %9.1f %9zu %10.0f %8zu\n",
                 static_cast<long long>(row.frames), row.frame.p50_ms, row.frame.p95_ms,
-                row.project.p50_ms, row.mesh.p50_ms, row.map_mb, row.wall_m2, row.objects);
+                row.project.p50_ms, row.mesh.p50_ms, row.map_mb, row.blocks, row.wall_m2,
+                row.objects);
+  for (const auto& [stage, s] : tiles.summary())
+    std::printf("%s: %.2f ms, p95 %.2f ms, %zu times\n", stage.c_str(), s.p50_ms, s.p95_ms,
+                s.count);
   std::printf("the last %lld frames cost %.2f times the first; peak memory %.0f MB\n",
               static_cast<long long>(kPart), growth, peak_rss_mb());
   return kDone;

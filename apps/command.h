@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -56,9 +57,13 @@ struct MappingOptions {
   std::vector<std::string> settings;  ///< "a.b=c"
   std::vector<std::filesystem::path> model_dirs;
   std::string frames = ":";  ///< "A:B:STEP"
+  std::string max_memory;    ///< "300M"; empty: as the settings say
   int threads = 0;
 };
 void add_mapping_options(CLI::App& command, MappingOptions& options);
+
+/// --max-memory, which is memory.max_mb in units of its own.
+void add_max_memory(CLI::App& command, MappingOptions& options);
 
 /// Everything that --preset, --config and --set can set.
 struct ProgramConfig {
@@ -68,6 +73,7 @@ struct ProgramConfig {
   RuntimeConfig encoder;
   LiveConfig live;
   CheckpointConfig checkpoint;
+  MemoryConfig memory;
 };
 void list_fields(ProgramConfig& config, ConfigFields& fields);
 
@@ -110,6 +116,11 @@ std::string json_text(const nlohmann::json& value);
 /// Prints the one JSON object of a --json run.
 void print_json(const nlohmann::json& value);
 nlohmann::json stages_json(const StageTimers& timers);
+/// Tiles that a bound on memory made leave it, and that came back, while frames were mapped.
+struct TileTraffic {
+  std::size_t evicted = 0, loaded = 0;
+};
+TileTraffic tile_traffic(const std::map<std::string, StageSummary>& stages);
 double peak_rss_mb();
 
 /// True once the user pressed Ctrl-C; from then on a second Ctrl-C ends the program.

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
-#include <iostream>
 
 #include "command.h"
 #include "ovimap/io/instance_json.h"
 #include "ovimap/io/map_check.h"
 #include "ovimap/io/map_file.h"
+#include "ovimap/pipeline/timings_text.h"
 
 namespace ovimap::apps {
 
@@ -40,8 +40,12 @@ int check_file(const InfoOptions& options) {
 int info(const InfoOptions& options) {
   if (options.check) return check_file(options);
   const MapInfo map = read_map_info(options.map);
+  const TileTraffic tiles = tile_traffic(parse_timings(map.timings));
   if (options.json) {
-    std::cout << info_json(options.map, map) << std::endl;
+    auto document = nlohmann::json::parse(info_json(options.map, map));
+    document["tiles_evicted"] = tiles.evicted;
+    document["tiles_loaded"] = tiles.loaded;
+    print_json(document);
     return kDone;
   }
   std::printf(
@@ -52,6 +56,9 @@ int info(const InfoOptions& options) {
   if (map.unfinished)
     std::printf(
         "unfinished: a run was broken off; the same command with --resume goes on with it\n");
+  if (tiles.evicted > 0)
+    std::printf("made within a bound on memory: %zu tiles left it, %zu came back\n", tiles.evicted,
+                tiles.loaded);
   std::printf("%6s  %-24s %24s %24s %8s %6s\n", "id", "name", "centroid (m)", "size (m)", "points",
               "views");
   for (const InstanceSummary& instance : map.instances) {

@@ -51,32 +51,51 @@ struct MappingInputs {
 /// What a run goes on with, and where its checkpoints go.
 struct BegunRun {
   std::optional<MapDocument> document;
-  CheckpointFile::Start start = CheckpointFile::Start::kAnew;
+  std::shared_ptr<TileKeeper> tiles;  ///< null: nowhere
 };
 
-BegunRun find_begun(const RunTarget& target) {
-  const std::filesystem::path partial = checkpoint_path(target.map);
-  if (target.map.empty()) return {};
-  if (holds_checkpoint(partial)) {
-    if (!target.resume)
-      throw Error(concat("an unfinished run left '", partial.string(), "' with ",
-                         read_map_info(partial).frames,
-                         " frames; --resume goes on with it, or delete it to begin anew"));
-    return {load_map(partial), CheckpointFile::Start::kGoOn};
+/// With a bound on memory the voxels stay in the checkpoint's file, where tiles go as well.
+void load_begun(const std::filesystem::path& map, BegunRun& begun) {
+  if (!begun.tiles->bounded()) {
+    begun.document = load_map(map);
+  } else {
+    begun.document = load_map_without_voxels(map);
+    if (map != begun.tiles->path()) begun.tiles->adopt(map);
+    begun.document->map.keep_in(begun.tiles);
   }
-  if (target.resume && std::filesystem::exists(target.map))
-    return {load_map(target.map), CheckpointFile::Start::kAnew};
-  return {};
+}
+
+BegunRun find_begun(const RunTarget& target, const MemoryConfig& memory) {
+  BegunRun begun;
+  if (target.map.empty()) {
+    if (memory.max_mb > 0)
+      throw Error("memory.max_mb is for `run` and `bench`; leave it away or set it to 0");
+    return begun;
+  }
+  const std::filesystem::path partial = checkpoint_path(target.map);
+  const bool unfinished = holds_checkpoint(partial);
+  if (unfinished && !target.resume)
+    throw Error(concat("an unfinished run left '", partial.string(), "' with ",
+                       read_map_info(partial).frames,
+                       " frames; --resume goes on with it, or delete it to begin anew"));
+  begun.tiles = std::make_shared<TileKeeper>(
+      partial, unfinished ? TileKeeper::Start::kGoOn : TileKeeper::Start::kAnew, memory);
+  if (unfinished)
+    load_begun(partial, begun);
+  else if (target.resume && std::filesystem::exists(target.map))
+    load_begun(target.map, begun);
+  return begun;
 }
 
 /// The lines of a configuration that decide what the map becomes: which frames it is made from, and
-/// when it is stored, may differ.
+/// when and where it is kept, may differ.
 std::vector<std::string> deciding_lines(const std::string& config) {
   std::vector<std::string> lines;
   std::istringstream stream(config);
   for (std::string line; std::getline(stream, line);) {
     if (line.starts_with("# preset")) line.resize(std::min(line.size(), line.find(", frames ")));
-    if (!line.starts_with("checkpoint.") && !line.starts_with("# live")) lines.push_back(line);
+    const auto names = [&](const char* start) { return line.starts_with(start); };
+    if (!names("checkpoint.") && !names("memory.") && !names("# live")) lines.push_back(line);
   }
   return lines;
 }
@@ -115,12 +134,10 @@ SequenceResult resume(BegunRun& begun, MapHeader& header, MappingInputs& inputs,
   return sequence;
 }
 
-std::unique_ptr<Checkpointer> make_checkpointer(const RunTarget& target, const BegunRun& begun,
-                                                const MappingInputs& inputs,
+std::unique_ptr<Checkpointer> make_checkpointer(const BegunRun& begun, const MappingInputs& inputs,
                                                 const MapHeader& header, std::size_t frames_done) {
-  if (target.map.empty()) return nullptr;
-  return std::make_unique<Checkpointer>(checkpoint_path(target.map), inputs.config.checkpoint,
-                                        header, frames_done, begun.start);
+  if (!begun.tiles) return nullptr;
+  return std::make_unique<Checkpointer>(begun.tiles, inputs.config.checkpoint, header, frames_done);
 }
 
 MapHeader make_header(const MappingInputs& inputs, const MappingOptions& options,
@@ -135,6 +152,10 @@ MappingRun finished_run(MappingInputs&& inputs, MapHeader header, Mapper&& mappe
   run.source = std::move(inputs.source);
   run.sequence = std::move(sequence);
   mapper.finish();
+  if (checkpoints) {
+    checkpoints->end_frames(mapper);
+    checkpoints->report(mapper.timers());
+  }
   run.timers = mapper.timers();
   run.document = make_document(std::move(mapper), run.sequence, std::move(header));
   run.checkpoints = std::move(checkpoints);
@@ -145,13 +166,13 @@ MappingRun finished_run(MappingInputs&& inputs, MapHeader header, Mapper&& mappe
 
 MappingRun map_recording(const MappingOptions& options, const std::string& title,
                          const std::filesystem::path& keep_masks, const RunTarget& target) {
-  BegunRun begun = find_begun(target);
   MappingInputs inputs(options);
+  BegunRun begun = find_begun(target, inputs.config.memory);
   inputs.open_networks(options, keep_masks);
   Mapper mapper(inputs.config.mapper, inputs.masks, inputs.encoder);
   MapHeader header = make_header(inputs, options, mapper.config());
   SequenceResult sequence = resume(begun, header, inputs, mapper);
-  auto checkpoints = make_checkpointer(target, begun, inputs, header, sequence.frames.size());
+  auto checkpoints = make_checkpointer(begun, inputs, header, sequence.frames.size());
   watch_for_interrupt();
   {
     Progress progress(title);
@@ -168,8 +189,8 @@ MappingRun map_recording(const MappingOptions& options, const std::string& title
 }
 
 MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& target) {
-  BegunRun begun = find_begun(target);
   MappingInputs inputs(options);
+  BegunRun begun = find_begun(target, inputs.config.memory);
   // The networks' threads inherit the priority of the one that opens them.
   std::async(std::launch::async, [&] {
     lower_thread_priority();
@@ -179,7 +200,7 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
   MapHeader header = make_header(inputs, options, mapper.config());
   header.config_text.insert(0, concat("# live, ", fps, " frames/s\n"));
   const SequenceResult done = resume(begun, header, inputs, mapper);
-  auto checkpoints = make_checkpointer(target, begun, inputs, header, done.frames.size());
+  auto checkpoints = make_checkpointer(begun, inputs, header, done.frames.size());
   if (checkpoints)
     mapper.after_frame = [&](Mapper& map, const auto& frames, const PinholeCamera& camera) {
       checkpoints->after_frame(map, frames, camera);

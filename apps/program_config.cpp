@@ -36,6 +36,13 @@ void add_mapping_options(CLI::App& command, MappingOptions& options) {
       ->check(CLI::Range(0, 1024));
 }
 
+void add_max_memory(CLI::App& command, MappingOptions& options) {
+  command.add_option(
+      "--max-memory", options.max_memory,
+      "bound on the memory of the map's voxels, as 300M or 1.5G: those far away wait "
+      "in the checkpoint beside the map");
+}
+
 void list_fields(ProgramConfig& config, ConfigFields& fields) {
   list_fields(config.mapper, fields);
   fields.group("source", [&](ConfigFields& f) { list_fields(config.source, f); });
@@ -43,6 +50,7 @@ void list_fields(ProgramConfig& config, ConfigFields& fields) {
   fields.group("encoder.runtime", [&](ConfigFields& f) { list_fields(config.encoder, f); });
   fields.group("live", [&](ConfigFields& f) { list_fields(config.live, f); });
   fields.group("checkpoint", [&](ConfigFields& f) { list_fields(config.checkpoint, f); });
+  fields.group("memory", [&](ConfigFields& f) { list_fields(config.memory, f); });
 }
 
 ProgramConfig read_program_config(const MappingOptions& options) {
@@ -58,6 +66,7 @@ ProgramConfig read_program_config(const MappingOptions& options) {
       throw Error("--set takes name=value, not '" + setting + "'; `ovimap config` lists the names");
     fields.set(setting.substr(0, equals), setting.substr(equals + 1));
   }
+  if (!options.max_memory.empty()) config.memory.max_mb = parse_megabytes(options.max_memory);
   return config;
 }
 

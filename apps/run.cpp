@@ -91,6 +91,7 @@ int run(const RunOptions& options) {
   if (!options.pictures.empty())
     write_map_pictures(options.pictures, mapped.document, *mapped.source);
   const double fps = static_cast<double>(result.frames.size()) / result.seconds;
+  const TileTraffic tiles = tile_traffic(mapped.timers.summary());
   if (options.json) {
     nlohmann::json report = {{"map", options.map.string()},
                              {"frames", result.frames.size()},
@@ -100,6 +101,8 @@ int run(const RunOptions& options) {
                              {"mask_frames", mapped.document.mask_frames},
                              {"interrupted", interrupted()},
                              {"stages", stages_json(mapped.timers)},
+                             {"tiles_evicted", tiles.evicted},
+                             {"tiles_loaded", tiles.loaded},
                              {"embedding_queries", embedding_queries(mapped.document.semantics)},
                              {"instances", mapped.document.instances.size()},
                              {"peak_rss_mb", peak_rss_mb()}};
@@ -109,6 +112,9 @@ int run(const RunOptions& options) {
     std::printf("%s: %zu objects from %zu frames (%d with masks) in %.1f s (%.1f frames/s)\n",
                 options.map.c_str(), mapped.document.instances.size(), result.frames.size(),
                 mapped.document.mask_frames, result.seconds, fps);
+    if (tiles.evicted > 0)
+      std::printf("%zu tiles left memory on the way, %zu came back; peak memory %.0f MB\n",
+                  tiles.evicted, tiles.loaded, peak_rss_mb());
     if (mapped.live) print_live(*mapped.live, options.fps);
   }
   if (mapped.document.instances.empty())
@@ -133,6 +139,7 @@ Action add_run(CLI::App& command) {
       ->check(CLI::Range(0.1, 1000.))
       ->needs(live)
       ->capture_default_str();
+  add_max_memory(command, options->mapping);
   command.add_flag("--resume", options->resume,
                    "go on with the frames that a killed run, or the map, does not have yet");
   command.add_flag("--json", options->json, "print one JSON object");

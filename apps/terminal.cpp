@@ -52,6 +52,14 @@ nlohmann::json stages_json(const StageTimers& timers) {
   return stages;
 }
 
+TileTraffic tile_traffic(const std::map<std::string, StageSummary>& stages) {
+  const auto count = [&](const char* stage) {
+    const auto found = stages.find(stage);
+    return found == stages.end() ? 0 : found->second.count;
+  };
+  return {count("evict_tile"), count("load_tile")};
+}
+
 double peak_rss_mb() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);

@@ -11,7 +11,7 @@
 
 #include "ovimap/io/map_checkpoint.h"
 #include "ovimap/io/map_file.h"
-#include "ovimap/io/map_file_tiles.h"
+#include "ovimap/map/block_tiles.h"
 #include "program_fixture.h"
 
 namespace ovimap {
@@ -149,6 +149,29 @@ TEST_F(ResumeProgramTest, WhatAKillLeftBeforeTheFirstCheckpointGoes) {
   std::ofstream(path("room.ovimap.partial"));
   ASSERT_EQ(run("run long/scene --masks gt --encoder none -o room.ovimap").code, 0);
   EXPECT_FALSE(std::filesystem::exists(path("room.ovimap.partial")));
+}
+
+TEST_F(ResumeProgramTest, ABoundOnMemoryDoesNotChangeTheMap) {
+  const std::string kFine =
+      "run replica/scene --masks gt --encoder none --set checkpoint.frames=4 ";
+  ASSERT_EQ(run(kFine + "-o whole.ovimap").code, 0);
+  const std::string bounded = kFine + "-o room.ovimap --max-memory 75M";
+  const nlohmann::json report = run_json(bounded + " --json");
+  EXPECT_GT(report["tiles_evicted"], 0);
+  EXPECT_EQ(essence("room.ovimap"), essence("whole.ovimap"));
+  const nlohmann::json info = run_json("info room.ovimap --json");
+  EXPECT_EQ(info["tiles_evicted"], report["tiles_evicted"]);
+  EXPECT_EQ(info["tiles_loaded"], report["tiles_loaded"]);
+  EXPECT_FALSE(std::filesystem::exists(path("room.ovimap.partial")));
+
+  std::filesystem::remove(path("room.ovimap"));
+  ASSERT_EQ(run(bounded + " --frames :6").code, 0);
+  ASSERT_EQ(run(bounded + " --resume").code, 0);
+  EXPECT_EQ(essence("room.ovimap"), essence("whole.ovimap"));
+
+  expect_complaint(kFine + "-o small.ovimap --max-memory 5M",
+                   {"one frame", "--max-memory", "voxel_size_m"});
+  expect_complaint(kFine + "-o small.ovimap --max-memory 300", {"'300'", "300M"});
 }
 
 TEST_F(ResumeProgramTest, AnUnfinishedRunIsNotOverwritten) {

@@ -4,12 +4,18 @@
 
 #include <map>
 #include <span>
+#include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include "ovimap/geometry/mesh.h"
 #include "ovimap/instance/instance_summary.h"
 
 namespace ovimap {
+
+/// By label: the instance that it belongs to, 0 for none of `instances`.
+std::vector<InstanceId> instances_by_label(const VoxelMap& map,
+                                           std::span<const InstanceSummary> instances);
 
 /// The map's mesh with instance ids as labels. Only the ids of `instances` occur; other surface has
 /// 0.
@@ -18,8 +24,36 @@ Mesh extract_instance_mesh(const VoxelMap& map, std::span<const InstanceSummary>
 /// Points of each object's surface, world frame, metres.
 using InstanceSurfaces = std::map<InstanceId, std::vector<Eigen::Vector3f>>;
 
+/// Thins the surfaces of a mesh that comes in parts: of its vertices, one (the first) from each
+/// cube of the edge `spacing_m` that holds some.
+class SurfaceSampler {
+ public:
+  explicit SurfaceSampler(float spacing_m) : spacing_m_(spacing_m) {}
+  /// Labels are instance ids; 0 is left out.
+  void add(const Mesh& part);
+  InstanceSurfaces take() { return std::move(surfaces_); }
+
+ private:
+  struct Cell {
+    InstanceId instance;
+    int x, y, z;
+    bool operator==(const Cell&) const = default;
+  };
+  struct CellHash {
+    std::size_t operator()(const Cell& cell) const;
+  };
+
+  float spacing_m_;
+  std::unordered_set<Cell, CellHash> taken_;
+  InstanceSurfaces surfaces_;
+};
+
 /// The mesh's vertices by label, one (the first) from each cube of the edge `spacing_m` that holds
 /// some; label 0 is left out. Ordered as the vertices are.
 InstanceSurfaces sample_surfaces(const Mesh& mesh, float spacing_m);
+
+/// The same of a map's instances, patch by patch.
+InstanceSurfaces sample_surfaces(const VoxelMap& map, std::span<const InstanceSummary> instances,
+                                 float spacing_m);
 
 }  // namespace ovimap

@@ -8,6 +8,7 @@
 
 #include "ovimap/base/config.h"
 #include "ovimap/base/parallel.h"
+#include "ovimap/map/block_tiles.h"
 #include "ovimap/map/label_slots.h"
 
 namespace ovimap {
@@ -20,9 +21,10 @@ struct Extent {
   Eigen::AlignedBox3f box;
 };
 
-/// Surface voxels of one block by label.
-std::map<Label, Extent> block_extents(const VoxelMap& map, const VoxelBlock& block) {
-  std::map<Label, Extent> extents;
+using Extents = std::map<Label, Extent>;
+
+/// Adds the surface voxels of one block by label.
+void add_extents(const VoxelMap& map, const VoxelBlock& block, Extents& extents) {
   const float voxel_size = map.config().voxel_size_m;
   for (int v = 0; v < kBlockVoxels; ++v) {
     if (block.weight[static_cast<std::size_t>(v)] <= 0.f ||
@@ -38,16 +40,25 @@ std::map<Label, Extent> block_extents(const VoxelMap& map, const VoxelBlock& blo
     extent.sum += center.cast<double>();
     extent.box.extend(center);
   }
-  return extents;
 }
 
-/// The same of all blocks, in the order of their indices.
-std::vector<std::map<Label, Extent>> all_extents(const VoxelMap& map) {
-  const std::vector<std::uint32_t> slots = map.ordered_slots();
-  std::vector<std::map<Label, Extent>> extents(slots.size());
-  parallel_for(slots.size(), 64,
-               [&](std::size_t i) { extents[i] = block_extents(map, map.block(slots[i])); });
-  return extents;
+/// The same of the whole map, added up tile after tile.
+Extents all_extents(const VoxelMap& map) {
+  Extents totals;
+  for_each_part(map, [&](std::span<const Tile> tiles) {
+    std::vector<Extents> extents(tiles.size());
+    parallel_for(tiles.size(), 2, [&](std::size_t i) {
+      for (const std::uint32_t slot : tiles[i].slots) add_extents(map, map.block(slot), extents[i]);
+    });
+    for (const Extents& of_tile : extents)
+      for (const auto& [label, extent] : of_tile) {
+        Extent& total = totals[label];
+        total.points += extent.points;
+        total.sum += extent.sum;
+        total.box.extend(extent.box);
+      }
+  });
+  return totals;
 }
 
 }  // namespace
@@ -64,20 +75,17 @@ void list_fields(InstanceSummaryConfig& config, ConfigFields& fields) {
 std::vector<InstanceSummary> summarize_instances(const VoxelMap& map,
                                                  const InstanceRegistry& registry,
                                                  const InstanceSummaryConfig& config) {
-  const auto extents = all_extents(map);
   const std::vector<InstanceId> instance_of = registry.instance_table(map.labels());
   std::map<InstanceId, InstanceSummary> summaries;
   std::map<InstanceId, Eigen::Vector3d> sums;
-  for (const auto& block : extents) {
-    for (const auto& [label, extent] : block) {
-      const InstanceId id = label < instance_of.size() ? instance_of[label] : 0;
-      if (id == 0) continue;
-      InstanceSummary& summary = summaries[id];
-      summary.points += extent.points;
-      summary.box.extend(extent.box);
-      sums.try_emplace(id, Eigen::Vector3d::Zero()).first->second += extent.sum;
-      summary.super_points.push_back(label);
-    }
+  for (const auto& [label, extent] : all_extents(map)) {
+    const InstanceId id = label < instance_of.size() ? instance_of[label] : 0;
+    if (id == 0) continue;
+    InstanceSummary& summary = summaries[id];
+    summary.points += extent.points;
+    summary.box.extend(extent.box);
+    sums.try_emplace(id, Eigen::Vector3d::Zero()).first->second += extent.sum;
+    summary.super_points.push_back(label);
   }
   std::vector<InstanceSummary> result;
   for (auto& [id, summary] : summaries) {
@@ -88,10 +96,6 @@ std::vector<InstanceSummary> summarize_instances(const VoxelMap& map,
       continue;
     summary.id = id;
     summary.centroid = (sums.at(id) / static_cast<double>(summary.points)).cast<float>();
-    std::sort(summary.super_points.begin(), summary.super_points.end());
-    summary.super_points.erase(
-        std::unique(summary.super_points.begin(), summary.super_points.end()),
-        summary.super_points.end());
     result.push_back(std::move(summary));
   }
   return result;
@@ -102,21 +106,19 @@ void measure_instances(const VoxelMap& map, std::vector<InstanceSummary>& instan
   for (std::size_t i = 0; i < instances.size(); ++i)
     for (const Label label : instances[i].super_points) owner[label] = i;
   std::vector<Extent> totals(instances.size());
-  for (const auto& block : all_extents(map))
-    for (const auto& [label, extent] : block) {
-      const auto found = owner.find(label);
-      if (found == owner.end()) continue;
-      Extent& total = totals[found->second];
-      total.points += extent.points;
-      total.sum += extent.sum;
-      total.box.extend(extent.box);
-    }
+  for (const auto& [label, extent] : all_extents(map)) {
+    const auto found = owner.find(label);
+    if (found == owner.end()) continue;
+    Extent& total = totals[found->second];
+    total.points += extent.points;
+    total.sum += extent.sum;
+    total.box.extend(extent.box);
+  }
   for (std::size_t i = 0; i < instances.size(); ++i) {
     instances[i].points = totals[i].points;
     instances[i].box = totals[i].box;
     if (totals[i].points > 0)
-      instances[i].centroid =
-          (totals[i].sum / static_cast<double>(totals[i].points)).cast<float>();
+      instances[i].centroid = (totals[i].sum / static_cast<double>(totals[i].points)).cast<float>();
   }
 }
 

@@ -3,6 +3,7 @@
 #include "ovimap/io/map_checkpoint.h"
 
 #include <algorithm>
+#include <exception>
 #include <numeric>
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -63,8 +64,12 @@ bool holds_checkpoint(const std::filesystem::path& path) {
 CheckpointFile::CheckpointFile(std::filesystem::path path, Start start) : path_(std::move(path)) {
   reporting_write_faults(path_, nullptr, [&] { open(start); });
 }
-CheckpointFile::~CheckpointFile() = default;
-CheckpointFile::CheckpointFile(CheckpointFile&&) noexcept = default;
+
+CheckpointFile::~CheckpointFile() {
+  transaction_.reset();
+  database_.reset();
+  if (remove_) remove_map(path_);
+}
 
 void CheckpointFile::open(Start start) {
   if (start == Start::kAnew) remove_map(path_);
@@ -85,50 +90,116 @@ void CheckpointFile::note_stored_tiles() {
   }
 }
 
-void CheckpointFile::write(const MapCheckpoint& checkpoint) {
-  reporting_write_faults(path_, database_.get(), [&] {
-    SQLite::Transaction transaction(*database_);
-    clear_all_but_blocks(*database_);
-    const MapMeta meta{checkpoint.map_config,
-                       static_cast<std::int64_t>(checkpoint.record.frames.size()),
-                       checkpoint.blocks, 0, true};
-    write_record(*database_, checkpoint.record, meta);
-    write_semantics(*database_, checkpoint.record);
-    write_surfaces(*database_, checkpoint.record.surfaces, map_tables::kSurfaces);
-    write_forest(*database_, checkpoint.labels);
-    if (!checkpoint.record.edits.empty()) write_edits(*database_, checkpoint.record.edits);
-    write_tiles(checkpoint.tiles);
-    transaction.commit();
-  });
+void CheckpointFile::begin() {
+  if (!transaction_) transaction_ = std::make_unique<SQLite::Transaction>(*database_);
 }
 
-void CheckpointFile::write_tiles(std::span<const ChangedTile> tiles) {
-  SQLite::Statement insert(
-      *database_, "INSERT OR REPLACE INTO blocks (tile, present, hash, data) VALUES (?, ?, ?, ?)");
-  TileEncoder encoder;
-  for (const ChangedTile& tile : tiles) {
-    const Bytes data = encoder.encode(tile.blocks);
-    const auto key = static_cast<std::int64_t>(tile.key),
-               present = static_cast<std::int64_t>(tile.present);
-    const std::int64_t hash = stored_hash(data);
-    insert.bind(1, key);
-    insert.bind(2, present);
-    insert.bind(3, hash);
-    insert.bindNoCopy(4, data.data(), static_cast<int>(data.size()));
-    insert.exec();
-    insert.reset();
-    row_hashes_[tile.key] = row_hash(key, present, hash, data);
+void CheckpointFile::write(const MapCheckpoint& checkpoint) {
+  try {
+    reporting_write_faults(path_, database_.get(), [&] {
+      write_tiles(checkpoint.tiles);
+      write_rest(checkpoint);
+    });
+  } catch (...) {
+    const std::lock_guard lock(mutex_);
+    transaction_.reset();  // takes it back
+    throw;
   }
+}
+
+void CheckpointFile::write_rest(const MapCheckpoint& checkpoint) {
+  const std::lock_guard lock(mutex_);
+  begin();
+  clear_all_but_blocks(*database_);
+  const MapMeta meta{checkpoint.map_config,
+                     static_cast<std::int64_t>(checkpoint.record.frames.size()), checkpoint.blocks,
+                     0, true};
+  write_record(*database_, checkpoint.record, meta);
+  write_semantics(*database_, checkpoint.record);
+  write_surfaces(*database_, checkpoint.record.surfaces, map_tables::kSurfaces);
+  write_forest(*database_, checkpoint.labels);
+  if (!checkpoint.record.edits.empty()) write_edits(*database_, checkpoint.record.edits);
   const std::uint64_t sum =
       std::accumulate(row_hashes_.begin(), row_hashes_.end(), std::uint64_t{0},
                       [](std::uint64_t total, const auto& entry) { return total + entry.second; });
   write_check(*database_, kBlocks, static_cast<std::int64_t>(row_hashes_.size()),
               static_cast<std::int64_t>(sum));
+  transaction_->commit();
+  transaction_.reset();
 }
 
-void CheckpointFile::remove() {
-  database_.reset();
-  remove_map(path_);
+/// Encodes outside the lock, so that tiles can be read meanwhile.
+void CheckpointFile::write_tiles(std::span<const ChangedTile> tiles) {
+  TileEncoder encoder;
+  for (const ChangedTile& tile : tiles) {
+    const StoredTile stored{tile.present, encoder.encode(tile.blocks)};
+    const std::lock_guard lock(mutex_);
+    insert(tile.key, stored);
+  }
+}
+
+void CheckpointFile::insert(std::uint64_t tile, const StoredTile& stored) {
+  begin();
+  SQLite::Statement insert(
+      *database_, "INSERT OR REPLACE INTO blocks (tile, present, hash, data) VALUES (?, ?, ?, ?)");
+  const auto key = static_cast<std::int64_t>(tile),
+             present = static_cast<std::int64_t>(stored.present);
+  const std::int64_t hash = stored_hash(stored.data);
+  insert.bind(1, key);
+  insert.bind(2, present);
+  insert.bind(3, hash);
+  insert.bindNoCopy(4, stored.data.data(), static_cast<int>(stored.data.size()));
+  insert.exec();
+  row_hashes_[tile] = row_hash(key, present, hash, stored.data);
+}
+
+void CheckpointFile::put(std::uint64_t tile, const StoredTile& stored) {
+  const std::lock_guard lock(mutex_);
+  reporting_write_faults(path_, database_.get(), [&] { insert(tile, stored); });
+}
+
+StoredTile CheckpointFile::get(std::uint64_t tile) {
+  const std::lock_guard lock(mutex_);
+  StoredTile stored;
+  bool sound = false;
+  reporting_write_faults(path_, database_.get(), [&] {
+    SQLite::Statement row(*database_, "SELECT present, hash, data FROM blocks WHERE tile = ?");
+    row.bind(1, static_cast<std::int64_t>(tile));
+    if (!row.executeStep()) return;
+    stored.present = static_cast<std::uint64_t>(row.getColumn(0).getInt64());
+    const SQLite::Column data = row.getColumn(2);
+    const auto* bytes = static_cast<const std::uint8_t*>(data.getBlob());
+    stored.data.assign(bytes, bytes + data.getBytes());
+    sound = stored_hash(stored.data) == row.getColumn(1).getInt64();
+  });
+  if (!sound)
+    throw Error(concat("map '", path_.string(), "' is damaged: tile ", tile,
+                       " of its voxels is not what was written; see to the disk and map again"));
+  return stored;
+}
+
+void CheckpointFile::put_all(const std::filesystem::path& map) {
+  std::exception_ptr fault;  // to write is no fault of the map that is read
+  OpenMap file(map);
+  file.read([&](SQLite::Database& database) {
+    SQLite::Statement rows(database, "SELECT tile, present, data FROM blocks");
+    while (!fault && rows.executeStep()) {
+      const SQLite::Column data = rows.getColumn(2);
+      const auto* bytes = static_cast<const std::uint8_t*>(data.getBlob());
+      try {
+        put(static_cast<std::uint64_t>(rows.getColumn(0).getInt64()),
+            {static_cast<std::uint64_t>(rows.getColumn(1).getInt64()),
+             Bytes(bytes, bytes + data.getBytes())});
+      } catch (const Error&) {
+        fault = std::current_exception();
+      }
+    }
+  });
+  if (fault) std::rethrow_exception(fault);
+}
+
+void CheckpointFile::remove_when_closed() {
+  remove_ = true;
 }
 
 }  // namespace ovimap

@@ -4,15 +4,18 @@
 
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <unordered_map>
 #include <vector>
 
+#include "ovimap/image/codec.h"
 #include "ovimap/io/map_document.h"
 
 namespace SQLite {
 class Database;
-}
+class Transaction;
+}  // namespace SQLite
 
 namespace ovimap {
 
@@ -20,6 +23,12 @@ namespace ovimap {
 struct ChangedTile {
   std::uint64_t key = 0, present = 0;     ///< as in the table `blocks`
   std::vector<const VoxelBlock*> blocks;  ///< in the order of the bits of `present`
+};
+
+/// A tile as the table `blocks` has it.
+struct StoredTile {
+  std::uint64_t present = 0;
+  Bytes data;  ///< as TileEncoder made it
 };
 
 /// A map at one moment of its making.
@@ -40,8 +49,10 @@ bool holds_checkpoint(const std::filesystem::path& path);
 
 /// The file that checkpoints go to: a map file of its own (docs/map-format.md, "Checkpoints") that
 /// each write() takes from one whole state to the next. Whatever ends the program in between, the
-/// file opens at the last one. One writer at a time: a second is refused. Throws Error naming the
-/// file, the reason and the remedy.
+/// file opens at the last one. Tiles that memory cannot hold are put there between checkpoints, in
+/// the transaction that the next write() commits. One writer at a time: a second is refused.
+/// Threads may share it. Throws Error naming the file, the reason and the remedy; after one from
+/// put() or write(), what was put since the last checkpoint is lost.
 class CheckpointFile {
  public:
   enum class Start {
@@ -50,20 +61,32 @@ class CheckpointFile {
   };
   CheckpointFile(std::filesystem::path path, Start start);
   ~CheckpointFile();
-  CheckpointFile(CheckpointFile&&) noexcept;
 
-  /// One transaction; on disk when it returns.
+  /// One transaction, with what was put; on disk when it returns.
   void write(const MapCheckpoint& checkpoint);
-  /// Deletes the file: the run has ended, and its map is saved.
-  void remove();
+
+  void put(std::uint64_t tile, const StoredTile& stored);
+  /// As last put or written, verified.
+  StoredTile get(std::uint64_t tile);
+  /// Puts all tiles of a saved map.
+  void put_all(const std::filesystem::path& map);
+
+  /// The run has ended, and its map is saved: the file goes when this object does.
+  void remove_when_closed();
 
  private:
   void open(Start start);
+  void begin();
+  void insert(std::uint64_t tile, const StoredTile& stored);
   void write_tiles(std::span<const ChangedTile> tiles);
+  void write_rest(const MapCheckpoint& checkpoint);
   void note_stored_tiles();
 
   std::filesystem::path path_;
+  bool remove_ = false;
+  std::mutex mutex_;  ///< guards what follows
   std::unique_ptr<SQLite::Database> database_;
+  std::unique_ptr<SQLite::Transaction> transaction_;  ///< of the next checkpoint, once it has tiles
   std::unordered_map<std::uint64_t, std::uint64_t> row_hashes_;  ///< of the table `blocks`, by tile
 };
 

@@ -49,13 +49,14 @@ TEST_F(Checkpoints, EachOneIsTheWholeMap) {
   std::mt19937 random(1);
   MapDocument document = random_document(40, 1);
   const fs::path path = checkpoint_path(root_ / "a.ovimap");
-  CheckpointFile file(path, CheckpointFile::Start::kAnew);
-  file.write(checkpoint_of(document, document.map.ordered_slots()));
-  for (int round = 0; round < 4; ++round) {
-    const std::vector<std::uint32_t> changed = go_on(document, random);
-    file.write(checkpoint_of(document, changed));
+  {
+    CheckpointFile file(path, CheckpointFile::Start::kAnew);
+    file.write(checkpoint_of(document, document.map.ordered_slots()));
+    for (int round = 0; round < 4; ++round) {
+      const std::vector<std::uint32_t> changed = go_on(document, random);
+      file.write(checkpoint_of(document, changed));
+    }
   }
-  { const CheckpointFile closed = std::move(file); }
   const MapDocument loaded = load_map(path);
   EXPECT_TRUE(loaded.unfinished);
   EXPECT_EQ(loaded.registry.entity_frames, 8);
@@ -72,9 +73,36 @@ TEST_F(Checkpoints, GoOnInTheSameFile) {
   const std::vector<std::uint32_t> changed = go_on(document, random);
   CheckpointFile(path, CheckpointFile::Start::kGoOn).write(checkpoint_of(document, changed));
   EXPECT_EQ(difference(document, load_map(path)), "");
-  CheckpointFile file(path, CheckpointFile::Start::kGoOn);
-  file.remove();
+  CheckpointFile(path, CheckpointFile::Start::kGoOn).remove_when_closed();
   EXPECT_EQ(files_in_root(), 0u);
+}
+
+TEST_F(Checkpoints, TilesPutInBetweenCountFromTheNextOn) {
+  std::mt19937 random(5);
+  MapDocument document = random_document(40, 5);
+  const MapDocument before = random_document(40, 5);
+  const fs::path path = root_ / "a.partial";
+  const auto put_changes = [&](CheckpointFile& file) {
+    for (const ChangedTile& tile : checkpoint_of(document, go_on(document, random)).tiles) {
+      const StoredTile stored{tile.present, TileEncoder().encode(tile.blocks)};
+      file.put(tile.key, stored);
+      EXPECT_EQ(file.get(tile.key).present, stored.present);
+      EXPECT_EQ(file.get(tile.key).data, stored.data);
+    }
+  };
+  {
+    CheckpointFile file(path, CheckpointFile::Start::kAnew);
+    file.write(checkpoint_of(document, document.map.ordered_slots()));
+    put_changes(file);
+  }
+  EXPECT_EQ(difference(before, load_map(path)), "") << "no checkpoint came after them";
+  document = random_document(40, 5);
+  {
+    CheckpointFile file(path, CheckpointFile::Start::kGoOn);
+    put_changes(file);
+    file.write(checkpoint_of(document, {}));
+  }
+  EXPECT_EQ(difference(document, load_map(path)), "");
 }
 
 TEST_F(Checkpoints, ASecondWriterIsRefused) {

@@ -201,8 +201,7 @@ class Assembly {
     if (parts.empty()) return;
     const VoxelMap& map = voxels_();
     measure_instances(map, parts);
-    surfaces_ = sample_surfaces(extract_instance_mesh(map, parts),
-                                InstanceSummaryConfig{}.surface_spacing_m);
+    surfaces_ = sample_surfaces(map, parts, InstanceSummaryConfig{}.surface_spacing_m);
     for (InstanceSummary& part : parts) measured_[part.id] = std::move(part);
   }
 

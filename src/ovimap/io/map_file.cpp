@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <bit>
 
+#include <SQLiteCpp/SQLiteCpp.h>
+
 #include "ovimap/base/error.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/io/map_edit_log.h"
@@ -22,7 +24,7 @@ namespace {
 
 using map_tables::kBlocks;
 
-// Tiles in memory at a time between voxels and file, and how many a thread takes at once.
+// Tiles in memory at a time between file and voxels, and how many a thread takes at once.
 constexpr std::size_t kTilesPerBatch = 256;
 constexpr std::size_t kTilesPerTask = 4;
 
@@ -33,29 +35,27 @@ constexpr int kSchemaWithSemantics = 2;
 constexpr std::size_t kMostBlocks = VoxelRef::kNone / kBlockVoxels;
 
 void write_blocks(SQLite::Database& database, const VoxelMap& map) {
-  const std::vector<Tile> tiles = tiles_of(map);
   RowWriter rows(database, kBlocks);
-  std::vector<Bytes> data(std::min(kTilesPerBatch, tiles.size()));
-  for (std::size_t first = 0; first < tiles.size(); first += kTilesPerBatch) {
-    const std::size_t count = std::min(kTilesPerBatch, tiles.size() - first);
-    parallel_for_ranges(count, kTilesPerTask, [&](std::size_t begin, std::size_t end) {
+  std::vector<Bytes> data;
+  for_each_part(map, [&](std::span<const Tile> tiles) {
+    data.resize(tiles.size());
+    parallel_for_ranges(tiles.size(), kTilesPerTask, [&](std::size_t begin, std::size_t end) {
       TileEncoder encoder;
-      for (std::size_t i = begin; i < end; ++i)
-        data[i] = encoder.encode(blocks_of(map, tiles[first + i]));
+      for (std::size_t i = begin; i < end; ++i) data[i] = encoder.encode(blocks_of(map, tiles[i]));
     });
-    for (std::size_t i = 0; i < count; ++i)
-      rows.insert(tiles[first + i].key, tiles[first + i].present, stored_hash(data[i]), data[i]);
-  }
+    for (std::size_t i = 0; i < tiles.size(); ++i)
+      rows.insert(tiles[i].key, tiles[i].present, stored_hash(data[i]), data[i]);
+  });
   rows.finish();
 }
 
-struct StoredTile {
+struct StoredTileRow {
   Tile tile;
   std::int64_t hash;
   Bytes data;
 };
 
-void decode_tiles(const std::vector<StoredTile>& stored, VoxelMap& map) {
+void decode_tiles(const std::vector<StoredTileRow>& stored, VoxelMap& map) {
   std::vector<std::string> faults(stored.size());
   parallel_for_ranges(stored.size(), kTilesPerTask, [&](std::size_t begin, std::size_t end) {
     TileDecoder decoder;
@@ -70,22 +70,43 @@ void decode_tiles(const std::vector<StoredTile>& stored, VoxelMap& map) {
       throw Error(concat("tile ", stored[i].tile.key, " of its voxels: ", faults[i]));
 }
 
-/// `blocks`: how many were written. Checked before they are made, so that a damaged table cannot
-/// ask for more memory than the map had.
+/// Checks the places of tiles as they are read, before their blocks are made, so that a damaged
+/// table cannot ask for more memory than the map had.
+class TilePlaces {
+ public:
+  /// `blocks`: how many were written.
+  TilePlaces(std::uint64_t blocks, const VoxelMap& map) : blocks_(blocks), map_(map) {
+    if (blocks > kMostBlocks) throw Error("it has more blocks than fit into memory");
+  }
+
+  void expect(std::int64_t key, std::uint64_t present) {
+    if (key <= last_key_ || !valid_tile_key(static_cast<std::uint64_t>(key)))
+      throw Error(concat("table blocks has a tile ", key, " out of place"));
+    last_key_ = key;
+    if (map_.block_count() + static_cast<std::uint64_t>(std::popcount(present)) > blocks_)
+      throw Error(concat("table blocks has more than the ", blocks_, " blocks that were written"));
+  }
+
+  void expect_end() const {
+    if (map_.block_count() != blocks_)
+      throw Error(concat("it has ", map_.block_count(), " blocks, but ", blocks_, " were written"));
+  }
+
+ private:
+  std::uint64_t blocks_;
+  const VoxelMap& map_;
+  std::int64_t last_key_ = -1;
+};
+
 void read_blocks(SQLite::Database& database, std::uint64_t blocks, VoxelMap& map) {
-  if (blocks > kMostBlocks) throw Error("it has more blocks than fit into memory");
-  std::vector<StoredTile> batch;
-  std::int64_t last_key = -1;
+  TilePlaces places(blocks, map);
+  std::vector<StoredTileRow> batch;
   RowReader rows(database, kBlocks);
   for (bool more = true; more;) {
     if ((more = rows.next())) {
       const auto key = rows.integer<std::int64_t>();
       const auto present = static_cast<std::uint64_t>(rows.integer<std::int64_t>());
-      if (key <= last_key || !valid_tile_key(static_cast<std::uint64_t>(key)))
-        rows.fail(concat("has a tile ", key, " out of place"));
-      last_key = key;
-      if (map.block_count() + static_cast<std::uint64_t>(std::popcount(present)) > blocks)
-        rows.fail(concat("has more than the ", blocks, " blocks that were written"));
+      places.expect(key, present);
       Tile tile = create_tile(map, static_cast<std::uint64_t>(key), present);
       const auto hash = rows.integer<std::int64_t>();
       const std::span<const std::uint8_t> data = rows.blob();
@@ -96,8 +117,20 @@ void read_blocks(SQLite::Database& database, std::uint64_t blocks, VoxelMap& map
       batch.clear();
     }
   }
-  if (map.block_count() != blocks)
-    throw Error(concat("it has ", map.block_count(), " blocks, but ", blocks, " were written"));
+  places.expect_end();
+}
+
+/// Where blocks are, without their voxels.
+void place_blocks(SQLite::Database& database, std::uint64_t blocks, VoxelMap& map) {
+  TilePlaces places(blocks, map);
+  SQLite::Statement rows(database, "SELECT tile, present FROM blocks ORDER BY tile");
+  while (rows.executeStep()) {
+    const std::int64_t key = rows.getColumn(0).getInt64();
+    const auto present = static_cast<std::uint64_t>(rows.getColumn(1).getInt64());
+    places.expect(key, present);
+    create_tile_away(map, static_cast<std::uint64_t>(key), present);
+  }
+  places.expect_end();
 }
 
 MapInfo read_info(SQLite::Database& database, const OpenMap& file) {
@@ -112,6 +145,7 @@ MapInfo read_info(SQLite::Database& database, const OpenMap& file) {
   info.version = std::move(record.version);
   info.source = std::move(record.source);
   info.config_text = std::move(record.config_text);
+  info.timings = std::move(record.timings);
   info.frames = meta.frames;
   info.mask_frames = record.mask_frames;
   info.unfinished = record.unfinished;
@@ -199,6 +233,19 @@ MapDocument load_map(const std::filesystem::path& path) {
     const LabelForest forest = read_forest(database);
     const MapMeta meta = read_found(database, file.schema(), forest, document);
     document.map = read_voxels(database, meta, forest);
+  });
+  return document;
+}
+
+MapDocument load_map_without_voxels(const std::filesystem::path& path) {
+  MapDocument document;
+  OpenMap file(path);
+  file.read([&](SQLite::Database& database) {
+    const LabelForest forest = read_forest(database);
+    const MapMeta meta = read_found(database, file.schema(), forest, document);
+    document.map = VoxelMap(meta.map_config);
+    document.map.labels() = forest;
+    place_blocks(database, meta.blocks, document.map);
   });
   return document;
 }

@@ -14,7 +14,7 @@ inline constexpr int kMapSchema = 3;
 /// What a map file tells without its voxels.
 struct MapInfo {
   int schema = kMapSchema;
-  std::string version, source, config_text;  ///< as in MapRecord
+  std::string version, source, config_text, timings;  ///< as in MapRecord
   std::int64_t frames = 0;
   int mask_frames = 0;
   bool unfinished = false;                 ///< a checkpoint of a run: without instances
@@ -45,6 +45,10 @@ void check_map_target(const std::filesystem::path& path);
 /// corrected one), and verifies every part of it against its stored hash. Throws Error when the
 /// file is missing, no ovimap map, of a newer schema, or damaged; never returns altered content.
 MapDocument load_map(const std::filesystem::path& path);
+
+/// The same but for the voxels: the blocks are there, but not in memory. Before one is asked for,
+/// the map must be given a store that has them (VoxelMap::keep_in).
+MapDocument load_map_without_voxels(const std::filesystem::path& path);
 
 /// Reads what needs no voxels (milliseconds), verified likewise; a damaged voxel goes unnoticed
 /// here.

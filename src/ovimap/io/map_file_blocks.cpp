@@ -197,33 +197,31 @@ class HeadCursor {
 };
 
 /// Reads the blocks' heads; returns what is wrong with them.
-std::string take_heads(HeadCursor& head, const Tile& tile, VoxelMap& map,
-                       std::vector<LoadedPlace>& places) {
-  if (!head.has(tile.slots.size() * 6)) return "its heads are cut off";
-  for (std::uint32_t slot : tile.slots) {
-    map.writable_block(slot).forest_epoch = head.take(4);
-    if (map.writable_block(slot).forest_epoch > map.labels().epoch())
-      return "it is newer than the table of merged labels";
+std::string take_heads(HeadCursor& head, std::span<VoxelBlock* const> blocks,
+                       const LabelForest& forest, std::vector<LoadedPlace>& places) {
+  if (!head.has(blocks.size() * 6)) return "its heads are cut off";
+  for (VoxelBlock* block : blocks) {
+    block->forest_epoch = head.take(4);
+    if (block->forest_epoch > forest.epoch()) return "it is newer than the table of merged labels";
   }
-  for (std::uint32_t slot : tile.slots) {
+  for (VoxelBlock* block : blocks) {
     const std::uint32_t size = head.take(2);
     if (size == 0 || size > kPaletteLimit) return concat("a palette cannot have ", size, " labels");
-    map.writable_block(slot).palette.resize(size);
+    block->palette.resize(size);
   }
-  for (std::uint32_t slot : tile.slots) {
-    std::vector<Label>& palette = map.writable_block(slot).palette;
-    if (!head.has(palette.size() * 4)) return "its palettes are cut off";
-    for (Label& label : palette) {
+  for (VoxelBlock* block : blocks) {
+    if (!head.has(block->palette.size() * 4)) return "its palettes are cut off";
+    for (Label& label : block->palette) {
       label = head.take(4);
-      if (label > map.labels().last_label()) return concat("label ", label, " was never given");
+      if (label > forest.last_label()) return concat("label ", label, " was never given");
     }
-    if (palette[0] != kNoLabel) return "a palette does not begin with 'no label'";
+    if (block->palette[0] != kNoLabel) return "a palette does not begin with 'no label'";
   }
-  for (std::uint32_t slot : tile.slots) {
+  for (VoxelBlock* block : blocks) {
     if (!head.has(kMaskBytes)) return "its voxel masks are cut off";
     for (std::size_t i = 0; i < kBlockVoxels; i += 8)
       for (std::uint32_t bits = head.take(1), k = 0; bits != 0; bits >>= 1, ++k)
-        if (bits & 1) places.push_back({&map.writable_block(slot), kPath[i + k]});
+        if (bits & 1) places.push_back({block, kPath[i + k]});
   }
   return {};
 }
@@ -307,16 +305,23 @@ TileDecoder::~TileDecoder() = default;
 
 std::string TileDecoder::decode(std::span<const std::uint8_t> data, const Tile& tile,
                                 VoxelMap& map) {
+  std::vector<VoxelBlock*> blocks;
+  for (const std::uint32_t slot : tile.slots) blocks.push_back(&map.writable_block(slot));
+  return decode(data, blocks, map.labels());
+}
+
+std::string TileDecoder::decode(std::span<const std::uint8_t> data,
+                                std::span<VoxelBlock* const> blocks, const LabelForest& forest) {
   constexpr std::size_t kMostBlockBytes =
       6 + 4 * kPaletteLimit + kMaskBytes + kVoxelBytes * kBlockVoxels;
-  body_.resize(std::max(body_.size(), tile.slots.size() * kMostBlockBytes));
+  body_.resize(std::max(body_.size(), blocks.size() * kMostBlockBytes));
   const std::size_t size = ZSTD_decompressDCtx(
-      context_.get(), body_.data(), tile.slots.size() * kMostBlockBytes, data.data(), data.size());
+      context_.get(), body_.data(), blocks.size() * kMostBlockBytes, data.data(), data.size());
   if (ZSTD_isError(size)) return concat("it does not decompress (", ZSTD_getErrorName(size), ")");
   const std::span<const std::uint8_t> body(body_.data(), size);
   HeadCursor head(body);
   std::vector<LoadedPlace> places;
-  if (std::string fault = take_heads(head, tile, map, places); !fault.empty()) return fault;
+  if (std::string fault = take_heads(head, blocks, forest, places); !fault.empty()) return fault;
   const std::size_t label_bytes = kLabelSlots * places.size();
   if (!head.has(label_bytes)) return "its labels are cut off";
   const BodyLayout layout(head.position(), places.size(),

@@ -6,9 +6,10 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "ovimap/image/codec.h"
-#include "ovimap/io/map_file_tiles.h"
+#include "ovimap/map/block_tiles.h"
 
 struct ZSTD_CCtx_s;
 struct ZSTD_DCtx_s;
@@ -34,8 +35,12 @@ class TileDecoder {
   TileDecoder();
   ~TileDecoder();
 
-  /// Fills the blocks of `tile`, which must be fresh, and returns what is wrong with `data`; empty
-  /// when nothing is. Different tiles of one map may be filled at the same time.
+  /// Fills `blocks`, which must be fresh, in the order of their bits, and returns what is wrong
+  /// with `data`; empty when nothing is. `forest`: the labels that there are.
+  [[nodiscard]] std::string decode(std::span<const std::uint8_t> data,
+                                   std::span<VoxelBlock* const> blocks, const LabelForest& forest);
+  /// The same for the blocks of a map's tile. Different tiles of one map may be filled at the same
+  /// time.
   [[nodiscard]] std::string decode(std::span<const std::uint8_t> data, const Tile& tile,
                                    VoxelMap& map);
 

@@ -25,6 +25,21 @@ std::vector<Eigen::Vector3f> area_normals(const Mesh& mesh) {
   return normals;
 }
 
+constexpr int kCubeCells = 64;  // along an edge of the cube around all directions
+
+/// The cell of a cube's side that a direction points to.
+std::size_t cube_cell(const Eigen::Vector3f& direction) {
+  Eigen::Index axis = 0;
+  const float longest = direction.cwiseAbs().maxCoeff(&axis);
+  const auto cell = [&](Eigen::Index along) {
+    const float place = (direction[along % 3] / longest + 1) / 2;  // 0 to 1
+    return std::min(kCubeCells - 1, static_cast<int>(place * kCubeCells));
+  };
+  const int side = 2 * static_cast<int>(axis) + (direction[axis] < 0);
+  return static_cast<std::size_t>((side * kCubeCells + cell(axis + 1)) * kCubeCells +
+                                  cell(axis + 2));
+}
+
 float cosine_of_degrees(float degrees) {
   return std::cos(degrees * std::numbers::pi_v<float> / 180);
 }
@@ -115,11 +130,27 @@ void list_fields(SceneAxesConfig& config, ConfigFields& fields) {
              "normals within this angle count as one direction, in degrees");
 }
 
-Eigen::Vector3f guess_up(const Mesh& mesh, std::span<const Pose> world_from_camera,
-                         const SceneAxesConfig& config) {
+SurfaceDirections::SurfaceDirections()
+    : sums_(6 * kCubeCells * kCubeCells, Eigen::Vector3d::Zero()) {}
+
+void SurfaceDirections::add(const Mesh& part) {
+  for (const Eigen::Vector3f& normal : ovimap::area_normals(part))
+    if (normal.squaredNorm() > 0) sums_[cube_cell(normal)] += normal.cast<double>();
+}
+
+const std::vector<Eigen::Vector3f>& SurfaceDirections::area_normals() {
+  normals_.resize(sums_.size());
+  std::transform(sums_.begin(), sums_.end(), normals_.begin(),
+                 [](const Eigen::Vector3d& sum) { return sum.cast<float>().eval(); });
+  return normals_;
+}
+
+namespace {
+
+Eigen::Vector3f guess_up(const std::vector<Eigen::Vector3f>& normals,
+                         std::span<const Pose> world_from_camera, const SceneAxesConfig& config) {
   const Eigen::Vector3f camera_up = mean_camera_up(world_from_camera);
   if (world_from_camera.empty()) return camera_up;
-  const std::vector<Eigen::Vector3f> normals = area_normals(mesh);
   const float in_cone = cosine_of_degrees(config.cone_deg),
               in_window = cosine_of_degrees(config.window_deg);
   DirectionHistogram histogram(camera_up, config.window_deg);
@@ -136,6 +167,18 @@ Eigen::Vector3f guess_up(const Mesh& mesh, std::span<const Pose> world_from_came
     if (sum.squaredNorm() > 0) up = sum.normalized().cast<float>();
   }
   return up;
+}
+
+}  // namespace
+
+Eigen::Vector3f guess_up(const Mesh& mesh, std::span<const Pose> world_from_camera,
+                         const SceneAxesConfig& config) {
+  return guess_up(area_normals(mesh), world_from_camera, config);
+}
+
+Eigen::Vector3f guess_up(SurfaceDirections& directions, std::span<const Pose> world_from_camera,
+                         const SceneAxesConfig& config) {
+  return guess_up(directions.area_normals(), world_from_camera, config);
 }
 
 Eigen::Vector3f guess_wall_direction(const Mesh& mesh, const Eigen::Vector3f& up) {

@@ -34,7 +34,7 @@ unsigned observed_bits(const float* weights, float min_weight) {
 
 CellRows::CellRows(const VoxelMap& map, std::uint32_t slot)
     : min_weight_(map.config().min_mesh_weight) {
-  const BlockIndex& index = map.block(slot).index;
+  const BlockIndex& index = map.block_index(slot);
   blocks_[0] = &map.block(slot);
   for (int i = 1; i < 8; ++i)
     blocks_[static_cast<std::size_t>(i)] =

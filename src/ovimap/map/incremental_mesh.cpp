@@ -6,6 +6,7 @@
 #include <bit>
 
 #include "ovimap/base/parallel.h"
+#include "ovimap/map/block_tiles.h"
 #include "ovimap/map/cell_rows.h"
 #include "ovimap/map/label_slots.h"
 #include "ovimap/map/marching_cubes_table.h"
@@ -30,7 +31,7 @@ class PatchMesher {
     for (int z = 0; z < kBlockSide; ++z)
       for (int y = 0; y < kBlockSide; ++y)
         for (unsigned row = cells.surface_cells(y, z); row != 0; row &= row - 1)
-          add_cell(cells, map_.block(slot).index, {std::countr_zero(row), y, z}, mesh);
+          add_cell(cells, map_.block_index(slot), {std::countr_zero(row), y, z}, mesh);
     for (const std::size_t edge : used_edges_) vertex_of_edge_[edge] = kNoVertex;
     used_edges_.clear();
     return mesh;
@@ -97,7 +98,7 @@ std::vector<std::uint32_t> IncrementalMesh::touched(const VoxelMap& map,
   };
   for (const std::uint32_t slot : visited) {
     touch(slot);
-    const BlockIndex& index = map.block(slot).index;
+    const BlockIndex& index = map.block_index(slot);
     for (int i = 1; i < 8; ++i)
       touch(map.find_slot(index - BlockIndex(i & 1, i >> 1 & 1, i >> 2 & 1)));
   }
@@ -122,6 +123,20 @@ std::vector<std::uint32_t> IncrementalMesh::update(const VoxelMap& map,
     }
   });
   return slots;
+}
+
+void for_each_patch(const VoxelMap& map, const std::function<void(Mesh&)>& visit) {
+  for_each_part(map, [&](std::span<const Tile> tiles) {
+    std::vector<std::vector<Mesh>> patches(tiles.size());
+    parallel_for_ranges(tiles.size(), 2, [&](std::size_t begin, std::size_t end) {
+      PatchMesher mesher(map);
+      for (std::size_t i = begin; i < end; ++i)
+        for (const std::uint32_t slot : tiles[i].slots) patches[i].push_back(mesher.extract(slot));
+    });
+    for (std::vector<Mesh>& of_tile : patches)
+      for (Mesh& patch : of_tile)
+        if (!patch.triangles.empty()) visit(patch);
+  });
 }
 
 }  // namespace ovimap

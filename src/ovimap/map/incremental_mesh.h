@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -41,5 +42,10 @@ class IncrementalMesh {
   std::vector<std::uint64_t> touched_in_;            ///< by slot: the last update that met it
   std::uint64_t version_ = 0;
 };
+
+/// Calls `visit` with the patch of every block that owns surface, tile after tile, and lets the map
+/// make room in between: for maps whose mesh, or whose blocks, are more than memory holds. `visit`
+/// may change the patch.
+void for_each_patch(const VoxelMap& map, const std::function<void(Mesh&)>& visit);
 
 }  // namespace ovimap

@@ -110,7 +110,7 @@ std::vector<BlockIndex> reached_blocks(const VoxelMap& map, const VoxelMap& othe
     Eigen::AlignedBox3f box;
     for (int corner = 0; corner < 8; ++corner) {
       const Eigen::Vector3i offset(corner & 1, corner >> 1 & 1, corner >> 2);
-      box.extend(pose * ((other.block(slot).index + offset).cast<float>() * other_size));
+      box.extend(pose * ((other.block_index(slot) + offset).cast<float>() * other_size));
     }
     const float border = 1e-4f * size;
     const BlockIndex low = block_at((box.min().array() + border).matrix(), 1.f / size),

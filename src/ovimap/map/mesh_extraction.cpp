@@ -26,7 +26,7 @@ class Neighbourhood {
   Neighbourhood(const VoxelMap& map, std::uint32_t slot) {
     for (int i = 0; i < 8; ++i) {
       const Eigen::Vector3i offset(i & 1, i >> 1 & 1, i >> 2 & 1);
-      blocks_[i] = i == 0 ? &map.block(slot) : map.find(map.block(slot).index + offset);
+      blocks_[i] = i == 0 ? &map.block(slot) : map.find(map.block_index(slot) + offset);
     }
     const float min_weight = map.config().min_mesh_weight;
     for (int z = 0, n = 0; z < kSide; ++z)
@@ -101,7 +101,7 @@ class BlockMesher {
               voxel_offset(at.x() & 7, at.y() & 7, at.z() & 7)};
     };
     const MeshVertex made = mesh_vertex(
-        map_, {map_.block(slots_[i]).index * kBlockSide + a, axis, end_at(a), end_at(b)});
+        map_, {map_.block_index(slots_[i]) * kBlockSide + a, axis, end_at(a), end_at(b)});
     const auto edge = static_cast<std::size_t>(voxel_offset(a.x(), a.y(), a.z()) * 3 + axis);
     (*mesh.vertex_of_edge)[edge] = static_cast<std::uint16_t>(mesh.part.vertices.size());
     mesh.part.vertices.push_back(made.position);

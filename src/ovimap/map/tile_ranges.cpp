@@ -40,7 +40,7 @@ TileRanges::TileRanges(const VoxelMap& map, const PinholeCamera& camera,
     for (std::uint32_t slot : blocks.slots) {
       if (slot == kNoBlock) continue;
       const Eigen::Vector3d middle =
-          (map.block(slot).index.cast<double>() + Eigen::Vector3d::Constant(0.5)) * block;
+          (map.block_index(slot).cast<double>() + Eigen::Vector3d::Constant(0.5)) * block;
       const Eigen::Vector3f c = (camera_from_world * middle).cast<float>();
       if (in_view(c, static_cast<float>(block) * kHalfDiagonal))
         add_block(c, static_cast<float>(block) / 2);

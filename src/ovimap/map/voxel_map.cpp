@@ -9,6 +9,7 @@
 
 #include "ovimap/base/config.h"
 #include "ovimap/base/parallel.h"
+#include "ovimap/map/block_tiles.h"
 #include "ovimap/map/label_slots.h"
 
 namespace ovimap {
@@ -51,7 +52,7 @@ std::size_t VoxelMap::KeyHash::operator()(std::uint64_t key) const {
 
 const VoxelBlock* VoxelMap::find(const BlockIndex& index) const {
   const std::uint32_t slot = find_slot(index);
-  return slot == kNoBlock ? nullptr : blocks_[slot].get();
+  return slot == kNoBlock ? nullptr : &block(slot);
 }
 
 std::uint32_t VoxelMap::find_slot(const BlockIndex& index) const {
@@ -71,15 +72,59 @@ BlockRegion& VoxelMap::find_or_create_region(const BlockIndex& region) {
   return *regions_[found->second];
 }
 
+std::uint32_t& VoxelMap::place_of(const BlockIndex& index) {
+  return find_or_create_region(BlockRegion::index_of(index)).slots[BlockRegion::position(index)];
+}
+
+std::uint32_t VoxelMap::add_slot(const BlockIndex& index, BlockPlace block) {
+  blocks_.push_back(std::move(block));
+  indices_.push_back(index);
+  return static_cast<std::uint32_t>(blocks_.size() - 1);
+}
+
 std::uint32_t VoxelMap::find_or_create(const BlockIndex& index) {
-  BlockRegion& region = find_or_create_region(BlockRegion::index_of(index));
-  std::uint32_t& slot = region.slots[BlockRegion::position(index)];
+  std::uint32_t& slot = place_of(index);
   if (slot == kNoBlock) {
-    slot = static_cast<std::uint32_t>(blocks_.size());
-    blocks_.push_back(std::make_unique<VoxelBlock>(index));
-    blocks_.back()->forest_epoch = labels_.epoch();
+    auto block = spare_block(index);
+    block->forest_epoch = labels_.epoch();
+    slot = add_slot(index, BlockPlace(std::move(block)));
+    ++in_memory_;
   }
   return slot;
+}
+
+void VoxelMap::create_away(const BlockIndex& index) {
+  std::uint32_t& slot = place_of(index);
+  OVIMAP_ASSERT(slot == kNoBlock);
+  slot = add_slot(index, BlockPlace());
+}
+
+VoxelBlock* VoxelMap::load(std::uint32_t slot) const {
+  store_->load(*this, slot);
+  return blocks_[slot].get();
+}
+
+void VoxelMap::evict(std::span<const std::uint32_t> slots) const {
+  OVIMAP_ASSERT(frozen_.empty());
+  for (const std::uint32_t slot : slots)
+    if (auto block = blocks_[slot].put(nullptr)) {
+      spares_.push_back(std::move(block));
+      --in_memory_;
+    }
+}
+
+std::unique_ptr<VoxelBlock> VoxelMap::spare_block(const BlockIndex& index) const {
+  if (spares_.empty()) return std::make_unique<VoxelBlock>(index);
+  std::unique_ptr<VoxelBlock> block = std::move(spares_.back());
+  spares_.pop_back();
+  *block = VoxelBlock(index);
+  return block;
+}
+
+void VoxelMap::bring_back(std::uint32_t slot, std::unique_ptr<VoxelBlock> block) const {
+  OVIMAP_ASSERT(!in_memory(slot));
+  blocks_[slot].put(std::move(block));
+  ++in_memory_;
 }
 
 std::vector<const VoxelBlock*> VoxelMap::freeze(std::span<const std::uint32_t> slots) {
@@ -90,7 +135,7 @@ std::vector<const VoxelBlock*> VoxelMap::freeze(std::span<const std::uint32_t> s
   blocks.reserve(slots.size());
   for (const std::uint32_t slot : slots) {
     frozen_[slot] = 1;
-    blocks.push_back(blocks_[slot].get());
+    blocks.push_back(&block(slot));
   }
   return blocks;
 }
@@ -98,39 +143,54 @@ std::vector<const VoxelBlock*> VoxelMap::freeze(std::span<const std::uint32_t> s
 void VoxelMap::thaw() {
   frozen_.clear();
   kept_.clear();
+  copies_ = 0;
 }
 
 void VoxelMap::replace_frozen(std::uint32_t slot) {
   frozen_[slot] = 0;
-  kept_[slot] = std::exchange(blocks_[slot], std::make_unique<VoxelBlock>(*blocks_[slot]));
+  kept_[slot] = blocks_[slot].put(std::make_unique<VoxelBlock>(block(slot)));
+  std::atomic_ref(copies_).fetch_add(1, std::memory_order_relaxed);
 }
 
 std::vector<std::uint32_t> VoxelMap::ordered_slots() const {
   std::vector<std::uint32_t> slots(blocks_.size());
   for (std::uint32_t slot = 0; slot < slots.size(); ++slot) slots[slot] = slot;
   std::sort(slots.begin(), slots.end(), [this](std::uint32_t a, std::uint32_t b) {
-    return pack_index(blocks_[a]->index) < pack_index(blocks_[b]->index);
+    return pack_index(indices_[a]) < pack_index(indices_[b]);
   });
   return slots;
 }
 
 Label VoxelMap::label(VoxelRef ref) const {
-  return ref ? voxel_label(*blocks_[ref.block()], ref.voxel(), labels_) : kNoLabel;
+  return ref ? voxel_label(block(ref.block()), ref.voxel(), labels_) : kNoLabel;
 }
 
-std::size_t VoxelMap::bytes() const {
-  std::size_t palettes = 0;
-  for (const auto& block : blocks_) palettes += block->palette.capacity() * sizeof(Label);
-  return blocks_.size() * (sizeof(VoxelBlock) + sizeof(blocks_[0])) + palettes +
+std::size_t VoxelMap::index_bytes() const {
+  return blocks_.capacity() * sizeof(blocks_[0]) + indices_.capacity() * sizeof(indices_[0]) +
          regions_.size() * (sizeof(BlockRegion) + sizeof(regions_[0])) +
          region_positions_.bucket_count() * sizeof(std::pair<std::uint64_t, std::uint32_t>);
 }
 
+std::size_t VoxelMap::bytes() const {
+  std::size_t palettes = 0;
+  for (const BlockPlace& place : blocks_)
+    if (const VoxelBlock* block = place.get())
+      palettes += block->palette.capacity() * sizeof(Label);
+  return in_memory_ * sizeof(VoxelBlock) + palettes + index_bytes();
+}
+
 std::uint64_t VoxelMap::content_hash() const {
   const std::vector<std::uint32_t> slots = ordered_slots();
+  std::vector<std::uint64_t> hash_of(slots.size());
+  for_each_part(*this, [&](std::span<const Tile> tiles) {
+    parallel_for(tiles.size(), 4, [&](std::size_t i) {
+      for (const std::uint32_t slot : tiles[i].slots)
+        hash_of[slot] = block_hash(block(slot), labels_);
+    });
+  });
   std::vector<std::uint64_t> hashes(slots.size());
-  parallel_for(slots.size(), 64,
-               [&](std::size_t i) { hashes[i] = block_hash(*blocks_[slots[i]], labels_); });
+  std::transform(slots.begin(), slots.end(), hashes.begin(),
+                 [&](std::uint32_t slot) { return hash_of[slot]; });
   return XXH64(hashes.data(), hashes.size() * sizeof(std::uint64_t), 0);
 }
 

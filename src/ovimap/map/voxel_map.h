@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -64,8 +65,44 @@ struct BlockRegion {
   std::array<std::uint32_t, kRegionBlocks * kRegionBlocks * kRegionBlocks> slots;
 };
 
+class VoxelMap;
+
+/// Where blocks are that are not in memory (VoxelMap::keep_in).
+class BlockStore {
+ public:
+  virtual ~BlockStore() = default;
+  /// Brings a block of the map back, with VoxelMap::bring_back. Several threads may ask at the same
+  /// time. Throws Error when it cannot be read.
+  virtual void load(const VoxelMap& map, std::uint32_t slot) = 0;
+  /// Evicts what memory cannot hold, at a moment at which nobody refers to a block.
+  virtual void trim(const VoxelMap& map) = 0;
+};
+
+/// Owns a block, or none. Threads may look while another puts one there.
+class BlockPlace {
+ public:
+  BlockPlace() = default;
+  explicit BlockPlace(std::unique_ptr<VoxelBlock> block) : block_(block.release()) {}
+  BlockPlace(BlockPlace&& other) noexcept : block_(other.put(nullptr).release()) {}
+  BlockPlace& operator=(BlockPlace&&) = delete;
+  ~BlockPlace() { delete get(); }
+
+  VoxelBlock* get() const { return block_.load(std::memory_order_acquire); }
+  /// Returns what was there. Not at the same time as another `put`.
+  std::unique_ptr<VoxelBlock> put(std::unique_ptr<VoxelBlock> block) {
+    std::unique_ptr<VoxelBlock> before(get());
+    block_.store(block.release(), std::memory_order_release);
+    return before;
+  }
+
+ private:
+  std::atomic<VoxelBlock*> block_ = nullptr;
+};
+
 /// The sparse TSDF of the scene with per-voxel label support. World frame, metres. Blocks are
-/// created by `integrate` and `vote_labels` alone and never move in memory.
+/// created by `integrate` and `vote_labels` alone and never move in memory. With a store
+/// (`keep_in`), blocks may be there instead of in memory; whoever asks for one gets it all the
+/// same, so that what is in memory is no part of what the map says, and const allows it to change.
 class VoxelMap {
  public:
   explicit VoxelMap(const VoxelMapConfig& config = {});
@@ -74,6 +111,7 @@ class VoxelMap {
 
   const VoxelMapConfig& config() const { return config_; }
   std::size_t block_count() const { return blocks_.size(); }
+  /// Of memory, the blocks that are in it and what leads to them.
   std::size_t bytes() const;
 
   /// The block at `index`, or nullptr when that space was never near an observed surface.
@@ -89,12 +127,45 @@ class VoxelMap {
     for (const auto& region : regions_) visit(*region);
   }
 
-  const VoxelBlock& block(std::uint32_t slot) const { return *blocks_[slot]; }
+  const BlockIndex& block_index(std::uint32_t slot) const { return indices_[slot]; }
+  /// Valid until `trim`.
+  const VoxelBlock& block(std::uint32_t slot) const {
+    const VoxelBlock* block = blocks_[slot].get();
+    if (block == nullptr) [[unlikely]]
+      block = load(slot);
+    return *block;
+  }
   /// To change it. Threads may ask for different slots at the same time.
   VoxelBlock& writable_block(std::uint32_t slot) {
     if (slot < frozen_.size() && frozen_[slot]) replace_frozen(slot);
-    return *blocks_[slot];
+    VoxelBlock* block = blocks_[slot].get();
+    if (block == nullptr) [[unlikely]]
+      block = load(slot);
+    return *block;
   }
+
+  /// From now on blocks may be in the store instead of in memory.
+  void keep_in(std::shared_ptr<BlockStore> store) { store_ = std::move(store); }
+  bool has_store() const { return store_ != nullptr; }
+  /// Lets the store make room; references to blocks end here. Call between the parts of anything
+  /// that walks over a whole map.
+  void trim() const {
+    if (store_) store_->trim(*this);
+  }
+
+  // For the store.
+  bool in_memory(std::uint32_t slot) const { return blocks_[slot].get() != nullptr; }
+  /// Takes blocks out of memory that the store has as they are. Not while blocks are frozen.
+  void evict(std::span<const std::uint32_t> slots) const;
+  /// An empty block to be filled for `bring_back`.
+  std::unique_ptr<VoxelBlock> spare_block(const BlockIndex& index) const;
+  void bring_back(std::uint32_t slot, std::unique_ptr<VoxelBlock> block) const;
+  /// Creates a block that is in the store alone. There must be none at `index`.
+  void create_away(const BlockIndex& index);
+  /// The part of `bytes` that only grows: what leads to blocks, not blocks.
+  std::size_t index_bytes() const;
+  /// Blocks in memory, copies that `freeze` made included.
+  std::size_t blocks_in_memory() const { return in_memory_ + copies_; }
 
   /// Until `thaw`, these blocks stay as they are where the returned pointers lead: the map goes on
   /// with a copy of each block that it writes to. So they can be stored beside the mapping. Not
@@ -130,15 +201,25 @@ class VoxelMap {
   BlockRegion& find_or_create_region(const BlockIndex& region);
   void replace_frozen(std::uint32_t slot);
 
+  std::uint32_t& place_of(const BlockIndex& index);
+  std::uint32_t add_slot(const BlockIndex& index, BlockPlace block);
+  [[gnu::noinline]] VoxelBlock* load(std::uint32_t slot) const;
+
   VoxelMapConfig config_;
   float metres_per_unit_;
-  std::vector<std::unique_ptr<VoxelBlock>> blocks_;
+  mutable std::vector<BlockPlace> blocks_;
+  std::vector<BlockIndex> indices_;  ///< of the blocks, by slot
+  mutable std::size_t in_memory_ = 0;
+  /// Evicted blocks, to be used again: allocators give little memory back.
+  mutable std::vector<std::unique_ptr<VoxelBlock>> spares_;
+  std::shared_ptr<BlockStore> store_;
   std::vector<std::unique_ptr<BlockRegion>> regions_;
   RegionPositions region_positions_;  ///< in regions_, by packed index
   LabelForest labels_;
   std::vector<std::uint8_t> frozen_;  ///< by slot; empty: none is
   /// By slot as well: frozen blocks that were written to since, as they were.
   std::vector<std::unique_ptr<VoxelBlock>> kept_;
+  std::size_t copies_ = 0;  ///< how many
 };
 
 /// Block that holds the point.

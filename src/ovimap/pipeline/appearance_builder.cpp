@@ -78,8 +78,12 @@ void AppearanceBuilder::submit(bool wait) {
   queue_.submit(std::exchange(chosen_, {}), wait);
 }
 
-void AppearanceBuilder::finish(const InstanceRegistry& registry) {
+void AppearanceBuilder::catch_up(const InstanceRegistry& registry) {
   apply(queue_.finish(), registry);
+}
+
+void AppearanceBuilder::finish(const InstanceRegistry& registry) {
+  catch_up(registry);
   for (auto& [id, appearance] : appearances_) prune_crops(appearance, config_.crops.kept_views);
 }
 

@@ -57,6 +57,8 @@ class AppearanceBuilder {
   /// Whether the encoder's queue is at most half full.
   bool keeps_up() const { return 2 * queue_.waiting() <= config_.queue.capacity; }
 
+  /// Waits until the encoder has answered for every view handed to it.
+  void catch_up(const InstanceRegistry& registry);
   /// Waits until every chosen view is embedded. Throws what the encoder threw.
   void finish(const InstanceRegistry& registry);
   /// All that was gathered; call finish() first.

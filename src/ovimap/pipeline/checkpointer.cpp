@@ -4,8 +4,6 @@
 
 #include "ovimap/base/config.h"
 #include "ovimap/base/thread_priority.h"
-#include "ovimap/io/map_file_access.h"
-#include "ovimap/io/map_file_tiles.h"
 
 namespace ovimap {
 
@@ -15,12 +13,11 @@ void list_fields(CheckpointConfig& config, ConfigFields& fields) {
   fields.add("frames", config.frames, 0, 1 << 30, "frames between checkpoints; 0: likewise");
 }
 
-Checkpointer::Checkpointer(std::filesystem::path path, const CheckpointConfig& config,
-                           MapHeader header, std::size_t frames, CheckpointFile::Start start)
-    : path_(std::move(path)),
+Checkpointer::Checkpointer(std::shared_ptr<TileKeeper> tiles, const CheckpointConfig& config,
+                           MapHeader header, std::size_t frames)
+    : tiles_(std::move(tiles)),
       config_(config),
       header_(std::move(header)),
-      start_(start),
       last_(std::chrono::steady_clock::now()),
       last_frames_(frames) {}
 
@@ -30,27 +27,33 @@ Checkpointer::~Checkpointer() {
 
 void Checkpointer::after_frame(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
                                const PinholeCamera& depth_camera) {
-  if (off()) return;
-  note_changes(mapper);
-  if (next_) return go_on_writing(mapper);
-  if (!due(frames.size())) return;
-  begin(mapper, frames, depth_camera);
-  go_on_writing(mapper);
+  if (off() && !tiles_->bounded()) return;
+  tiles_->note_changes(mapper.map(), mapper.touched_blocks());
+  if (next_) {
+    go_on_writing(mapper);
+  } else if (due(frames.size())) {
+    begin(mapper, frames, depth_camera);
+    go_on_writing(mapper);
+  }
+  if (tiles_->bounded()) make_room(mapper);
+}
+
+void Checkpointer::make_room(Mapper& mapper) {
+  VoxelMap& map = mapper.map();
+  if (!map.has_store()) map.keep_in(tiles_);
+  if (tiles_->wants_room(map)) finish_writing(mapper);
+  map.trim();
+  tiles_->require_room(map);
+}
+
+void Checkpointer::end_frames(Mapper& mapper) {
+  if (tiles_->bounded()) finish_writing(mapper);
 }
 
 bool Checkpointer::due(std::size_t frames) const {
   const std::chrono::duration<float> passed = std::chrono::steady_clock::now() - last_;
   return (config_.seconds > 0 && passed.count() >= config_.seconds) ||
          (config_.frames > 0 && frames >= last_frames_ + static_cast<std::size_t>(config_.frames));
-}
-
-void Checkpointer::note_changes(const Mapper& mapper) {
-  std::optional<std::uint64_t> last;  // most blocks lie in the tile of the one before
-  for (const std::uint32_t slot : mapper.touched_blocks()) {
-    const std::uint64_t key = tile_key(mapper.map().block(slot).index);
-    if (key != last) changed_.insert(key);
-    last = key;
-  }
 }
 
 void Checkpointer::begin(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
@@ -69,15 +72,12 @@ void Checkpointer::begin(Mapper& mapper, const std::vector<FrameLogEntry>& frame
 }
 
 void Checkpointer::freeze_changes(VoxelMap& map) {
-  if (!file_ && start_ == CheckpointFile::Start::kAnew)
-    for (const Tile& tile : tiles_of(map)) changed_.insert(tile.key);
   std::vector<std::uint32_t> slots;
-  for (const std::uint64_t key : changed_) {
-    const Tile tile = tile_at(map, key);
+  for (const Tile& tile : tiles_->take_changed(map)) {
     slots.insert(slots.end(), tile.slots.begin(), tile.slots.end());
-    next_->tiles.push_back({key, tile.present, std::vector<const VoxelBlock*>(tile.slots.size())});
+    next_->tiles.push_back(
+        {tile.key, tile.present, std::vector<const VoxelBlock*>(tile.slots.size())});
   }
-  changed_.clear();
   const std::vector<const VoxelBlock*> frozen = map.freeze(slots);
   auto block = frozen.begin();
   for (ChangedTile& tile : next_->tiles)
@@ -96,18 +96,25 @@ void Checkpointer::go_on_writing(Mapper& mapper) {
     looks_.reset();
     writing_ = std::async(std::launch::async, [this] {
       lower_thread_priority();
-      if (!file_) file_.emplace(path_, start_);
-      file_->write(*next_);
+      tiles_->file().write(*next_);
     });
   }
 }
 
+void Checkpointer::finish_writing(Mapper& mapper) {
+  if (!next_) return;
+  if (looks_) {
+    mapper.await_encoder();
+    go_on_writing(mapper);
+  }
+  auto t = mapper.timers().measure("await_checkpoint");
+  writing_.wait();
+  go_on_writing(mapper);
+}
+
 void Checkpointer::remove() {
   if (writing_.valid()) writing_.wait();
-  if (file_)
-    file_->remove();
-  else  // what an earlier run left, be it a checkpoint or the beginning of one
-    remove_map(path_);
+  tiles_->remove();
 }
 
 }  // namespace ovimap

@@ -5,12 +5,13 @@
 #include <chrono>
 #include <filesystem>
 #include <future>
+#include <memory>
 #include <optional>
-#include <set>
 #include <vector>
 
 #include "ovimap/io/map_checkpoint.h"
 #include "ovimap/pipeline/mapper.h"
+#include "ovimap/pipeline/tile_keeper.h"
 
 namespace ovimap {
 
@@ -22,13 +23,15 @@ void list_fields(CheckpointConfig& config, ConfigFields& fields);
 
 /// Stores a map while it is made, beside the mapping: what changed since the last time is frozen in
 /// a moment (VoxelMap::freeze) and written by another thread while the mapper goes on. One
-/// checkpoint at a time; when the disk is slow there are fewer. The map must outlive it.
+/// checkpoint at a time; when the disk is slow there are fewer. Also keeps the map within a bound
+/// on memory: tiles leave it between checkpoints, so that the mapper waits for one that is being
+/// written. The map must outlive it.
 class Checkpointer {
  public:
-  /// Opens nothing before the first checkpoint is due. `frames`: how many the map has already.
-  /// `kGoOn`: the map was loaded from `path`.
-  Checkpointer(std::filesystem::path path, const CheckpointConfig& config, MapHeader header,
-               std::size_t frames, CheckpointFile::Start start);
+  /// `tiles`: where the map is stored; opens nothing before the first checkpoint is due. `frames`:
+  /// how many the map has already.
+  Checkpointer(std::shared_ptr<TileKeeper> tiles, const CheckpointConfig& config, MapHeader header,
+               std::size_t frames);
   /// Waits for what is being written.
   ~Checkpointer();
 
@@ -36,24 +39,27 @@ class Checkpointer {
   /// could not be written; the one before that stays.
   void after_frame(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
                    const PinholeCamera& depth_camera);
+  /// The last frame is fused: waits for what is being written, if tiles may have to leave memory
+  /// from here on.
+  void end_frames(Mapper& mapper);
+  /// Adds what tiles' leaving memory and coming back took (TileKeeper::report).
+  void report(StageTimers& timers) { tiles_->report(timers); }
   /// The map is saved: no checkpoint is needed any more.
   void remove();
 
  private:
   bool off() const { return config_.seconds <= 0 && config_.frames <= 0; }
   bool due(std::size_t frames) const;
-  void note_changes(const Mapper& mapper);
   void begin(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
              const PinholeCamera& depth_camera);
   void freeze_changes(VoxelMap& map);
   void go_on_writing(Mapper& mapper);
+  void finish_writing(Mapper& mapper);
+  void make_room(Mapper& mapper);
 
-  std::filesystem::path path_;
+  std::shared_ptr<TileKeeper> tiles_;
   CheckpointConfig config_;
   MapHeader header_;
-  CheckpointFile::Start start_;
-  std::optional<CheckpointFile> file_;
-  std::set<std::uint64_t> changed_;  ///< keys of tiles, since the last checkpoint
   std::chrono::steady_clock::time_point last_;
   std::size_t last_frames_;
 

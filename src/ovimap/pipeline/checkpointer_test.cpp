@@ -36,7 +36,8 @@ class CheckpointerTest : public ::testing::Test {
   }
 
   Checkpointer checkpointer(int frames, CheckpointFile::Start start, std::size_t done = 0) const {
-    return Checkpointer(partial_, {0.f, frames}, {"desk", "a: 1\n"}, done, start);
+    return Checkpointer(std::make_shared<TileKeeper>(partial_, start, MemoryConfig{}),
+                        {0.f, frames}, {"desk", "a: 1\n"}, done);
   }
 
   /// The bytes of the finished map. `checkpoints` may be null.
@@ -107,8 +108,10 @@ TEST_F(CheckpointerTest, CheckpointsDoNotChangeTheMap) {
 
 TEST_F(CheckpointerTest, ACheckpointThatCannotBeWrittenEndsTheRun) {
   Mapper begun = mapper();
-  Checkpointer checkpoints(folder_.path() / "nowhere" / "map.partial", {0.f, 1}, {}, 0,
-                           CheckpointFile::Start::kAnew);
+  Checkpointer checkpoints(
+      std::make_shared<TileKeeper>(folder_.path() / "nowhere" / "map.partial",
+                                   CheckpointFile::Start::kAnew, MemoryConfig{}),
+      {0.f, 1}, {}, 0);
   try {
     run_sequence(scene_, positions({}, scene_.size()), begun, nullptr, {}, &checkpoints);
     FAIL() << "12 checkpoints, and none failed";

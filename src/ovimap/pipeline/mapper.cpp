@@ -142,6 +142,11 @@ void Mapper::restore(MapDocument&& document) {
   mask_frames_ = document.mask_frames;
 }
 
+void Mapper::await_encoder() {
+  auto t = timers_.measure("await_encoder");
+  builder_->catch_up(registry_);
+}
+
 void Mapper::finish() {
   {
     auto t = timers_.measure("await_encoder");

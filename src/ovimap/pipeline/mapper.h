@@ -76,7 +76,9 @@ class Mapper {
   /// only.
   void restore(MapDocument&& document);
 
-  /// Waits until every chosen view is embedded. Throws what the encoder threw.
+  /// Waits until every view chosen so far is embedded. Throws what the encoder threw.
+  void await_encoder();
+  /// The same after the last frame.
   void finish();
   /// What the objects look like; waits likewise. Call once, after the last frame.
   Appearances take_appearances();

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
-#include "ovimap/io/map_file_tiles.h"
+#include "ovimap/map/block_tiles.h"
 
 #include <algorithm>
 #include <bit>
@@ -37,7 +37,7 @@ std::vector<Tile> tiles_of(const VoxelMap& map) {
   };
   std::vector<Entry> entries(map.block_count());
   for (std::uint32_t slot = 0; slot < entries.size(); ++slot) {
-    const BlockIndex& index = map.block(slot).index;
+    const BlockIndex& index = map.block_index(slot);
     const BlockIndex tile = tile_of(index);
     entries[slot] = {pack_index(tile), bit_of(index - tile * kTileSide), slot};
   }
@@ -68,6 +68,13 @@ Tile tile_at(const VoxelMap& map, std::uint64_t key) {
   return tile;
 }
 
+Tile tile_at(const VoxelMap& map, std::uint64_t key, std::uint64_t present) {
+  Tile tile{key, present, {}};
+  for (int bit = 0; bit < kTileBlocks; ++bit)
+    if (present >> bit & 1) tile.slots.push_back(map.find_slot(block_in_tile(key, bit)));
+  return tile;
+}
+
 std::vector<const VoxelBlock*> blocks_of(const VoxelMap& map, const Tile& tile) {
   std::vector<const VoxelBlock*> blocks;
   for (const std::uint32_t slot : tile.slots) blocks.push_back(&map.block(slot));
@@ -85,6 +92,11 @@ Tile create_tile(VoxelMap& map, std::uint64_t key, std::uint64_t present) {
   for (int bit = 0; bit < kTileBlocks; ++bit)
     if (present >> bit & 1) tile.slots.push_back(map.find_or_create(block_in_tile(key, bit)));
   return tile;
+}
+
+void create_tile_away(VoxelMap& map, std::uint64_t key, std::uint64_t present) {
+  for (int bit = 0; bit < kTileBlocks; ++bit)
+    if (present >> bit & 1) map.create_away(block_in_tile(key, bit));
 }
 
 }  // namespace ovimap
