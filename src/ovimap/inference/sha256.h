@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace ovimap {
 
@@ -28,6 +29,9 @@ class Sha256 {
   std::size_t pending_size_ = 0;
   std::uint64_t total_bytes_ = 0;
 };
+
+/// Digest of bytes in memory.
+std::string sha256_of(std::string_view bytes);
 
 /// Digest of a file's content. Throws Error when the file cannot be read.
 std::string sha256_of_file(const std::filesystem::path& path);

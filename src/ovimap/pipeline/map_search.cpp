@@ -6,6 +6,7 @@
 
 #include "ovimap/base/error.h"
 #include "ovimap/inference/model_folder.h"
+#include "ovimap/inference/text_cache.h"
 #include "ovimap/io/palette.h"
 
 namespace ovimap {
@@ -37,6 +38,28 @@ QueryScene scene_of(const SearchableMap& map, const SearchIndex& index,
   return scene;
 }
 
+MapSearch search_in(SearchableMap&& map, const ObjectShapeConfig& config) {
+  MapSearch search;
+  search.index = index_of(map);
+  search.scene = scene_of(map, search.index, config);
+  search.info = std::move(map.info);
+  return search;
+}
+
+/// One row an instance; zeros for those that were never seen well enough.
+Embeddings fused_embeddings(const MapRecord& record) {
+  const SemanticRecord& semantics = record.semantics;
+  Embeddings rows = Embeddings::Zero(static_cast<Eigen::Index>(record.instances.size()),
+                                     semantics.encoder.dimension);
+  for (std::size_t i = 0; i < record.instances.size(); ++i) {
+    const auto look = semantics.appearances.find(record.instances[i].id);
+    if (look == semantics.appearances.end()) continue;
+    const Eigen::VectorXf fused = fuse_views(look->second.views, semantics.views.fusion);
+    if (fused.size() > 0) rows.row(static_cast<Eigen::Index>(i)) = fused;
+  }
+  return rows;
+}
+
 /// The folder of the model on the search path that is the map's encoder, or at least bears its
 /// name. A map without embeddings takes the default.
 std::string model_of_map(const EncoderIdentity& wanted,
@@ -59,12 +82,26 @@ std::string model_of_map(const EncoderIdentity& wanted,
 }  // namespace
 
 MapSearch open_map_search(const std::filesystem::path& map, const ObjectShapeConfig& config) {
-  SearchableMap stored = read_searchable_map(map);
-  MapSearch search;
-  search.index = index_of(stored);
-  search.scene = scene_of(stored, search.index, config);
-  search.info = std::move(stored.info);
-  return search;
+  return search_in(read_searchable_map(map), config);
+}
+
+MapSearch make_map_search(const MapRecord& corrected, MapInfo info,
+                          const ObjectShapeConfig& config) {
+  SearchableMap map;
+  info.instances = corrected.instances;
+  info.hidden = corrected.hidden;
+  info.locked = corrected.locked;
+  info.names = corrected.names;
+  info.encoder = corrected.semantics.encoder;
+  info.up = corrected.up;
+  info.frames = static_cast<std::int64_t>(corrected.frames.size());
+  info.mask_frames = corrected.mask_frames;
+  info.depth_camera = corrected.depth_camera;
+  map.embeddings = fused_embeddings(corrected);
+  map.surfaces = corrected.surfaces;
+  map.frames = corrected.frames;
+  map.info = std::move(info);
+  return search_in(std::move(map), config);
 }
 
 std::unique_ptr<ImageTextEncoder> encoder_of_map(
@@ -72,7 +109,8 @@ std::unique_ptr<ImageTextEncoder> encoder_of_map(
     const std::vector<std::filesystem::path>& model_dirs) {
   auto encoder = make_image_text_encoder(spec == "auto" ? model_of_map(of_map, model_dirs) : spec,
                                          runtime, model_dirs, EncoderUse::kTexts);
-  if (!encoder || of_map.name.empty() || encoder->identity() == of_map) return encoder;
+  if (!encoder || of_map.name.empty() || encoder->identity() == of_map)
+    return encoder ? remember_text_lists(std::move(encoder), text_cache_folder()) : nullptr;
   throw Error(
       concat("the map's embeddings are of encoder '", of_map.name, "' (", of_map.dimension,
              " numbers), not of '", encoder->identity().name, "' (", encoder->identity().dimension,

@@ -23,6 +23,11 @@ struct MapSearch {
 /// Reads what a search needs, without the voxels. Throws what read_searchable_map throws.
 MapSearch open_map_search(const std::filesystem::path& map, const ObjectShapeConfig& config = {});
 
+/// The same of a corrected map in memory. `info`: what the record does not tell; the rest of it is
+/// filled in.
+MapSearch make_map_search(const MapRecord& corrected, MapInfo info,
+                          const ObjectShapeConfig& config = {});
+
 /// The encoder that `spec` names, as make_image_text_encoder takes it, or with "auto" the model on
 /// the search path that the map's embeddings are of. Throws Error when there is none, or when its
 /// embeddings cannot be compared with the map's. Null where `spec` is "none" or empty.

@@ -89,15 +89,19 @@ LabelSet read_label_set(const std::string& name_or_file) {
              "one class a line"));
 }
 
+Embeddings encode_labels(ImageTextEncoder& encoder, const LabelSet& set,
+                         const std::string& prompts) {
+  return encode_prompted(encoder, spoken_names(set),
+                         split_prompts(prompts.empty() ? encoder.prompt_template() : prompts));
+}
+
 std::vector<std::vector<ClassGuess>> project_classes(const SearchIndex& index,
                                                      ImageTextEncoder& encoder, const LabelSet& set,
                                                      std::size_t top, const std::string& prompts) {
   require_embeddings(index);
   require_embedding_length(index, encoder.identity().dimension,
                            "encoder '" + encoder.identity().name + "'");
-  const Embeddings classes =
-      encode_prompted(encoder, spoken_names(set),
-                      split_prompts(prompts.empty() ? encoder.prompt_template() : prompts));
+  const Embeddings classes = encode_labels(encoder, set, prompts);
   std::vector<std::vector<ClassGuess>> guesses(index.size());
   parallel_for(index.size(), kObjectsPerBlock, [&](std::size_t i) {
     if (!index.has_embedding(i)) return;

@@ -30,6 +30,10 @@ std::vector<std::string> label_set_names();
 /// for a file without names.
 LabelSet read_label_set(const std::string& name_or_file);
 
+/// The names' embeddings, one row each, as project_classes compares objects with.
+Embeddings encode_labels(ImageTextEncoder& encoder, const LabelSet& set,
+                         const std::string& prompts = {});
+
 struct ClassGuess {
   std::size_t label = 0;  ///< position in the set
   float score = 0;        ///< cosine

@@ -13,6 +13,10 @@ namespace ovimap {
 
 namespace {
 
+std::vector<std::string> prompts_of(const ImageTextEncoder& encoder, const QueryConfig& config) {
+  return split_prompts(config.prompts.empty() ? encoder.prompt_template() : config.prompts);
+}
+
 /// Takes over the object's scores where `other` is better (any) or worse (all).
 void join(MatchScores& scores, const MatchScores& other, TermRule rule) {
   for (Eigen::Index i = 0; i < scores.standard.size(); ++i) {
@@ -47,18 +51,22 @@ TextMatcher::TextMatcher(const SearchIndex& index, ImageTextEncoder& encoder,
     : index_(index),
       encoder_(encoder),
       config_(config),
-      prompts_(split_prompts(config.prompts.empty() ? encoder.prompt_template() : config.prompts)),
+      prompts_(prompts_of(encoder, config)),
       vocabulary_(std::move(vocabulary)) {
   require_embeddings(index);
   require_embedding_length(index, encoder.identity().dimension,
                            "encoder '" + encoder.identity().name + "'");
-  if (vocabulary_.rows() == 0) vocabulary_ = encode_prompted(encoder, vocabulary_texts(), prompts_);
+  if (vocabulary_.rows() == 0) vocabulary_ = encode_vocabulary(encoder, config_);
   require_embedding_length(index, vocabulary_.cols(), "the vocabulary");
   calibration_.emplace(index, vocabulary_, config.verdict);
 }
 
 std::vector<std::string> TextMatcher::vocabulary_texts() {
   return list_entries(builtin_word_list("vocabulary"));
+}
+
+Embeddings TextMatcher::encode_vocabulary(ImageTextEncoder& encoder, const QueryConfig& config) {
+  return encode_prompted(encoder, vocabulary_texts(), prompts_of(encoder, config));
 }
 
 MatchScores TextMatcher::match(const std::vector<std::string>& terms,

@@ -31,6 +31,8 @@ class TextMatcher {
 
   /// The unrelated words that calibrate the verdict.
   static std::vector<std::string> vocabulary_texts();
+  /// Their embeddings, as a matcher of that config takes them.
+  static Embeddings encode_vocabulary(ImageTextEncoder& encoder, const QueryConfig& config);
 
   /// Matches with `terms` joined by the config's rule (at least one), less what `negatives` match
   /// better. Throws Error when the encoder has no embedding of a text.
