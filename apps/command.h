@@ -61,6 +61,8 @@ struct MappingOptions {
   int threads = 0;
 };
 void add_mapping_options(CLI::App& command, MappingOptions& options);
+/// The same without the recording.
+void add_mapping_settings(CLI::App& command, MappingOptions& options);
 
 /// --max-memory, which is memory.max_mb in units of its own.
 void add_max_memory(CLI::App& command, MappingOptions& options);

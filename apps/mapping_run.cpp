@@ -188,7 +188,8 @@ MappingRun map_recording(const MappingOptions& options, const std::string& title
                       std::move(checkpoints));
 }
 
-MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& target) {
+MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& target,
+                    LiveAudience* audience) {
   MappingInputs inputs(options);
   BegunRun begun = find_begun(target, inputs.config.memory);
   // The networks' threads inherit the priority of the one that opens them.
@@ -201,10 +202,15 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
   header.config_text.insert(0, concat("# live, ", fps, " frames/s\n"));
   const SequenceResult done = resume(begun, header, inputs, mapper);
   auto checkpoints = make_checkpointer(begun, inputs, header, done.frames.size());
-  if (checkpoints)
-    mapper.after_frame = [&](Mapper& map, const auto& frames, const PinholeCamera& camera) {
-      checkpoints->after_frame(map, frames, camera);
-    };
+  mapper.after_frame = [&](Mapper& map, const auto& frames, const PinholeCamera& camera) {
+    if (audience) audience->after_frame(map, frames, camera);
+    if (audience && checkpoints) checkpoints->set_edits(audience->edits());
+    if (checkpoints) checkpoints->after_frame(map, frames, camera);
+  };
+  if (audience)
+    audience->begin(mapper.config(),
+                    inputs.encoder ? inputs.encoder->identity() : EncoderIdentity{}, header.names,
+                    header.edits);
   watch_for_interrupt();
   LiveRunResult live;
   {
@@ -215,6 +221,7 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
                       return !interrupted();
                     });
   }
+  if (audience) header.edits = audience->end();
   if (inputs.range.empty()) live.sequence.depth_camera = done.depth_camera;
   MappingRun run = finished_run(std::move(inputs), std::move(header), mapper.take(), live.sequence,
                                 std::move(checkpoints));

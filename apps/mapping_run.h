@@ -31,7 +31,25 @@ MappingRun map_recording(const MappingOptions& options, const std::string& title
                          const std::filesystem::path& keep_masks = {},
                          const RunTarget& target = {});
 
+/// Whoever follows a live run and may correct its map meanwhile.
+class LiveAudience {
+ public:
+  virtual ~LiveAudience() = default;
+  /// The mapping is about to begin, with what an earlier run knew of the map's names and
+  /// corrections.
+  virtual void begin(const MapperConfig& config, const EncoderIdentity& encoder,
+                     const std::map<InstanceId, std::string>& names, const MapEdits& edits) = 0;
+  /// As LiveMapper::after_frame.
+  virtual void after_frame(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
+                           const PinholeCamera& depth_camera) = 0;
+  /// Corrections by now.
+  virtual MapEdits edits() const = 0;
+  /// The mapping has ended; returns the corrections that the map is saved with.
+  virtual MapEdits end() = 0;
+};
+
 /// The same as a camera of `fps` frames a second would have it. Networks let the mapping go first.
-MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& target = {});
+MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& target = {},
+                    LiveAudience* audience = nullptr);
 
 }  // namespace ovimap::apps

@@ -10,6 +10,10 @@ void add_mapping_options(CLI::App& command, MappingOptions& options) {
       .add_option("SOURCE", options.source,
                   "recording: a folder of a known layout (see docs/sources.md)")
       ->required();
+  add_mapping_settings(command, options);
+}
+
+void add_mapping_settings(CLI::App& command, MappingOptions& options) {
   command
       .add_option("--masks", options.masks, "2D masks: none, sam, gt, a folder of PNGs or a model")
       ->capture_default_str();

@@ -1,25 +1,29 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
-#include <chrono>
 #include <cstdio>
 #include <thread>
 
-#include "command.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/server/access.h"
-#include "ovimap/server/http_server.h"
 #include "ovimap/server/viewer_files.h"
+#include "run_report.h"
+#include "serve_live.h"
 
 namespace ovimap::apps {
 
 namespace {
 
 struct ServeOptions {
-  std::filesystem::path map;
+  std::string subject;  ///< the map, or with `live` the recording
+  std::filesystem::path output;
+  MappingOptions mapping;
   ServerConfig server;
   ServedMapConfig served;
   std::string viewer = "auto";
-  bool no_limits = false, json = false;
+  double fps = 30;
+  bool live = false, resume = false, no_limits = false, json = false;
+
+  std::filesystem::path map() const { return live ? output : std::filesystem::path(subject); }
 };
 
 std::filesystem::path viewer_folder(const std::string& option) {
@@ -34,48 +38,99 @@ void lift_limits(ServerConfig& config) {
   config.work_per_second = config.work_burst = kMany;
 }
 
-void announce(const ServeOptions& options, const HttpServer& server) {
-  if (options.json) {
-    const nlohmann::json said = {{"map", options.map.string()},
-                                 {"address", server.address()},
-                                 {"port", server.port()},
-                                 {"viewer", !options.server.viewer.empty()}};
-    std::printf("%s\n", said.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)
-                            .c_str());  // one line: whoever waits for it reads lines
-  } else {
-    if (options.server.viewer.empty() && options.viewer == "auto")
-      std::fprintf(stderr,
-                   "no viewer beside the program: install Node.js with npm and run `make "
-                   "build`; the API works without\n");
-    std::printf("%s is at %s (Ctrl-C ends it)\n", options.map.c_str(), server.address().c_str());
-  }
+/// One line: whoever waits for it reads lines.
+void print_line(const nlohmann::json& value) {
+  std::printf("%s\n", value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
   std::fflush(stdout);
 }
 
+void announce(const ServeOptions& options, const HttpServer& server) {
+  if (options.json)
+    return print_line({{"map", options.map().string()},
+                       {"address", server.address()},
+                       {"port", server.port()},
+                       {"viewer", !options.server.viewer.empty()}});
+  if (options.server.viewer.empty() && options.viewer == "auto")
+    std::fprintf(stderr,
+                 "no viewer beside the program: install Node.js with npm and run `make "
+                 "build`; the API works without\n");
+  std::printf("%s is at %s (Ctrl-C %s)\n", options.map().c_str(), server.address().c_str(),
+              options.live ? "saves it and ends" : "ends it");
+  std::fflush(stdout);
+}
+
+void serve_live(const ServeOptions& options) {
+  LiveService service{options.mapping,
+                      {options.output, options.resume},
+                      options.fps,
+                      options.server,
+                      options.served};
+  service.served.encoder = options.mapping.encoder;
+  service.run([&](const HttpServer& server) { announce(options, server); },
+              [&](const MappingRun& run) {
+                report_faults(run);
+                if (options.json)
+                  print_line({{"saved", run_json(options.output, run, options.fps)}});
+                else
+                  print_run(options.output, run, options.fps);
+                advise_on_objects(run);
+                std::fflush(stdout);
+              });
+}
+
+void serve_map(const ServeOptions& options) {
+  ServedMap map(options.map(), options.served);
+  ServerThread thread(map, options.server);
+  announce(options, thread.server());
+  while (!interrupted() && thread.runs())
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+}
+
 int serve(ServeOptions options) {
-  const ThreadLimit limit(options.served.threads);
+  const ThreadLimit limit(options.mapping.threads);
   ServerConfig& config = options.server;
   if (config.token.empty() && !is_loopback(config.host)) config.token = random_token();
   config.viewer = viewer_folder(options.viewer);
   if (options.no_limits) lift_limits(config);
-  ServedMap map(options.map, options.served);
-  HttpServer server(map, config);
+  options.mapping.source = options.subject;
+  options.served.encoder = options.mapping.encoder;
+  options.served.model_dirs = options.mapping.model_dirs;
+  options.served.threads = options.mapping.threads;
   watch_for_interrupt();
-  std::jthread ender([&server](const std::stop_token& ended) {
-    while (!interrupted() && !ended.stop_requested())
-      std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    server.stop();
-  });
-  announce(options, server);
-  server.run();
+  if (options.live)
+    serve_live(options);
+  else
+    serve_map(options);
   return kDone;
+}
+
+/// What makes sense while a map is made alone.
+void add_live_options(CLI::App& command, ServeOptions& options) {
+  auto* live =
+      command.add_flag("--live", options.live,
+                       "map the recording MAP names, at a camera's pace, and serve the map "
+                       "meanwhile");
+  auto* output = command.add_option("-o,--output", options.output, "map file that --live writes");
+  live->needs(output);
+  output->needs(live);
+  command.add_option("--fps", options.fps, "that pace, frames a second")
+      ->check(CLI::Range(0.1, 1000.))
+      ->needs(live)
+      ->capture_default_str();
+  command
+      .add_flag("--resume", options.resume,
+                "go on with the frames that a killed run, or the map, does not have yet")
+      ->needs(live);
+  add_mapping_settings(command, options.mapping);
+  for (const char* name : {"--masks", "--preset", "--views", "--config", "--set", "--frames"})
+    command.get_option(name)->needs(live);
 }
 
 }  // namespace
 
 Action add_serve(CLI::App& command) {
   auto options = std::make_shared<ServeOptions>();
-  command.add_option("MAP", options->map, "map file")->required();
+  command.add_option("MAP", options->subject, "map file; with --live a recording")->required();
   command.add_option("--port", options->server.port, "port to listen at; 0: any free one")
       ->check(CLI::Range(0, 65535))
       ->capture_default_str();
@@ -89,17 +144,11 @@ Action add_serve(CLI::App& command) {
   command.add_option("--viewer", options->viewer, "folder of the web page; auto, or none")
       ->capture_default_str();
   command
-      .add_option("--encoder", options->served.encoder,
-                  "what understands queries: auto (the map's own), none, default, or a model")
-      ->capture_default_str();
-  command
       .add_option("--classes", options->served.classes,
                   "names to guess from: replica51, scannet200, scannet20 or a text file with one a "
                   "line")
       ->capture_default_str();
-  add_model_dirs(command, options->served.model_dirs);
-  command.add_option("--threads", options->served.threads, "threads to use; 0: all cores")
-      ->check(CLI::Range(0, 1024));
+  add_live_options(command, *options);
   command.add_flag("--no-limits", options->no_limits,
                    "answer as often as one asks: for tests, and where everybody is trusted");
   command.add_flag("--json", options->json, "print one JSON object once the map can be reached");

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 // `ovimap serve` as a user meets it, and queries over HTTP with a real encoder.
+#include "ovimap/io/map_edits.h"
 #include "ovimap/server/server_fixture.h"
 #include "program_fixture.h"
 
@@ -68,6 +69,46 @@ TEST_F(ServeProgramTest, SaysWhatIsWrong) {
   expect_complaint("serve bare.ovimap --viewer recording", {"index.html", "make build"});
   expect_complaint("serve bare.ovimap --port 99999", {"--port"});
   expect_complaint("serve bare.ovimap --host 203.0.113.7", {"203.0.113.7"});
+  expect_complaint("serve recording --live", {"--output"});
+  expect_complaint("serve bare.ovimap --masks sam", {"--live"});
+  expect_complaint("serve recording --live -o nowhere/x.ovimap", {"nowhere"});
+}
+
+TEST_F(ServeProgramTest, MapsWhileItServes) {
+  RunningProgram program("serve '" + path("recording").string() + "' --live --fps 100 -o '" +
+                             path("live.ovimap").string() + "' --port 0 --json --viewer none",
+                         path("pid"));
+  const json said = json::parse(program.line(), nullptr, false);
+  ASSERT_TRUE(said.contains("address"));
+  httplib::Client client("127.0.0.1", said["port"].get<int>());
+  EXPECT_EQ(client.Get("/api/map")->status, 200);
+  const json saved = json::parse(program.line(), nullptr, false)["saved"];
+  EXPECT_GT(saved["frames"], 0);
+  EXPECT_GT(saved["live"]["frames_fused"], 0);
+  json info;
+  do info = json::parse(client.Get("/api/map")->body);
+  while (info["live"]);
+  EXPECT_EQ(info["frames"], saved["frames"]);
+  ASSERT_GT(info["instances"], 0);
+  const json first = json::parse(client.Get("/api/instances")->body)["instances"][0]["id"];
+  const json named = {{"kind", "rename"}, {"instance", first}, {"name", "pot"}};
+  EXPECT_EQ(client.Post("/api/corrections", named.dump(), "application/json")->status, 200);
+  EXPECT_EQ(program.end(), 0);
+  EXPECT_EQ(load_corrected_map(path("live.ovimap")).names.at(first.get<InstanceId>()), "pot");
+}
+
+TEST_F(ServeProgramTest, InterruptedWhileMappingItSaves) {
+  RunningProgram program("serve '" + path("recording").string() + "' --live --fps 1 -o '" +
+                             path("live.ovimap").string() + "' --port 0 --json --viewer none",
+                         path("pid"));
+  const json said = json::parse(program.line(), nullptr, false);
+  ASSERT_TRUE(said.contains("address"));
+  httplib::Client client("127.0.0.1", said["port"].get<int>());
+  while (json::parse(client.Get("/api/map")->body)["frames"] < 2)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(program.end(), 0);
+  EXPECT_GE(load_map(path("live.ovimap")).frames.size(), 2u);
+  EXPECT_FALSE(std::filesystem::exists(path("live.ovimap.partial")));
 }
 
 TEST_F(ServeProgramTest, AnswersInWords) {

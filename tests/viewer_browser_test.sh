@@ -4,6 +4,8 @@
 # The viewer in Chromium, on a served map. Usage: viewer_browser_test.sh MAP, in the folder viewer
 set -eu
 export OVIMAP_MAP=$1
+OVIMAP_ROOM=$(dirname "$1")/room/room  # what the map was made from
+export OVIMAP_ROOM
 export OVIMAP_CHROMIUM=${OVIMAP_CHROMIUM:-$(command -v chromium || true)}
 [ -n "$OVIMAP_CHROMIUM" ] || { echo "Chromium is missing; run tools/setup.sh"; exit 77; }
 [ -s "$OVIMAP_MAP" ] || { echo "there is no map to show: the encoder is missing; run tools/setup.sh"; exit 77; }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
-import { type ChildProcess, spawn } from 'node:child_process';
+import { type ChildProcess, execFileSync, spawn } from 'node:child_process';
 import { copyFileSync, mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -8,35 +8,62 @@ import { type Page, test as base } from '@playwright/test';
 
 const PROGRAM = process.env.OVIMAP_PROGRAM ?? '../build/release/bin/ovimap';
 const MAP = process.env.OVIMAP_MAP ?? '';
+const ROOM = process.env.OVIMAP_ROOM ?? ''; // the recording that the map was made from
+
+function place(): { folder: string; file: string } {
+  if (MAP === '') throw new Error('OVIMAP_MAP names no map; run these tests through ctest');
+  const folder = mkdtempSync(join(tmpdir(), 'ovimap-e2e-'));
+  return { folder, file: join(folder, 'tiny room.ovimap') };
+}
+
+/** What the program says of a map file. */
+export function infoOf(file: string): { frames: number; instances: { name?: string }[] } {
+  return JSON.parse(execFileSync(PROGRAM, ['info', file, '--json'], { encoding: 'utf8' }));
+}
 
 /** `ovimap serve` on a copy of the map, so that tests may correct it. */
 export class RunningMap {
   private constructor(
     readonly address: string,
     private readonly program: ChildProcess,
-    private readonly folder: string,
+    readonly folder: string,
+    readonly file: string,
   ) {}
 
   static async start(): Promise<RunningMap> {
-    if (MAP === '') throw new Error('OVIMAP_MAP names no map; run these tests through ctest');
-    const folder = mkdtempSync(join(tmpdir(), 'ovimap-e2e-'));
-    const map = join(folder, 'tiny room.ovimap');
-    copyFileSync(MAP, map);
-    const program = spawn(PROGRAM, ['serve', map, '--port', '0', '--json', '--no-limits'], {
+    const { folder, file } = place();
+    copyFileSync(MAP, file);
+    return RunningMap.run([file], folder, file);
+  }
+
+  /** The map while it is made from its recording, with a camera of so many frames a second. */
+  static async live(fps: number): Promise<RunningMap> {
+    const { folder, file } = place();
+    const options = ['--live', '--fps', String(fps), '--masks', 'gt', '--encoder', 'default'];
+    return RunningMap.run([ROOM, '-o', file, ...options], folder, file);
+  }
+
+  private static async run(args: string[], folder: string, file: string): Promise<RunningMap> {
+    const program = spawn(PROGRAM, ['serve', ...args, '--port', '0', '--json', '--no-limits'], {
       stdio: ['ignore', 'pipe', 'inherit'],
     });
     const line = await new Promise<string>((resolve, reject) => {
       program.stdout!.once('data', (data: Buffer) => resolve(data.toString()));
       program.once('exit', (code) => reject(new Error(`ovimap serve ended with code ${code}`)));
     });
-    return new RunningMap((JSON.parse(line) as { address: string }).address, program, folder);
+    const { address } = JSON.parse(line) as { address: string };
+    return new RunningMap(address, program, folder, file);
   }
 
-  /** Ends the program as Ctrl-C does. */
-  async stop(): Promise<void> {
-    const ended = new Promise((resolve) => this.program.once('exit', resolve));
+  /** Ends the program as Ctrl-C does. Returns its exit code. */
+  async interrupt(): Promise<number | null> {
+    const ended = new Promise<number | null>((resolve) => this.program.once('exit', resolve));
     this.program.kill('SIGINT');
-    await ended;
+    return ended;
+  }
+
+  async stop(): Promise<void> {
+    if (this.program.exitCode === null) await this.interrupt();
     rmSync(this.folder, { recursive: true, force: true });
   }
 }

@@ -31,10 +31,29 @@ const launch = () =>
     args: ['--no-sandbox', '--enable-unsafe-swiftshader'],
   });
 
+/** Whether the map can be searched. */
 async function searchReady(address) {
-  while ((await (await fetch(`${address}api/map`)).json()).search.state === 'preparing')
-    await new Promise((resolve) => setTimeout(resolve, 100));
+  const state = async () => (await (await fetch(`${address}api/map`)).json()).search.state;
+  while ((await state()) === 'preparing') await new Promise((resolve) => setTimeout(resolve, 100));
   await new Promise((resolve) => setTimeout(resolve, 3000)); // names are guessed right after
+  return (await state()) === 'ready';
+}
+
+/** How long a turn of the view takes from frame to frame, while it is dragged. */
+async function turn(page) {
+  await page.mouse.move(800, 400);
+  await page.mouse.down();
+  const times = [];
+  for (let step = 1; step <= 12; ++step) {
+    const start = performance.now();
+    await page.mouse.move(800 + 12 * step, 400);
+    await page.evaluate(
+      () => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))),
+    );
+    times.push(performance.now() - start);
+  }
+  await page.mouse.up();
+  return median(times.slice(4)); // the first ones find out that this machine is slow
 }
 
 const markOf = (page, name) =>
@@ -66,8 +85,8 @@ async function answerTime(address, text) {
 }
 
 const { server, address } = await serve();
-await searchReady(address);
-const times = { first: [], whole: [], still: [], words: [], bare: [], encoded: [] };
+const words = await searchReady(address);
+const times = { first: [], whole: [], turned: [], still: [], words: [], bare: [], encoded: [] };
 for (let run = 0; run < Number(runs); ++run) {
   const browser = await launch();
   const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
@@ -75,6 +94,12 @@ for (let run = 0; run < Number(runs); ++run) {
   await drawn(page, 'whole-picture');
   times.first.push(await markOf(page, 'first-picture'));
   times.whole.push(await markOf(page, 'whole-picture'));
+  await page.waitForTimeout(500);
+  times.turned.push(await turn(page));
+  if (!words) {
+    await browser.close();
+    continue;
+  }
   await page.waitForTimeout(500);
   times.still.push(await ask(page, 'largest object'));
   await page.waitForTimeout(500);
@@ -88,6 +113,8 @@ server.kill('SIGINT');
 console.log('| 1280 x 800, software rendering | median, ms | slowest, ms |\n| --- | --- | --- |');
 row('first picture after opening the page', times.first);
 row('whole surface', times.whole);
+row('from frame to frame while the view is turned', times.turned);
+if (!words) process.exit();
 row('query without words ("largest object"), answered and drawn', times.still);
 row('query in words ("chair"), answered and drawn', times.words);
 row('of which the answer without words, on the server', times.bare);

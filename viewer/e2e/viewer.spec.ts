@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
+import { readFileSync } from 'node:fs';
 import AxeBuilder from '@axe-core/playwright';
 import { chromium, expect, type Page } from '@playwright/test';
 import { RunningMap, test, wholePicture } from './running-map';
@@ -116,7 +117,7 @@ test('keeps a name through a reload', async ({ page, map }) => {
   await expect(page.getByRole('option', { name: 'reading corner' })).toBeVisible();
 });
 
-test('measures, cuts, follows the camera, hides', async ({ page, map }) => {
+test('measures, cuts, follows the camera', async ({ page, map }) => {
   await open(page, map.address);
   await page.keyboard.press('m');
   await clickUntil(page, '.measure-label');
@@ -131,10 +132,58 @@ test('measures, cuts, follows the camera, hides', async ({ page, map }) => {
   await page.keyboard.press('c');
   await expect(page.getByRole('group', { name: 'Camera path' })).toContainText('1 / ');
   await page.getByRole('button', { name: 'Look from here' }).click();
-  await page.keyboard.press('Escape');
-  await page.locator('.row').first().click();
+});
+
+const ids = (page: Page): Promise<string[]> =>
+  page.locator('.row').evaluateAll((rows) => rows.map((row) => row.getAttribute('data-id')!));
+
+test('hides, locks, deletes and undoes, through a reload', async ({ page, map }) => {
+  await open(page, map.address);
+  const before = await ids(page);
+  const act = (name: string) => page.getByRole('button', { name, exact: true }).click();
+  await page.locator('.row').nth(1).click();
   await page.keyboard.press('h');
-  await expect(page.getByRole('button', { name: 'Show', exact: true })).toBeVisible();
+  await expect(page.locator('.row')).toHaveCount(before.length - 1);
+  await page.reload();
+  await wholePicture(page);
+  expect(await ids(page)).not.toContain(before[1]);
+  await page.keyboard.press('u');
+  await expect(page.locator('.row')).toHaveCount(before.length);
+
+  await page.locator('.row').nth(1).click();
+  await act('Lock');
+  await expect(page.getByRole('button', { name: 'Delete', exact: true })).toBeDisabled();
+  await act('Unlock');
+  await act('Delete');
+  await expect(page.locator('.row')).toHaveCount(before.length - 1);
+  await act('Corrections');
+  const log = page.getByRole('dialog', { name: 'Corrections' });
+  await expect(log.locator('li').first()).toContainText('deleted');
+  await page.screenshot({ path: `${PICTURES}/log.png` });
+  await log.getByRole('button', { name: 'Undo' }).first().click();
+  await expect(log.locator('li').first()).toContainText('undone');
+  await log.getByRole('button', { name: 'Close' }).click();
+  await expect(page.locator('.row')).toHaveCount(before.length);
+  expect((await ids(page)).sort()).toEqual(before.sort());
+});
+
+test('merges, and everybody sees it', async ({ page, map, context }) => {
+  await open(page, map.address);
+  const other = await context.newPage();
+  await open(other, map.address);
+  const [first, second] = await ids(page);
+  const count = await page.locator('.row').count();
+  await page.locator('.row').nth(1).click();
+  await page.getByRole('button', { name: 'Merge', exact: true }).click();
+  await expect(page.getByRole('alert')).toContainText('is a part of');
+  await page.locator('.row').first().click();
+  for (const shown of [page, other]) {
+    await expect(shown.locator('.row')).toHaveCount(count - 1);
+    expect(await ids(shown)).toContain(first);
+    expect(await ids(shown)).not.toContain(second);
+  }
+  await other.keyboard.press('u');
+  await expect(page.locator('.row')).toHaveCount(count);
 });
 
 test('can be used with the keyboard alone', async ({ page, map }) => {
@@ -180,21 +229,20 @@ test('fits a phone', async ({ page, map }) => {
   await expect(page.locator('.card')).toBeInViewport();
 });
 
-test('hands over a picture, and says why there is no GLB', async ({ page, map }) => {
+test('hands over a picture and a GLB', async ({ page, map }) => {
   await open(page, map.address);
   const [picture] = await Promise.all([page.waitForEvent('download'), page.keyboard.press('p')]);
   expect(picture.suggestedFilename()).toBe('tiny room.png');
-  const offered = await page.request.get(new URL('/api/export.glb', map.address).href);
-  if (offered.ok()) {
-    const [file] = await Promise.all([
-      page.waitForEvent('download'),
-      page.getByRole('button', { name: 'Download as GLB' }).click(),
-    ]);
-    expect(file.suggestedFilename()).toBe('tiny room.glb');
-  } else {
-    await page.getByRole('button', { name: 'Download as GLB' }).click();
-    await expect(page.locator('.toast')).toContainText('GLB');
-  }
+  const [file] = await Promise.all([
+    page.waitForEvent('download'),
+    page.getByRole('button', { name: 'Download as GLB' }).click(),
+  ]);
+  expect(file.suggestedFilename()).toBe('tiny room.glb');
+  expect(
+    readFileSync(await file.path())
+      .subarray(0, 4)
+      .toString(),
+  ).toBe('glTF');
 });
 
 test('says that the server is gone, and stays usable', async ({ page }) => {

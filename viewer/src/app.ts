@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 import { api } from './api/client';
 import { listen } from './api/events';
-import type { Instance, MapInfo, MeshListing, Question } from './api/types';
+import type { FrameEvent, Instance, Labels, MapInfo, MeshListing, Question } from './api/types';
 import { Commands } from './commands';
 import { Corrections } from './corrections';
 import { listenToKeys } from './keyboard';
 import { MapState } from './map-state';
+import { Rounds } from './rounds';
 import type { Mode } from './scene/coloring';
 import { MapView } from './scene/map-view';
 import { SurfaceLoader } from './surface-loader';
@@ -19,6 +20,13 @@ import { Status } from './ui/status';
 import { Toolbar } from './ui/toolbar';
 import { faultText } from './ui/words';
 
+const FIRST_FRAME_MS = 500; // between looks whether there is one
+const LIVE_PAUSE_MS = 1500; // between two looks at what objects there are by now
+
+function loadObjects(): Promise<[MapInfo, Instance[], Labels]> {
+  return Promise.all([api.map(), api.instances(), api.labels()]);
+}
+
 /** Ties the page together: what the server tells, what is shown, what the person does. */
 export class App {
   private readonly state = new MapState();
@@ -30,7 +38,11 @@ export class App {
       'The map in 3D. Arrow keys turn it, W A S D move. The list holds the same objects.',
   });
   private readonly status = new Status();
-  private readonly commands = new Commands(this.status, () => this.state.info?.title ?? 'map');
+  private readonly commands = new Commands(
+    this.status,
+    () => this.state.info?.title ?? 'map',
+    () => void this.corrections.log.open(),
+  );
   private readonly legend = new Legend();
   private readonly search = new SearchPanel({
     onQuery: (text, not) => void this.ask({ text, not }, text),
@@ -47,8 +59,9 @@ export class App {
     onAlike: (id) => void this.ask({ like: id }, `like ${this.state.titleOf(id)} #${id}`),
     onRename: (id, name) => void this.corrections.rename(id, name),
     onMerge: (id) => this.corrections.startMerge(id),
-    onHide: (id) => void this.corrections.toggleHidden(id),
-    onLock: (id) => void this.corrections.lock(id),
+    onSplit: (id) => this.corrections.startSplit(id),
+    onHide: (id) => void this.corrections.hide(id),
+    onLock: (id) => void this.corrections.toggleLock(id),
     onDelete: (id) => void this.corrections.remove(id),
     onSelect: (id) => this.select(id, true),
     onClose: () => this.select(0, false),
@@ -59,6 +72,10 @@ export class App {
     onCommand: (command) => this.commands.run(command),
   });
   private readonly tools = new Tools(this.canvas, this.toolbar, this.status);
+  private readonly refreshes = new Rounds(
+    () => this.loadAgain(),
+    () => (this.state.info?.live ? LIVE_PAUSE_MS : 0),
+  );
   private view: MapView | null = null;
   private modeBefore: Mode = 'color';
   private asking: AbortController | null = null;
@@ -78,6 +95,7 @@ export class App {
         ...this.status.elements,
       ),
       this.commands.help.element,
+      this.corrections.log.element,
     );
     this.toolbar.setMode(this.state.mode);
     this.listenToKeys();
@@ -86,16 +104,27 @@ export class App {
   /** Loads the map and shows it; faults are shown, never thrown. */
   async start(): Promise<void> {
     try {
+      await this.waitForFrames();
       const coarse = SurfaceLoader.coarse();
-      const [info, instances] = await Promise.all([api.map(), api.instances()]);
+      const [info, instances, labels] = await loadObjects();
       this.takeMap(info, instances);
-      this.makeView(info, instances);
+      this.makeView(info);
+      this.view?.setLabels(labels);
       this.repaint();
       this.follow(await this.loadSurface(await coarse));
     } catch (error) {
       this.status.setBanner(faultText(error));
       this.status.progress(1);
     }
+  }
+
+  /** A map that is being made shows something from its first frame on. */
+  private async waitForFrames(): Promise<void> {
+    for (let info = await api.map(); info.live && info.frames === 0; info = await api.map()) {
+      this.status.setBanner('Waiting for the first frames …');
+      await new Promise((resolve) => setTimeout(resolve, FIRST_FRAME_MS));
+    }
+    this.status.setBanner('');
   }
 
   // ---------------------------------------------------------------------------- what the map is
@@ -107,22 +136,29 @@ export class App {
     this.search.setInstances(instances);
   }
 
-  /** Names or guesses changed. */
-  private async refresh(): Promise<void> {
-    const [info, instances] = await Promise.all([api.map(), api.instances()]);
+  /** Names, guesses or objects changed. */
+  private refresh(): Promise<void> {
+    return this.refreshes.request();
+  }
+
+  private async loadAgain(): Promise<void> {
+    const [info, instances, labels] = await loadObjects();
+    if (this.state.info?.live && !info.live) this.view?.setCameras(await api.cameras());
     this.takeMap(info, instances);
+    this.view?.setLabels(labels);
     this.showList();
     this.repaint();
     const editing = this.card.element.querySelector('form') !== null;
-    if (this.state.selected !== 0 && !editing) this.showCard(this.state.selected);
+    const { selected } = this.state;
+    if (selected !== 0 && !instances.some(({ id }) => id === selected)) this.select(0, false);
+    else if (selected !== 0 && !editing) this.showCard(selected);
   }
 
-  private makeView(info: MapInfo, instances: readonly Instance[]): void {
-    const largestId = instances.reduce((most, { id }) => Math.max(most, id), 0);
+  private makeView(info: MapInfo): void {
     try {
-      this.view = new MapView(this.canvas, info, largestId, {
+      this.view = new MapView(this.canvas, info, {
         onClick: (hit) => {
-          if (!this.tools.takeClick(hit)) this.select(hit?.instance ?? 0, false);
+          if (!this.tools.takeClick(hit)) this.select(hit?.instance ?? 0, false, hit?.label);
         },
         onLost: () => this.status.setBanner('The graphics driver gave up; reload this page.'),
       });
@@ -130,7 +166,7 @@ export class App {
       this.canvas.hidden = true;
       return this.status.setBanner(faultText(error));
     }
-    this.tools.view = this.corrections.view = this.commands.view = this.view;
+    this.tools.view = this.commands.view = this.view;
     this.canvas.after(this.view.measure.label);
     const observer = new ResizeObserver(() => this.coverView());
     for (const panel of [this.search.element, this.card.element]) observer.observe(panel);
@@ -172,17 +208,29 @@ export class App {
   private follow(loader: SurfaceLoader | null): void {
     const failed = (error: unknown): void => this.status.toast(faultText(error));
     const lost = 'The connection to the server is lost; trying again. What is loaded stays usable.';
+    const surfaceChanged = async (): Promise<void> => {
+      await loader?.followChanges();
+      if (this.state.info?.live) this.view?.followGrowth();
+    };
+    if (this.state.info?.live && !this.tools.isOn('path')) this.tools.toggle('path');
     listen({
       onMap: () => void this.refresh().catch(failed),
-      onMesh: () => void loader?.followChanges().catch(failed),
+      onMesh: () => void surfaceChanged().catch(failed),
+      onFrame: (frame) => this.followCamera(frame),
       onConnection: (connected) => this.status.setBanner(connected ? '' : lost),
     });
   }
 
+  private followCamera(frame: FrameEvent): void {
+    this.search.setFrames(frame.frames);
+    this.view?.addCamera(frame);
+    this.tools.pathPanel.setCount(this.view?.cameraCount ?? 0);
+  }
+
   // ------------------------------------------------------------------------------------ selection
 
-  private select(id: number, fly: boolean): void {
-    if (this.corrections.takeSelection(id)) return;
+  private select(id: number, fly: boolean, label = 0): void {
+    if (this.corrections.takeSelection(id, label)) return;
     const instance = this.state.instances.get(id) ?? null;
     this.state.selected = instance ? id : 0;
     document.body.classList.toggle('has-selection', instance !== null);
@@ -201,12 +249,8 @@ export class App {
   private showCard(id: number): void {
     const instance = this.state.instances.get(id);
     if (!instance) return;
-    const context: CardContext = {
-      find: (other) => this.state.instances.get(other),
-      can: (kind) => this.state.can(kind),
-      hidden: this.view?.surface.table.isHidden(id) ?? false,
-    };
-    this.card.show(instance, context);
+    const context: CardContext = { find: (other) => this.state.instances.get(other) };
+    this.card.show(instance);
     api.instance(id).then(
       (detail) => {
         if (this.state.selected === id) this.card.showDetail(detail, context);
@@ -268,7 +312,7 @@ export class App {
 
   /** Ends what was begun last: a merge, a tool, the selection, the query. */
   private escape(): void {
-    if (this.corrections.endMerge() || this.tools.endLast()) return;
+    if (this.corrections.endChoice() || this.tools.endLast()) return;
     if (this.state.selected !== 0) return this.select(0, false);
     if (this.state.answer) this.search.reset();
   }
@@ -284,7 +328,8 @@ export class App {
       '3': () => this.setMode('classes'),
       '4': () => this.setMode('heat'),
       f: selected((id) => this.focus(id)),
-      h: selected((id) => void this.corrections.toggleHidden(id)),
+      h: selected((id) => void this.corrections.hide(id)),
+      u: () => void this.corrections.undo(),
       n: selected(() => this.card.startRename()),
       m: () => this.tools.toggle('measure'),
       x: () => this.tools.toggle('section'),

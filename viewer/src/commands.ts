@@ -18,6 +18,7 @@ export class Commands {
   constructor(
     private readonly status: Status,
     private readonly title: () => string,
+    private readonly showLog: () => void,
   ) {}
 
   set view(view: MapView) {
@@ -29,6 +30,7 @@ export class Commands {
     if (command === 'help') this.help.toggle();
     if (command === 'home') this.shown?.frameAll(true);
     if (command === 'theme') this.switchTheme();
+    if (command === 'log') this.showLog();
     if (command === 'picture') void this.savePicture();
     if (command === 'download') void this.saveGlb();
   }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
-import type { Answer, CorrectionKind, Instance, MapInfo } from './api/types';
+import type { Answer, Instance, MapInfo } from './api/types';
 import type { Mode } from './scene/coloring';
 import { titleOf } from './ui/words';
 
@@ -21,10 +21,5 @@ export class MapState {
   titleOf(id: number): string {
     const instance = this.instances.get(id);
     return instance ? titleOf(instance) : `Object ${id}`;
-  }
-
-  /** Whether the map can keep such a correction. */
-  can(kind: CorrectionKind): boolean {
-    return this.info?.corrections.includes(kind) ?? false;
   }
 }

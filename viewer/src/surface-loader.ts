@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import { api } from './api/client';
 import type { Cameras, MeshListing } from './api/types';
-import { chunkKey, loadChunks } from './mesh/chunk-loader';
+import { chunkKey, loadChunks, type ProgressListener } from './mesh/chunk-loader';
+import { Rounds } from './rounds';
 import type { MapView } from './scene/map-view';
 
 const COARSE = 1;
@@ -10,7 +11,11 @@ const FINE = 0;
 
 /** Fetches the surface: the coarse level for the first picture, then all of it, then what changed. */
 export class SurfaceLoader {
-  private version = 0;
+  private readonly versions = [0, 0]; // by level
+  private readonly rounds = new Rounds(
+    () => this.takeChanges(),
+    () => 0,
+  );
 
   constructor(
     private readonly view: MapView,
@@ -25,12 +30,7 @@ export class SurfaceLoader {
   async loadFirst(coarse: MeshListing): Promise<Cameras> {
     const { view } = this;
     view.holdStill(true);
-    const surface = loadChunks(
-      COARSE,
-      coarse.chunks,
-      (chunk, at) => view.put(chunkKey(at), chunk),
-      () => this.onProgress(0.05),
-    );
+    const surface = this.take(coarse, () => this.onProgress(0.05));
     const [cameras] = await Promise.all([api.cameras(), surface]);
     view.setCameras(cameras);
     view.frameAll(false);
@@ -39,21 +39,33 @@ export class SurfaceLoader {
   }
 
   async loadAll(): Promise<void> {
-    const fine = await api.chunks(FINE);
-    this.version = fine.version;
-    await loadChunks(
-      FINE,
-      fine.chunks,
-      (chunk, at) => this.view.put(chunkKey(at), chunk),
-      (done, total) => this.onProgress(total === 0 ? 1 : done / total),
+    await this.take(await api.chunks(FINE), (done, total) =>
+      this.onProgress(total === 0 ? 1 : done / total),
     );
     this.onProgress(1);
-    this.view.surface.keepOnly(new Set(fine.chunks.map(chunkKey)));
     this.view.surfaceChanged();
   }
 
-  async followChanges(): Promise<void> {
-    const info = await api.map();
-    if (info.mesh_version > this.version) await this.loadAll();
+  /** Brings the surface up to date. */
+  followChanges(): Promise<void> {
+    return this.rounds.request();
+  }
+
+  private async takeChanges(): Promise<void> {
+    for (const level of [FINE, COARSE])
+      await this.take(await api.chunks(level, this.versions[level]), () => undefined);
+    this.view.surfaceChanged();
+  }
+
+  private async take(listing: MeshListing, onProgress: ProgressListener): Promise<void> {
+    const since = this.versions[listing.level]!;
+    await loadChunks(
+      listing.level,
+      listing.chunks,
+      since,
+      (chunk, at) => this.view.put(chunkKey(at), chunk),
+      onProgress,
+    );
+    this.versions[listing.level] = listing.version;
   }
 }

@@ -35,6 +35,10 @@ export class Tools {
     if (tool === 'path') this.setPath(on);
   }
 
+  isOn(tool: Tool): boolean {
+    return this.active.has(tool);
+  }
+
   /** Ends the tool that was begun last. Whether there was one. */
   endLast(): boolean {
     const tool = [...this.active].pop();

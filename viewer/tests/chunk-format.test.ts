@@ -24,7 +24,7 @@ test('reads what the server writes', () => {
   expect([...chunk.positions.slice(4, 7)]).toEqual([32768, 0, 0]);
   expect(chunk.positions[14]).toBe(65535);
   expect([...chunk.colors.slice(8, 12)]).toEqual([0, 0, 255, 0]);
-  expect([...chunk.instances]).toEqual([1, 1, 70000, 0, 2, 2, 2]);
+  expect([...chunk.labels]).toEqual([1, 1, 70000, 0, 2, 2, 2]);
   expect([...chunk.indices]).toEqual([0, 1, 2, 0, 2, 3, 6, 5, 4]);
 });
 

@@ -12,6 +12,7 @@ export function instance(id: number, more: Partial<Instance> = {}): Instance {
     box: { min: [0, 0, 0], max: [1, 2, 3] },
     centroid: [0.5, 1, 1.5],
     points: 10,
+    locked: false,
     views: 3,
     crops: [],
     ...more,

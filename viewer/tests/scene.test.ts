@@ -12,7 +12,7 @@ import {
   trimmedBox,
   viewpointOf,
 } from '../src/scene/framing';
-import { InstanceTable, NO_INSTANCE } from '../src/scene/instance-table';
+import { LabelTable, NO_INSTANCE } from '../src/scene/label-table';
 import { metres } from '../src/scene/measure';
 import { sectionPlane } from '../src/scene/section';
 import { instance } from './instance-fixture';
@@ -30,35 +30,62 @@ describe('colours', () => {
     expect(rampColor(RAMP, 3)).toEqual([200, 200, 200]);
   });
 
+  const at = (table: LabelTable, label: number): number[] => [
+    ...table.pixels.slice(label * 4, label * 4 + 4),
+  ];
+
   test('each mode paints its own colour', () => {
-    const table = new InstanceTable(300);
-    expect([table.width, table.height]).toEqual([256, 2]);
+    const table = new LabelTable();
+    table.setLabels({ version: 1, instances: [0, 2, 2, 300, 7], hidden: [] });
     const instances = [
       instance(2, { class: { id: 9, name: 'mug', color: [9, 9, 9] } }),
       instance(300),
     ];
-    const at = (id: number): number[] => [...table.pixels.slice(id * 4, id * 4 + 4)];
     const heat = new Map([[2, 1]]);
     paint(table, { mode: 'instances', instances, heat, ramp: RAMP });
-    expect(at(2)).toEqual([2, 0, 0, 255]);
-    expect(at(3)).toEqual([...NO_INSTANCE, 255]);
+    expect(at(table, 1)).toEqual([2, 0, 0, 255]);
+    expect(at(table, 2)).toEqual([2, 0, 0, 255]);
+    expect(at(table, 4)).toEqual([...NO_INSTANCE, 255]);
     paint(table, { mode: 'classes', instances, heat, ramp: RAMP });
-    expect(at(2)).toEqual([9, 9, 9, 255]);
-    expect(at(300)).toEqual([...NO_INSTANCE, 255]);
+    expect(at(table, 1)).toEqual([9, 9, 9, 255]);
+    expect(at(table, 3)).toEqual([...NO_INSTANCE, 255]);
     paint(table, { mode: 'heat', instances, heat, ramp: RAMP });
-    expect(at(2)).toEqual([200, 200, 200, 255]);
-    expect(at(300)).toEqual([0, 0, 0, 255]);
+    expect(at(table, 1)).toEqual([200, 200, 200, 255]);
+    expect(at(table, 0)).toEqual([0, 0, 0, 255]);
   });
 
-  test('what is hidden stays so when colours change', () => {
-    const table = new InstanceTable(5);
-    table.hide(2, true);
-    paint(table, { mode: 'instances', instances: [instance(2)], heat: new Map(), ramp: RAMP });
-    expect(table.pixels[11]).toBe(0);
-    table.hide(2, false);
-    expect(table.pixels[11]).toBe(255);
-    table.hide(99999, true); // an object that came after the table was made
-    expect(table.isHidden(99999)).toBe(true);
+  test('a surface takes the colour of the object it belongs to by now', () => {
+    const table = new LabelTable();
+    table.paint(
+      new Map([
+        [1, [1, 1, 1] as Color],
+        [2, [2, 2, 2] as Color],
+      ]),
+      NO_INSTANCE,
+    );
+    table.setLabels({ version: 1, instances: [0, 1, 2], hidden: [] });
+    expect(at(table, 2)).toEqual([2, 2, 2, 255]);
+    table.select(1);
+    expect([at(table, 1)[3], at(table, 2)[3]]).toEqual([128, 255]);
+    table.setLabels({ version: 2, instances: [0, 1, 1], hidden: [] }); // merged
+    expect(at(table, 2)).toEqual([1, 1, 1, 128]);
+    table.setLabels({ version: 3, instances: [0, 1, 2], hidden: [2] });
+    expect(at(table, 2)[3]).toBe(0);
+    expect([table.isHidden(2), table.isHidden(1), table.isHidden(99999)]).toEqual([
+      true,
+      false,
+      false,
+    ]);
+  });
+
+  test('grows with the labels', () => {
+    const table = new LabelTable();
+    expect([table.width, table.height]).toEqual([256, 1]);
+    table.setLabels({ version: 1, instances: Array.from({ length: 700 }, () => 1), hidden: [] });
+    expect(table.height).toBe(4);
+    expect(table.pixels.length).toBe(256 * 4 * 4);
+    expect(table.instanceOf(699)).toBe(1);
+    expect(table.instanceOf(700)).toBe(0);
   });
 });
 

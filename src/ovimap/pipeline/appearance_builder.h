@@ -64,6 +64,9 @@ class AppearanceBuilder {
   /// All that was gathered; call finish() first.
   Appearances take() { return std::move(appearances_); }
 
+  /// What is gathered by now: views that the encoder has not answered have no embedding yet.
+  const Appearances& appearances() const { return appearances_; }
+
   /// The present moment, to be stored: what the encoder answers later still comes to it while views
   /// are chosen. One at a time.
   std::shared_ptr<PendingAppearances> remember();

@@ -44,6 +44,8 @@ class Checkpointer {
   void end_frames(Mapper& mapper);
   /// Adds what tiles' leaving memory and coming back took (TileKeeper::report).
   void report(StageTimers& timers) { tiles_->report(timers); }
+  /// The log of corrections, as later checkpoints keep it.
+  void set_edits(MapEdits edits) { header_.edits = std::move(edits); }
   /// The map is saved: no checkpoint is needed any more.
   void remove();
 

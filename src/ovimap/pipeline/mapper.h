@@ -66,6 +66,8 @@ class Mapper {
   /// The map seen from a frame's depth camera, guided by its depth (method section 8).
   InstanceView project(const Frame& frame);
 
+  /// What objects look like now; views that the encoder has not answered have no embedding yet.
+  const Appearances& appearances() const { return builder_->appearances(); }
   /// What objects look like now, to be stored (AppearanceBuilder::remember).
   std::shared_ptr<PendingAppearances> remember_appearances() { return builder_->remember(); }
   /// What is to be stored beside the voxels, but for what the objects look like and what is found

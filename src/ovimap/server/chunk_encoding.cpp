@@ -13,7 +13,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little,
               "chunks are written as they lie in memory");
 
-constexpr std::uint16_t kFormatVersion = 1;
+constexpr std::uint16_t kFormatVersion = 2;
 
 class ByteWriter {
  public:
@@ -105,8 +105,8 @@ std::string encode_chunk(const MeshChunk& chunk, const ChunkGrid& grid, int leve
   Totals totals;
   for_each_newer(chunk, since, [&](const SurfacePatch& patch) {
     ++totals.patches;
-    totals.vertices += static_cast<std::uint32_t>(patch.mesh.vertices.size());
-    totals.triangles += static_cast<std::uint32_t>(patch.mesh.triangles.size());
+    totals.vertices += static_cast<std::uint32_t>(patch.mesh->vertices.size());
+    totals.triangles += static_cast<std::uint32_t>(patch.mesh->triangles.size());
   });
   ByteWriter out;
   out.reserve(56 + 28 * std::size_t{totals.patches} + 16 * std::size_t{totals.vertices} +
@@ -114,23 +114,23 @@ std::string encode_chunk(const MeshChunk& chunk, const ChunkGrid& grid, int leve
   put_header(out, chunk, grid, level, totals);
   for_each_newer(chunk, since, [&](const SurfacePatch& patch) {
     out.put(patch.block);
-    out.put(static_cast<std::uint32_t>(patch.mesh.vertices.size()));
-    out.put(static_cast<std::uint32_t>(patch.mesh.triangles.size()));
+    out.put(static_cast<std::uint32_t>(patch.mesh->vertices.size()));
+    out.put(static_cast<std::uint32_t>(patch.mesh->triangles.size()));
     out.put(patch.version);
   });
   const Eigen::Vector3f origin = grid.origin(chunk.index);
   for_each_newer(chunk, since,
-                 [&](const SurfacePatch& patch) { put_positions(out, patch.mesh, grid, origin); });
-  for_each_newer(chunk, since, [&](const SurfacePatch& patch) { put_colors(out, patch.mesh); });
+                 [&](const SurfacePatch& patch) { put_positions(out, *patch.mesh, grid, origin); });
+  for_each_newer(chunk, since, [&](const SurfacePatch& patch) { put_colors(out, *patch.mesh); });
   for_each_newer(chunk, since, [&](const SurfacePatch& patch) {
-    for (std::size_t v = 0; v < patch.mesh.vertices.size(); ++v)
-      out.put(patch.mesh.labels.empty() ? std::uint32_t{0} : patch.mesh.labels[v]);
+    for (std::size_t v = 0; v < patch.mesh->vertices.size(); ++v)
+      out.put(patch.mesh->labels.empty() ? std::uint32_t{0} : patch.mesh->labels[v]);
   });
   std::uint32_t first = 0;
   for_each_newer(chunk, since, [&](const SurfacePatch& patch) {
-    for (const auto& triangle : patch.mesh.triangles)
+    for (const auto& triangle : patch.mesh->triangles)
       for (const std::uint32_t corner : triangle) out.put(first + corner);
-    first += static_cast<std::uint32_t>(patch.mesh.vertices.size());
+    first += static_cast<std::uint32_t>(patch.mesh->vertices.size());
   });
   return out.take();
 }

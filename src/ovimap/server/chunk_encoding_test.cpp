@@ -24,21 +24,22 @@ MeshChunk two_patches() {
   MeshChunk chunk;
   chunk.index = {0, 0, 0};
   chunk.version = 5;
-  SurfacePatch first{{0, 0, 0}, 5, {}}, second{{1, 2, 3}, 3, {}};
-  first.mesh.vertices = {{0.005f, 0.005f, 0.005f},
-                         {0.645f, 0.005f, 0.005f},
-                         {0.645f, 0.645f, 0.005f},
-                         {0.005f, 0.645f, 1.285f}};
-  first.mesh.normals = {{0, 0, 1}, {1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
-  first.mesh.colors = {{255, 0, 0}, {0, 255, 0}, {0, 0, 255}, {10, 20, 30}};
-  first.mesh.labels = {1, 1, 70000, 0};
-  first.mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-  second.mesh.vertices = {{0.325f, 0.325f, 0.325f}, {0.4f, 0.5f, 0.6f}, {0.7f, 0.8f, 0.9f}};
-  second.mesh.normals = {{0.6f, 0.f, 0.8f}, {-0.6f, 0.f, -0.8f}, {0.f, 0.6f, -0.8f}};
-  second.mesh.colors = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}};
-  second.mesh.labels = {2, 2, 2};
-  second.mesh.triangles = {{2, 1, 0}};
-  chunk.patches = {first, second};
+  Mesh first, second;
+  first.vertices = {{0.005f, 0.005f, 0.005f},
+                    {0.645f, 0.005f, 0.005f},
+                    {0.645f, 0.645f, 0.005f},
+                    {0.005f, 0.645f, 1.285f}};
+  first.normals = {{0, 0, 1}, {1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
+  first.colors = {{255, 0, 0}, {0, 255, 0}, {0, 0, 255}, {10, 20, 30}};
+  first.labels = {1, 1, 70000, 0};
+  first.triangles = {{0, 1, 2}, {0, 2, 3}};
+  second.vertices = {{0.325f, 0.325f, 0.325f}, {0.4f, 0.5f, 0.6f}, {0.7f, 0.8f, 0.9f}};
+  second.normals = {{0.6f, 0.f, 0.8f}, {-0.6f, 0.f, -0.8f}, {0.f, 0.6f, -0.8f}};
+  second.colors = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}};
+  second.labels = {2, 2, 2};
+  second.triangles = {{2, 1, 0}};
+  chunk.patches = {{{0, 0, 0}, 5, std::make_shared<Mesh>(first)},
+                   {{1, 2, 3}, 3, std::make_shared<Mesh>(second)}};
   return chunk;
 }
 
@@ -62,7 +63,7 @@ TEST(ChunkEncodingTest, IsWhatTheViewerReads) {
 TEST(ChunkEncodingTest, LiesAsDocumented) {
   const std::string bytes = encode_chunk(two_patches(), kGrid, 1);
   EXPECT_EQ(bytes.substr(0, 4), "OVMC");
-  EXPECT_EQ(at<std::uint16_t>(bytes, 4), 1);
+  EXPECT_EQ(at<std::uint16_t>(bytes, 4), 2);
   EXPECT_EQ(at<std::uint16_t>(bytes, 6), 1);
   EXPECT_FLOAT_EQ(at<float>(bytes, 20), 0.005f);
   EXPECT_FLOAT_EQ(at<float>(bytes, 32), 1.28f);
@@ -89,9 +90,10 @@ TEST(ChunkEncodingTest, LeavesOutWhatIsOld) {
 TEST(ChunkEncodingTest, SurvivesSurfaceWithoutAttributes) {
   MeshChunk chunk = two_patches();
   for (SurfacePatch& patch : chunk.patches) {
-    patch.mesh.normals.clear();
-    patch.mesh.colors.clear();
-    patch.mesh.labels.clear();
+    auto bare = std::make_shared<Mesh>();
+    bare->vertices = patch.mesh->vertices;
+    bare->triangles = patch.mesh->triangles;
+    patch.mesh = bare;
   }
   EXPECT_EQ(encode_chunk(chunk, kGrid, 0).size(), encode_chunk(two_patches(), kGrid, 0).size());
 }

@@ -106,7 +106,10 @@ TEST_F(HttpClientsTest, EventsReachTheirListenersAndEndWithTheServer) {
     ASSERT_FALSE(piece.empty());
     heard += piece;
   }
-  running_->map().correct({CorrectionKind::kRename, 1, "cup", 0, true});
+  MapEdit rename;
+  rename.instances = {1};
+  rename.name = "cup";
+  running_->map().correct(rename);
   while (heard.find("event: map") == std::string::npos) {
     const std::string piece = listener.receive();
     ASSERT_FALSE(piece.empty());

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ovimap/io/map_edits.h"
 #include "ovimap/io/map_file_fixture.h"
 #include "ovimap/server/server_fixture.h"
 
@@ -14,7 +15,14 @@ using nlohmann::json;
 
 class HttpServerTest : public MapFolder {
  protected:
-  HttpServerTest() { save_map(map_, random_document(40, 3)); }
+  HttpServerTest() {
+    MapDocument document = random_document(40, 3);
+    const LabelForest& forest = document.map.labels();
+    std::vector<Label>& own = document.instances[1].super_points;
+    for (Label label = 5; own.size() < 2; ++label)
+      if (forest.root(label) == label) own.push_back(label);
+    save_map(map_, document);
+  }
 
   fixture::RunningServer& serve(ServerConfig config = {}) {
     ServedMapConfig served;
@@ -54,7 +62,7 @@ TEST_F(HttpServerTest, DescribesTheMap) {
   EXPECT_EQ(map["title"], "room");
   EXPECT_EQ(map["instances"], 2);
   EXPECT_EQ(map["frames"], 3);
-  EXPECT_EQ(map["corrections"], json({"rename"}));
+  EXPECT_EQ(map["live"], false);
   EXPECT_EQ(map["heat_ramp"].size(), 16u);
   const json cameras = get("/api/cameras");
   EXPECT_EQ(cameras["frames"].size(), 3u);
@@ -108,8 +116,6 @@ TEST_F(HttpServerTest, RefusesWhatDoesNotExist) {
     EXPECT_FALSE(get(path, 404)["error"].get<std::string>().empty()) << path;
   for (const char* path : {"/api/mesh?level=x", "/api/mesh?level=5", "/api/mesh?since=-1"})
     EXPECT_FALSE(get(path, 400)["error"].get<std::string>().empty()) << path;
-  EXPECT_NE(get("/api/export.glb", 501)["error"].get<std::string>().find("export"),
-            std::string::npos);
 }
 
 TEST_F(HttpServerTest, RefusesBadBodies) {
@@ -144,26 +150,124 @@ TEST_F(HttpServerTest, KeepsNamesInTheMapFile) {
   const json done = post("/api/corrections", rename("Küchentisch"), 200);
   EXPECT_GT(done["version"], before["version"]);
   EXPECT_EQ(get("/api/instances")["instances"][1]["name"], "Küchentisch");
-  EXPECT_EQ(load_map(map_).names.at(3), "Küchentisch");
-  EXPECT_EQ(load_map(map_).names.size(), 3u);  // the other ones stay
+  EXPECT_EQ(load_corrected_map(map_).names.at(3), "Küchentisch");
+  EXPECT_EQ(load_map(map_).names, random_document(40, 3).names);  // what was there stays
   post("/api/corrections", rename(""), 200);
-  EXPECT_FALSE(load_map(map_).names.contains(3));
-  post("/api/corrections", rename("two\nlines"), 400);
-  post("/api/corrections", rename(std::string(300, 'x')), 400);
+  EXPECT_FALSE(load_corrected_map(map_).names.contains(3));
+  post("/api/corrections", rename("two\nlines"), 409);
+  post("/api/corrections", rename(std::string(300, 'x')), 409);
   EXPECT_EQ(get("/api/instances")["instances"][1]["name"], "");
+}
+
+TEST_F(HttpServerTest, ShowsAMapAsItWasCorrectedBefore) {
+  MapEdit edit;
+  edit.action = EditAction::kDelete;
+  edit.instances = {1};
+  edit_map(map_, edit);
+  edit.action = EditAction::kRename;
+  edit.instances = {3};
+  edit.name = "table";
+  edit_map(map_, edit);
+  serve();
+  const json instances = get("/api/instances")["instances"];
+  ASSERT_EQ(instances.size(), 1u);  // and the search knows no more
+  EXPECT_EQ(instances[0]["id"], 3);
+  EXPECT_EQ(instances[0]["name"], "table");
+  EXPECT_EQ(get("/api/instances/3")["name"], "table");
+  get("/api/instances/1", 404);
+  const json labels = get("/api/labels");
+  for (const json& id : labels["instances"]) EXPECT_NE(id, 1);
+}
+
+TEST_F(HttpServerTest, MergesHidesDeletesLocksAndUndoes) {
+  serve();
+  const auto correct = [&](json body, int status = 200) {
+    return post("/api/corrections", body.dump(), status);
+  };
+  const auto ids = [&] {
+    json list = json::array();
+    const json reply = get("/api/instances");
+    for (const json& instance : reply["instances"]) list.push_back(instance["id"]);
+    return list;
+  };
+  const auto labels_of = [&](int id) {
+    const json table = get("/api/labels")["instances"];
+    return std::count(table.begin(), table.end(), json(id));
+  };
+  const auto one = labels_of(1), three = labels_of(3);
+  ASSERT_GT(three, 0);
+  EXPECT_EQ(correct({{"kind", "merge"}, {"instance", 3}, {"into", 1}})["edit"], 1);
+  EXPECT_EQ(ids(), json({1}));
+  EXPECT_EQ(labels_of(1), one + three);
+  EXPECT_EQ(correct({{"kind", "undo"}})["edit"], 2);
+  EXPECT_EQ(ids(), json({1, 3}));
+
+  correct({{"kind", "hide"}, {"instance", 3}});
+  EXPECT_EQ(ids(), json({1}));
+  EXPECT_EQ(get("/api/labels")["hidden"], json({3}));
+  correct({{"kind", "hide"}, {"instance", 3}}, 409);
+  correct({{"kind", "undo"}, {"edit", 3}});
+
+  correct({{"kind", "lock"}, {"instance", 1}});
+  EXPECT_EQ(get("/api/instances/1")["locked"], true);
+  EXPECT_NE(correct({{"kind", "delete"}, {"instance", 1}}, 409)["error"].get<std::string>().find(
+                "locked"),
+            std::string::npos);
+  correct({{"kind", "delete"}, {"instance", 3}});
+  EXPECT_EQ(ids(), json({1}));
+  EXPECT_EQ(labels_of(3), 0);
+
+  const json log = get("/api/corrections")["corrections"];
+  ASSERT_EQ(log.size(), 6u);
+  EXPECT_EQ(log[0]["kind"], "merge");
+  EXPECT_EQ(log[0]["instances"], json({1, 3}));
+  EXPECT_EQ(log[0]["undone_by"], 2);
+  EXPECT_TRUE(log[5]["undone_by"].is_null());
+  running_.reset();
+  serve();  // all of it is in the file
+  EXPECT_EQ(ids(), json({1}));
+  EXPECT_EQ(get("/api/corrections")["corrections"], log);
+}
+
+TEST_F(HttpServerTest, TakesObjectsApart) {
+  serve();
+  const json parts = get("/api/instances/3")["super_points"];
+  ASSERT_EQ(parts.size(), 2u);
+  json body = {{"kind", "split"}, {"instance", 3}, {"super_points", parts}};
+  post("/api/corrections", body.dump(), 409);  // something must stay
+  body["super_points"] = json::array({parts[0]});
+  post("/api/corrections", body.dump(), 200);
+  const json instances = get("/api/instances")["instances"];
+  ASSERT_EQ(instances.size(), 3u);
+  EXPECT_EQ(get("/api/labels")["instances"][parts[0].get<std::size_t>()], instances[2]["id"]);
+  EXPECT_EQ(get("/api/labels")["instances"][parts[1].get<std::size_t>()], 3);
+}
+
+TEST_F(HttpServerTest, HandsOutTheSurfaceAsGlb) {
+  serve();
+  const auto whole = running_->client().Get("/api/export.glb");
+  ASSERT_TRUE(whole);
+  EXPECT_EQ(whole->status, 200);
+  EXPECT_EQ(whole->get_header_value("Content-Type"), "model/gltf-binary");
+  EXPECT_EQ(whole->body.substr(0, 4), "glTF");
+  post("/api/corrections", R"({"kind":"hide","instance":3})", 200);
+  EXPECT_LT(running_->client().Get("/api/export.glb")->body.size(), whole->body.size());
 }
 
 TEST_F(HttpServerTest, RefusesBadCorrections) {
   serve();
   post("/api/corrections", R"({"kind":"rename","instance":2,"name":"x"})", 404);
-  post("/api/corrections", R"({"kind":"rename","instance":1})", 400);
-  post("/api/corrections", R"({"kind":"rename","name":"x"})", 400);
-  post("/api/corrections", R"({"kind":"paint","instance":1})", 400);
-  post("/api/corrections", R"({"kind":"merge","instance":1})", 400);
-  for (const char* kind : {"hide", "lock", "delete"})
-    post("/api/corrections", json{{"kind", kind}, {"instance", 1}}.dump(), 409);
-  post("/api/corrections", R"({"kind":"merge","instance":1,"into":3})", 409);
-  post("/api/corrections", R"({"kind":"rename","instance":1,"name":"x","into":3})", 400);
+  for (const char* body :
+       {R"({"kind":"rename","instance":1})", R"({"kind":"rename","name":"x"})",
+        R"({"kind":"paint","instance":1})", R"({"kind":"merge","instance":1})",
+        R"({"kind":"rename","instance":1,"name":"x","into":3})", R"({"kind":"undo","instance":1})",
+        R"({"kind":"undo","edit":-1})", R"({"kind":"hide","instance":0})",
+        R"({"kind":"split","instance":3})", R"({"kind":"split","instance":3,"super_points":[]})",
+        R"({"kind":"split","instance":3,"super_points":["a"]})"})
+    post("/api/corrections", body, 400);
+  post("/api/corrections", R"({"kind":"undo"})", 409);
+  post("/api/corrections", R"({"kind":"undo","edit":9})", 409);
+  post("/api/corrections", R"({"kind":"merge","instance":1,"into":1})", 409);
 }
 
 TEST_F(HttpServerTest, GoesOnWhenTheMapIsDeleted) {

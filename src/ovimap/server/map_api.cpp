@@ -3,26 +3,23 @@
 #include "ovimap/server/map_api.h"
 
 #include <charconv>
-#include <cmath>
 
 #include <nlohmann/json.hpp>
 
 #include "ovimap/base/error.h"
+#include "ovimap/io/glb.h"
 #include "ovimap/server/chunk_encoding.h"
+#include "ovimap/server/correction_json.h"
 #include "ovimap/server/event_stream.h"
 #include "ovimap/server/map_json.h"
+#include "ovimap/server/request_body.h"
+#include "ovimap/server/surface_measure.h"
 
 namespace ovimap {
 
 namespace {
 
 using nlohmann::json;
-
-/// The request itself is wrong; its text becomes a reply of that status.
-struct BadRequest : std::runtime_error {
-  BadRequest(int code, const std::string& sentence) : std::runtime_error(sentence), status(code) {}
-  int status;
-};
 
 HttpReply json_reply(const json& value, int status = 200) {
   return text_reply(status, "application/json",
@@ -49,56 +46,6 @@ InstanceId instance_of(const HttpRequest& request) {
   return whole_number<InstanceId>(request.segments[0], "an object's id", 404);
 }
 
-json body_of(const HttpRequest& request) {
-  if (!request.header("content-type").starts_with("application/json"))
-    throw BadRequest(415, "send the body as Content-Type: application/json");
-  json body = json::parse(request.body, nullptr, false);
-  if (body.is_discarded()) throw BadRequest(400, "the body is no JSON; see /api/openapi.json");
-  if (!body.is_object()) throw BadRequest(400, "the body must be a JSON object");
-  return body;
-}
-
-void check_keys(const json& body, std::initializer_list<const char*> known) {
-  for (const auto& [key, value] : body.items()) {
-    if (std::find(known.begin(), known.end(), key) == known.end())
-      throw BadRequest(400, concat("'", key,
-                                   "' is no field of this request; see "
-                                   "/api/openapi.json"));
-  }
-}
-
-/// Whether JSON counts it as a whole number in [0, most]: 12.0 is one as well.
-bool is_whole(const json& value, double most) {
-  if (!value.is_number()) return false;
-  const double number = value.get<double>();
-  return number >= 0 && number <= most && number == std::floor(number);
-}
-
-/// Field `name` of a body. Throws BadRequest when its type is another.
-template <class Value>
-std::optional<Value> field(const json& body, const char* name) {
-  if (!body.contains(name)) return std::nullopt;
-  const json& value = body[name];
-  bool fits = value.is_string();
-  if constexpr (std::is_same_v<Value, bool>)
-    fits = value.is_boolean();
-  else if constexpr (std::is_integral_v<Value>)
-    fits = is_whole(value, static_cast<double>(std::numeric_limits<Value>::max()));
-  if (!fits)
-    throw BadRequest(400, concat("'", name, "' is of the wrong type; see /api/openapi.json"));
-  return value.get<Value>();
-}
-
-std::vector<std::string> texts_field(const json& body, const char* name) {
-  if (!body.contains(name)) return {};
-  const json& list = body[name];
-  if (!list.is_array() ||
-      !std::all_of(list.begin(), list.end(), [](const json& item) { return item.is_string(); }))
-    throw BadRequest(400, concat("'", name, "' must be a list of texts"));
-  if (list.size() > 100) throw BadRequest(400, concat("'", name, "' has more than 100 entries"));
-  return list.get<std::vector<std::string>>();
-}
-
 HttpReply show_instance(const ServedMap& map, const HttpRequest& request) {
   const InstanceId id = instance_of(request);
   if (!map.snapshot()->index().find(id))
@@ -118,7 +65,7 @@ HttpReply show_crop(const ServedMap& map, const HttpRequest& request) {
                              "; 'crops' of the object lists those it has"));
   const Bytes& jpeg = look->second.views[ordinal].crop.image_jpeg;
   HttpReply reply = text_reply(200, "image/jpeg", std::string(jpeg.begin(), jpeg.end()));
-  reply.headers["Cache-Control"] = "private, max-age=3600";
+  reply.headers["Cache-Control"] = "private, no-cache";
   return reply;
 }
 
@@ -171,58 +118,23 @@ HttpReply show_chunk(const ServedMap& map, const HttpRequest& request) {
                                  query_number<std::uint64_t>(request, "since", 0)));
 }
 
-/// The correction that a body asks for; each kind has fields of its own.
-Correction correction_of(const json& body) {
-  const auto known = correction_kind(field<std::string>(body, "kind").value_or(""));
-  const auto instance = field<InstanceId>(body, "instance");
-  if (!known) throw BadRequest(400, "'kind' is one of rename, merge, hide, lock, delete");
-  if (!instance) throw BadRequest(400, "'instance' is missing: the id of an object");
-  const CorrectionKind kind = *known;
-  Correction correction{kind, *instance, {}, 0, true};
-  switch (kind) {
-    case CorrectionKind::kRename:
-      check_keys(body, {"kind", "instance", "name"});
-      if (!body.contains("name"))
-        throw BadRequest(400, "'name' is missing; an empty one takes the name away");
-      correction.name = *field<std::string>(body, "name");
-      check_name(correction.name);
-      break;
-    case CorrectionKind::kMerge:
-      check_keys(body, {"kind", "instance", "into"});
-      correction.into = field<InstanceId>(body, "into").value_or(0);
-      if (correction.into == 0)
-        throw BadRequest(400, "'into' is missing: the id of the object that stays");
-      break;
-    case CorrectionKind::kHide:
-    case CorrectionKind::kLock:
-      check_keys(body, {"kind", "instance", "on"});
-      correction.on = field<bool>(body, "on").value_or(true);
-      break;
-    case CorrectionKind::kDelete:
-      check_keys(body, {"kind", "instance"});
-      break;
-  }
-  return correction;
-}
-
 HttpReply correct(ServedMap& map, const HttpRequest& request) {
-  const Correction correction = correction_of(body_of(request));
-  const auto kinds = map.correctable();
-  if (std::find(kinds.begin(), kinds.end(), correction.kind) == kinds.end())
-    return fault(409, concat("this map cannot keep a '", correction_name(correction.kind),
-                             "' yet; GET /api/map lists under 'corrections' what it keeps"));
-  if (!map.snapshot()->index().find(correction.instance))
-    return fault(404, concat("the map has no object ", correction.instance));
+  const MapEdit edit = edit_of(body_of(request));
+  for (const InstanceId id : edit.instances)
+    if (!map.snapshot()->knows(id)) return fault(404, concat("the map has no object ", id));
   try {
-    map.correct(correction);
-  } catch (const Error& error) {  // the request is sound; the file is not as it should be
+    const MapEdit kept = map.correct(edit);
+    return json_reply({{"version", map.snapshot()->version}, {"edit", kept.id}});
+  } catch (const Error& error) {  // the request is sound, but makes no sense in this map
     return fault(409, error.what());
   }
-  return json_reply({{"version", map.snapshot()->version}});
 }
 
-HttpReply no_glb() {
-  return fault(501, "this version cannot write GLB; use `ovimap export MAP OUT.ply`");
+HttpReply export_glb(const ServedMap& map) {
+  const auto now = map.snapshot();
+  const Bytes glb = encode_glb(labelled_surface(map.mesh(), now->instance_of_label, now->hidden()),
+                               now->record->instances, now->record->names, now->record->up);
+  return text_reply(200, "model/gltf-binary", std::string(glb.begin(), glb.end()));
 }
 
 /// Turns what a handler throws into replies.
@@ -261,7 +173,9 @@ Router map_api(ServedMap& map) {
   get("/api/mesh/{level}/{x}/{y}/{z}", [&map](Request r) { return show_chunk(map, r); });
   get("/api/cameras", [&map](Request) { return json_reply(cameras_json(map)); });
   get("/api/events", [&map](Request r) { return event_stream(map.events(), r); });
-  get("/api/export.glb", [](Request) { return no_glb(); });
+  get("/api/export.glb", [&map](Request) { return export_glb(map); });
+  get("/api/labels", [&map](Request) { return json_reply(labels_json(map)); });
+  get("/api/corrections", [&map](Request) { return json_reply(corrections_json(map)); });
   post("/api/query", [&map](Request r) { return answer_query(map, r); });
   post("/api/corrections", [&map](Request r) { return correct(map, r); });
   return router;

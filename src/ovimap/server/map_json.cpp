@@ -3,14 +3,15 @@
 #include "ovimap/server/map_json.h"
 
 #include <cmath>
-#include <cstdio>
 #include <span>
 
 #include <nlohmann/json.hpp>
 
 #include "ovimap/base/error.h"
 #include "ovimap/base/version.h"
+#include "ovimap/io/map_file_record.h"
 #include "ovimap/io/palette.h"
+#include "ovimap/server/correction_json.h"
 #include "ovimap/server/neighbors.h"
 
 namespace ovimap {
@@ -98,18 +99,13 @@ json instance_json(const MapSnapshot& now, std::size_t position) {
           {"centroid", point(instance.centroid)},
           {"points", instance.points},
           {"views", instance.views},
+          {"locked", now.record->locked.contains(instance.id)},
           {"crops", crops_of(now, instance.id)}};
 }
 
 std::size_t position_of(const MapSnapshot& now, InstanceId id) {
   if (const auto position = now.index().find(id)) return *position;
   throw Error(concat("the map has no object ", id, "; GET /api/instances lists those it has"));
-}
-
-std::string hex(std::uint64_t value) {
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
-  return text;
 }
 
 json match_json(const MapSnapshot& now, const QueryMatch& match) {
@@ -132,13 +128,11 @@ json camera_json(const PinholeCamera& camera) {
 json map_json(const ServedMap& map) {
   const auto now = map.snapshot();
   const MapInfo& info = now->objects->info;
-  json kinds = json::array();
-  for (const CorrectionKind kind : map.correctable()) kinds.push_back(correction_name(kind));
   return {{"title", map.path().stem().string()},
           {"program", version()},
           {"version", now->version},
           {"mesh_version", map.mesh().version()},
-          {"live", false},
+          {"live", now->live},
           {"frames", info.frames},
           {"mask_frames", info.mask_frames},
           {"instances", now->record->instances.size()},
@@ -146,11 +140,10 @@ json map_json(const ServedMap& map) {
           {"up", point(info.up)},
           {"blocks", info.blocks},
           {"size_bytes", info.size_bytes},
-          {"content_hash", hex(info.content_hash)},
+          {"content_hash", hash_text(info.content_hash)},
           {"encoder", info.encoder.name},
           {"search", {{"state", search_state_name(now->search)}, {"reason", now->why_no_search}}},
           {"classes", now->guesses ? json(now->guesses->set.name) : json()},
-          {"corrections", kinds},
           {"heat_ramp", heat_ramp()}};
 }
 
@@ -162,12 +155,27 @@ json instances_json(const ServedMap& map) {
   return {{"version", now->version}, {"instances", list}};
 }
 
+json labels_json(const ServedMap& map) {
+  const auto now = map.snapshot();
+  json hidden = json::array();
+  for (const InstanceSummary& instance : now->record->hidden) hidden.push_back(instance.id);
+  return {{"version", now->version}, {"instances", now->instance_of_label}, {"hidden", hidden}};
+}
+
+json corrections_json(const ServedMap& map) {
+  const auto now = map.snapshot();
+  json log = json::array();
+  for (const MapEdit& edit : now->record->edits) log.push_back(edit_json(edit));
+  return {{"version", now->version}, {"corrections", log}};
+}
+
 json instance_detail_json(const ServedMap& map, InstanceId id) {
   const auto now = map.snapshot();
   const std::size_t position = position_of(*now, id);
   const QueryScene& scene = now->objects->scene;
   json detail = instance_json(*now, position);
   const ObjectShape& shape = scene.shapes[position];
+  detail["super_points"] = now->record->instances[position].super_points;
   detail["height_m"] = number(shape.height_m());
   detail["footprint_m2"] = number(area_m2(shape.footprint));
   detail["neighbors"] = json::array();

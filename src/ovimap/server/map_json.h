@@ -13,6 +13,10 @@ namespace ovimap {
 
 nlohmann::json map_json(const ServedMap& map);
 nlohmann::json instances_json(const ServedMap& map);
+/// To which object each label of the surface belongs.
+nlohmann::json labels_json(const ServedMap& map);
+/// The log, oldest first.
+nlohmann::json corrections_json(const ServedMap& map);
 /// Throws Error where the map has no such object.
 nlohmann::json instance_detail_json(const ServedMap& map, InstanceId id);
 nlohmann::json answer_json(const MapAnswer& answered);

@@ -36,7 +36,8 @@ MeshChunk make_chunk(const Mesh& mesh, const std::vector<std::uint32_t>& triangl
   chunk.version = version;
   chunk.index = ChunkGrid::chunk_of(unpack_index(by_block.begin()->first));
   for (const auto& [block, own] : by_block)
-    chunk.patches.push_back({unpack_index(block), version, part_of_mesh(mesh, own)});
+    chunk.patches.push_back(
+        {unpack_index(block), version, std::make_shared<Mesh>(part_of_mesh(mesh, own))});
   return chunk;
 }
 
@@ -97,14 +98,14 @@ Mesh welded(const MeshChunk& chunk) {
   Mesh mesh;
   std::unordered_map<Eigen::Vector3f, std::uint32_t, PositionHash> place;
   for (const SurfacePatch& patch : chunk.patches) {
-    std::vector<std::uint32_t> vertex_of(patch.mesh.vertices.size());
+    std::vector<std::uint32_t> vertex_of(patch.mesh->vertices.size());
     for (std::uint32_t v = 0; v < vertex_of.size(); ++v) {
       const auto next = static_cast<std::uint32_t>(mesh.vertices.size());
-      const auto [entry, is_new] = place.try_emplace(patch.mesh.vertices[v], next);
-      if (is_new) copy_vertex(patch.mesh, v, mesh);
+      const auto [entry, is_new] = place.try_emplace(patch.mesh->vertices[v], next);
+      if (is_new) copy_vertex(*patch.mesh, v, mesh);
       vertex_of[v] = entry->second;
     }
-    for (const auto& [a, b, c] : patch.mesh.triangles)
+    for (const auto& [a, b, c] : patch.mesh->triangles)
       mesh.triangles.push_back({vertex_of[a], vertex_of[b], vertex_of[c]});
   }
   return mesh;
@@ -112,6 +113,10 @@ Mesh welded(const MeshChunk& chunk) {
 
 MeshChunk coarser_chunk(const MeshChunk& chunk, float triangle_share, float max_error_m) {
   Mesh mesh = welded(chunk);
+  if (mesh.triangles.empty())
+    return {chunk.index,
+            chunk.version,
+            {{chunk.index * ChunkGrid::kChunkBlocks, chunk.version, std::make_shared<Mesh>()}}};
   const std::size_t indices = mesh.triangles.size() * 3;
   const float* positions = mesh.vertices.front().data();
   constexpr std::size_t kStride = sizeof(Eigen::Vector3f);
@@ -128,8 +133,8 @@ MeshChunk coarser_chunk(const MeshChunk& chunk, float triangle_share, float max_
   MeshChunk result;
   result.index = chunk.index;
   result.version = chunk.version;
-  result.patches.push_back(
-      {chunk.index * ChunkGrid::kChunkBlocks, chunk.version, part_of_mesh(mesh, all)});
+  result.patches.push_back({chunk.index * ChunkGrid::kChunkBlocks, chunk.version,
+                            std::make_shared<Mesh>(part_of_mesh(mesh, all))});
   return result;
 }
 

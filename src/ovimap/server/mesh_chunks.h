@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "ovimap/geometry/mesh.h"
@@ -34,11 +35,12 @@ struct ChunkGrid {
 };
 
 /// The surface of one block (at the coarse level: of a whole chunk, called by its first block),
-/// complete in itself.
+/// complete in itself. The labels of its vertices are the map's, not ids of objects: which label
+/// belongs to which object changes more often than the surface.
 struct SurfacePatch {
   BlockIndex block = BlockIndex::Zero();
   std::uint64_t version = 0;  ///< of the update that made it
-  Mesh mesh;
+  std::shared_ptr<const Mesh> mesh;
 };
 
 struct MeshChunk {

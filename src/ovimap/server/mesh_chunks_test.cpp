@@ -17,7 +17,7 @@ const ChunkGrid kGrid{0.01f};
 std::size_t triangles_of(const std::vector<MeshChunk>& chunks) {
   std::size_t count = 0;
   for (const MeshChunk& chunk : chunks)
-    for (const SurfacePatch& patch : chunk.patches) count += patch.mesh.triangles.size();
+    for (const SurfacePatch& patch : chunk.patches) count += patch.mesh->triangles.size();
   return count;
 }
 
@@ -30,11 +30,11 @@ TEST(MeshChunksTest, EveryTriangleIsInOnePatchNearIt) {
     EXPECT_EQ(chunk.version, 7u);
     for (const SurfacePatch& patch : chunk.patches) {
       EXPECT_EQ(ChunkGrid::chunk_of(patch.block), chunk.index);
-      ASSERT_EQ(patch.mesh.vertices.size(), patch.mesh.labels.size());
-      ASSERT_EQ(patch.mesh.vertices.size(), patch.mesh.normals.size());
-      for (const auto& [a, b, c] : patch.mesh.triangles) {
+      ASSERT_EQ(patch.mesh->vertices.size(), patch.mesh->labels.size());
+      ASSERT_EQ(patch.mesh->vertices.size(), patch.mesh->normals.size());
+      for (const auto& [a, b, c] : patch.mesh->triangles) {
         const Eigen::Vector3f center =
-            (patch.mesh.vertices[a] + patch.mesh.vertices[b] + patch.mesh.vertices[c]) / 3.f;
+            (patch.mesh->vertices[a] + patch.mesh->vertices[b] + patch.mesh->vertices[c]) / 3.f;
         EXPECT_EQ(kGrid.block_of(center), patch.block);
       }
     }
@@ -67,7 +67,7 @@ TEST(MeshChunksTest, TheCoarseLevelIsSmallAndNear) {
     ASSERT_EQ(coarse.patches.size(), 1u);
     EXPECT_LT(triangles_of({coarse}), before / 3);
     EXPECT_GT(triangles_of({coarse}), 0u);
-    for (const Eigen::Vector3f& vertex : coarse.patches[0].mesh.vertices)
+    for (const Eigen::Vector3f& vertex : coarse.patches[0].mesh->vertices)
       EXPECT_NEAR(vertex.z(), fixture::sheet_height(vertex.x(), vertex.y()), 1e-4f);
   }
 }
@@ -77,7 +77,7 @@ TEST(MeshChunksTest, WeldingUndoesTheCut) {
   const std::vector<MeshChunk> chunks = cut_into_chunks(mesh, kGrid, 1);
   ASSERT_EQ(chunks.size(), 1u);
   std::size_t apart = 0;
-  for (const SurfacePatch& patch : chunks[0].patches) apart += patch.mesh.vertices.size();
+  for (const SurfacePatch& patch : chunks[0].patches) apart += patch.mesh->vertices.size();
   const Mesh whole = welded(chunks[0]);
   EXPECT_GT(apart, mesh.vertices.size());
   EXPECT_EQ(whole.vertices.size(), mesh.vertices.size());

@@ -32,8 +32,13 @@ class MeshStore {
   explicit MeshStore(const ChunkGrid& grid, const MeshLevelConfig& config = {})
       : grid_(grid), config_(config) {}
 
-  /// Takes the whole surface, with instance ids as labels, as the next version.
+  /// Takes the whole surface, with the map's labels, as the next version. Blocks that had surface
+  /// before and have none now get an empty patch.
   void replace(const Mesh& mesh);
+
+  /// Takes new patches of some blocks as the next version, at level 0 alone: a coarse surface of
+  /// what still changes would cost more than it saves. Null meshes: the block has no surface.
+  void update(std::vector<SurfacePatch> patches);
 
   /// 0: there is no surface yet.
   std::uint64_t version() const;
@@ -41,6 +46,8 @@ class MeshStore {
   std::vector<ChunkListing> list(int level, std::uint64_t since = 0) const;
   /// Null where there is no such chunk.
   std::shared_ptr<const MeshChunk> find(int level, const Eigen::Vector3i& index) const;
+  /// All chunks of level 0.
+  std::vector<std::shared_ptr<const MeshChunk>> chunks() const;
   const ChunkGrid& grid() const { return grid_; }
 
  private:

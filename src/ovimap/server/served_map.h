@@ -2,21 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <atomic>
-#include <map>
+#include <condition_variable>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "ovimap/base/error.h"
-#include "ovimap/io/map_document.h"
-#include "ovimap/pipeline/map_search.h"
-#include "ovimap/semantics/label_set.h"
-#include "ovimap/semantics/query_engine.h"
-#include "ovimap/server/corrections.h"
+#include "ovimap/io/map_edits.h"
 #include "ovimap/server/event_hub.h"
+#include "ovimap/server/map_snapshot.h"
 #include "ovimap/server/mesh_store.h"
 
 namespace ovimap {
@@ -29,30 +26,6 @@ struct ServedMapConfig {
   int threads = 0;
   QueryConfig query;
   MeshLevelConfig levels;
-};
-
-/// The names that fit objects best, best first.
-struct ObjectGuesses {
-  LabelSet set;
-  std::map<InstanceId, std::vector<ClassGuess>> of_object;
-};
-
-enum class SearchState { kPreparing, kReady, kUnavailable };
-const char* search_state_name(SearchState state);  ///< "preparing", "ready", "unavailable"
-
-/// What is known of the map at one moment. Never changes; a change makes a new one.
-struct MapSnapshot {
-  std::uint64_t version = 1;
-  std::shared_ptr<const MapRecord> record;
-  std::shared_ptr<const MapSearch> objects;      ///< in the order of record->instances
-  std::map<InstanceId, std::string> names;       ///< given by people
-  std::shared_ptr<const QueryEngine> engine;     ///< of `objects`; null: there is none, or not yet
-  std::shared_ptr<const ObjectGuesses> guesses;  ///< null: likewise
-  SearchState search = SearchState::kPreparing;
-  std::string why_no_search;  ///< a sentence
-
-  const SearchIndex& index() const { return objects->index; }
-  std::string name_of(InstanceId id) const;  ///< as given; empty: none
 };
 
 /// This map cannot be searched, whatever is asked.
@@ -73,12 +46,16 @@ struct MapAnswer {
 };
 
 /// One map as clients see it: its surface, its objects, answers to queries, corrections. Whoever
-/// serves it over a network only reads it. Thread-safe.
+/// serves it over a network only reads it. A saved map, or one that is still being made, of which
+/// it is told what is found. Thread-safe.
 class ServedMap {
  public:
   /// Reads the map and makes its surface ready; search and names follow in the background, since
   /// they need the encoder. Throws what load_map throws.
   ServedMap(const std::filesystem::path& map, const ServedMapConfig& config = {});
+  /// A map that is being made and will be saved at `map`, as yet with its log of corrections, its
+  /// encoder and its voxel size (`begun.info`).
+  ServedMap(const std::filesystem::path& map, FoundMap begun, const ServedMapConfig& config);
   ~ServedMap();
   ServedMap(const ServedMap&) = delete;
   ServedMap& operator=(const ServedMap&) = delete;
@@ -93,27 +70,46 @@ class ServedMap {
   /// this map cannot be searched.
   MapAnswer ask(const MapQuestion& question) const;
 
-  std::vector<CorrectionKind> correctable() const { return corrections_->kinds(); }
-  /// Throws Error when the correction could not be kept; then nothing changed.
-  void correct(const Correction& correction);
+  /// Keeps a correction: in the map file, or while the map is being made in its log, which goes
+  /// into the file with it. Returns it as it is kept. Throws Error when it makes no sense in this
+  /// map or could not be kept; then nothing changed.
+  MapEdit correct(MapEdit edit);
+
+  // Of a map that is being made.
+
+  /// Takes what mapping has found by now; corrections stay.
+  void show(FoundMap found);
+  /// Takes changed pieces of the surface.
+  void show(std::vector<SurfacePatch> patches);
+  /// The log as it goes into the file. From now on corrections are refused, until the map is saved.
+  MapEdits close_log();
+  /// The map is saved: from now on it is one like any other.
+  void saved(MapDocument&& document);
 
  private:
   void prepare_search();
-  void guess_names();
-  template <class Change>
-  void change(Change&& change);
+  void open_encoder(const MapSnapshot& now);
+  void rebuild();
+  void take_document(MapDocument&& document);
+  MapRecord corrected() const;
+  void set_search(MapSnapshot& next) const;
 
   const std::filesystem::path path_;
   const ServedMapConfig config_;
   std::unique_ptr<MeshStore> mesh_;
-  std::unique_ptr<CorrectionStore> corrections_;
-  std::mutex correcting_;
   mutable EventHub events_;
 
-  mutable std::mutex mutex_;
+  std::mutex changing_;  ///< guards what follows, for whoever makes a new snapshot
+  std::shared_ptr<const FoundMap> found_;
+  MapEdits log_;
+  bool log_closed_ = false;
+  std::unique_ptr<ImageTextEncoder> encoder_;  ///< engines of snapshots use it
+  std::string why_no_encoder_;                 ///< empty: there is one, or it is being opened
+  std::optional<LabelSet> classes_;            ///< once their names are encoded
+
+  mutable std::mutex mutex_;  ///< held for a moment only
   mutable std::condition_variable prepared_;
   std::shared_ptr<const MapSnapshot> snapshot_;
-  std::unique_ptr<ImageTextEncoder> encoder_;  // engines of snapshots use it
   std::thread preparation_;
 };
 

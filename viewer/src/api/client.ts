@@ -7,6 +7,8 @@ import type {
   Correction,
   Instance,
   InstanceDetail,
+  Labels,
+  LoggedCorrection,
   MapInfo,
   MeshListing,
   Question,
@@ -63,12 +65,17 @@ export const api = {
   instances: async () => (await get<{ instances: Instance[] }>('/api/instances')).instances,
   instance: (id: number) => get<InstanceDetail>(`/api/instances/${id}`),
   cropUrl: (id: number, ordinal: number) => `/api/instances/${id}/crops/${ordinal}`,
-  chunks: (level: number) => get<MeshListing>(`/api/mesh?level=${level}`),
-  chunk: async (level: number, at: ChunkListing) =>
-    (await request(`/api/mesh/${level}/${at.x}/${at.y}/${at.z}`)).arrayBuffer(),
+  /** What is newer than version `since`. */
+  chunks: (level: number, since = 0) => get<MeshListing>(`/api/mesh?level=${level}&since=${since}`),
+  chunk: async (level: number, at: ChunkListing, since: number) =>
+    (await request(`/api/mesh/${level}/${at.x}/${at.y}/${at.z}?since=${since}`)).arrayBuffer(),
+  labels: () => get<Labels>('/api/labels'),
   cameras: () => get<Cameras>('/api/cameras'),
   query: (question: Question, signal?: AbortSignal) =>
     post<Answer>('/api/query', { ...question, heat: true }, signal),
-  correct: (correction: Correction) => post<{ version: number }>('/api/corrections', correction),
+  correct: (correction: Correction) =>
+    post<{ version: number; edit: number }>('/api/corrections', correction),
+  corrections: async () =>
+    (await get<{ corrections: LoggedCorrection[] }>('/api/corrections')).corrections,
   glb: async () => (await request('/api/export.glb')).blob(),
 };

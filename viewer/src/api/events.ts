@@ -1,10 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
+import type { FrameEvent } from './types';
 
 export interface EventHandlers {
   /** Names, objects or the state of search changed. */
   onMap: () => void;
   onMesh: () => void;
+  onFrame: (frame: FrameEvent) => void;
   /** The connection was lost (false) or came back (true). */
   onConnection: (connected: boolean) => void;
 }
@@ -15,6 +17,9 @@ export function listen(handlers: EventHandlers): void {
   let lost = false;
   source.addEventListener('map', handlers.onMap);
   source.addEventListener('mesh', handlers.onMesh);
+  source.addEventListener('frame', (event: MessageEvent<string>) =>
+    handlers.onFrame(JSON.parse(event.data) as FrameEvent),
+  );
   source.addEventListener('reset', () => {
     handlers.onMap();
     handlers.onMesh();
@@ -23,6 +28,7 @@ export function listen(handlers: EventHandlers): void {
     if (lost) {
       handlers.onConnection(true);
       handlers.onMap(); // a new server knows nothing of what this page missed
+      handlers.onMesh();
     }
     lost = false;
   });

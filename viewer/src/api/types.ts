@@ -5,7 +5,7 @@
 export type Color = [number, number, number];
 /** Null where the map knows no number. */
 export type Point = [number | null, number | null, number | null];
-export type CorrectionKind = 'rename' | 'merge' | 'hide' | 'lock' | 'delete';
+export type CorrectionKind = 'rename' | 'merge' | 'split' | 'lock' | 'delete' | 'hide' | 'undo';
 
 export interface MapInfo {
   title: string;
@@ -22,7 +22,6 @@ export interface MapInfo {
   encoder: string;
   search: { state: 'preparing' | 'ready' | 'unavailable'; reason: string };
   classes: string | null;
-  corrections: CorrectionKind[];
   heat_ramp: Color[];
 }
 
@@ -41,6 +40,8 @@ export interface Instance {
   centroid: Point;
   points: number;
   views: number;
+  /** Nothing may change it before the lock is undone. */
+  locked: boolean;
   crops: number[];
 }
 
@@ -54,6 +55,7 @@ export interface Neighbor {
 export interface InstanceDetail extends Instance {
   height_m: number;
   footprint_m2: number;
+  super_points: number[];
   neighbors: Neighbor[];
 }
 
@@ -77,6 +79,13 @@ export interface MeshListing {
 export interface Cameras {
   camera: { width: number; height: number; fx: number; fy: number; cx: number; cy: number };
   frames: { index: number; timestamp_s: number; labelled: boolean; world_from_camera: number[] }[];
+}
+
+/** Event "frame": a frame went into the map, of all that did the last. */
+export interface FrameEvent {
+  frames: number;
+  index: number;
+  world_from_camera: number[];
 }
 
 export interface Question {
@@ -104,10 +113,32 @@ export interface Answer {
   heat: [number, number][];
 }
 
+/** To which object each label of the surface belongs. */
+export interface Labels {
+  version: number;
+  /** By label; 0: none. */
+  instances: number[];
+  /** Objects whose surface is not drawn. */
+  hidden: number[];
+}
+
 export interface Correction {
   kind: CorrectionKind;
-  instance: number;
+  instance?: number;
   name?: string;
   into?: number;
-  on?: boolean;
+  super_points?: number[];
+  edit?: number;
+}
+
+/** A line of the log of corrections. */
+export interface LoggedCorrection {
+  id: number;
+  kind: CorrectionKind;
+  time_s: number;
+  undone_by: number | null;
+  instances?: number[];
+  name?: string;
+  new_instance?: number;
+  undoes?: number;
 }

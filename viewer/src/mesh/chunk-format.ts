@@ -21,13 +21,13 @@ export interface Chunk {
   positions: Uint16Array;
   /** Four bytes a vertex: red, green, blue, 0. */
   colors: Uint8Array;
-  /** The instance of each vertex; 0: none. */
-  instances: Uint32Array;
+  /** The map's label of each vertex, by which /api/labels tells its object; 0: none. */
+  labels: Uint32Array;
   /** Three vertices a triangle. */
   indices: Uint32Array;
 }
 
-export const FORMAT_VERSION = 1;
+export const FORMAT_VERSION = 2;
 const MAGIC = 0x434d564f; // "OVMC"
 const HEADER_BYTES = 56;
 const PATCH_BYTES = 28;
@@ -60,8 +60,8 @@ export function decodeChunk(buffer: ArrayBuffer): Chunk {
   const [patchCount, vertices, triangles] = triple((at) => view.getUint32(at, true), 36);
   const positionsAt = HEADER_BYTES + patchCount * PATCH_BYTES;
   const colorsAt = positionsAt + vertices * 8;
-  const instancesAt = colorsAt + vertices * 4;
-  const indicesAt = instancesAt + vertices * 4;
+  const labelsAt = colorsAt + vertices * 4;
+  const indicesAt = labelsAt + vertices * 4;
   if (buffer.byteLength !== indicesAt + triangles * 12)
     throw new Error('A piece of the map arrived incomplete; reload the page.');
   return {
@@ -73,7 +73,7 @@ export function decodeChunk(buffer: ArrayBuffer): Chunk {
     patches: readPatches(view, patchCount),
     positions: new Uint16Array(buffer, positionsAt, vertices * 4),
     colors: new Uint8Array(buffer, colorsAt, vertices * 4),
-    instances: new Uint32Array(buffer, instancesAt, vertices),
+    labels: new Uint32Array(buffer, labelsAt, vertices),
     indices: new Uint32Array(buffer, indicesAt, triangles * 3),
   };
 }

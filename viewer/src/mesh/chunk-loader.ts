@@ -29,10 +29,11 @@ export async function forEachAtOnce<T>(
   await Promise.all(Array.from({ length: Math.min(atOnce, items.length) }, runner));
 }
 
-/** Fetches chunks in the given order and hands each over as it arrives. */
+/** Fetches what of the chunks is newer than version `since`, in the given order, and hands each over as it arrives. */
 export async function loadChunks(
   level: number,
   wanted: readonly ChunkListing[],
+  since: number,
   consume: ChunkConsumer,
   onProgress: ProgressListener,
 ): Promise<void> {
@@ -41,7 +42,7 @@ export async function loadChunks(
   let done = 0;
   onProgress(0, total);
   await forEachAtOnce(wanted, AT_ONCE, async (listing) => {
-    const buffer = await api.chunk(level, listing);
+    const buffer = await api.chunk(level, listing, since);
     consume(decodeChunk(buffer), listing);
     done += weight(listing);
     onProgress(done, total);

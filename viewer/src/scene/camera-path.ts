@@ -50,17 +50,21 @@ export function meanDirection(cameras: Cameras): Vector3 | null {
 /** The way of the camera, and the view of one of its frames. */
 export class CameraPath {
   readonly group = new Group();
+  private way: LineSegments | null = null;
   private frustum: LineSegments | null = null;
 
   constructor(private readonly cameras: Cameras) {
-    const places = cameras.frames.map((_, i) => new Vector3().applyMatrix4(poseOf(cameras, i)));
-    const pairs = places.slice(1).flatMap((place, i) => [places[i]!, place]);
-    this.group.add(lineSegments(pairs, '#e0912f'));
     this.group.visible = false;
   }
 
   show(frame: number): void {
+    if (this.way) disposeLines(this.way);
     if (this.frustum) disposeLines(this.frustum);
+    const { cameras } = this;
+    const places = cameras.frames.map((_, i) => new Vector3().applyMatrix4(poseOf(cameras, i)));
+    const pairs = places.slice(1).flatMap((place, i) => [places[i]!, place]);
+    this.way = lineSegments(pairs, '#e0912f');
+    this.group.add(this.way);
     this.frustum = lineSegments(frustumEdges(this.cameras, frame), '#2f9e63', true);
     this.group.add(this.frustum);
   }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 import type { Color, Instance } from '../api/types';
-import { type InstanceTable, NO_INSTANCE } from './instance-table';
+import { type LabelTable, NO_INSTANCE } from './label-table';
 
 export type Mode = 'color' | 'instances' | 'classes' | 'heat';
 
@@ -30,7 +30,9 @@ function colorOf(instance: Instance, { mode, heat, ramp }: ColoringInput): Color
 }
 
 /** Fills the table with what the mode shows. */
-export function paint(table: InstanceTable, input: ColoringInput): void {
-  table.fill(input.mode === 'heat' ? rampColor(input.ramp, 0) : NO_INSTANCE);
-  for (const instance of input.instances) table.set(instance.id, colorOf(instance, input));
+export function paint(table: LabelTable, input: ColoringInput): void {
+  const colors = input.instances.map(
+    (instance) => [instance.id, colorOf(instance, input)] as const,
+  );
+  table.paint(new Map(colors), input.mode === 'heat' ? rampColor(input.ramp, 0) : NO_INSTANCE);
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 import { Box3, Box3Helper, Color, Vector2, Vector3, Vector4 } from 'three';
-import type { Cameras, Instance, MapInfo, Point } from '../api/types';
+import type { Cameras, FrameEvent, Instance, Labels, MapInfo, Point } from '../api/types';
 import type { Chunk } from '../mesh/chunk-format';
 import { CameraPath, meanDirection, viewpointOfFrame } from './camera-path';
 import { type ColoringInput, paint } from './coloring';
@@ -45,9 +45,9 @@ export class MapView {
   private still = false;
 
   /** Throws NoWebGlError where nothing can be drawn. */
-  constructor(canvas: HTMLCanvasElement, info: MapInfo, largestId: number, hooks: MapViewHooks) {
+  constructor(canvas: HTMLCanvasElement, info: MapInfo, hooks: MapViewHooks) {
     this.up = vectorOf(info.up).normalize();
-    this.surface = new Surface(largestId);
+    this.surface = new Surface();
     this.stage = new Stage(canvas, this.up, {
       onFrame: (now) => this.frame(now),
       onDetail: (coarse) => this.surface.showCoarse(coarse),
@@ -62,7 +62,7 @@ export class MapView {
   }
 
   put(key: string, chunk: Chunk): void {
-    this.surface.put(key, chunk);
+    this.surface.update(key, chunk);
     if (!this.still) this.stage.drawSoon();
   }
 
@@ -72,8 +72,14 @@ export class MapView {
     if (!still) this.stage.draw();
   }
 
+  /** Shows the whole map as it grows, until somebody moves the view. */
+  followGrowth(): void {
+    if (!this.movement.moved) this.frameAll(true);
+  }
+
   /** Shows the whole map. */
   frameAll(animated: boolean): void {
+    this.movement.moved = false;
     const points = this.surface.samples();
     if (points.length === 0) return;
     const direction = overviewDirection(this.up, this.cameras && meanDirection(this.cameras));
@@ -86,13 +92,16 @@ export class MapView {
 
   /** Goes near an object without changing the direction of view. */
   focus(instance: Instance): void {
+    this.movement.moved = true;
     const from = this.stage.camera.position.clone().sub(this.movement.orbit.target);
     const box = boxOfInstance(instance).expandByScalar(FOCUS_MARGIN_M);
     this.movement.goTo(viewpointOf(cornersOf(box), this.stage.lens(), from, this.up), true);
   }
 
   select(instance: Instance | null): void {
-    this.uniform('selected', instance?.id ?? 0);
+    this.surface.table.select(instance?.id ?? 0);
+    this.surface.tableChanged();
+    this.uniform('selecting', instance !== null);
     this.selection.visible = instance !== null;
     if (instance) this.selection.box.copy(boxOfInstance(instance));
     this.selection.updateMatrixWorld(true);
@@ -106,8 +115,9 @@ export class MapView {
     this.stage.moved(); // quickly first, in detail soon after
   }
 
-  hide(id: number, hidden: boolean): void {
-    this.surface.table.hide(id, hidden);
+  /** Which object each part of the surface belongs to. */
+  setLabels(labels: Labels): void {
+    this.surface.table.setLabels(labels);
     this.surface.tableChanged();
     this.stage.draw();
   }
@@ -131,20 +141,34 @@ export class MapView {
   }
 
   setCameras(cameras: Cameras): void {
+    const shown = this.path?.group.visible ?? false;
+    this.path?.group.removeFromParent();
     this.cameras = cameras;
-    this.path = cameras.frames.length > 0 ? new CameraPath(cameras) : null;
-    if (this.path) this.stage.scene.add(this.path.group);
+    this.path = new CameraPath(cameras);
+    this.path.group.visible = shown;
+    this.stage.scene.add(this.path.group);
+  }
+
+  /** The camera moved on, while the map is made. */
+  addCamera({ index, world_from_camera }: FrameEvent): void {
+    this.cameras?.frames.push({ index, timestamp_s: 0, labelled: false, world_from_camera });
+  }
+
+  get cameraCount(): number {
+    return this.cameras?.frames.length ?? 0;
   }
 
   showPath(visible: boolean, frame: number): void {
     if (!this.path) return;
-    this.path.group.visible = visible;
-    if (visible) this.path.show(frame);
+    this.path.group.visible = visible && this.cameraCount > 0;
+    if (this.path.group.visible) this.path.show(Math.min(frame, this.cameraCount - 1));
     this.stage.draw();
   }
 
   lookFromFrame(frame: number): void {
-    if (this.cameras) this.movement.goTo(viewpointOfFrame(this.cameras, frame), true);
+    this.movement.moved = true;
+    if (this.cameras && frame < this.cameraCount)
+      this.movement.goTo(viewpointOfFrame(this.cameras, frame), true);
   }
 
   clearMeasure(): void {

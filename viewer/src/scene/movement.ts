@@ -41,10 +41,15 @@ export class Movement {
     this.orbit.zoomToCursor = true;
     this.orbit.mouseButtons = { LEFT: MOUSE.ROTATE, MIDDLE: MOUSE.PAN, RIGHT: MOUSE.PAN };
     this.orbit.addEventListener('change', onChange);
-    this.orbit.addEventListener('start', () => (this.glide = null));
+    this.orbit.addEventListener('start', () => {
+      this.glide = null;
+      this.moved = true;
+    });
     this.listen();
   }
 
+  /** Whether somebody chose this view. */
+  moved = false;
   /** Metres a second that keys move by; it follows the size of the map. */
   speed = 2;
 
@@ -138,6 +143,7 @@ export class Movement {
       event.preventDefault();
       if (this.keys.size === 0) this.lastFrame = performance.now();
       this.keys.add(event.code);
+      this.moved = true;
       this.onChange();
     });
     canvas.addEventListener('keyup', (event) => this.keys.delete(event.code));

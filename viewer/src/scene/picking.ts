@@ -7,6 +7,8 @@ export interface Pick {
   point: Vector3;
   /** 0: surface that belongs to no object. */
   instance: number;
+  /** The map's label there; 0: none. */
+  label: number;
 }
 
 /** What of the surface is seen at a place of the canvas, in [-1, 1] with y up. */
@@ -19,9 +21,10 @@ export function pick(surface: Surface, camera: Camera, at: Vector2): Pick | null
     const { point, face } = hit;
     if (!face || section.x * point.x + section.y * point.y + section.z * point.z + section.w > 0)
       continue;
-    // The shader takes an instance from a triangle's last corner, too.
-    const instance = hit.object.geometry.getAttribute('instance').getX(face.c);
-    if (!surface.table.isHidden(instance)) return { point, instance };
+    // The shader takes a label from a triangle's last corner, too.
+    const label = hit.object.geometry.getAttribute('label').getX(face.c);
+    if (!surface.table.isHidden(label))
+      return { point, label, instance: surface.table.instanceOf(label) };
   }
   return null;
 }

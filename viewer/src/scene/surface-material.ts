@@ -8,11 +8,11 @@ precision highp int;
 uniform mat4 modelMatrix, viewMatrix, projectionMatrix;
 in vec4 position;   // place in the chunk's cube; w: octahedral normal, 8 bits an axis
 in vec3 color;
-in uint instance;
+in uint label;
 out vec3 vColor;
 out vec3 vNormal;
 out vec3 vWorld;
-flat out uint vInstance;
+flat out uint vLabel;
 
 vec3 unfold(float packedNormal) {
   float bits = floor(packedNormal * 65535.0 + 0.5);
@@ -27,28 +27,28 @@ void main() {
   vWorld = world.xyz;
   vNormal = unfold(position.w);
   vColor = color;
-  vInstance = instance;
+  vLabel = label;
   gl_Position = projectionMatrix * viewMatrix * world;
 }`;
 
 const FRAGMENT = /* glsl */ `
 precision highp float;
 precision highp int;
-uniform sampler2D instanceColors;  // 256 instances a row; alpha 0: hidden
+uniform sampler2D labelColors;  // 256 labels a row; alpha 0: hidden, about a half: selected
 uniform bool ownColors;            // the surface's own instead of the table's
-uniform uint selected;             // 0: none
+uniform bool selecting;         // an object is selected
 uniform vec4 section;              // what is beyond n.x + d > 0 is cut away; 0: nothing
 uniform vec3 fade;                 // the colour that unselected surface fades to
 uniform vec3 light;                // from where it shines
 in vec3 vColor;
 in vec3 vNormal;
 in vec3 vWorld;
-flat in uint vInstance;
+flat in uint vLabel;
 out vec4 pixel;
 
 void main() {
   if (dot(section.xyz, vWorld) + section.w > 0.0) discard;
-  vec4 entry = texelFetch(instanceColors, ivec2(int(vInstance & 255u), int(vInstance >> 8)), 0);
+  vec4 entry = texelFetch(labelColors, ivec2(int(vLabel & 255u), int(vLabel >> 8)), 0);
   if (entry.a == 0.0) discard;
   float facing = 0.5 + 0.5 * dot(normalize(vNormal), light);
   vec3 shown;
@@ -58,21 +58,21 @@ void main() {
     float luminance = dot(vColor, vec3(0.3, 0.59, 0.11));
     shown = entry.rgb * (0.5 + 0.4 * facing + 0.25 * luminance);
   }
-  if (selected != 0u)
-    shown = vInstance == selected ? shown * 1.12 + 0.03 : mix(shown, fade, 0.62);
+  if (selecting)
+    shown = entry.a < 0.75 ? shown * 1.12 + 0.03 : mix(shown, fade, 0.62);
   pixel = vec4(min(shown, 1.0), 1.0);
 }`;
 
 /** Draws chunks. Colours are shown as they are stored (sRGB), as in the map's pictures. */
-export function surfaceMaterial(instanceColors: DataTexture): RawShaderMaterial {
+export function surfaceMaterial(labelColors: DataTexture): RawShaderMaterial {
   return new RawShaderMaterial({
     glslVersion: GLSL3,
     vertexShader: VERTEX,
     fragmentShader: FRAGMENT,
     uniforms: {
-      instanceColors: { value: instanceColors },
+      labelColors: { value: labelColors },
       ownColors: { value: true },
-      selected: { value: 0 },
+      selecting: { value: false },
       section: { value: new Vector4(0, 0, 0, 0) },
       fade: { value: [0.5, 0.5, 0.5] },
       light: { value: [0, 0, 1] },

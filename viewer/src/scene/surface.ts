@@ -13,7 +13,8 @@ import {
   Vector3,
 } from 'three';
 import { type Chunk } from '../mesh/chunk-format';
-import { InstanceTable } from './instance-table';
+import { mergeChunks } from '../mesh/merge-chunks';
+import { LabelTable } from './label-table';
 import { surfaceMaterial } from './surface-material';
 
 const STEPS = 65535;
@@ -35,11 +36,11 @@ function boxOf(positions: Uint16Array): Box3 {
 
 function geometryOf(chunk: Chunk): BufferGeometry {
   const geometry = new BufferGeometry();
-  const instances = new BufferAttribute(chunk.instances, 1);
-  instances.gpuType = IntType;
+  const labels = new BufferAttribute(chunk.labels, 1);
+  labels.gpuType = IntType;
   geometry.setAttribute('position', new BufferAttribute(chunk.positions, 4, true));
   geometry.setAttribute('color', new BufferAttribute(chunk.colors, 4, true));
-  geometry.setAttribute('instance', instances);
+  geometry.setAttribute('label', labels);
   geometry.setIndex(new BufferAttribute(chunk.indices, 1));
   geometry.boundingBox = boxOf(chunk.positions);
   geometry.boundingSphere = geometry.boundingBox.getBoundingSphere(new Sphere());
@@ -49,46 +50,53 @@ function geometryOf(chunk: Chunk): BufferGeometry {
 /** The map's surface: chunks in up to two levels, of which one is drawn. */
 export class Surface {
   readonly group = new Group();
-  readonly table: InstanceTable;
+  readonly table = new LabelTable();
   readonly material: RawShaderMaterial;
-  private readonly texture: DataTexture;
+  private texture: DataTexture;
   private readonly chunks = new Map<string, (Mesh | undefined)[]>();
+  private readonly whole = new Map<string, Chunk>(); // of level 0, for updates
   private coarse = false;
 
-  constructor(largestId: number) {
-    this.table = new InstanceTable(largestId);
-    this.texture = new DataTexture(this.table.pixels, this.table.width, this.table.height);
+  constructor() {
+    this.texture = this.makeTexture();
     this.material = surfaceMaterial(this.texture);
-    this.tableChanged();
   }
 
   tableChanged(): void {
+    if (this.texture.image.height !== this.table.height) {
+      this.texture.dispose();
+      this.texture = this.makeTexture();
+      this.material.uniforms.labelColors!.value = this.texture;
+    }
     this.texture.needsUpdate = true;
   }
 
-  put(key: string, chunk: Chunk): void {
+  /** Takes what changed of a chunk: some patches, or all of them. */
+  update(key: string, update: Chunk): void {
+    const before = this.whole.get(key);
+    this.put(key, update.level === 0 && before ? mergeChunks(before, update) : update);
+  }
+
+  private put(key: string, chunk: Chunk): void {
     const levels = this.chunks.get(key) ?? [];
     const old = levels[chunk.level];
     if (old) this.drop(old);
+    delete levels[chunk.level];
+    this.chunks.set(key, levels);
+    if (chunk.level === 0) this.whole.set(key, chunk);
+    if (chunk.indices.length > 0) this.add(levels, chunk);
+    this.choose(levels);
+  }
+
+  private add(levels: (Mesh | undefined)[], chunk: Chunk): void {
     const mesh = new Mesh(geometryOf(chunk), this.material);
     mesh.position.set(...chunk.origin);
     mesh.scale.setScalar(chunk.edge_m);
     mesh.matrixAutoUpdate = false;
     mesh.updateMatrix();
     levels[chunk.level] = mesh;
-    this.chunks.set(key, levels);
     this.group.add(mesh);
     mesh.updateMatrixWorld();
-    this.choose(levels);
-  }
-
-  /** Removes chunks that the map no longer has. */
-  keepOnly(keys: ReadonlySet<string>): void {
-    for (const [key, levels] of this.chunks) {
-      if (keys.has(key)) continue;
-      for (const mesh of levels) if (mesh) this.drop(mesh);
-      this.chunks.delete(key);
-    }
   }
 
   /** Few triangles, where there are such: while the view moves on slow machines. */
@@ -126,6 +134,12 @@ export class Surface {
         samples.push(new Vector3().fromBufferAttribute(position, v).applyMatrix4(mesh.matrix));
     }
     return samples;
+  }
+
+  private makeTexture(): DataTexture {
+    const texture = new DataTexture(this.table.pixels, this.table.width, this.table.height);
+    texture.needsUpdate = true;
+    return texture;
   }
 
   private choose(levels: (Mesh | undefined)[]): void {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 import { api } from '../api/client';
-import type { CorrectionKind, Instance, InstanceDetail, Neighbor } from '../api/types';
+import type { Instance, InstanceDetail, Neighbor } from '../api/types';
 import { h, swatch } from './dom';
 import { icon, type IconName } from './icons';
 import { isGuess, placeOf, plural, sizeOf, titleOf } from './words';
@@ -11,6 +11,7 @@ export interface CardHooks {
   onAlike: (id: number) => void;
   onRename: (id: number, name: string) => void;
   onMerge: (id: number) => void;
+  onSplit: (id: number) => void;
   onHide: (id: number) => void;
   onLock: (id: number) => void;
   onDelete: (id: number) => void;
@@ -20,8 +21,6 @@ export interface CardHooks {
 
 export interface CardContext {
   find: (id: number) => Instance | undefined;
-  can: (kind: CorrectionKind) => boolean;
-  hidden: boolean;
 }
 
 /** What is known of the selected object, and what one can do with it. */
@@ -36,12 +35,12 @@ export class ObjectCard {
     this.element.hidden = true;
   }
 
-  show(instance: Instance, context: CardContext): void {
+  show(instance: Instance): void {
     this.element.hidden = false;
     this.element.replaceChildren(
       this.header(instance),
       crops(instance),
-      this.actions(instance, context),
+      this.actions(instance),
       facts(instance, null),
       guesses(instance),
       h('div', { class: 'neighbors' }),
@@ -82,10 +81,9 @@ export class ObjectCard {
     return h('header', { class: 'card-head' }, swatch(instance.color), title, close);
   }
 
-  private actions(instance: Instance, context: CardContext): HTMLElement {
-    const { id } = instance;
-    const kept = (kind: CorrectionKind): string =>
-      context.can(kind) ? '' : 'This map cannot keep it yet';
+  private actions(instance: Instance): HTMLElement {
+    const { id, locked } = instance;
+    const free = locked ? 'It is locked; unlock it first' : '';
     const action = (name: IconName, label: string, run: () => void, why = ''): HTMLElement =>
       h(
         'button',
@@ -110,11 +108,12 @@ export class ObjectCard {
         () => this.hooks.onAlike(id),
         instance.guesses.length ? '' : 'This object has no embedding',
       ),
-      action('rename', 'Rename', () => this.editName(instance), kept('rename')),
-      action('hide', context.hidden ? 'Show' : 'Hide', () => this.hooks.onHide(id)),
-      action('merge', 'Merge', () => this.hooks.onMerge(id), kept('merge')),
-      action('lock', 'Lock', () => this.hooks.onLock(id), kept('lock')),
-      action('delete', 'Delete', () => this.hooks.onDelete(id), kept('delete')),
+      action('rename', 'Rename', () => this.editName(instance), free),
+      action('hide', 'Hide', () => this.hooks.onHide(id)),
+      action('merge', 'Merge', () => this.hooks.onMerge(id), free),
+      action('split', 'Split', () => this.hooks.onSplit(id), free),
+      action('lock', locked ? 'Unlock' : 'Lock', () => this.hooks.onLock(id)),
+      action('delete', 'Delete', () => this.hooks.onDelete(id), free),
     );
   }
 

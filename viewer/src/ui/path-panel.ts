@@ -41,8 +41,12 @@ export class PathPanel {
     return Number(this.slider.value);
   }
 
+  /** More frames: who looks at the last one goes on with the camera. */
   setCount(frames: number): void {
+    const atEnd = this.frame === Number(this.slider.max);
     this.slider.max = String(Math.max(frames - 1, 0));
+    if (atEnd && !this.element.hidden) this.slider.value = this.slider.max;
+    if (!this.element.hidden) this.report();
   }
 
   report(): void {

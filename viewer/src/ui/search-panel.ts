@@ -33,6 +33,8 @@ export class SearchPanel {
   private readonly list = h('ul', { class: 'rows', 'aria-labelledby': 'list-title' });
   private readonly clear: HTMLButtonElement;
   private readonly recent: string[] = [];
+  private objects = 0;
+  private frames = 0;
   private vocabulary: string[] = [];
   private instances = new Map<number, Instance>();
 
@@ -62,13 +64,22 @@ export class SearchPanel {
 
   setMap(info: MapInfo): void {
     this.heading.textContent = info.title;
-    this.facts.textContent = `${plural(info.instances, 'object')} from ${plural(info.frames, 'frame')}`;
+    this.facts.classList.toggle('live', info.live);
+    this.objects = info.instances;
+    if (!info.live) this.frames = 0;
+    this.setFrames(info.frames);
     const { state, reason } = info.search;
     this.box.input.disabled = state === 'unavailable';
     this.verdict.className = 'verdict note';
     if (state === 'unavailable') this.verdict.textContent = `No search in words: ${reason}`;
     else if (this.verdict.dataset.kind === 'note') this.verdict.textContent = '';
     this.verdict.dataset.kind = 'note';
+  }
+
+  /** How many frames the map is made of by now. */
+  setFrames(frames: number): void {
+    this.frames = Math.max(this.frames, frames); // objects are counted less often than frames
+    this.facts.textContent = `${plural(this.objects, 'object')} from ${plural(this.frames, 'frame')}`;
   }
 
   setInstances(instances: readonly Instance[]): void {
@@ -158,8 +169,10 @@ export class SearchPanel {
   }
 
   private fill(rows: HTMLElement[], selected: number): void {
+    const kept = this.list.dataset.of === this.listTitle.textContent ? this.list.scrollTop : 0;
+    this.list.dataset.of = this.listTitle.textContent ?? '';
     this.list.replaceChildren(...rows);
-    this.list.scrollTop = 0;
+    this.list.scrollTop = kept;
     this.mark(selected);
   }
 

@@ -5,7 +5,7 @@ import { h } from './dom';
 import { icon, type IconName } from './icons';
 
 export type Tool = 'measure' | 'section' | 'path' | 'fly';
-export type Command = 'home' | 'picture' | 'download' | 'theme' | 'help';
+export type Command = 'home' | 'picture' | 'download' | 'log' | 'theme' | 'help';
 
 const MODES: [Mode, string, string][] = [
   ['color', 'Colour', '1'],
@@ -23,6 +23,7 @@ const COMMANDS: [Command, string, string][] = [
   ['home', 'Show all', 'Home'],
   ['picture', 'Save a picture', 'P'],
   ['download', 'Download as GLB', ''],
+  ['log', 'Corrections', ''],
   ['theme', 'Dark or light', 'T'],
   ['help', 'Keys and help', '?'],
 ];

@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "run_report.h"
+
+#include <cstdio>
+
+namespace ovimap::apps {
+
+namespace {
+
+void report_skipped(const SequenceResult& result) {
+  std::vector<std::string> faults;
+  for (const SkippedFrame& frame : result.skipped) faults.push_back(frame.fault);
+  for (const FaultCount& fault : count_faults(faults))
+    std::fprintf(stderr, "ovimap: skipped %lld frame(s), the first: %s\n",
+                 static_cast<long long>(fault.frames), fault.example.c_str());
+  if (interrupted()) std::fprintf(stderr, "ovimap: interrupted; saving what was mapped so far\n");
+}
+
+void report_bad_masks(const LiveStatistics& done) {
+  if (done.masks_failed > 0)
+    std::fprintf(stderr, "ovimap: the masks of %lld frame(s) are bad, the first: %s\n",
+                 static_cast<long long>(done.masks_failed), done.mask_fault.c_str());
+}
+
+nlohmann::json lag_json(const StageSummary& lag) {
+  return {{"p50_ms", lag.p50_ms}, {"p95_ms", lag.p95_ms}, {"p99_ms", lag.p99_ms}};
+}
+
+nlohmann::json live_json(const LiveRunResult& live, double fps) {
+  const LiveStatistics& done = live.statistics;
+  return {{"camera_fps", fps},
+          {"frames_fused", done.frames_fused},
+          {"frames_dropped", done.frames_dropped},
+          {"frames_read_late", live.frames_read_late},
+          {"camera_seconds", live.camera_seconds},
+          {"mask_frames", done.mask_frames},
+          {"masks_late", done.masks_late},
+          {"masks_skipped", done.masks_skipped},
+          {"masks_failed", done.masks_failed},
+          {"views_skipped", done.views_skipped},
+          {"geometry_lag", lag_json(done.geometry_lag)},
+          {"mask_lag", lag_json(done.mask_lag)}};
+}
+
+void print_live(const LiveRunResult& live, double fps) {
+  const LiveStatistics& done = live.statistics;
+  std::printf(
+      "camera at %.4g frames/s: %lld fused, %lld dropped; in the map after %.0f ms (p95 %.0f, "
+      "p99 %.0f)\n",
+      fps, static_cast<long long>(done.frames_fused), static_cast<long long>(done.frames_dropped),
+      done.geometry_lag.p50_ms, done.geometry_lag.p95_ms, done.geometry_lag.p99_ms);
+  if (live.frames_read_late > 0)
+    std::printf("reading the recording was late for %lld frames\n",
+                static_cast<long long>(live.frames_read_late));
+  if (done.mask_frames + done.masks_skipped + done.masks_failed > 0)
+    std::printf(
+        "masks: %lld frames, in the map after %.1f s; %lld more wanted them while the "
+        "network was busy\n",
+        static_cast<long long>(done.mask_frames), done.mask_lag.p50_ms / 1e3,
+        static_cast<long long>(done.masks_skipped));
+  if (done.views_skipped > 0)
+    std::printf("looks at objects left out: %lld\n", static_cast<long long>(done.views_skipped));
+}
+
+double frames_per_second(const MappingRun& run) {
+  return static_cast<double>(run.sequence.frames.size()) / run.sequence.seconds;
+}
+
+}  // namespace
+
+void report_faults(const MappingRun& run) {
+  report_skipped(run.sequence);
+  if (run.live) report_bad_masks(run.live->statistics);
+}
+
+nlohmann::json run_json(const std::filesystem::path& map, const MappingRun& run, double fps) {
+  const TileTraffic tiles = tile_traffic(run.timers.summary());
+  nlohmann::json report = {{"map", map.string()},
+                           {"frames", run.sequence.frames.size()},
+                           {"frames_skipped", run.sequence.skipped.size()},
+                           {"seconds", run.sequence.seconds},
+                           {"fps", frames_per_second(run)},
+                           {"mask_frames", run.document.mask_frames},
+                           {"interrupted", interrupted()},
+                           {"stages", stages_json(run.timers)},
+                           {"tiles_evicted", tiles.evicted},
+                           {"tiles_loaded", tiles.loaded},
+                           {"embedding_queries", embedding_queries(run.document.semantics)},
+                           {"instances", run.document.instances.size()},
+                           {"peak_rss_mb", peak_rss_mb()}};
+  if (run.live) report["live"] = live_json(*run.live, fps);
+  return report;
+}
+
+void print_run(const std::filesystem::path& map, const MappingRun& run, double fps) {
+  std::printf("%s: %zu objects from %zu frames (%d with masks) in %.1f s (%.1f frames/s)\n",
+              map.c_str(), run.document.instances.size(), run.sequence.frames.size(),
+              run.document.mask_frames, run.sequence.seconds, frames_per_second(run));
+  const TileTraffic tiles = tile_traffic(run.timers.summary());
+  if (tiles.evicted > 0)
+    std::printf("%zu tiles left memory on the way, %zu came back; peak memory %.0f MB\n",
+                tiles.evicted, tiles.loaded, peak_rss_mb());
+  if (run.live) print_live(*run.live, fps);
+}
+
+void advise_on_objects(const MappingRun& run) {
+  if (!run.document.instances.empty()) return;
+  std::fprintf(stderr,
+               "ovimap: no object was seen often enough to be kept; map more frames, or --set %s=1 "
+               "where masks are slow\n",
+               run.live ? "live.masks.min_gap" : "mask_interval");
+}
+
+}  // namespace ovimap::apps

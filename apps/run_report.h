@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "mapping_run.h"
+
+namespace ovimap::apps {
+
+/// On stderr: frames that were skipped, masks that were bad, an interruption.
+void report_faults(const MappingRun& run);
+
+/// What a run did, for programs and for people. `fps`: of the camera of a live run.
+nlohmann::json run_json(const std::filesystem::path& map, const MappingRun& run, double fps);
+void print_run(const std::filesystem::path& map, const MappingRun& run, double fps);
+
+/// On stderr, where the map has no object: why.
+void advise_on_objects(const MappingRun& run);
+
+}  // namespace ovimap::apps

@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "serve_live.h"
+
+#include <thread>
+
+#include "ovimap/io/map_file.h"
+#include "ovimap/server/live_feed.h"
+
+namespace ovimap::apps {
+
+namespace {
+
+constexpr std::chrono::milliseconds kLook{50};  // between looks at what was interrupted
+
+/// Serves the map of a live run from its first frame on.
+class Service : public LiveAudience {
+ public:
+  Service(const LiveService& options, const Announce& announce)
+      : options_(options), announce_(announce) {}
+
+  void begin(const MapperConfig& config, const EncoderIdentity& encoder,
+             const std::map<InstanceId, std::string>& names, const MapEdits& edits) override {
+    FoundMap begun;
+    begun.record.names = names;
+    begun.record.edits = edits;
+    begun.record.semantics.encoder = encoder;
+    begun.info.voxel_size_m = config.map.voxel_size_m;
+    map_ = std::make_unique<ServedMap>(options_.target.map, std::move(begun), options_.served);
+    server_ = std::make_unique<ServerThread>(*map_, options_.server);
+    feed_ = std::make_unique<LiveFeed>(*map_);
+    announce_(server_->server());
+  }
+  void after_frame(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
+                   const PinholeCamera& depth_camera) override {
+    feed_->after_frame(mapper, frames, depth_camera);
+  }
+  MapEdits edits() const override { return map_->snapshot()->record->edits; }
+  MapEdits end() override {
+    feed_.reset();
+    return map_->close_log();
+  }
+
+  void saved(MapDocument&& document) { map_->saved(std::move(document)); }
+  void serve_on() {
+    while (!interrupted() && server_->runs()) std::this_thread::sleep_for(kLook);
+  }
+
+ private:
+  const LiveService& options_;
+  const Announce& announce_;
+  std::unique_ptr<ServedMap> map_;
+  std::unique_ptr<ServerThread> server_;
+  std::unique_ptr<LiveFeed> feed_;
+};
+
+}  // namespace
+
+ServerThread::ServerThread(ServedMap& map, const ServerConfig& config)
+    : server_(map, config), running_(std::async(std::launch::async, [this] { server_.run(); })) {}
+
+ServerThread::~ServerThread() {
+  while (running_.valid() && running_.wait_for(kLook) != std::future_status::ready) server_.stop();
+}
+
+bool ServerThread::runs() {
+  if (running_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return true;
+  running_.get();
+  return false;
+}
+
+void LiveService::run(const Announce& announce,
+                      const std::function<void(const MappingRun&)>& saved) const {
+  check_map_target(target.map);
+  Service service(*this, announce);
+  MappingRun mapped = map_live(mapping, fps, target, &service);
+  save_map(target.map, mapped.document);
+  saved(mapped);
+  const bool go_on = !interrupted();
+  if (go_on) service.saved(std::move(mapped.document));  // whose voxels may be in the checkpoint
+  mapped.checkpoints->remove();
+  if (go_on) service.serve_on();
+}
+
+}  // namespace ovimap::apps

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+// The page while the map is made.
+import { existsSync } from 'node:fs';
+import { expect } from '@playwright/test';
+import { infoOf, RunningMap, test, wholePicture } from './running-map';
+
+const PICTURES = process.env.OVIMAP_E2E_PICTURES ?? 'test-results/pictures';
+
+test('shows, searches and corrects a map while it is made', async ({ page }) => {
+  test.setTimeout(240_000);
+  const map = await RunningMap.live(2);
+  await page.goto(map.address);
+  await wholePicture(page);
+  await expect(page.locator('.facts.live')).toContainText('frame');
+  await expect(page.locator('.row').nth(2)).toBeVisible({ timeout: 60_000 });
+  await expect(page.getByRole('group', { name: 'Camera path' })).toBeVisible();
+  const frames = await page.locator('.facts').textContent();
+  await expect(page.locator('.facts')).not.toHaveText(frames!);
+
+  await expect(page.locator('.facts')).toContainText(/from [23]\d frames/, { timeout: 60_000 });
+  await page.screenshot({ path: `${PICTURES}/live.png` });
+
+  await expect(page.getByRole('combobox')).toBeEnabled({ timeout: 90_000 });
+  await page.getByRole('combobox').fill('sofa');
+  await page.keyboard.press('Enter');
+  await expect(page.locator('.verdict')).toHaveText(/^(Found|Not in the map)/);
+  await page.getByRole('button', { name: 'Clear the query' }).click();
+
+  await page.locator('.row').first().click();
+  const id = (await page.locator('.card h2 small').textContent())!.slice(1);
+  await page.keyboard.press('n');
+  await page.getByLabel('New name').fill('reading corner');
+  await page.keyboard.press('Enter');
+  await expect(page.locator('.card h2')).toContainText('reading corner');
+  await expect(page.locator('.facts.live')).toBeVisible(); // mapping went on meanwhile
+  await page.reload();
+  await wholePicture(page);
+  const named = page.locator('.row', { hasText: 'reading corner' });
+  await expect(named).toHaveCount(1);
+
+  await expect(page.locator('.facts.live')).toHaveCount(0, { timeout: 120_000 }); // it is saved
+  await expect(named).toHaveAttribute('data-id', id);
+  expect(await map.interrupt()).toBe(0);
+  expect(infoOf(map.file).instances.map(({ name }) => name)).toContain('reading corner');
+  await map.stop();
+});
+
+test('Ctrl-C saves what was mapped', async ({ page }) => {
+  test.setTimeout(120_000);
+  const map = await RunningMap.live(2);
+  await page.goto(map.address);
+  await wholePicture(page);
+  await expect(page.locator('.facts')).toContainText(/from ([4-9]|1\d) frames/);
+  expect(await map.interrupt()).toBe(0);
+  expect(existsSync(map.file)).toBe(true);
+  expect(infoOf(map.file).frames).toBeGreaterThan(3);
+  await expect(page.getByRole('alert')).toContainText('connection to the server is lost');
+  await map.stop();
+});
