@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "run_report.h"
 
+#include <sys/resource.h>
+
 #include <cstdio>
 
 namespace ovimap::apps {
@@ -63,6 +65,16 @@ void print_live(const LiveRunResult& live, double fps) {
     std::printf("looks at objects left out: %lld\n", static_cast<long long>(done.views_skipped));
 }
 
+/// Of all threads, in the program and in the system.
+double cpu_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
 double frames_per_second(const MappingRun& run) {
   return static_cast<double>(run.sequence.frames.size()) / run.sequence.seconds;
 }
@@ -88,6 +100,7 @@ nlohmann::json run_json(const std::filesystem::path& map, const MappingRun& run,
                            {"tiles_loaded", tiles.loaded},
                            {"embedding_queries", embedding_queries(run.document.semantics)},
                            {"instances", run.document.instances.size()},
+                           {"cpu_seconds", cpu_seconds()},
                            {"peak_rss_mb", peak_rss_mb()}};
   if (run.live) report["live"] = live_json(*run.live, fps);
   return report;

@@ -121,24 +121,28 @@ function serve(args, withClient) {
   });
 }
 
-const times = { alone: [], served: [], followed: [] };
-for (let round = 0; round < Number(rounds); ++round) {
-  times.alone.push((await run(['run', ...options(ALL_FRAMES)])).seconds);
-  times.served.push((await serve(options(ALL_FRAMES), false)).seconds);
-  times.followed.push((await serve(options(ALL_FRAMES), true)).seconds);
-}
+const ways = {
+  '`ovimap run --live`': () => run(['run', ...options(ALL_FRAMES)]),
+  '`ovimap serve --live`, nobody looks': () => serve(options(ALL_FRAMES), false),
+  '`ovimap serve --live`, a client follows': () => serve(options(ALL_FRAMES), true),
+};
+const done = Object.fromEntries(Object.keys(ways).map((way) => [way, []]));
+for (let round = 0; round < Number(rounds); ++round)
+  for (const [way, map] of Object.entries(ways)) done[way].push(await map());
 const at30 = await serve(options(['--fps', '30']), true);
 rmSync(folder, { recursive: true, force: true });
 
-const base = median(times.alone);
-const row = (what, values) =>
+const of = (way, key) => median(done[way].map((result) => result[key]));
+const [base] = Object.keys(ways);
+const more = (way, key) => `${((of(way, key) / of(base, key) - 1) * 100).toFixed(1)} %`;
+console.log('| all frames mapped, medians | seconds | more | CPU seconds | more |');
+console.log('| --- | --- | --- | --- | --- |');
+for (const way of Object.keys(ways)) {
+  const [seconds, cpu] = ['seconds', 'cpu_seconds'].map((key) => of(way, key).toFixed(2));
   console.log(
-    `| ${what} | ${median(values).toFixed(2)} | ${Math.min(...values).toFixed(2)}–${Math.max(...values).toFixed(2)} | ${((median(values) / base - 1) * 100).toFixed(1)} % |`,
+    `| ${way} | ${seconds} | ${more(way, 'seconds')} | ${cpu} | ${more(way, 'cpu_seconds')} |`,
   );
-console.log('| all frames mapped | median, s | range, s | slower by |\n| --- | --- | --- | --- |');
-row('`ovimap run --live`', times.alone);
-row('`ovimap serve --live`, nobody looks', times.served);
-row('`ovimap serve --live`, a client follows', times.followed);
+}
 const { sent, live } = at30;
 console.log(
   `\nAt 30 frames a second: ${live.frames_fused} frames fused, ${live.frames_dropped} dropped; ` +

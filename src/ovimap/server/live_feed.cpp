@@ -142,7 +142,7 @@ void LiveFeed::hand_over_surface(Mapper& mapper) {
   vertices_per_slot_ +=
       kNewSlotsWeight *
       (static_cast<double>(vertices) / static_cast<double>(slots.size()) - vertices_per_slot_);
-  next_mesh_ = pause_after(start, config_.mesh_interval);
+  next_mesh_ = pause_after(start, config_.surface_share, config_.mesh_interval);
   {
     const std::lock_guard lock(mutex_);
     patches_ = std::move(patches);
@@ -176,16 +176,17 @@ void LiveFeed::hand_over_objects(Mapper& mapper, const std::vector<FrameLogEntry
   const std::lock_guard lock(mutex_);
   found_ = std::move(found);
   summary_ = mapper.config().summary;
-  next_objects_ = pause_after(start, config_.objects_interval);
+  next_objects_ = pause_after(start, config_.objects_share, config_.objects_interval);
   changed_.notify_one();
 }
 
-LiveFeed::Clock::time_point LiveFeed::pause_after(Clock::time_point start,
-                                                  std::chrono::milliseconds least) const {
+/// Until when to leave the mapping alone, so that what began at `start` takes no more than its
+/// share.
+LiveFeed::Clock::time_point LiveFeed::pause_after(Clock::time_point start, double share,
+                                                  std::chrono::milliseconds least) {
   const auto now = Clock::now();
-  const auto share =
-      std::chrono::duration_cast<Clock::duration>((now - start) * 2 / config_.mapping_share);
-  return now + std::max<Clock::duration>(least, share);
+  const auto pause = std::chrono::duration_cast<Clock::duration>((now - start) / share);
+  return now + std::max<Clock::duration>(least, pause);
 }
 
 // ------------------------------------------------------------------------------------ publisher

@@ -17,7 +17,8 @@
 namespace ovimap {
 
 struct LiveFeedConfig {
-  double mapping_share = 0.02;    ///< of the fusing thread's time that goes to surface and objects
+  double surface_share = 0.03;    ///< of the fusing thread's time that goes to making patches
+  double objects_share = 0.01;    ///< ... and to copying what is known of objects
   double spare_share = 0.05;      ///< of one core that naming what objects there are may take
   double vertices_per_s = 50000;  ///< of the surface that are sent at most
   std::chrono::milliseconds mesh_interval{200};
@@ -48,7 +49,8 @@ class LiveFeed {
   std::vector<std::uint32_t> next_slots();
   void hand_over_objects(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
                          const PinholeCamera& depth_camera);
-  Clock::time_point pause_after(Clock::time_point start, std::chrono::milliseconds least) const;
+  static Clock::time_point pause_after(Clock::time_point start, double share,
+                                       std::chrono::milliseconds least);
   void publish();
 
   ServedMap& map_;

@@ -26,7 +26,7 @@ class LiveFeedTest : public MapFolder {
     served.encoder = "none";
     map_ = std::make_unique<ServedMap>(path_, begun, served);
     LiveFeedConfig quick;
-    quick.mapping_share = quick.spare_share = 1e6;
+    quick.surface_share = quick.objects_share = quick.spare_share = 1e6;
     quick.vertices_per_s = 1e9;
     quick.mesh_interval = quick.objects_interval = quick.pose_interval = {};
     feed_ = std::make_unique<LiveFeed>(*map_, quick);
@@ -79,10 +79,9 @@ TEST_F(LiveFeedTest, ShowsSurfaceObjectsAndCamera) {
   const Mesh whole = extract_mesh(mapper_->map());
   wait_until(
       [&] { return joined_surface(map_->mesh()).triangles.size() == whole.triangles.size(); });
-  wait_until([&] { return objects() == 3; });
+  wait_until([&] { return map_->snapshot()->record->frames.size() == 12 && objects() == 3; });
   const auto now = map_->snapshot();
   EXPECT_TRUE(now->live);
-  EXPECT_EQ(now->record->frames.size(), 12u);
   EXPECT_GT(now->record->up.z(), 0.9f);
   for (const InstanceSummary& found :
        summarize_instances(mapper_->map(), mapper_->registry(), InstanceSummaryConfig{})) {
@@ -117,7 +116,7 @@ TEST_F(LiveFeedTest, CorrectionsSurviveMoreMappingAndTheEnd) {
 
   const std::uint64_t before = map_->snapshot()->version;
   map_frames(6, scene_.size());
-  wait_until([&] { return map_->snapshot()->record->frames.size() == 12; });
+  wait_until([&] { return map_->snapshot()->record->frames.size() == 12 && objects() == 2; });
   EXPECT_GT(map_->snapshot()->version, before);
   EXPECT_EQ(objects(), 2u);
   EXPECT_EQ(map_->snapshot()->name_of(table), "desk");
@@ -149,7 +148,7 @@ TEST_F(LiveFeedTest, SendsNoMoreThanItsAllowance) {
   feed_.reset();
   LiveFeedConfig slow;
   slow.mesh_interval = {};
-  slow.mapping_share = 1e6;
+  slow.surface_share = 1e6;
   slow.vertices_per_s = 100;
   feed_ = std::make_unique<LiveFeed>(*map_, slow);
   map_frames(0, scene_.size());

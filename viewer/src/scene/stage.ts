@@ -59,6 +59,7 @@ export class Stage {
   private frameMs = 0;
   private settle = 0;
   private moving = false;
+  private held = false;
   private lastFrame = 0;
   private covered: Covered = { left: 0, bottom: 0 };
   private waiting: (() => void)[] = [];
@@ -72,6 +73,9 @@ export class Stage {
     this.camera = new PerspectiveCamera(50, 1, 0.02, 500);
     this.camera.up.copy(up).normalize();
     new ResizeObserver(() => this.resize()).observe(canvas);
+    canvas.addEventListener('pointerdown', () => (this.held = true));
+    for (const end of ['pointerup', 'pointercancel'])
+      window.addEventListener(end, () => (this.held = false));
     canvas.addEventListener('webglcontextlost', () => hooks.onLost());
     this.resize();
   }
@@ -119,13 +123,19 @@ export class Stage {
   moved(): void {
     this.moving = true;
     if (this.frameMs > SLOW_FRAME_MS) this.hooks.onDetail(true);
+    this.settleSoon();
+    this.draw();
+  }
+
+  /** Not while somebody holds the view: a slow frame in between would make them wait. */
+  private settleSoon(): void {
     window.clearTimeout(this.settle);
     this.settle = window.setTimeout(() => {
+      if (this.held) return this.settleSoon();
       this.moving = false;
       this.hooks.onDetail(false);
       this.draw();
     }, SETTLE_MS);
-    this.draw();
   }
 
   /** What is seen now, as a PNG. */
