@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "command.h"
+#include <nlohmann/json.hpp>
+
 #include "ovimap/pipeline/map_evaluation.h"
 
 namespace ovimap::apps {

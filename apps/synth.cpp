@@ -4,66 +4,42 @@
 
 #include "command.h"
 #include "ovimap/base/parallel.h"
-#include "ovimap/io/replica_pack.h"
-#include "ovimap/synth/room_builder.h"
-#include "ovimap/synth/sequence.h"
+#include "ovimap/synth/room_spec.h"
 #include "synth_catalog.h"
+#include "synth_room.h"
 
 namespace ovimap::apps {
 
 namespace {
 
 struct SynthOptions {
-  std::filesystem::path out, furniture = default_furniture_folder();
-  std::string room = "tiny";
-  int frames = 0;
-  std::uint64_t seed = 1;
-  bool noise = false;
+  std::filesystem::path out;
+  RoomOptions room;
   bool catalog = false;
   int views = PortraitConfig{}.views;
   int threads = 0;
   bool json = false;
 };
 
-struct WrittenRoom {
-  std::string scene;
-  std::int64_t frames = 0;
-  std::size_t objects = 0;
-};
-
-WrittenRoom write_room(const SynthOptions& options, const std::string& room,
-                       const std::string& scene) {
-  const RoomSpec spec = room_spec(room, options.seed);
-  SynthSequenceConfig config;
-  config.noise = options.noise;
-  const SynthSequence sequence(build_room(spec, options.furniture), spec.camera,
-                               options.frames > 0 ? options.frames : spec.frames, config);
-  ReplicaPack pack;
-  pack.scene = scene;
-  pack.frames = &sequence;
-  pack.truth = sequence.truth_mesh();
-  pack.notice = sequence.notice();
-  pack.settings = sequence.settings();
-  for (const TruthInstance& instance : sequence.instances())
-    pack.instances.push_back({instance.id, instance.class_id, instance.class_name});
+WrittenRoom render(const SynthOptions& options, const std::string& room, const std::string& scene) {
+  RoomOptions chosen = options.room;
+  chosen.room = room;
   Progress progress("rendering " + room);
-  write_replica_pack(options.out, pack, {}, [&](std::int64_t done, std::int64_t total) {
+  return write_room(options.out, chosen, scene, [&](std::int64_t done, std::int64_t total) {
     progress.show(static_cast<std::size_t>(done), static_cast<std::size_t>(total));
   });
-  return {(options.out / scene).string(), sequence.size(), pack.instances.size()};
 }
 
 int synth(const SynthOptions& options) {
   const ThreadLimit limit(options.threads);
   if (options.catalog)
     return synth_catalog(
-        {options.out, options.furniture, options.views, options.seed, options.json});
+        {options.out, options.room.furniture, options.views, options.room.seed, options.json});
   std::vector<WrittenRoom> rooms;
-  if (options.room == kRoomsV1)
-    for (const std::string& name : rooms_v1_names())
-      rooms.push_back(write_room(options, name, name));
+  if (options.room.room == kRoomsV1)
+    for (const std::string& name : rooms_v1_names()) rooms.push_back(render(options, name, name));
   else
-    rooms.push_back(write_room(options, options.room, "room"));
+    rooms.push_back(render(options, options.room.room, "room"));
   nlohmann::ordered_json scenes = nlohmann::ordered_json::array();
   for (const auto& [scene, frames, objects] : rooms) {
     scenes.push_back({{"scene", scene}, {"frames", frames}, {"instances", objects}});
@@ -72,7 +48,8 @@ int synth(const SynthOptions& options) {
                   objects);
   }
   if (options.json)
-    print_json(options.room == kRoomsV1 ? nlohmann::ordered_json{{"scenes", scenes}} : scenes[0]);
+    print_json(options.room.room == kRoomsV1 ? nlohmann::ordered_json{{"scenes", scenes}}
+                                             : scenes[0]);
   return kDone;
 }
 
@@ -84,15 +61,15 @@ Action add_synth(CLI::App& command) {
   for (const std::string& name : room_names()) rooms += (rooms.empty() ? "" : ", ") + name;
   command.add_option("OUT", options->out, "folder to write; the recording is OUT/room")->required();
   command
-      .add_option("--room", options->room,
+      .add_option("--room", options->room.room,
                   concat("which room: ", rooms, "; or ", kRoomsV1,
                          ", the five of the benchmark, each OUT/its name"))
       ->capture_default_str();
-  command.add_option("--frames", options->frames, "number of frames; 0: as the room says")
+  command.add_option("--frames", options->room.frames, "number of frames; 0: as the room says")
       ->check(CLI::Range(0, 1000000));
-  command.add_option("--seed", options->seed, "another seed gives another room of the kind")
+  command.add_option("--seed", options->room.seed, "another seed gives another room of the kind")
       ->capture_default_str();
-  command.add_flag("--noise", options->noise,
+  command.add_flag("--noise", options->room.noise,
                    "as a depth camera sees it: noise, quantisation, holes");
   auto* catalog = command.add_flag(
       "--catalog", options->catalog,
@@ -101,7 +78,8 @@ Action add_synth(CLI::App& command) {
       ->check(CLI::Range(1, 10000))
       ->needs(catalog)
       ->capture_default_str();
-  command.add_option("--furniture", options->furniture, "folder of .sh3f furniture catalogues")
+  command
+      .add_option("--furniture", options->room.furniture, "folder of .sh3f furniture catalogues")
       ->capture_default_str();
   command.add_option("--threads", options->threads, "threads to use; 0: all cores")
       ->check(CLI::Range(0, 1024));

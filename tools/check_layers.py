@@ -43,6 +43,8 @@ def check(root):
         return ["ARCHITECTURE.md has no module table"]
     found = []
     folders = [(p.name, p) for p in sorted((root / "src/ovimap").iterdir()) if p.is_dir()] + [("apps", root / "apps")]
+    if (root / "python/bindings").is_dir():
+        folders.append(("python", root / "python/bindings"))
     for module, folder in folders:
         if module not in table:
             found.append(f"{folder.relative_to(root)}: no row in ARCHITECTURE.md")

@@ -40,6 +40,7 @@ have_program_of() {
     ccache | chromium | cmake | curl | git | mold | npm | pkg-config | unzip) command -v "$1" >/dev/null ;;
     ninja-build) command -v ninja >/dev/null ;;
     python3-venv) python3 -c 'import ensurepip, venv' 2>/dev/null ;;
+    python3-dev) [ -e "$(python3 -c 'import sysconfig; print(sysconfig.get_paths()["include"])')/Python.h" ] ;;
     *) return 1 ;;
   esac
 }
@@ -89,7 +90,7 @@ set_up_packages() {
 
 set_up_venv() {
   cmp -s "$TOOLS/requirements.txt" "$VENV/requirements.txt" && return
-  say "creating .venv with the packages of the model tools"
+  say "creating .venv with the packages of the model tools and of the Python package"
   quietly ".venv cannot be created; install python3-venv" python3 -m venv "$VENV"
   quietly "pip cannot install tools/requirements.txt; check the network and pip's index" \
     "$VENV/bin/pip" install -q --disable-pip-version-check -r "$TOOLS/requirements.txt"

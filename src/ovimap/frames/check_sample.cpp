@@ -12,7 +12,7 @@ namespace {
 class Sampler {
  public:
   Sampler(const FrameSource& source, const SourceCheckConfig& config)
-      : source_(source), config_(config) {}
+      : source_(source), config_(config), sample_(config.alignment) {}
 
   /// The frame at `position`, read at its first use; nullptr when it is unusable.
   const ThinFrame* frame(std::int64_t position) {
@@ -22,6 +22,7 @@ class Sampler {
       if (read.frame) {
         entry->second = thin_frame(*read.frame, config_.compared_width_px);
         sample_.registered &= read.frame->registered();
+        if (sample_.frames.size() % 2 == 1) sample_.alignment.add(*read.frame);
       } else {
         sample_.faults[position] = read.fault;
       }

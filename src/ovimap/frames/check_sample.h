@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ovimap/frames/depth_agreement.h"
+#include "ovimap/frames/edge_alignment.h"
 #include "ovimap/frames/source_check.h"
 
 namespace ovimap {
@@ -19,6 +20,9 @@ struct CheckSample {
   std::map<std::int64_t, std::string> faults;               ///< of the unusable ones
   std::vector<std::pair<ThinFrame, ThinFrame>> neighbours;  ///< with limited rotation between them
   bool registered = true;                                   ///< colour and depth share one camera
+  EdgeAlignment alignment;                                  ///< of every second frame
+
+  explicit CheckSample(const EdgeAlignmentConfig& config) : alignment(config) {}
 };
 
 /// Draws evenly spaced pairs of neighbours; of a short source all frames are read.

@@ -10,6 +10,8 @@ namespace ovimap {
 namespace {
 
 /// Stored units that get mixed up: millimetres and metres, TUM's 5000 and Replica's 6553.5 a metre.
+constexpr double kFocalStep = 1.07;  // finer, and neighbours cannot be told apart
+constexpr int kFocalSteps = 11;      // to half and to twice the focal length
 constexpr double kDepthFactors[] = {1, 10, 0.1, 5, 0.2, 6.5535, 1 / 6.5535, 1000, 0.001};
 
 /// Takes a pixel and its depth as read in one frame to pixel and depth in another:
@@ -20,18 +22,20 @@ struct PixelTransfer {
   PixelTransfer(const ThinFrame& from, const ThinFrame& to, const Reinterpretation& reading) {
     const Pose to_from_from =
         reading.pose(to.world_from_camera).inverse() * reading.pose(from.world_from_camera);
-    const Eigen::Matrix3d into = intrinsics(to.camera);
-    const Eigen::Matrix3d rays =
-        into * to_from_from.linear() * intrinsics(from.camera).inverse() * reading.depth_factor;
+    const Eigen::Matrix3d into = intrinsics(to.camera, reading.focal_factor);
+    const Eigen::Matrix3d rays = into * to_from_from.linear() *
+                                 intrinsics(from.camera, reading.focal_factor).inverse() *
+                                 reading.depth_factor;
     column = rays.col(0).cast<float>();
     row = rays.col(1).cast<float>();
     corner = rays.col(2).cast<float>();
     offset = (into * to_from_from.translation()).cast<float>();
   }
 
-  static Eigen::Matrix3d intrinsics(const PinholeCamera& camera) {
+  static Eigen::Matrix3d intrinsics(const PinholeCamera& camera, double focal_factor) {
     Eigen::Matrix3d matrix;
-    matrix << camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1;
+    matrix << camera.fx * focal_factor, 0, camera.cx, 0, camera.fy * focal_factor, camera.cy, 0, 0,
+        1;
     return matrix;
   }
 };
@@ -85,6 +89,7 @@ ThinFrame thin_frame(const Frame& frame, int max_width_px) {
     for (int u = 0; u < thin.depth.width(); ++u)
       thin.depth.at(u, v) = frame.depth.at(u * step, v * step);
   thin.world_from_camera = frame.world_from_camera;
+  thin.position = frame.index;
   return thin;
 }
 
@@ -102,7 +107,9 @@ std::vector<Reinterpretation> usual_reinterpretations() {
   for (const double factor : kDepthFactors)
     for (const Axes axes : {Axes::kOpenCv, Axes::kOpenGl, Axes::kRos})
       for (const Direction direction : {Direction::kWorldFromCamera, Direction::kCameraFromWorld})
-        readings.push_back({direction, axes, factor});
+        readings.push_back({direction, axes, factor, 1});
+  for (int step = -kFocalSteps; step <= kFocalSteps; ++step)
+    if (step != 0) readings.push_back({.focal_factor = std::pow(kFocalStep, step)});
   return readings;
 }
 

@@ -13,6 +13,7 @@ namespace ovimap {
 
 /// The geometry of a frame at reduced resolution: every n-th pixel, so that no depth is invented.
 struct ThinFrame {
+  std::int64_t position = 0;  ///< in its source
   PinholeCamera camera;
   DepthImage depth;
   Pose world_from_camera;
@@ -21,11 +22,12 @@ struct ThinFrame {
 /// Keeps every n-th pixel, the smallest n that makes the image at most `max_width_px` wide.
 ThinFrame thin_frame(const Frame& frame, int max_width_px);
 
-/// A way in which poses and depth may have been meant, other than as read.
+/// A way in which poses, depth and camera may have been meant, other than as read.
 struct Reinterpretation {
   PoseConvention::Direction direction = PoseConvention::Direction::kWorldFromCamera;
   PoseConvention::Axes axes = PoseConvention::Axes::kOpenCv;
   double depth_factor = 1;  ///< true depth / depth as read
+  double focal_factor = 1;  ///< true focal length / focal length as read
 
   Pose pose(const Pose& as_read) const;
 };

@@ -11,6 +11,7 @@
 #include "ovimap/base/config.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/frames/check_sample.h"
+#include "ovimap/frames/pose_offset.h"
 
 namespace ovimap {
 
@@ -20,10 +21,14 @@ std::string percent(double share) {
   return concat(static_cast<int>(std::floor(100 * share + 0.5)), "%");
 }
 
-std::string metres(double value) {
+std::string rounded(double value) {
   std::ostringstream text;
-  text << std::setprecision(3) << value << " m";
+  text << std::setprecision(3) << value;
   return text.str();
+}
+
+std::string metres(double value) {
+  return rounded(value) + " m";
 }
 
 void add(CheckReport& report, Severity severity, const char* name, std::string message,
@@ -108,7 +113,8 @@ struct Fit {
 int changes(const Reinterpretation& reading) {
   const Reinterpretation as_read;
   return (reading.direction != as_read.direction) + (reading.axes != as_read.axes) +
-         (reading.depth_factor != as_read.depth_factor);
+         (reading.depth_factor != as_read.depth_factor) +
+         (reading.focal_factor != as_read.focal_factor);
 }
 
 /// The reading that fits best; of those about as good, the one that changes least.
@@ -159,6 +165,15 @@ void report_better_fit(const Fit& fit, const SourceCheckConfig& config, CheckRep
   if (reading.direction != Reinterpretation{}.direction || reading.axes != Reinterpretation{}.axes)
     add(report, Severity::kFault, "pose_convention", convention_message(reading) + gain,
         convention_remedy(reading));
+  if (reading.focal_factor != 1) {
+    const bool longer = reading.focal_factor > 1;
+    const std::string times = rounded(longer ? reading.focal_factor : 1 / reading.focal_factor);
+    add(report, Severity::kFault, "intrinsics",
+        concat("the depth camera's focal length is about ", times, " times too ",
+               longer ? "short" : "long", gain),
+        concat(longer ? "multiply" : "divide", " fx and fy of depth_camera by about ", times,
+               " in calibration.yaml, or give the camera's calibrated figures"));
+  }
   const double factor = reading.depth_factor;
   if (factor == 1) return check_scale(config, report);
   const bool larger = factor > 1;
@@ -176,8 +191,28 @@ void report_better_fit(const Fit& fit, const SourceCheckConfig& config, CheckRep
         "write the positions of the poses in metres");
 }
 
-void check_agreement(const CheckSample& sample, const SourceCheckConfig& config,
-                     CheckReport& report) {
+/// Whether the poses fit other images clearly better than their own; if so, says so.
+bool report_time_offset(const FrameSource& source, const CheckSample& sample,
+                        const SourceCheckConfig& config, CheckReport& report) {
+  const PoseOffset best = find_pose_offset(source, sample.neighbours, config);
+  if (best.agreement < config.good_agreement ||
+      best.agreement < report.depth_agreement + config.min_gain)
+    return false;
+  const char* when = best.frames > 0 ? "late" : "early";
+  check_scale(config, report);
+  add(report, Severity::kFault, "time_offset",
+      concat("the poses come ", std::abs(best.frames), " frame(s) too ", when, " (",
+             rounded(std::abs(best.seconds)), " s): neighbouring frames then agree in ",
+             percent(best.agreement), " of their depth instead of ",
+             percent(report.depth_agreement)),
+      concat("give each image the pose that is stored ", std::abs(best.frames), " frame(s) ",
+             best.frames > 0 ? "after" : "before",
+             " its own, or record images and poses by one clock"));
+  return true;
+}
+
+void check_agreement(const FrameSource& source, const CheckSample& sample,
+                     const SourceCheckConfig& config, CheckReport& report) {
   const Agreement as_read = measure_agreement(sample.neighbours, {}, config.depth_tolerance);
   report.overlap = as_read.overlap();
   report.depth_agreement = as_read.share();
@@ -189,6 +224,9 @@ void check_agreement(const CheckSample& sample, const SourceCheckConfig& config,
         best.agreement.share() >= config.good_agreement)
       return report_better_fit(best, config, report);
   }
+  if (as_read.share() < config.good_agreement && !sample.neighbours.empty() &&
+      report_time_offset(source, sample, config, report))
+    return;
   check_scale(config, report);
   const std::string message =
       concat("depth of neighbouring frames agrees in ", percent(as_read.share()),
@@ -206,8 +244,9 @@ void check_agreement(const CheckSample& sample, const SourceCheckConfig& config,
     add(report, Severity::kOk, "agreement", message);
 }
 
-void check_poses(const CheckSample& sample, const SourceCheckConfig& config, CheckReport& report) {
-  if (!all_poses_equal(sample)) return check_agreement(sample, config, report);
+void check_poses(const FrameSource& source, const CheckSample& sample,
+                 const SourceCheckConfig& config, CheckReport& report) {
+  if (!all_poses_equal(sample)) return check_agreement(source, sample, config, report);
   report.depth_agreement = measure_agreement(sample.neighbours, {}, config.depth_tolerance).share();
   const bool still = report.depth_agreement >= config.good_agreement;
   check_scale(config, report);
@@ -218,6 +257,19 @@ void check_poses(const CheckSample& sample, const SourceCheckConfig& config, Che
 }
 
 void check_registration(const CheckSample& sample, CheckReport& report) {
+  const EdgeAlignment::Verdict alignment = sample.alignment.verdict();
+  if (!alignment.registered) {
+    add(report, Severity::kFault, "registration",
+        concat("colour lies about ", rounded(alignment.shift_px),
+               " px beside the edges of depth, in ", alignment.misplaced, " of ", alignment.judged,
+               " parts of the image"),
+        sample.registered
+            ? "put a calibration.yaml with both cameras and color_from_depth beside the recording "
+              "(docs/sources.md shows one)"
+            : "correct color_camera and color_from_depth in calibration.yaml, or record colour and "
+              "depth at the same time");
+    return;
+  }
   const bool suspicious = report.kind == "7scenes" && sample.registered && report.usable > 0;
   add(report, suspicious ? Severity::kWarning : Severity::kOk, "registration",
       suspicious ? "7-Scenes records colour and depth with two cameras, here they are taken as one"
@@ -253,6 +305,7 @@ void list_fields(SourceCheckConfig& config, ConfigFields& fields) {
              "less depth agreement is a warning");
   fields.add("min_gain", config.min_gain, 0.f, 1.f,
              "by how much another reading of poses or depth must agree better to be named");
+  fields.group("alignment", [&](ConfigFields& inner) { list_fields(config.alignment, inner); });
 }
 
 bool CheckReport::ok() const {
@@ -268,7 +321,7 @@ CheckReport check_source(const FrameSource& source, const SourceCheckConfig& con
   check_frames(sample, config, report);
   check_registration(sample, report);
   check_depth(sample, config, report);
-  if (report.usable > 1) check_poses(sample, config, report);
+  if (report.usable > 1) check_poses(source, sample, config, report);
   return report;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "ovimap/frames/edge_alignment.h"
 #include "ovimap/frames/frame_source.h"
 
 namespace ovimap {
@@ -25,13 +26,15 @@ struct SourceCheckConfig {
   float min_agreement = 0.5f;        ///< less depth agreement is a fault
   float good_agreement = 0.7f;       ///< less depth agreement is a warning, and names no mistake
   float min_gain = 0.1f;  ///< another reading of poses or depth must agree better by this much
+  EdgeAlignmentConfig alignment;  ///< of colour and depth
 };
 void list_fields(SourceCheckConfig& config, ConfigFields& fields);
 
 enum class Severity { kOk, kWarning, kFault };
 
 /// One result of a check. `name` is stable, for programs: "frames", "bad_frames", "depth_valid",
-/// "depth_scale", "still_poses", "pose_convention", "pose_unit", "agreement", "registration".
+/// "depth_scale", "still_poses", "pose_convention", "pose_unit", "intrinsics", "time_offset",
+/// "agreement", "registration".
 struct Finding {
   Severity severity = Severity::kOk;
   std::string name;
@@ -56,7 +59,8 @@ struct CheckReport {
 };
 
 /// Reads up to `max_frames` frames and says what is wrong with the recording: unusable frames,
-/// depth in another unit, poses inverted or in other axes, poses that never change. Depth of
+/// depth in another unit, poses inverted or in other axes, poses that never change or belong to
+/// other images, a wrong focal length, colour that does not lie where depth says. Depth of
 /// neighbouring frames is projected into each other; when the frames disagree, the usual mistakes
 /// are tried and the one that fits clearly better is named with its remedy.
 CheckReport check_source(const FrameSource& source, const SourceCheckConfig& config = {});

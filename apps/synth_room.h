@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "ovimap/synth/furniture_catalog.h"
+
+namespace ovimap::apps {
+
+struct RoomOptions {
+  std::filesystem::path furniture = default_furniture_folder();
+  std::string room = "tiny";  ///< one of room_names
+  int frames = 0;             ///< 0: as the room says
+  std::uint64_t seed = 1;
+  bool noise = false;  ///< as a depth camera sees it
+};
+
+struct WrittenRoom {
+  std::string scene;  ///< the folder
+  std::int64_t frames = 0;
+  std::size_t objects = 0;
+};
+
+/// Renders a room into the recording `out`/`scene`. Throws Error for an unknown room and what
+/// cannot be written.
+WrittenRoom write_room(
+    const std::filesystem::path& out, const RoomOptions& options, const std::string& scene,
+    const std::function<void(std::int64_t done, std::int64_t total)>& progress = {});
+
+}  // namespace ovimap::apps

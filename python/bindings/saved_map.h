@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "ovimap/pipeline/map_search.h"
+#include "ovimap/semantics/query_engine.h"
+
+namespace ovimap::python {
+
+namespace nb = nanobind;
+
+/// A map file, open for questions. The encoder is opened at the first one that needs it.
+class SavedMap {
+ public:
+  /// `encoder`: null where `encoder_spec` names it.
+  SavedMap(std::filesystem::path path, const QueryConfig& config,
+           std::shared_ptr<ImageTextEncoder> encoder, std::string encoder_spec,
+           std::vector<std::filesystem::path> model_dirs);
+
+  const std::filesystem::path& path() const { return path_; }
+  const MapInfo& info() const { return search_.info; }
+  const SearchIndex& index() const { return search_.index; }
+  const QueryScene& scene() const { return search_.scene; }
+
+  /// Thread-safe. `words`: whether the question needs the encoder.
+  const QueryEngine& engine(bool words);
+
+  /// The surface with instance ids as labels. Throws Error for a map without voxels.
+  Mesh mesh() const;
+
+ private:
+  void require_encoder_of_map() const;
+
+  std::filesystem::path path_;
+  QueryConfig config_;
+  std::string encoder_spec_;
+  std::vector<std::filesystem::path> model_dirs_;
+  MapSearch search_;
+
+  std::mutex mutex_;  ///< guards what follows
+  std::shared_ptr<ImageTextEncoder> encoder_;
+  std::unique_ptr<QueryEngine> word_engine_, object_engine_;
+};
+
+/// Adds the questions to Map.
+void bind_query(nb::module_& module, nb::class_<SavedMap>& map);
+
+}  // namespace ovimap::python

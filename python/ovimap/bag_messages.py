@@ -1,0 +1,123 @@
+# SPDX-FileCopyrightText: 2026 The ovimap authors
+# SPDX-License-Identifier: Apache-2.0
+"""Messages of ROS 1 bags, ROS 2 bags and MCAP files as plain values."""
+
+from __future__ import annotations
+
+import pathlib
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ._ovimap import Error
+
+IMAGES = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")
+CAMERA = "sensor_msgs/msg/CameraInfo"
+TRANSFORMS = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")
+ODOMETRY = "nav_msgs/msg/Odometry"
+POSES = ("geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/PoseWithCovarianceStamped")
+CUT_OFF = "it is cut off or was never closed; try `rosbag reindex`, `ros2 bag reindex` or `mcap recover`"
+
+
+class Bag:
+    """A bag, open for reading. Raises Error for what is none, is cut off, or needs a package that is missing."""
+
+    def __init__(self, path: pathlib.Path) -> None:
+        try:
+            from rosbags.highlevel import AnyReader
+            from rosbags.typesys import Stores, get_typestore
+        except ImportError:
+            raise Error("reading bags needs the package rosbags; run: pip install 'ovimap[bags]'") from None
+        self.path = path
+        if not path.exists():
+            raise Error(f"there is no bag '{path}'; name a .bag file, a ROS 2 bag's folder or an .mcap file")
+        store = get_typestore(Stores.ROS1_NOETIC if path.suffix == ".bag" else Stores.LATEST)
+        try:
+            self.reader: Any = AnyReader([path], default_typestore=store)
+            self.reader.open()
+        except Exception as fault:  # every storage fails in its own way
+            raise Error(f"bag '{path}' cannot be opened ({_text(fault)}); {CUT_OFF}") from None
+        self.types: dict[str, str] = {c.topic: c.msgtype for c in self.reader.connections}
+
+    def __enter__(self) -> Bag:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.reader.close()
+
+    def topics(self, *types: str) -> list[str]:
+        return sorted(topic for topic, kind in self.types.items() if kind in types)
+
+    def messages(self, topics: set[str]) -> Iterator[tuple[str, int, Any]]:
+        """(topic, when the bag got it in ns, message) in the order of recording."""
+        chosen = [c for c in self.reader.connections if c.topic in topics]
+        if not chosen:
+            return
+        try:
+            for connection, time_ns, data in self.reader.messages(connections=chosen):
+                yield connection.topic, time_ns, self.reader.deserialize(data, connection.msgtype)
+        except Error:
+            raise
+        except Exception as fault:
+            raise Error(f"bag '{self.path}' cannot be read to its end ({_text(fault)}); {CUT_OFF}") from None
+
+
+def _text(fault: Exception) -> str:
+    return f"{type(fault).__name__}: {fault}".splitlines()[0]
+
+
+def stamp_ns(header: Any) -> int:
+    return int(header.stamp.sec) * 1_000_000_000 + int(header.stamp.nanosec)
+
+
+def vector(value: Any) -> tuple[float, float, float]:
+    return (value.x, value.y, value.z)
+
+
+def quaternion(value: Any) -> tuple[float, float, float, float]:
+    return (value.x, value.y, value.z, value.w)
+
+
+def is_depth(message: Any) -> bool:
+    """By the encoding, which raw and compressed images both name."""
+    if hasattr(message, "encoding"):
+        return message.encoding in ("16UC1", "mono16", "32FC1")
+    return "compressedDepth" in message.format or message.format.startswith(("16UC1", "32FC1"))
+
+
+CHANNELS = {"rgb8": 3, "bgr8": 3, "rgba8": 4, "bgra8": 4, "mono8": 1, "8UC1": 1, "8UC3": 3}
+
+
+def raw_color(message: Any, topic: str) -> npt.NDArray[np.uint8]:
+    """uint8 [height, width, 3], red first."""
+    if message.encoding not in CHANNELS:
+        raise Error(
+            f"{topic} has the encoding '{message.encoding}', which is not read; accepted are "
+            f"{', '.join(CHANNELS)}, JPEG and PNG"
+        )
+    channels = CHANNELS[message.encoding]
+    image = _rows(message, topic, message.width * channels).reshape(message.height, message.width, channels)
+    image = image[:, :, [0, 0, 0]] if channels == 1 else image[:, :, :3]
+    reverse = message.encoding.startswith("bgr") or message.encoding == "8UC3"
+    return np.ascontiguousarray(image[:, :, ::-1] if reverse else image)
+
+
+def raw_depth(message: Any, topic: str) -> npt.NDArray[Any]:
+    """uint16 millimetres or float32 metres [height, width]."""
+    size = 4 if message.encoding == "32FC1" else 2
+    kind = np.dtype(np.float32 if size == 4 else np.uint16).newbyteorder(">" if message.is_bigendian else "<")
+    rows = np.ascontiguousarray(_rows(message, topic, message.width * size))
+    return rows.view(kind).reshape(message.height, message.width).astype(kind.newbyteorder("="))
+
+
+def _rows(message: Any, topic: str, used: int) -> npt.NDArray[np.uint8]:
+    """The bytes of the pixels, [height, used]: rows may be padded."""
+    data = np.asarray(message.data, np.uint8)
+    if message.step < used or data.size < message.height * message.step:
+        raise Error(
+            f"an image of {topic} has {data.size} bytes, too few for {message.width}x{message.height} "
+            f"{message.encoding}; record the bag anew"
+        )
+    return data[: message.height * message.step].reshape(message.height, message.step)[:, :used]

@@ -1,0 +1,352 @@
+# SPDX-FileCopyrightText: 2026 The ovimap authors
+# SPDX-License-Identifier: Apache-2.0
+"""ROS 1 bags, ROS 2 bags and MCAP files, turned into a folder that ovimap reads (docs/sources.md)."""
+
+from __future__ import annotations
+
+import argparse
+import bisect
+import io
+import json
+import os
+import pathlib
+import shutil
+import sys
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ._ovimap import Error
+from .bag_messages import CAMERA, IMAGES, ODOMETRY, POSES, TRANSFORMS, Bag, is_depth, quaternion, raw_color, raw_depth, stamp_ns, vector
+from .transforms import Matrix, TransformTree, matrix_of, quaternion_of
+
+MILLIMETRES = 1000  # what 16-bit depth counts by ROS's convention (REP 118)
+FLOAT_UNITS = 5000  # to which depth in metres is rounded: 0.2 mm, up to 13 m
+MAX_TIME_GAP_S = 0.02  # colour and depth farther apart do not belong together
+MAX_CLOCK_JUMP_S = 5.0  # how much the clock of images may run away from the bag's within one message
+
+
+@dataclass
+class Topics:
+    """What to read; what is None is found where there is only one."""
+
+    color: str | None = None
+    depth: str | None = None
+    poses: str | None = None  # of odometry or poses, instead of tf
+    world: str | None = None  # the frame poses are given in; None: the root of the transforms
+
+
+@dataclass
+class Stream:
+    """The images of one topic, written as they come."""
+
+    topic: str
+    info_topic: str
+    folder: pathlib.Path
+    depth: bool
+    frame: str = ""
+    units: int = MILLIMETRES
+    info: Any = None
+    times_ns: list[int] = field(default_factory=list)
+    files: list[pathlib.Path] = field(default_factory=list)
+    clock_offset_ns: int | None = None
+
+    def check_clock(self, time_ns: int, received_ns: int) -> None:
+        if time_ns == 0:
+            raise Error(f"the images of {self.topic} have no time stamps; record them with header.stamp set")
+        last = self.times_ns[-1] if self.times_ns else time_ns
+        offset = received_ns - time_ns
+        run_away = abs(offset - (self.clock_offset_ns if self.clock_offset_ns is not None else offset))
+        if time_ns < last or run_away > MAX_CLOCK_JUMP_S * 1e9:
+            jump = (time_ns - last) / 1e9 if time_ns < last else run_away / 1e9
+            raise Error(
+                f"the clock of {self.topic} jumps by {jump:.3f} s after image {len(self.times_ns)}; cut the bag there "
+                "and convert the parts one by one"
+            )
+        self.clock_offset_ns = offset
+
+    def write(self, message: Any, received_ns: int) -> None:
+        time_ns = stamp_ns(message.header)
+        self.check_clock(time_ns, received_ns)
+        if self.times_ns and time_ns == self.times_ns[-1]:
+            return  # the same image twice
+        self.frame = message.header.frame_id.lstrip("/")
+        data, ending = self.encode(message)
+        file = self.folder / f"{time_ns // 10**9}.{time_ns % 10**9:09d}{ending}"
+        file.write_bytes(data)
+        self.times_ns.append(time_ns)
+        self.files.append(file)
+
+    def encode(self, message: Any) -> tuple[bytes, str]:
+        if not hasattr(message, "encoding"):
+            return self.encode_compressed(message)
+        if not self.depth:
+            return _png(raw_color(message, self.topic)), ".png"
+        return self.encode_depth(raw_depth(message, self.topic))
+
+    def encode_depth(self, depth: Any) -> tuple[bytes, str]:
+        if depth.dtype == np.uint16:
+            return _png(depth), ".png"
+        self.units = FLOAT_UNITS
+        units = np.nan_to_num(depth * np.float32(FLOAT_UNITS), nan=0, posinf=0, neginf=0)
+        return _png(np.where((units > 0) & (units < 65535), np.rint(units), 0).astype(np.uint16)), ".png"
+
+    def encode_compressed(self, message: Any) -> tuple[bytes, str]:
+        data = bytes(message.data)
+        if "compressedDepth" in message.format:
+            return self.encode_compressed_depth(data, message.format)
+        for magic, ending in ((b"\xff\xd8", ".jpg"), (b"\x89PNG", ".png")):
+            if data.startswith(magic):
+                return data, ending
+        raise Error(f"an image of {self.topic} is compressed as '{message.format}'; accepted are JPEG and PNG")
+
+    def encode_compressed_depth(self, data: bytes, image_format: str) -> tuple[bytes, str]:
+        """A header of 12 bytes, then a PNG; of metres it holds a / (depth - b), rounded."""
+        header, png = np.frombuffer(data[4:12], "<f4"), data[12:]
+        if not png.startswith(b"\x89PNG"):
+            raise Error(f"an image of {self.topic} is compressed as '{image_format}', which holds no PNG; record it as 16UC1")
+        if not image_format.startswith("32FC1"):
+            return png, ".png"
+        from PIL import Image
+
+        stored = np.asarray(Image.open(io.BytesIO(png))).astype(np.float32)
+        with np.errstate(divide="ignore"):
+            return self.encode_depth(np.where(stored > 0, header[0] / (stored - header[1]), 0))
+
+
+def _png(pixels: Any) -> bytes:
+    from PIL import Image
+
+    out = io.BytesIO()
+    Image.fromarray(pixels).save(out, "PNG", compress_level=1)
+    return out.getvalue()
+
+
+def convert(bag: str | os.PathLike[str], out: str | os.PathLike[str], *, topics: Topics | None = None) -> dict[str, Any]:
+    """Writes a bag's frames as a folder that ovimap.open_source reads: colour, depth, poses.txt, camera.yaml.
+
+    bag: a .bag file, a ROS 2 bag's folder, or an .mcap file. Poses come from tf, odometry or stamped poses; images
+    stay as they were compressed. Returns {"source", "frames", "left_out", "color", "depth", "world", "notices"}.
+    Raises Error for a bag that is cut off, whose clock jumps, or that lacks images, camera_info or poses, and where
+    `topics` must choose.
+    """
+    chosen, folder = topics or Topics(), pathlib.Path(out)
+    if folder.exists() and any(folder.iterdir()):
+        raise Error(f"'{folder}' is not empty; name a new folder")
+    try:
+        with Bag(pathlib.Path(bag)) as opened:
+            color_topic, depth_topic = _image_topics(opened, chosen)
+            color = Stream(color_topic, _info_topic(opened, color_topic), folder / "color", depth=False)
+            depth = Stream(depth_topic, _info_topic(opened, depth_topic), folder / "depth", depth=True)
+            for stream in (color, depth):
+                stream.folder.mkdir(parents=True, exist_ok=True)
+            tree = _read(opened, color, depth, chosen)
+        return _write_folder(folder, color, depth, tree, chosen)
+    except BaseException:
+        shutil.rmtree(folder, ignore_errors=True)  # it was empty or not there: nothing half done is left
+        raise
+
+
+def _image_topics(bag: Bag, chosen: Topics) -> tuple[str, str]:
+    images = bag.topics(*IMAGES)
+    for name in (chosen.color, chosen.depth):
+        if name is not None and name not in images:
+            raise Error(f"the bag has no images '{name}'; it has {', '.join(images) or 'none at all'}")
+    found: dict[bool, list[str]] = {False: [], True: []}
+    seen: set[str] = set()
+    for topic, _, message in bag.messages(set(images)):
+        if topic not in seen:
+            seen.add(topic)
+            found[is_depth(message)].append(topic)
+        if len(seen) == len(images):
+            break
+    result = []
+    for name, which, option in ((chosen.color, False, "color"), (chosen.depth, True, "depth")):
+        if name is None and len(found[which]) != 1:
+            raise Error(
+                f"the bag has {len(found[which])} topics of {option} images ({', '.join(sorted(found[which])) or 'none'}); "
+                + (f"name one with --{option}" if found[which] else f"ovimap needs {option} images")
+            )
+        result.append(name if name is not None else found[which][0])
+    return result[0], result[1]
+
+
+def _info_topic(bag: Bag, image_topic: str) -> str:
+    """camera_info beside the images or in the folders above (image_raw/compressed), else the only one."""
+    infos = bag.topics(CAMERA)
+    folder = image_topic
+    while "/" in folder.strip("/"):
+        folder = folder.rsplit("/", 1)[0]
+        if f"{folder}/camera_info" in infos:
+            return f"{folder}/camera_info"
+    if len(infos) == 1:
+        return infos[0]
+    raise Error(f"the bag has no camera_info beside {image_topic} (it has {', '.join(infos) or 'none'}); record that topic too")
+
+
+def _read(bag: Bag, color: Stream, depth: Stream, chosen: Topics) -> TransformTree:
+    streams = {color.topic: color, depth.topic: depth}
+    odometry = [chosen.poses] if chosen.poses else bag.topics(ODOMETRY)
+    transforms = bag.topics(*TRANSFORMS)
+    tree, extra = TransformTree(), TransformTree()
+    for topic, received_ns, message in bag.messages({*streams, color.info_topic, depth.info_topic, *transforms, *odometry}):
+        if topic in streams:
+            streams[topic].write(message, received_ns)
+        elif topic in transforms:
+            for entry in message.transforms:
+                pose = matrix_of(vector(entry.transform.translation), quaternion(entry.transform.rotation))
+                static = topic.endswith("static")
+                tree.add(entry.header.frame_id, entry.child_frame_id, stamp_ns(entry.header), pose, static=static)
+        elif topic in odometry:
+            _add_pose(extra, bag.types[topic], message, chosen)
+        for stream in streams.values():
+            if topic == stream.info_topic:
+                stream.info = message
+    for child, link in extra.links.items():
+        if chosen.poses or child not in tree.links:
+            tree.links[child or depth.frame] = link
+    return tree
+
+
+def _add_pose(tree: TransformTree, kind: str, message: Any, chosen: Topics) -> None:
+    if kind not in (ODOMETRY, *POSES):
+        raise Error(f"--poses {chosen.poses} is of type {kind}; accepted are Odometry and PoseStamped")
+    pose = message.pose if kind == POSES[0] else message.pose.pose
+    child = message.child_frame_id if kind == ODOMETRY else ""  # a pose names no child: the camera's
+    tree.add(message.header.frame_id, child, stamp_ns(message.header), matrix_of(vector(pose.position), quaternion(pose.orientation)))
+
+
+def _write_folder(folder: pathlib.Path, color: Stream, depth: Stream, tree: TransformTree, chosen: Topics) -> dict[str, Any]:
+    for stream in (color, depth):
+        if not stream.times_ns:
+            raise Error(f"the bag holds no image of {stream.topic}")
+        if stream.info is None:
+            raise Error(f"the bag holds no message of {stream.info_topic}, so the camera of {stream.topic} is unknown; record it too")
+    world = _world(tree, depth.frame, chosen.world)
+    pairs, lines = _pairs(color, depth), []
+    used: set[pathlib.Path] = set()
+    for i, j in pairs:
+        pose = tree.target_from(world, depth.frame, depth.times_ns[j])
+        if pose is None:
+            continue
+        used |= {color.files[i], depth.files[j]}
+        lines.append(_pose_line(color.files[i].stem, pose))
+        depth.files[j].rename(depth.files[j].with_name(color.files[i].stem + ".png"))
+    left_out = len(color.files) - len(lines)
+    for file in {*color.files, *depth.files} - used:
+        file.unlink()
+    if not lines:
+        raise Error(
+            f"no frame has colour, depth and a pose ({len(pairs)} pairs of images within {MAX_TIME_GAP_S} s); check that images "
+            "and poses share one clock"
+        )
+    (folder / "poses.txt").write_text("".join(lines))
+    offset = _color_from_depth(tree, color, depth)
+    notices = [_notice(stream) for stream in (color, depth) if _notice(stream)]
+    (folder / "camera.yaml").write_text(_camera_text(color, depth, offset))
+    return {
+        "source": str(folder),
+        "frames": len(lines),
+        "left_out": left_out,
+        "color": color.topic,
+        "depth": depth.topic,
+        "world": world,
+        "notices": notices,
+    }
+
+
+def _world(tree: TransformTree, frame: str, wanted: str | None) -> str:
+    chain = tree.chain(frame)
+    if wanted is not None and wanted.lstrip("/") not in chain:
+        raise Error(f"the frame '{wanted}' is no ancestor of the camera's '{frame}', whose are {', '.join(chain[1:]) or 'none'}")
+    end = chain.index(wanted.lstrip("/")) if wanted is not None else len(chain) - 1
+    if all(tree.links[name].static for name in chain[:end]):
+        raise Error(
+            f"nothing in the bag moves the camera's frame '{frame}' (known: {' -> '.join(chain)}); record /tf and /tf_static, "
+            "or odometry, or name a topic of poses with --poses"
+        )
+    return chain[end]
+
+
+def _pairs(color: Stream, depth: Stream) -> list[tuple[int, int]]:
+    """Each colour image with the depth image nearest in time, each of which is used once."""
+    best: dict[int, tuple[int, int]] = {}
+    for i, time_ns in enumerate(color.times_ns):
+        after = bisect.bisect_left(depth.times_ns, time_ns)
+        near = [k for k in (after - 1, after) if 0 <= k < len(depth.times_ns)]
+        j = min(near, key=lambda k: abs(depth.times_ns[k] - time_ns))
+        gap = abs(depth.times_ns[j] - time_ns)
+        if gap <= MAX_TIME_GAP_S * 1e9 and gap < best.get(j, (gap + 1, 0))[0]:
+            best[j] = (gap, i)
+    return sorted((i, j) for j, (_, i) in best.items())
+
+
+def _pose_line(time: str, pose: Matrix) -> str:
+    return " ".join([time, *(repr(float(value)) for value in (*pose[:3, 3], *quaternion_of(pose)))]) + "\n"
+
+
+def _color_from_depth(tree: TransformTree, color: Stream, depth: Stream) -> Matrix:
+    if color.frame == depth.frame:
+        return np.eye(4)
+    offset = tree.target_from(color.frame, depth.frame, depth.times_ns[0])
+    if offset is None:
+        raise Error(f"no transform from '{depth.frame}' to '{color.frame}' when the first depth image was taken; record /tf_static")
+    return offset
+
+
+def _notice(stream: Stream) -> str:
+    distortion = np.abs(np.asarray(_field(stream.info, "d"), np.float64))
+    if distortion.size == 0 or distortion.max() < 1e-3 or "rect" in stream.topic:
+        return ""
+    return f"{stream.topic} is distorted, which is not corrected; record rectified images for sharper maps"
+
+
+def _field(info: Any, name: str) -> Any:
+    return getattr(info, name) if hasattr(info, name) else getattr(info, name.upper())  # ROS 1 has capitals
+
+
+def _camera_text(color: Stream, depth: Stream, offset: Matrix) -> str:
+    def camera(stream: Stream, more: str = "") -> str:
+        k = _field(stream.info, "k")
+        figures = {"fx": k[0], "fy": k[4], "cx": k[2], "cy": k[5]}
+        text = ", ".join(f"{name}: {float(value)!r}" for name, value in figures.items())
+        return f"{{width: {stream.info.width}, height: {stream.info.height}, {text}{more}}}"
+
+    q = quaternion_of(offset)
+    angle = 2 * np.arctan2(np.linalg.norm(q[:3]), q[3])
+    axis = q[:3] / max(float(np.linalg.norm(q[:3])), 1e-300)
+    turn = ", ".join(repr(float(value)) for value in axis * (angle - 2 * np.pi if angle > np.pi else angle))
+    shift = ", ".join(repr(float(value)) for value in offset[:3, 3])
+    return (
+        f"depth_camera: {camera(depth, f', depth_scale: {depth.units}, invalid: [0, 65535]')}\n"
+        f"color_camera: {camera(color)}\n"
+        f"color_from_depth: {{rotation_vector: [{turn}], translation: [{shift}]}}\n"
+    )
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """The command ovimap-bag."""
+    parser = argparse.ArgumentParser(prog="ovimap-bag", description="turns a ROS bag or MCAP file into a folder that ovimap reads")
+    parser.add_argument("bag", help="a .bag file, a ROS 2 bag's folder or an .mcap file")
+    parser.add_argument("out", help="folder to write")
+    parser.add_argument("--color", help="topic of colour images, where there are several")
+    parser.add_argument("--depth", help="topic of depth images, where there are several")
+    parser.add_argument("--poses", help="topic of odometry or stamped poses of the camera, instead of tf")
+    parser.add_argument("--world", help="frame to give poses in; default: the root of the transforms")
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+    options = parser.parse_args(arguments)
+    try:
+        topics = Topics(options.color, options.depth, options.poses, options.world)
+        done = convert(options.bag, options.out, topics=topics)
+    except Error as fault:
+        print(f"ovimap-bag: {fault}", file=sys.stderr)
+        return 2
+    for notice in done["notices"]:
+        print(f"ovimap-bag: {notice}", file=sys.stderr)
+    print(json.dumps(done) if options.json else f"{done['source']}: {done['frames']} frames, {done['left_out']} left out")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,82 @@
+# SPDX-FileCopyrightText: 2026 The ovimap authors
+# SPDX-License-Identifier: Apache-2.0
+"""What the program's commands of the same names do, as functions."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from . import _ovimap
+from ._ovimap import Error, FrameError, Map, Mapper, make_mask_source, open_source
+
+Path = str | os.PathLike[str]
+
+
+def run(
+    source: Path,
+    map: Path,
+    *,
+    masks: Any = "none",
+    encoder: Any = "auto",
+    frames: str = ":",
+    preset: str = "default",
+    settings: dict[str, Any] | None = None,
+    progress: Callable[[int, int], Any] | None = None,
+) -> Map:
+    """Maps a recording, saves the map and opens it.
+
+    masks and encoder as Mapper takes them; "gt": the recording's own masks; encoder "auto": the default one where
+    there are masks. frames: "FIRST:LAST:STEP", each part optional. Frames that cannot be used are left out, as the
+    program does. progress(done, total) is called after each frame and may return False to end early: what was mapped
+    is saved. Raises Error when no frame is usable.
+    """
+    recording = open_source(source)
+    if isinstance(masks, str):
+        masks = make_mask_source(masks, recording)
+    if isinstance(encoder, str) and encoder == "auto":
+        encoder = "none" if masks is None else "default"
+    mapper = Mapper(masks, encoder, preset=preset, settings=settings)
+    chosen = recording.frames(frames)
+    for done, frame in enumerate(chosen, 1):
+        try:
+            mapper.process(frame)
+        except FrameError:
+            if mapper.frames == 0:  # what is wrong with the first is wrong with all as a rule
+                raise
+        if progress is not None and progress(done, len(chosen)) is False:
+            break
+    mapper.save(map, source=f"{recording.kind}:{recording.path}")
+    return Map.open(map)
+
+
+def eval(
+    maps: Path | Sequence[Path],
+    truths: Path | Sequence[Path],
+    *,
+    classes: str = "auto",
+    encoder: str = "auto",
+    settings: dict[str, Any] | None = None,
+    model_dirs: Sequence[Path] = (),
+) -> dict[str, Any]:
+    """Scores maps against the truth of their recordings: what `ovimap eval --json` prints, as a dict.
+
+    One truth for each map, in order; several are pooled. Raises Error for a truth that does not belong to its map.
+    """
+    figures: dict[str, Any] = json.loads(_ovimap.eval_json(maps, truths, classes, encoder, settings, list(model_dirs)))
+    return figures
+
+
+def synth(out: Path, room: str = "tiny", *, frames: int = 0, seed: int = 1, noise: bool = False) -> str:
+    """Renders a furnished room with exact truth into OUT/room and returns that path.
+
+    frames: 0 = as the room says. noise: as a depth camera sees it. Raises Error for an unknown room (the message
+    lists them) and where the package was built without the renderer.
+    """
+    render = getattr(_ovimap, "synth", None)
+    if render is None:
+        raise Error("this ovimap was built without rendered rooms; build it with -C cmake.define.OVIMAP_SYNTH=ON")
+    path: str = render(out, room, frames=frames, seed=seed, noise=noise)
+    return path

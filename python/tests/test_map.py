@@ -1,0 +1,128 @@
+# SPDX-FileCopyrightText: 2026 The ovimap authors
+# SPDX-License-Identifier: Apache-2.0
+"""A saved map: objects and surface as arrays, questions, exports, scores."""
+import json
+import threading
+
+import numpy as np
+import ovimap
+import pytest
+import trimesh
+
+
+@pytest.fixture(scope="module")
+def opened(saved_map):
+    return ovimap.Map.open(saved_map)
+
+
+def test_objects_are_arrays_of_equal_length(opened):
+    objects = opened.instances
+    count = len(opened)
+    assert count == len(objects) > 3
+    assert objects.ids.shape == objects.points.shape == objects.views.shape == (count,)
+    assert objects.boxes.shape == (count, 2, 3) and objects.centroids.shape == (count, 3)
+    assert (objects.boxes[:, 0] <= objects.centroids).all() and (objects.centroids <= objects.boxes[:, 1]).all()
+    assert len(objects.names) == count and len(set(objects.ids.tolist())) == count
+    assert opened.frames > 0 and len(opened.content_hash) == 16 and opened.voxel_size_m > 0
+    assert "map.voxel_size_m" in opened.config_text and opened.camera.width > 0
+
+
+def test_embeddings_are_a_view(opened):
+    assert opened.embeddings.shape[0] == len(opened) and opened.embeddings.dtype == np.float32
+    assert np.shares_memory(opened.embeddings, opened.embeddings)
+    lengths = np.linalg.norm(opened.embeddings, axis=1)
+    assert np.all(np.isclose(lengths, 1, atol=1e-4) | (lengths == 0))
+
+
+def test_the_mesh_lies_in_the_boxes_of_its_objects(opened):
+    mesh = opened.mesh()
+    assert mesh.vertices.shape == mesh.normals.shape == (len(mesh.labels), 3)
+    assert mesh.colors.shape == (len(mesh.labels), 3) and mesh.triangles.max() < len(mesh.vertices)
+    objects = opened.instances
+    for box, number in zip(objects.boxes, objects.ids):
+        mine = mesh.vertices[mesh.labels == number]
+        assert len(mine) and (mine >= box[0] - 0.05).all() and (mine <= box[1] + 0.05).all()
+    vertices = mesh.vertices
+    del mesh
+    assert np.isfinite(vertices).all()
+
+
+def test_questions_in_words(opened):
+    answer = opened.query("chair", relevance=True)
+    assert answer.query == "chair" and answer.matches and answer.relevance.shape == (len(opened),)
+    best = answer.matches[0]
+    assert opened.instances.ids[best.row] == best.id and -1 <= best.score <= 1
+    assert not opened.query("elephant").found
+    with pytest.raises(ovimap.Error, match="empty|text"):
+        opened.query("")
+
+
+def test_questions_by_object_and_by_picture(opened, room):
+    first = int(opened.instances.ids[0])
+    assert first not in [match.id for match in opened.query_like(first).matches]
+    assert opened.query_like(ovimap.open_source(room)[0].color).query == "picture"
+    with pytest.raises(ovimap.Error, match="999999"):
+        opened.query_like(999999)
+
+
+def test_several_threads_may_ask_at_once(saved_map):
+    fresh = ovimap.Map.open(saved_map)
+    answers = [None] * 4
+
+    def ask(i):
+        answers[i] = [match.id for match in fresh.query("table").matches]
+
+    threads = [threading.Thread(target=ask, args=(i,)) for i in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert answers[0] and all(answer == answers[0] for answer in answers)
+
+
+def test_the_map_refuses_another_encoder(saved_map):
+    class Other:
+        name, dimension = "other", 3
+
+        def encode_images(self, images):
+            return np.zeros((len(images), 3))
+
+    with pytest.raises(ovimap.Error, match="not of 'other' .3 numbers"):
+        ovimap.Map.open(saved_map, encoder=Other())
+
+
+def test_exports_are_what_others_read(opened, tmp_path):
+    for ending in ("ply", "glb", "json", "csv"):
+        opened.export(tmp_path / f"a.{ending}")
+    mesh = opened.mesh()
+    assert len(trimesh.load(tmp_path / "a.ply", process=False).vertices) == len(mesh.vertices)
+    assert len(trimesh.load(tmp_path / "a.glb").geometry) >= len(opened)
+    listed = json.loads((tmp_path / "a.json").read_text())["instances"]
+    assert [entry["id"] for entry in listed] == opened.instances.ids.tolist()
+    assert len((tmp_path / "a.csv").read_text().splitlines()) == len(opened) + 1
+    with pytest.raises(ovimap.Error, match="must end in .ply"):
+        opened.export(tmp_path / "a.stl")
+
+
+def test_what_is_no_map_is_an_error(tmp_path):
+    (tmp_path / "a.ovimap").write_bytes(b"nothing")
+    with pytest.raises(ovimap.Error, match="a.ovimap"):
+        ovimap.Map.open(tmp_path / "a.ovimap")
+
+
+def test_scores_against_the_truth(saved_map, room):
+    figures = ovimap.eval(saved_map, room)
+    assert 0.3 < figures["standard"]["class_agnostic"]["miou"] <= 1
+    assert figures["standard"]["geometry"]["accuracy_m"] < 0.05
+    with pytest.raises(ValueError, match="1 maps but 2 truths"):
+        ovimap.eval(saved_map, [room, room])
+
+
+def test_the_default_encoder_puts_pictures_and_words_in_one_space(saved_map, room):
+    encoder = ovimap.make_encoder()
+    image = ovimap.open_source(room)[0].color
+    pictures, words = encoder.encode_images([image, image[::2, ::2]]), encoder.encode_texts(["a chair"])
+    assert pictures.shape == (2, encoder.dimension) and words.shape == (1, encoder.dimension)
+    np.testing.assert_allclose(np.linalg.norm(pictures, axis=1), 1, atol=1e-4)
+    with pytest.raises(TypeError, match="image must be uint8"):
+        encoder.encode_images([image.astype(float)])
