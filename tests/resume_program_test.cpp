@@ -145,6 +145,23 @@ TEST_F(ResumeProgramTest, GoesOnWithAMap) {
                    {"voxel_size_m", "0.02"});
 }
 
+TEST_F(ResumeProgramTest, AFullDiskLeavesTheLastCheckpoint) {
+  ASSERT_EQ(run(std::string(kRun) + "-o whole.ovimap").code, 0);
+  // A limit on file size stands in for the full disk. How much a few checkpoints take is not known
+  // beforehand, so the disk is made larger until one of them is on it.
+  ProgramResult result;
+  for (int kilobytes = 64; kilobytes < 100000 && run("info room.ovimap.partial").code != 0;
+       kilobytes = kilobytes * 3 / 2)
+    result = run("config > unused.txt; (ulimit -f " + std::to_string(kilobytes) +
+                 "; trap '' XFSZ; '" OVIMAP_PROGRAM "' " + kRun + "-o room.ovimap)");
+  EXPECT_EQ(result.code, 2);
+  EXPECT_NE(result.err.find("room.ovimap.partial"), std::string::npos) << result.err;
+  EXPECT_GT(run_json("info room.ovimap.partial --json")["frames"], 0);
+  EXPECT_FALSE(std::filesystem::exists(path("room.ovimap")));
+  ASSERT_EQ(run(std::string(kRun) + "-o room.ovimap --resume").code, 0);
+  EXPECT_EQ(essence("room.ovimap"), essence("whole.ovimap"));
+}
+
 TEST_F(ResumeProgramTest, WhatAKillLeftBeforeTheFirstCheckpointGoes) {
   std::ofstream(path("room.ovimap.partial"));
   ASSERT_EQ(run("run long/scene --masks gt --encoder none -o room.ovimap").code, 0);
