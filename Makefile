@@ -6,7 +6,7 @@ OVIMAP := $(BUILD)/bin/ovimap
 JOBS ?= $(shell nproc)
 SOURCE ?= demo/tiny/room
 
-.PHONY: help setup build demo demo-lasting test asan tsan fuzz bench rivals benchmarks viewer-speed live-speed clean
+.PHONY: help setup build demo demo-lasting test asan tsan fuzz bench rivals benchmarks viewer-speed live-speed wheel clean
 
 help:
 	@echo "make demo    set up, build, render a room, map it, show the objects; VIEW=1: then in a browser"
@@ -18,6 +18,7 @@ help:
 	@echo "make benchmarks KITCHEN=FOLDER [ONLY='tiny rooms']   write docs/benchmarks.md, or these parts of it"
 	@echo "make fuzz    feed the readers with odd bytes, FUZZ_SECONDS (60) each; needs clang"
 	@echo "make live-speed SOURCE=RECORDING   what serving a map costs while it is made"
+	@echo "make wheel   build a Python wheel that carries its libraries, and try it in a clean environment"
 	@echo "make viewer-speed MAP=FILE   when the viewer shows its first picture, and how fast it answers"
 	@echo "make asan    run the tests under AddressSanitizer and UBSan;  make tsan: ThreadSanitizer"
 
@@ -61,6 +62,9 @@ rivals:
 
 benchmarks: build
 	@python3 tools/benchmarks.py $(OVIMAP) $(if $(KITCHEN),--kitchen "$(KITCHEN)") $(if $(ONLY),--only $(ONLY))
+
+wheel: setup
+	@tools/wheel_test.sh
 
 viewer-speed: build
 	@test -f "$(MAP)" || { echo "name a map: make viewer-speed MAP=room.ovimap"; exit 1; }

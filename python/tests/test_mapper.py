@@ -269,3 +269,19 @@ print("ending")
 def test_the_interpreter_ends_while_threads_are_at_work():
     done = subprocess.run([sys.executable, "-c", LIVE], capture_output=True, text=True, timeout=120)
     assert (done.returncode, done.stdout, done.stderr) == (0, "ending\n", "")
+
+
+CYCLE = """
+import ovimap
+def leave():
+    mapper = ovimap.Mapper(lambda frame, prompts: mapper)
+    live = ovimap.LiveMapper(lambda frame, prompts: live)
+leave()
+print("ending")
+"""
+
+
+def test_mappers_that_their_own_callables_hold_end_with_the_interpreter():
+    environment = os.environ | {"PYTHONMALLOC": "debug"}  # what is freed is overwritten
+    done = subprocess.run([sys.executable, "-c", CYCLE], capture_output=True, text=True, timeout=120, env=environment)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "ending\n", "")
