@@ -34,6 +34,7 @@ Action add_edit(CLI::App& command);
 Action add_diff(CLI::App& command);
 Action add_merge(CLI::App& command);
 Action add_export(CLI::App& command);
+Action add_correct(CLI::App& command);
 Action add_eval(CLI::App& command);
 Action add_bench(CLI::App& command);
 Action add_synth(CLI::App& command);

@@ -28,6 +28,7 @@ constexpr Entry kCommands[] = {
     {"edit", "correct a map: names, objects that are one, objects that are several", add_edit},
     {"diff", "what changed from one map of a place to another", add_diff},
     {"merge", "make one map of two of the same place", add_merge},
+    {"correct", "fuse a map's frames again, from corrected poses", add_correct},
     {"eval", "score maps against the truth", add_eval},
     {"ablate", "vary one choice and score the maps, beside published figures", add_ablate},
     {"bench", "measure speed and memory on a recording", add_bench},

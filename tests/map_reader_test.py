@@ -36,6 +36,7 @@ COLUMNS = {
     "frames": "position, source_index, timestamp_s, name, world_from_camera, labelled",
     "embeddings": "instance, embedding",
     "surfaces": "instance, points",
+    "kept_frames": "position, depth, color, segments, labels",
     "appearances": "instance, center_x, center_y, center_z, seen_min_x, seen_min_y, seen_min_z, seen_max_x, "
                    "seen_max_y, seen_max_z, bins, largest_px, offered, queries",
     "views": "instance, ordinal, frame, visible_px, embedding, crop_jpeg, crop_mask_png, min_x, min_y, max_x, max_y",

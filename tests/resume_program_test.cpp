@@ -169,10 +169,11 @@ TEST_F(ResumeProgramTest, WhatAKillLeftBeforeTheFirstCheckpointGoes) {
 }
 
 TEST_F(ResumeProgramTest, ABoundOnMemoryDoesNotChangeTheMap) {
-  const std::string kFine =
-      "run replica/scene --masks gt --encoder none --set checkpoint.frames=4 ";
-  ASSERT_EQ(run(kFine + "-o whole.ovimap").code, 0);
-  const std::string bounded = kFine + "-o room.ovimap --max-memory 75M";
+  const std::string fine =
+      "run replica/scene --masks gt --encoder none --set checkpoint.frames=4 --set "
+      "map.voxel_size_m=0.02 ";
+  ASSERT_EQ(run(fine + "-o whole.ovimap").code, 0);
+  const std::string bounded = fine + "-o room.ovimap --max-memory 20M";
   const nlohmann::json report = run_json(bounded + " --json");
   EXPECT_GT(report["tiles_evicted"], 0);
   EXPECT_EQ(essence("room.ovimap"), essence("whole.ovimap"));
@@ -186,9 +187,9 @@ TEST_F(ResumeProgramTest, ABoundOnMemoryDoesNotChangeTheMap) {
   ASSERT_EQ(run(bounded + " --resume").code, 0);
   EXPECT_EQ(essence("room.ovimap"), essence("whole.ovimap"));
 
-  expect_complaint(kFine + "-o small.ovimap --max-memory 5M",
+  expect_complaint(fine + "-o small.ovimap --max-memory 5M",
                    {"one frame", "--max-memory", "voxel_size_m"});
-  expect_complaint(kFine + "-o small.ovimap --max-memory 300", {"'300'", "300M"});
+  expect_complaint(fine + "-o small.ovimap --max-memory 300", {"'300'", "300M"});
 }
 
 TEST_F(ResumeProgramTest, AnUnfinishedRunIsNotOverwritten) {

@@ -34,12 +34,13 @@ std::uint64_t row_hash(std::int64_t key, std::int64_t present, std::int64_t hash
   return static_cast<std::uint64_t>(row.sum());
 }
 
-/// Everything but voxels is small, and written anew.
-void clear_all_but_blocks(SQLite::Database& database) {
+/// Everything but voxels and kept frames is small, and written anew.
+void clear_small_tables(SQLite::Database& database) {
   std::vector<std::string> names;
-  SQLite::Statement tables(database,
-                           "SELECT name FROM sqlite_master WHERE type = 'table' AND name != ?");
+  SQLite::Statement tables(
+      database, "SELECT name FROM sqlite_master WHERE type = 'table' AND name NOT IN (?, ?)");
   tables.bind(1, kBlocks.name);
+  tables.bind(2, map_tables::kKeptFrames.name);
   while (tables.executeStep()) names.push_back(tables.getColumn(0).getString());
   for (const std::string& name : names) database.exec(concat("DELETE FROM ", name));
 }
@@ -110,7 +111,7 @@ void CheckpointFile::write(const MapCheckpoint& checkpoint) {
 void CheckpointFile::write_rest(const MapCheckpoint& checkpoint) {
   const std::lock_guard lock(mutex_);
   begin();
-  clear_all_but_blocks(*database_);
+  clear_small_tables(*database_);
   const MapMeta meta{checkpoint.map_config,
                      static_cast<std::int64_t>(checkpoint.record.frames.size()), checkpoint.blocks,
                      0, true};
@@ -118,6 +119,7 @@ void CheckpointFile::write_rest(const MapCheckpoint& checkpoint) {
   write_semantics(*database_, checkpoint.record);
   write_surfaces(*database_, checkpoint.record.surfaces, map_tables::kSurfaces);
   write_forest(*database_, checkpoint.labels);
+  kept_frames_.update(*database_, checkpoint.record.kept_frames);
   if (!checkpoint.record.edits.empty()) write_edits(*database_, checkpoint.record.edits);
   const std::uint64_t sum =
       std::accumulate(row_hashes_.begin(), row_hashes_.end(), std::uint64_t{0},

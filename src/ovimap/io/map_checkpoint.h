@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "ovimap/image/codec.h"
-#include "ovimap/io/map_document.h"
+#include "ovimap/io/map_file_frames.h"
 
 namespace SQLite {
 class Database;
@@ -87,6 +87,7 @@ class CheckpointFile {
   std::mutex mutex_;  ///< guards what follows
   std::unique_ptr<SQLite::Database> database_;
   std::unique_ptr<SQLite::Transaction> transaction_;  ///< of the next checkpoint, once it has tiles
+  KeptFramesTable kept_frames_;
   std::unordered_map<std::uint64_t, std::uint64_t> row_hashes_;  ///< of the table `blocks`, by tile
 };
 

@@ -4,12 +4,14 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "ovimap/geometry/camera.h"
 #include "ovimap/geometry/pose.h"
+#include "ovimap/image/codec.h"
 #include "ovimap/instance/instance_mesh.h"
 #include "ovimap/instance/instance_registry.h"
 #include "ovimap/instance/instance_summary.h"
@@ -45,6 +47,17 @@ struct MapHeader {
   MapEdits edits = {};  ///< what people corrected, oldest first; the rest is as mapping found it
 };
 
+/// A fused frame as it is kept to be fused again from another pose. Images have the depth camera's
+/// size.
+struct KeptFrame {
+  Bytes depth_png;            ///< 16-bit grey, a quarter of a millimetre each; 0 = invalid
+  Bytes color_jpeg;           ///< registered to the depth; black = unknown
+  Bytes segments_png;         ///< 16-bit grey; empty: the frame did not vote for labels
+  std::vector<Label> labels;  ///< of its segments when it was fused, [id - 1]
+};
+/// By their place in MapRecord::frames.
+using KeptFrames = std::map<std::size_t, std::shared_ptr<const KeptFrame>>;
+
 /// Everything a saved map holds besides its voxels.
 struct MapRecord : MapHeader {
   InstanceConfig instance_config;
@@ -56,6 +69,7 @@ struct MapRecord : MapHeader {
   std::set<InstanceId> locked;  ///< corrected maps: objects that must stay as they are
   SemanticRecord semantics;
   std::vector<FrameLogEntry> frames;  ///< in the order they were fused
+  KeptFrames kept_frames;             ///< of those; mostly none
   PinholeCamera depth_camera;
   std::string timings;      ///< of the run, a line "stage p50_ms p95_ms count" each; may be empty
   int mask_frames = 0;      ///< frames with 2D masks

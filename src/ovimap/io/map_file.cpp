@@ -13,6 +13,7 @@
 #include "ovimap/io/map_file_access.h"
 #include "ovimap/io/map_file_blocks.h"
 #include "ovimap/io/map_file_corrections.h"
+#include "ovimap/io/map_file_frames.h"
 #include "ovimap/io/map_file_parts.h"
 #include "ovimap/io/map_file_record.h"
 #include "ovimap/io/map_file_rows.h"
@@ -30,6 +31,8 @@ constexpr std::size_t kTilesPerTask = 4;
 
 /// Maps of the first schema know nothing of looks.
 constexpr int kSchemaWithSemantics = 2;
+/// Those before this one keep no frames.
+constexpr int kSchemaWithKeptFrames = 4;
 
 /// VoxelRef counts voxels in 32 bits.
 constexpr std::size_t kMostBlocks = VoxelRef::kNone / kBlockVoxels;
@@ -190,6 +193,8 @@ MapMeta read_found(SQLite::Database& database, int schema, const LabelForest& fo
     record.semantics.appearances = read_appearances(database, record.semantics.encoder);
     record.surfaces = read_surfaces(database, map_tables::kSurfaces);
   }
+  if (schema >= kSchemaWithKeptFrames)
+    record.kept_frames = read_kept_frames(database, forest, record.frames.size());
   if (static_cast<std::int64_t>(record.frames.size()) != meta.frames)
     throw Error("its frame log is not complete");
   record.edits = read_edits(database);
@@ -212,6 +217,7 @@ void save_map(const std::filesystem::path& path, const VoxelMap& map, const MapR
     write_semantics(database, record);
     write_surfaces(database, record.surfaces, map_tables::kSurfaces);
     write_forest(database, map.labels());
+    write_kept_frames(database, record.kept_frames);
     write_blocks(database, map);
     write_corrections(database, record, map.labels(), [&]() -> const VoxelMap& { return map; });
   });

@@ -133,6 +133,8 @@ inline MapDocument random_document(int block_count, std::uint32_t seed) {
   document.up = {0.f, -1.f, 0.f};
   document.surfaces[1] = {{-0.1f, 0.2f, 0.f},
                           {0.3f, 0.4f, 0.1f}};  // its box's corners: kept exactly
+  document.kept_frames[0] =
+      std::make_shared<KeptFrame>(KeptFrame{{9, 0, 255}, {1}, {}, {0, 20, 3}});
   document.depth_camera = {640, 480, 585.1f, 585.2f, 319.5f, 239.25f};
   document.config_text = "map.voxel_size_m: 0.0213\nrun.name: \"a: b\"\n";
   document.timings = "integrate 12.500 40.000 3\n";
@@ -226,6 +228,12 @@ inline bool same_semantics(const SemanticRecord& a, const SemanticRecord& b) {
                     b.appearances.end(), same_entry);
 }
 
+inline bool same_kept_frame(const KeptFrames::value_type& a, const KeptFrames::value_type& b) {
+  return a.first == b.first && a.second->depth_png == b.second->depth_png &&
+         a.second->color_jpeg == b.second->color_jpeg &&
+         a.second->segments_png == b.second->segments_png && a.second->labels == b.second->labels;
+}
+
 /// What two documents differ in; empty when in nothing.
 inline std::string difference(const MapDocument& a, const MapDocument& b) {
   if (!same_voxels(a.map, b.map)) return "voxels";
@@ -241,6 +249,9 @@ inline std::string difference(const MapDocument& a, const MapDocument& b) {
   if (!same_semantics(a.semantics, b.semantics)) return "semantics";
   if (!std::equal(a.frames.begin(), a.frames.end(), b.frames.begin(), b.frames.end(), same_frame))
     return "frames";
+  if (!std::equal(a.kept_frames.begin(), a.kept_frames.end(), b.kept_frames.begin(),
+                  b.kept_frames.end(), same_kept_frame))
+    return "kept frames";
   if (a.depth_camera != b.depth_camera) return "camera";
   if (a.config_text != b.config_text || a.timings != b.timings || a.source != b.source ||
       a.version != b.version)

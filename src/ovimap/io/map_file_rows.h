@@ -95,6 +95,10 @@ inline constexpr MapTable kSurfaces{"surfaces", "instance, points",
 inline constexpr MapTable kBlocks{"blocks", "tile, present, hash, data",
                                   "tile INTEGER PRIMARY KEY, present INTEGER NOT NULL, hash "
                                   "INTEGER NOT NULL, data BLOB NOT NULL"};
+inline constexpr MapTable kKeptFrames{
+    "kept_frames", "position, depth, color, segments, labels",
+    "position INTEGER PRIMARY KEY, depth BLOB NOT NULL, color BLOB NOT NULL, segments BLOB NOT "
+    "NULL, labels BLOB NOT NULL"};
 /// The log of corrections, and what it makes of the tables above.
 inline constexpr MapTable kEdits{"edits", "id, time_s, action, arguments, undone_by",
                                  "id INTEGER PRIMARY KEY, time_s REAL, action TEXT NOT NULL, "
@@ -175,6 +179,8 @@ class RowWriter {
   }
   /// Writes the table's check. Without it the table cannot be read.
   void finish();
+  /// Of the rows so far.
+  std::uint64_t sum() const { return static_cast<std::uint64_t>(hash_.sum()); }
 
  private:
   template <class Integer>

@@ -55,6 +55,17 @@ TEST_F(MapFileSemantics, RefusesEmbeddingsThatCannotBe) {
   EXPECT_THROW(read_searchable_map(root_ / "a.ovimap"), Error);
 }
 
+TEST_F(MapFileSemantics, ReadsMapsOfTheThirdSchema) {
+  const fs::path path = fs::path(OVIMAP_SOURCE_DIR) / "tests/maps/schema3.ovimap";
+  const MapDocument map = load_map(path);
+  EXPECT_EQ(read_map_info(path).schema, 3);
+  EXPECT_FALSE(map.instances.empty());
+  EXPECT_FALSE(map.registry.entity_sightings.empty());
+  EXPECT_TRUE(map.kept_frames.empty());
+  save_map(root_ / "new.ovimap", map);
+  EXPECT_EQ(difference(map, load_map(root_ / "new.ovimap")), "");
+}
+
 TEST_F(MapFileSemantics, ReadsMapsOfTheSecondSchema) {
   const fs::path path = fs::path(OVIMAP_SOURCE_DIR) / "tests/maps/schema2.ovimap";
   const MapDocument map = load_map(path);

@@ -95,6 +95,19 @@ void append_frames(MapRecord& a, const MapRecord& b, const Pose& a_from_b, const
     a.source += (a.source.empty() ? "" : " + ") + b.source;
 }
 
+/// A map of which only a part could be fused again keeps nothing. Call before append_frames.
+void append_kept_frames(MapRecord& a, const MapRecord& b, const Offsets& by) {
+  if (a.kept_frames.empty() || b.kept_frames.empty() || a.depth_camera != b.depth_camera) {
+    a.kept_frames.clear();
+    return;
+  }
+  for (const auto& [position, kept] : b.kept_frames) {
+    auto frame = std::make_shared<KeptFrame>(*kept);
+    for (Label& label : frame->labels) label += label == kNoLabel ? 0 : by.label;
+    a.kept_frames[a.frames.size() + position] = std::move(frame);
+  }
+}
+
 void append_edits(MapEdits& a, const MapEdits& b, const Offsets& by) {
   for (MapEdit edit : b) {
     edit.id += by.edit;
@@ -243,6 +256,7 @@ MapMerge merge_maps(MapDocument a, const MapDocument& b, const Pose& a_from_b,
   fuse_map(a.map, b.map, a_from_b, append_labels(a.map, b.map.labels()));
   append_registry(a.registry, b.registry, by, highest_id(b));
   append_looks(a.semantics, b.semantics, a_from_b, by);
+  append_kept_frames(a, b, by);
   append_frames(a, b, a_from_b, by);
   append_instances(a, b, by);
   append_edits(a.edits, b.edits, by);

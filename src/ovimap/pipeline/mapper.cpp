@@ -35,7 +35,11 @@ std::vector<Label> labels_of(std::span<const SegmentAssociation> associations) {
 
 Mapper::Mapper(const MapperConfig& config, std::shared_ptr<MaskSource> masks,
                std::shared_ptr<ImageTextEncoder> encoder)
-    : config_(config), masks_(std::move(masks)), map_(config.map), registry_(config.instance) {
+    : config_(config),
+      masks_(std::move(masks)),
+      map_(config.map),
+      registry_(config.instance),
+      frame_store_(config.frame_store) {
   if (config_.view_interval == 0)
     config_.view_interval = encoder ? 1 : config_.stored_view_interval;
   builder_ = std::make_unique<AppearanceBuilder>(config_.semantics, std::move(encoder));
@@ -56,9 +60,15 @@ FrameReport Mapper::process(const Frame& frame) {
 
 FrameReport Mapper::fuse(const PreparedFrame& prepared, const FrameSegments* cut) {
   const std::vector<SegmentAssociation> associations = find_labels(prepared, cut);
+  const std::vector<Label> labels = labels_of(associations);
   {
     auto t = timers_.measure("integrate");
-    touched_blocks_ = integrate(map_, observation_of(prepared, cut, labels_of(associations)));
+    touched_blocks_ = integrate(map_, observation_of(prepared, cut, labels));
+  }
+  if (config_.frame_store.max_mb > 0) {
+    auto t = timers_.measure("keep_frame");
+    frame_store_.add(prepared.frame->index, prepared.frame->depth, prepared.color,
+                     cut ? &cut->segments.ids : nullptr, labels);
   }
   ++frames_;
   return observe(*prepared.frame, cut, associations);
@@ -66,10 +76,12 @@ FrameReport Mapper::fuse(const PreparedFrame& prepared, const FrameSegments* cut
 
 FrameReport Mapper::label(const PreparedFrame& prepared, const FrameSegments& cut) {
   const std::vector<SegmentAssociation> associations = find_labels(prepared, &cut);
+  const std::vector<Label> labels = labels_of(associations);
   {
     auto t = timers_.measure("vote");
-    touched_blocks_ = vote_labels(map_, observation_of(prepared, &cut, labels_of(associations)));
+    touched_blocks_ = vote_labels(map_, observation_of(prepared, &cut, labels));
   }
+  frame_store_.add_labels(prepared.frame->index, cut.segments.ids, labels);
   return observe(*prepared.frame, &cut, associations);
 }
 
@@ -127,6 +139,7 @@ MapRecord Mapper::record(MapHeader header, std::vector<FrameLogEntry> frames,
   record.semantics.crops = config_.semantics.crops;
   if (encoder()) record.semantics.encoder = encoder()->identity();
   record.frames = std::move(frames);
+  record.kept_frames = kept_frames();
   record.depth_camera = depth_camera;
   record.mask_frames = mask_frames_;
   record.version = concat(version(), " (", commit(), ")");
@@ -138,6 +151,7 @@ void Mapper::restore(MapDocument&& document) {
   map_ = std::move(document.map);
   registry_.restore(std::move(document.registry));
   builder_->restore(std::move(document.semantics.appearances));
+  frame_store_.restore(std::move(document.kept_frames), document.frames.size());
   frames_ = static_cast<int>(document.frames.size());
   mask_frames_ = document.mask_frames;
 }

@@ -92,6 +92,7 @@ class Mapper {
   VoxelMap& map() { return map_; }
   VoxelMap take_map() && { return std::move(map_); }
   const InstanceRegistry& registry() const { return registry_; }
+  const KeptFrames& kept_frames() const { return frame_store_.frames(); }
   const StageTimers& timers() const { return timers_; }
   StageTimers& timers() { return timers_; }
   int frames() const { return frames_; }
@@ -112,6 +113,7 @@ class Mapper {
   InstanceRegistry registry_;
   std::unique_ptr<AppearanceBuilder> builder_;
   StageTimers timers_;
+  FrameStore frame_store_;
   std::vector<std::uint32_t> touched_blocks_;
   int frames_ = 0, mask_frames_ = 0;
 };

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/pipeline/mapper_config.h"
 
+#include <sstream>
+
 #include <yaml-cpp/yaml.h>
 
 #include "ovimap/image/codec.h"
@@ -32,6 +34,7 @@ void list_fields(MapperConfig& config, ConfigFields& fields) {
   fields.group("summary", [&](ConfigFields& f) { list_fields(config.summary, f); });
   fields.group("map", [&](ConfigFields& f) { list_fields(config.map, f); });
   list_fields(config.semantics, fields);
+  fields.group("frame_store", [&](ConfigFields& f) { list_fields(config.frame_store, f); });
   fields.add("view_interval", config.view_interval, 0, 1000000,
              "objects are looked at in every n-th frame; 0: every frame with an encoder, by "
              "stored_view_interval without");
@@ -61,6 +64,17 @@ MapperConfig mapper_preset(const std::string& name) {
   config.instance.merging.merge_max_dissent = 1e6f;  // the paper counts no dissent
   config.map.max_weight = 1e4f;
   config.map.label_band_voxels = static_cast<float>(config.map.truncation_voxels);
+  return config;
+}
+
+MapperConfig config_of_map(const std::string& config_text) {
+  MapperConfig config;
+  ConfigFields fields;
+  list_fields(config, fields);
+  std::istringstream stream(config_text);
+  for (std::string line; std::getline(stream, line);)
+    for (const ConfigField& field : fields.fields())
+      if (line.starts_with(field.name + ": ")) field.set(line.substr(field.name.size() + 2));
   return config;
 }
 

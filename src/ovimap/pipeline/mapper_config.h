@@ -11,6 +11,7 @@
 #include "ovimap/instance/instance_summary.h"
 #include "ovimap/map/voxel_map.h"
 #include "ovimap/pipeline/appearance_builder.h"
+#include "ovimap/pipeline/frame_store.h"
 #include "ovimap/segment/depth_segmentation.h"
 #include "ovimap/segment/mask_fusion.h"
 
@@ -25,6 +26,7 @@ struct MapperConfig {
   InstanceSummaryConfig summary;
   VoxelMapConfig map;
   SemanticsConfig semantics;
+  FrameStoreConfig frame_store;
   int view_interval = 0;  ///< objects are looked at in every n-th frame; 0: in every frame with an
                           ///< encoder, in every stored_view_interval-th without
   int stored_view_interval = 5;  ///< what view_interval 0 means when crops are only kept
@@ -42,6 +44,10 @@ void list_fields(MapperConfig& config, ConfigFields& fields);
 /// "default", or "reference": thresholds and rules as the paper's released code has them. Throws
 /// Error for another name.
 MapperConfig mapper_preset(const std::string& name);
+
+/// The settings that a map was made with, as far as this program knows them
+/// (MapRecord::config_text).
+MapperConfig config_of_map(const std::string& config_text);
 
 /// Sets the fields that a YAML file names, as nested maps or dotted keys. Throws Error for a
 /// missing or unreadable file, an unknown key (with the nearest known one) or a value out of range.

@@ -7,9 +7,7 @@
 #include <future>
 
 #include "ovimap/base/error.h"
-#include "ovimap/instance/instance_mesh.h"
-#include "ovimap/io/scene_axes.h"
-#include "ovimap/map/incremental_mesh.h"
+#include "ovimap/pipeline/map_description.h"
 #include "ovimap/pipeline/timings_text.h"
 
 namespace ovimap {
@@ -28,20 +26,6 @@ std::string fuse(const Frame& frame, Mapper& mapper, bool others_went_well, Fram
     if (!others_went_well) throw;
     return fault.what();
   }
-}
-
-/// In one walk over the voxels, which may be more than memory holds.
-void describe_surface(const Mapper& mapper, std::span<const Pose> poses, MapDocument& document) {
-  const std::vector<InstanceId> instance_of = instances_by_label(mapper.map(), document.instances);
-  SurfaceSampler sampler(mapper.config().summary.surface_spacing_m);
-  SurfaceDirections directions;
-  for_each_patch(mapper.map(), [&](Mesh& patch) {
-    for (std::uint32_t& label : patch.labels) label = instance_of[label];
-    sampler.add(patch);
-    directions.add(patch);
-  });
-  document.surfaces = sampler.take();
-  document.up = guess_up(directions, poses);
 }
 
 }  // namespace
@@ -115,9 +99,7 @@ MapDocument make_document(Mapper&& mapper, const SequenceResult& sequence, MapHe
   MapDocument document{mapper.record(std::move(header), sequence.frames, sequence.depth_camera),
                        {}};
   document.semantics.appearances = std::move(appearances);
-  document.instances =
-      summarize_instances(mapper.map(), mapper.registry(), mapper.config().summary);
-  describe_surface(mapper, poses_of(sequence.frames), document);
+  describe_map(mapper.map(), mapper.registry(), mapper.config().summary, document);
   document.timings = timings_text(mapper.timers().summary());
   document.content_hash = mapper.map().content_hash();
   document.map = std::move(mapper).take_map();
