@@ -281,10 +281,11 @@ std::string share(float value) {
 }
 
 void require_convincing(const MapAlignment& best, const AlignmentConfig& config) {
+  const bool clear = best.runner_up < 0.5f * best.score();
   const char* why = nullptr;
   if (best.overlap < config.min_overlap)
     why = "too little of their surfaces would meet";
-  else if (best.fit < config.min_fit)
+  else if (best.fit < (clear ? config.min_clear_fit : config.min_fit))
     why = "they would contradict each other";
   else if (best.score() - best.runner_up < config.min_lead * best.score())
     why = "another answer fits as well";
@@ -300,6 +301,8 @@ void require_convincing(const MapAlignment& best, const AlignmentConfig& config)
 void list_fields(AlignmentConfig& config, ConfigFields& fields) {
   fields.add("min_overlap", config.min_overlap, 0.f, 1.f, "of surface that must meet");
   fields.add("min_fit", config.min_fit, 0.f, 1.f, "of surface where both looked that must agree");
+  fields.add("min_clear_fit", config.min_clear_fit, 0.f, 1.f,
+             "the same where the next other answer is not half as good");
   fields.add("min_lead", config.min_lead, 0.f, 1.f, "over the next other answer, as a share");
   fields.add("min_likeness", config.min_likeness, 0.f, 1.f, "of size, for two objects to be one");
   fields.add("max_partners", config.max_partners, 1, 100, "objects that one object may be");

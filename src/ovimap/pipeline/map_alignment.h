@@ -10,13 +10,15 @@ namespace ovimap {
 class ConfigFields;
 
 struct AlignmentConfig {
-  float min_overlap = 0.15f;   ///< of the second map's surface that must meet that of the first
-  float min_fit = 0.9f;        ///< of surface where both looked that must agree
-  float min_lead = 0.08f;      ///< by which the best answer must beat the next other one
-  float min_likeness = 0.35f;  ///< of size, for two objects that may be the same
-  int max_partners = 6;        ///< objects of the first map that one of the second may be
-  float spacing_m = 0.06f;     ///< between surface points that are fitted to each other
-  float tolerance_m = 0.04f;   ///< surfaces nearer to each other agree
+  float min_overlap = 0.15f;    ///< of the second map's surface that must meet that of the first
+  float min_fit = 0.9f;         ///< of surface where both looked that must agree
+  float min_clear_fit = 0.75f;  ///< the same where the next answer is not half as good: noisy depth
+                                ///< alone costs a fifth
+  float min_lead = 0.08f;       ///< by which the best answer must beat the next other one
+  float min_likeness = 0.35f;   ///< of size, for two objects that may be the same
+  int max_partners = 6;         ///< objects of the first map that one of the second may be
+  float spacing_m = 0.06f;      ///< between surface points that are fitted to each other
+  float tolerance_m = 0.04f;    ///< surfaces nearer to each other agree
   ObservedSpaceConfig space{.width_px = 80, .max_views = 100};
 };
 void list_fields(AlignmentConfig& config, ConfigFields& fields);
