@@ -238,8 +238,12 @@ TEST(SourceCheck, MistakesInTheKitchenAreNamed) {
   for (const auto& entry : fs::directory_iterator(kitchen))
     fs::create_symlink(fs::absolute(entry.path()), folder.path() / entry.path().filename());
   fs::remove(folder.path() / "calibration.yaml");
+  const std::string color_camera =
+      "color_camera: {width: 640, height: 480, fx: 531.1, fy: 531.1, cx: 318.9, cy: 232.8}\n"
+      "color_from_depth: {rotation_vector: [-0.0062, 0.0025, 0.0087], translation: [-0.0240, "
+      "0.0034, 0.0120]}\n";
   struct Case {
-    const char *calibration, *name, *remedy;
+    const char *mistake, *name, *remedy;
   };
   for (const Case& c :
        {Case{"poses: {direction: camera_from_world}", "pose_convention",
@@ -247,7 +251,7 @@ TEST(SourceCheck, MistakesInTheKitchenAreNamed) {
         Case{"poses: {axes: opengl}", "pose_convention", "axes: opengl"},
         Case{"depth_camera: {depth_scale: 5000}", "depth_scale", "divide depth_scale by 5"},
         Case{"depth_camera: {depth_scale: 100}", "depth_scale", "multiply depth_scale by 10"}}) {
-    fixture::write_text(folder.path() / "calibration.yaml", c.calibration);
+    fixture::write_text(folder.path() / "calibration.yaml", color_camera + c.mistake + "\n");
     expect_single_fault(check_source(folder.path()), c.name, c.remedy);
   }
 }
