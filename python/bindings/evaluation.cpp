@@ -50,7 +50,9 @@ std::string synthesize(const nb::object& out, const apps::RoomOptions& options) 
 
 void bind_evaluation(nb::module_& module) {
   module.def("eval_json", &evaluate, nb::arg("maps"), nb::arg("truths"), nb::arg("classes"),
-             nb::arg("encoder"), nb::arg("settings"), nb::arg("model_dirs"));
+             nb::arg("encoder"), nb::arg("settings"), nb::arg("model_dirs"),
+             nb::sig("def eval_json(maps: object, truths: object, classes: str, encoder: str, "
+                     "settings: dict[str, typing.Any] | None, model_dirs: object) -> str"));
 #ifdef OVIMAP_SYNTH
   module.def(
       "synth",
