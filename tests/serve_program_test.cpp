@@ -85,7 +85,7 @@ TEST_F(ServeProgramTest, MapsWhileItServes) {
   const json saved = json::parse(program.line(), nullptr, false)["saved"];
   EXPECT_GT(saved["frames"], 0);
   EXPECT_GT(saved["live"]["frames_fused"], 0);
-  json info;
+  json info = json::object();
   for (int i = 0; i < 400 && info.value("live", true); ++i) {  // as often as the server allows
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
     info = json::parse(client.Get("/api/map")->body);

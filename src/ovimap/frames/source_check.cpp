@@ -256,8 +256,19 @@ void check_poses(const FrameSource& source, const CheckSample& sample,
             : "give the camera's pose for each frame");
 }
 
+bool has_fault(const CheckReport& report, const std::string& name) {
+  return std::any_of(report.findings.begin(), report.findings.end(), [&](const Finding& finding) {
+    return finding.name == name && finding.severity == Severity::kFault;
+  });
+}
+
+/// Call last: what is wrong with depth alone is not told again as colour's fault.
 void check_registration(const CheckSample& sample, CheckReport& report) {
   const EdgeAlignment::Verdict alignment = sample.alignment.verdict();
+  if (!alignment.registered && has_fault(report, "depth_scale"))
+    return add(report, Severity::kWarning, "registration",
+               "colour cannot be compared with depth of a wrong scale",
+               "mend the scale first and check again");
   if (!alignment.registered) {
     add(report, Severity::kFault, "registration",
         concat("colour lies about ", rounded(alignment.shift_px),
@@ -319,9 +330,9 @@ CheckReport check_source(const FrameSource& source, const SourceCheckConfig& con
   report.frames = source.size();
   const CheckSample sample = draw_sample(source, config);
   check_frames(sample, config, report);
-  check_registration(sample, report);
   check_depth(sample, config, report);
   if (report.usable > 1) check_poses(source, sample, config, report);
+  check_registration(sample, report);
   return report;
 }
 
