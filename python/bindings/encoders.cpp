@@ -115,7 +115,7 @@ std::shared_ptr<ImageTextEncoder> to_encoder(nb::handle encoder) {
   if (nb::isinstance<ImageTextEncoder>(encoder))
     return nb::cast<std::shared_ptr<ImageTextEncoder>>(encoder);
   if (nb::hasattr(encoder, "encode_images")) return std::make_shared<PythonEncoder>(encoder);
-  if (nb::isinstance<nb::str>(encoder) || nb::hasattr(encoder, "__fspath__")) {
+  if (is_path(encoder)) {
     const std::string spec = to_path(encoder, "encoder").string();
     const nb::gil_scoped_release release;
     return make_image_text_encoder(spec, {});

@@ -85,8 +85,7 @@ std::shared_ptr<MaskSource> open_masks(const std::string& spec, const Source* so
 
 std::shared_ptr<MaskSource> to_masks(nb::handle masks) {
   if (masks.is_none()) return nullptr;
-  if (nb::isinstance<nb::str>(masks) || nb::hasattr(masks, "__fspath__"))
-    return open_masks(to_path(masks, "masks").string(), nullptr, {}, nb::list());
+  if (is_path(masks)) return open_masks(to_path(masks, "masks").string(), nullptr, {}, nb::list());
   if (nb::isinstance<MaskSource>(masks)) return nb::cast<std::shared_ptr<MaskSource>>(masks);
   if (PyCallable_Check(masks.ptr())) return std::make_shared<CallableMasks>(masks);
   throw nb::type_error(

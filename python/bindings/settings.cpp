@@ -54,15 +54,18 @@ void apply_settings(const Settings& settings, ConfigFields& fields) {
   for (const auto& [name, value] : *settings) fields.set(text_of(name), text_of(value));
 }
 
+bool is_path(nb::handle path) {
+  return nb::isinstance<nb::str>(path) || nb::hasattr(path, "__fspath__");
+}
+
 std::filesystem::path to_path(nb::handle path, const char* name) {
-  if (!nb::isinstance<nb::str>(path) && !nb::hasattr(path, "__fspath__"))
+  if (!is_path(path))
     throw nb::type_error(concat(name, " must be a path: a string or os.PathLike").c_str());
   return nb::cast<std::string>(nb::str(path));
 }
 
 std::vector<std::filesystem::path> to_paths(nb::handle paths, const char* name) {
-  if (nb::isinstance<nb::str>(paths) || nb::hasattr(paths, "__fspath__"))
-    return {to_path(paths, name)};
+  if (is_path(paths)) return {to_path(paths, name)};
   std::vector<std::filesystem::path> result;
   for (const nb::handle path : paths) result.push_back(to_path(path, name));
   return result;

@@ -30,6 +30,8 @@ Config configured(const Settings& settings, Config config = {}) {
   return config;
 }
 
+/// Whether it is a string or os.PathLike.
+bool is_path(nb::handle path);
 /// A path or several, as strings or os.PathLike.
 std::filesystem::path to_path(nb::handle path, const char* name);
 std::vector<std::filesystem::path> to_paths(nb::handle paths, const char* name);
