@@ -15,6 +15,10 @@ namespace ovimap {
 
 namespace {
 
+// Weights are whole multiples of 1/4096, so that their sums are exact and their last bytes zeros,
+// which a map file need not store. Up to the weight of a surface 3 cm away, a sum with this number
+// has its last bit there.
+constexpr float kWeightRounder = 3072.f;
 constexpr float kColorScale = 256.f;            ///< 8.8 fixed point
 constexpr float kLeastColorShare = 1.f / 64.f;  ///< colours go on following the view
 constexpr float kLeastSlope = 0.1f;  ///< surfaces seen at more than 84 degrees: a guess at best
@@ -73,8 +77,8 @@ OVIMAP_INLINE Floats slopes(const FusionView& view, const ProjectedRow& row, Int
   return slope;
 }
 
-/// Distances and weights: 1/z^2, falling to zero between one voxel and one truncation behind the
-/// surface. Returns whether any voxel is observed.
+/// Distances and weights: 1/z^2 in steps of 1/4096, falling to zero between one voxel and one
+/// truncation behind the surface. Returns whether any voxel is observed.
 OVIMAP_INLINE bool observe(const FusionView& view, const ProjectedRow& row, ObservedRow& seen) {
   if (!any(row.inside)) return false;
   const Floats depth = gather(view.frame.depth.data(), row.pixel);
@@ -87,8 +91,10 @@ OVIMAP_INLINE bool observe(const FusionView& view, const ProjectedRow& row, Obse
   seen.distance_m = in_front * slopes(view, row, near);
   const Floats falloff =
       smaller(broadcast(1.f), (seen.distance_m + view.truncation_m) * view.inverse_falloff);
-  seen.observed = near & (falloff > 0.f);
-  seen.weight = seen.observed ? falloff / (depth * depth) : Floats{};
+  // Adding a number drops what lies below its last bit: the steps of a weight.
+  const Floats rounded = falloff / (depth * depth) + kWeightRounder - kWeightRounder;
+  seen.observed = near & (rounded > 0.f);
+  seen.weight = seen.observed ? rounded : Floats{};
   return any(seen.observed);
 }
 

@@ -55,9 +55,9 @@ class VoxelFusion {
     if (depth <= 0.f || in_front * in_front * range_squared >= reach * reach) return;
     const float distance = in_front * slope(pixel);
     const float falloff = std::min(1.f, (distance + view_.truncation_m) * view_.inverse_falloff);
-    if (falloff <= 0.f) return;
-    const float weight = falloff / (depth * depth), sum = block_.weight[voxel] + weight;
-    const float share = weight / sum;
+    const float weight = std::nearbyint(falloff / (depth * depth) * 4096.f) / 4096.f;
+    if (weight <= 0.f) return;
+    const float sum = block_.weight[voxel] + weight, share = weight / sum;
     constexpr float kMost = VoxelBlock::kTsdfScale;
     const float target = std::clamp(distance * view_.to_tsdf, -kMost, kMost);
     const float old = block_.tsdf[voxel];
