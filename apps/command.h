@@ -124,6 +124,8 @@ struct TileTraffic {
   std::size_t evicted = 0, loaded = 0;
 };
 TileTraffic tile_traffic(const std::map<std::string, StageSummary>& stages);
+/// Of all threads, in the program and in the system.
+double cpu_seconds();
 double peak_rss_mb();
 
 /// True once the user pressed Ctrl-C; from then on a second Ctrl-C ends the program.

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "run_report.h"
 
-#include <sys/resource.h>
-
 #include <cstdio>
 
 namespace ovimap::apps {
@@ -63,16 +61,6 @@ void print_live(const LiveRunResult& live, double fps) {
         static_cast<long long>(done.masks_skipped));
   if (done.views_skipped > 0)
     std::printf("looks at objects left out: %lld\n", static_cast<long long>(done.views_skipped));
-}
-
-/// Of all threads, in the program and in the system.
-double cpu_seconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& time) {
-    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-  };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
 double frames_per_second(const MappingRun& run) {

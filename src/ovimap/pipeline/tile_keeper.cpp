@@ -92,9 +92,12 @@ std::size_t TileKeeper::used_bytes(const VoxelMap& map) const {
   return map.index_bytes() + map.blocks_in_memory() * sizeof(VoxelBlock);
 }
 
+double TileKeeper::full_bytes() const {
+  return kFullShare * static_cast<double>(memory_.max_mb) * kMegabyte;
+}
+
 bool TileKeeper::wants_room(const VoxelMap& map) const {
-  const double bound = static_cast<double>(memory_.max_mb) * kMegabyte;
-  return bounded() && static_cast<double>(used_bytes(map)) > kFullShare * bound;
+  return bounded() && static_cast<double>(used_bytes(map)) > full_bytes();
 }
 
 void TileKeeper::require_room(const VoxelMap& map) const {
@@ -133,10 +136,9 @@ std::vector<std::uint64_t> TileKeeper::choose_tiles(const VoxelMap& map) const {
   for (const auto& [key, used] : last_used_)
     if (used != now_) order.emplace_back(used, key);
   std::sort(order.begin(), order.end());
-  const double full = kFullShare * static_cast<double>(memory_.max_mb) * kMegabyte;
   auto bytes = static_cast<double>(used_bytes(map));
   std::vector<std::uint64_t> chosen;
-  for (auto next = order.begin(); next != order.end() && bytes > full; ++next) {
+  for (auto next = order.begin(); next != order.end() && bytes > full_bytes(); ++next) {
     chosen.push_back(next->second);
     for (const std::uint32_t slot : tile_at(map, next->second).slots)
       if (map.in_memory(slot)) bytes -= sizeof(VoxelBlock);
