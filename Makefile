@@ -16,7 +16,7 @@ help:
 	@echo "make bench   measure speed and memory on SOURCE (default: the demo room), beside their targets"
 	@echo "make rivals  install Open3D (1.3 GB) into build/rivals, for make bench to compare with"
 	@echo "make benchmarks KITCHEN=FOLDER [ONLY='tiny rooms']   write docs/benchmarks.md, or these parts of it"
-	@echo "make fuzz    feed the readers with odd bytes, FUZZ_SECONDS (60) each; needs clang"
+	@echo "make fuzz    feed the readers with odd bytes, FUZZ_SECONDS (60) each; installs clang"
 	@echo "make live-speed SOURCE=RECORDING   what serving a map costs while it is made"
 	@echo "make wheel   build a Python wheel that carries its libraries, and try it in a clean environment"
 	@echo "make viewer-speed MAP=FILE   when the viewer shows its first picture, and how fast it answers"
@@ -46,11 +46,11 @@ asan tsan: setup
 	@tools/run_tests.sh build/$@
 
 FUZZ_SECONDS ?= 60
-fuzz: setup
-	@command -v clang++ > /dev/null || { echo "make fuzz needs clang with libFuzzer; run: apt-get install clang libclang-rt-14-dev"; exit 1; }
+fuzz:
+	@tools/setup.sh --fuzz
 	@cmake --preset fuzz > /dev/null
 	@cmake --build --preset fuzz -j $(JOBS)
-	@tools/fuzz.sh build/fuzz $(FUZZ_SECONDS)
+	@tools/fuzz.sh build/fuzz $(FUZZ_SECONDS) $(JOBS)
 
 bench: build
 	@test -d "$(SOURCE)" || $(OVIMAP) synth demo/tiny --room tiny

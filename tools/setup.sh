@@ -4,11 +4,12 @@
 # Sets up what a build of ovimap needs and does not find: Debian packages, .venv, ONNX Runtime in
 # .deps, the glTF validator of the tests there, the packages of the viewer, the default mask model and the default image-text
 # encoder in .models. Does nothing for what is there already.
-# Usage: tools/setup.sh [--no-models]
+# Usage: tools/setup.sh [--no-models | --fuzz]   --fuzz: also clang with libFuzzer, for make fuzz
 set -euo pipefail
 
 ROOT="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 TOOLS="$ROOT/tools"
+PACKAGE_LISTS=("$TOOLS/debian-packages.txt")
 VENV="$ROOT/.venv"
 ORT="$ROOT/.deps/onnxruntime"
 MODEL="$ROOT/.models/mobilesam"
@@ -48,7 +49,7 @@ have_program_of() {
 missing_packages() {
   local name installed
   installed="$(dpkg-query -W -f '${Package} ${db:Status-Status}\n' | sed -n 's/ installed$//p')"
-  sed -e 's/#.*//' -e 's/[[:space:]]*$//' -e '/^$/d' "$TOOLS/debian-packages.txt" |
+  sed -e 's/#.*//' -e 's/[[:space:]]*$//' -e '/^$/d' "${PACKAGE_LISTS[@]}" |
     while read -r name; do
       grep -qxF -- "$name" <<<"$installed" || have_program_of "$name" || echo "$name"
     done
@@ -283,7 +284,8 @@ set_up_viewer() {
 
 case "${1:-}" in
   "" | --no-models) ;;
-  *) fail "unknown argument '$1'; accepted is --no-models" ;;
+  --fuzz) PACKAGE_LISTS+=("$TOOLS/debian-packages-fuzz.txt") ;;
+  *) fail "unknown argument '$1'; accepted are --no-models and --fuzz" ;;
 esac
 set_up_packages
 set_up_venv
