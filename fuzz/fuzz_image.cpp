@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // PNG and JPEG: colour, grey values, and the crops that a map keeps.
 #include "ovimap/base/error.h"
-#include "ovimap/semantics/object_crop.h"
+#include "ovimap/image/codec.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::span bytes(data, size);

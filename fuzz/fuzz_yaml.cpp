@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // YAML files of a recording and of the program: calibration and settings.
 #include "input_file.h"
+#include "ovimap/base/config.h"
 #include "ovimap/base/error.h"
 #include "ovimap/frames/camera_rig.h"
-#include "ovimap/pipeline/mapper_config.h"
+#include "ovimap/semantics/query_config.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto path = input_file(".yaml", {data, size});
@@ -14,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   } catch (const ovimap::Error&) {
   }
   try {
-    ovimap::MapperConfig config;
+    ovimap::QueryConfig config;
     ovimap::ConfigFields fields;
     ovimap::list_fields(config, fields);
     ovimap::load_config(path, fields);

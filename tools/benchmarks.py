@@ -16,6 +16,7 @@ import pathlib
 import shutil
 import subprocess
 
+import lasting
 import speed
 from speed import run_json
 
@@ -25,7 +26,8 @@ MASKS = ["gt", "sam", "none"]
 AIMS = {"gt": {"ap50": 0.80, "miou": 0.75}, "sam": {"ap50": 0.45, "ap25": 0.65}, "none": {"ap25": 0.35}}
 # On the unseen rooms. Masks on every frame are slow: that schedule is measured on every second frame.
 ABLATIONS = {"masks": [], "views": [], "fusion": [], "incremental": [], "schedule": ["--frames", "::2"], "timing": []}
-SECTIONS = ["tiny", "rooms", "exact", "speed", "corridor", *ABLATIONS]
+SECTIONS = ["tiny", "rooms", "exact", "speed", "corridor", "lasting", *ABLATIONS]
+NEED_KITCHEN = ["speed", "lasting"]
 # Two crops a view instead of six: the ablations compare, and embedding is most of their time.
 FEW_CROPS = ["--set", "crops.scales=1"]
 
@@ -143,6 +145,11 @@ def speed_section(program, kitchen):
             "    make rivals; make bench SOURCE=KITCHEN", "", *speed.speed_lines(program, kitchen)]
 
 
+def lasting_section(program, kitchen):
+    return ["## What a map that lasts costs", "", "    make benchmarks KITCHEN=FOLDER ONLY=lasting", "",
+            *lasting.lasting_lines(program, kitchen)]
+
+
 def corridor_section(program):
     return ["## Does mapping slow down as the map grows?", "",
             "    ovimap bench --corridor 5000", "", *speed.corridor_lines(program)]
@@ -184,10 +191,11 @@ def main():
                "exact": lambda: quality_section(program, work, noisy=False),
                "speed": lambda: speed_section(program, arguments.kitchen),
                "corridor": lambda: corridor_section(program),
+               "lasting": lambda: lasting_section(program, arguments.kitchen),
                **{name: functools.partial(ablation_section, program, work, arguments.out, name) for name in ABLATIONS}}
     for name in arguments.only or SECTIONS:
-        if name == "speed" and not arguments.kitchen:
-            print("speed is not measured: name a recording with --kitchen FOLDER")
+        if name in NEED_KITCHEN and not arguments.kitchen:
+            print(f"{name} is not measured: name a recording with --kitchen FOLDER")
             continue
         title, *body = measure[name]()
         sections = kept_sections(page)

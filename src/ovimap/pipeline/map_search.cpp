@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "ovimap/base/error.h"
+#include "ovimap/base/parallel.h"
 #include "ovimap/inference/model_folder.h"
 #include "ovimap/inference/text_cache.h"
 #include "ovimap/io/palette.h"
@@ -12,6 +13,8 @@
 namespace ovimap {
 
 namespace {
+
+constexpr std::size_t kShapesPerTask = 8;
 
 SearchIndex index_of(const SearchableMap& map) {
   std::vector<SearchObject> objects;
@@ -27,11 +30,13 @@ QueryScene scene_of(const SearchableMap& map, const SearchIndex& index,
                     const ObjectShapeConfig& config) {
   const Eigen::Matrix3f ground = ground_from_world(map.info.up);
   QueryScene scene = scene_of_boxes(index, map.info.up, config);
-  for (std::size_t i = 0; i < index.size(); ++i) {
-    const auto surface = map.surfaces.find(index.object(i).id);
-    if (surface != map.surfaces.end() && !surface->second.empty())
-      scene.shapes[i] = shape_of_points(ground, surface->second, config);
-  }
+  parallel_for_ranges(index.size(), kShapesPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto surface = map.surfaces.find(index.object(i).id);
+      if (surface != map.surfaces.end() && !surface->second.empty())
+        scene.shapes[i] = shape_of_points(ground, surface->second, config);
+    }
+  });
   std::vector<Pose> cameras;
   for (const FrameLogEntry& frame : map.frames) cameras.push_back(frame.world_from_camera);
   if (!cameras.empty()) scene.viewpoint = mean_viewpoint(ground, cameras);

@@ -98,10 +98,12 @@ ObjectShape shape_of_points(const Eigen::Matrix3f& ground_from_world,
   std::vector<float> heights(points.size());
   std::transform(points.begin(), points.end(), heights.begin(),
                  [](const auto& p) { return p.z(); });
-  std::sort(heights.begin(), heights.end());
   const auto cut =
-      static_cast<std::size_t>(config.noise_share * static_cast<float>(heights.size()));
-  const float low = heights[cut], high = heights[heights.size() - 1 - cut];
+      static_cast<std::ptrdiff_t>(config.noise_share * static_cast<float>(heights.size()));
+  const auto lowest = heights.begin() + cut, highest = heights.end() - 1 - cut;
+  std::nth_element(heights.begin(), lowest, heights.end());
+  std::nth_element(lowest, highest, heights.end());
+  const float low = *lowest, high = *highest;
   std::erase_if(points, [&](const auto& p) { return p.z() < low || p.z() > high; });
 
   ObjectShape shape;
