@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 #include "command.h"
+#include "ovimap/io/config_file.h"
 #include "ovimap/io/map_mesh.h"
 
 namespace ovimap::apps {

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // YAML files of a recording and of the program: calibration and settings.
 #include "input_file.h"
-#include "ovimap/base/config.h"
 #include "ovimap/base/error.h"
 #include "ovimap/frames/camera_rig.h"
+#include "ovimap/io/config_file.h"
 #include "ovimap/semantics/query_config.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

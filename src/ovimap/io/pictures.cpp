@@ -29,7 +29,6 @@ class Shader {
  public:
   Shader(const Mesh& mesh, const RasterView& view, const PictureConfig& config)
       : mesh_(mesh),
-        view_(view),
         config_(config),
         world_from_camera_(view.world_from_camera.cast<float>()),
         to_lamp_(world_from_camera_.linear() *
@@ -93,7 +92,6 @@ class Shader {
   }
 
   const Mesh& mesh_;
-  const RasterView& view_;
   const PictureConfig& config_;
   Eigen::Isometry3f world_from_camera_;
   Eigen::Vector3f to_lamp_;

@@ -4,27 +4,7 @@
 
 #include <sstream>
 
-#include <yaml-cpp/yaml.h>
-
-#include "ovimap/image/codec.h"
-
 namespace ovimap {
-
-namespace {
-
-void set_fields(const YAML::Node& node, const std::string& prefix, ConfigFields& fields) {
-  for (const auto& entry : node) {
-    const std::string name = prefix + entry.first.as<std::string>();
-    if (entry.second.IsMap())
-      set_fields(entry.second, name + ".", fields);
-    else if (entry.second.IsScalar())
-      fields.set(name, entry.second.as<std::string>());
-    else
-      throw Error(concat("setting ", name, " must be one value"));
-  }
-}
-
-}  // namespace
 
 void list_fields(MapperConfig& config, ConfigFields& fields) {
   fields.group("segment", [&](ConfigFields& f) { list_fields(config.segment, f); });
@@ -76,18 +56,6 @@ MapperConfig config_of_map(const std::string& config_text) {
     for (const ConfigField& field : fields.fields())
       if (line.starts_with(field.name + ": ")) field.set(line.substr(field.name.size() + 2));
   return config;
-}
-
-void load_config(const std::filesystem::path& path, ConfigFields& fields) {
-  try {
-    const Bytes text = read_file(path);
-    const YAML::Node root = YAML::Load(std::string(text.begin(), text.end()));
-    if (!root.IsMap() && !root.IsNull())
-      throw Error(concat("config file ", path.string(), " must hold 'name: value' lines"));
-    set_fields(root, "", fields);
-  } catch (const YAML::Exception& error) {
-    throw Error(concat("config file ", path.string(), " is not valid YAML: ", error.what()));
-  }
 }
 
 }  // namespace ovimap

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <string>
 
 #include "ovimap/base/config.h"
@@ -48,9 +47,5 @@ MapperConfig mapper_preset(const std::string& name);
 /// The settings that a map was made with, as far as this program knows them
 /// (MapRecord::config_text).
 MapperConfig config_of_map(const std::string& config_text);
-
-/// Sets the fields that a YAML file names, as nested maps or dotted keys. Throws Error for a
-/// missing or unreadable file, an unknown key (with the nearest known one) or a value out of range.
-void load_config(const std::filesystem::path& path, ConfigFields& fields);
 
 }  // namespace ovimap

@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include "ovimap/io/config_file.h"
+
 namespace ovimap {
 namespace {
 
