@@ -5,6 +5,7 @@
 #include <iostream>
 #include <map>
 
+#include "calibrate.h"
 #include "command.h"
 #include "ovimap/base/version.h"
 #include "usage_fault.h"
@@ -22,6 +23,7 @@ struct Entry {
 constexpr Entry kCommands[] = {
     {"run", "map a recording: SOURCE in, MAP out", add_run},
     {"check", "look for what commonly is wrong with a recording", add_check},
+    {"calibrate", "find where the colour camera is, from edges of depth and colour", add_calibrate},
     {"info", "what a map holds", add_info},
     {"query", "find objects in words: MAP \"mug on the table\"", add_query},
     {"export", "write a map as mesh, scene, table, grid, picture or folder of objects", add_export},

@@ -58,5 +58,28 @@ TEST_F(EndToEndTest, MapsTheRealKitchen) {
   EXPECT_TRUE(std::any_of(info["instances"].begin(), info["instances"].end(), is_table));
 }
 
+TEST_F(EndToEndTest, CalibratesTheRealKitchen) {
+  if (!std::filesystem::is_directory(kKitchen))
+    GTEST_SKIP() << "the kitchen recording is not beside the checkout";
+  std::filesystem::create_directories(path("kitchen"));
+  for (const auto& entry : std::filesystem::directory_iterator(kKitchen))
+    if (entry.path().filename() != "calibration.yaml")
+      std::filesystem::create_symlink(std::filesystem::absolute(entry.path()),
+                                      path("kitchen") / entry.path().filename());
+  const auto found = run_json("calibrate kitchen --frames ::4 --json --picture edges.png");
+  EXPECT_EQ(found["verdict"], "found");
+  EXPECT_LT(found["found_px"].get<double>(), 0.7 * found["given_px"].get<double>());
+  EXPECT_TRUE(std::filesystem::exists(path("edges.png")));
+  EXPECT_EQ(run("check kitchen").code, 0);
+
+  // From the calibration that was made by hand the same place is found.
+  std::filesystem::copy_file(kKitchen / "calibration.yaml", path("kitchen/calibration.yaml"),
+                             std::filesystem::copy_options::overwrite_existing);
+  const auto by_hand = run_json("calibrate kitchen --frames ::4 --json -o found.yaml");
+  EXPECT_EQ(by_hand["verdict"], "aligned");
+  EXPECT_LT(found["found_px"].get<double>(), 1.03 * by_hand["given_px"].get<double>());
+  for (const auto& moved : by_hand["moved"]) EXPECT_LT(moved["px"].get<double>(), 2);
+}
+
 }  // namespace
 }  // namespace ovimap

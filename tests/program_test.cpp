@@ -128,6 +128,20 @@ TEST_F(ProgramTest, ChecksRecordings) {
   EXPECT_NE(result.out.find("verdict: fault"), std::string::npos);
 }
 
+TEST_F(ProgramTest, CalibratesOnlyWhatTells) {
+  expect_complaint("calibrate recording", {"calibration.yaml exists", "--force", "-o"});
+  const std::string before = slurp(path("recording/calibration.yaml"));
+  const ProgramResult result = run("calibrate recording --force --json");
+  EXPECT_EQ(result.code, 1) << result.err;
+  const auto report = nlohmann::json::parse(result.out);
+  EXPECT_EQ(report["verdict"], "refused");
+  EXPECT_NE(report["message"].get<std::string>().find("are needed"), std::string::npos);
+  EXPECT_TRUE(report["written"].is_null());
+  EXPECT_EQ(slurp(path("recording/calibration.yaml")), before);
+  expect_complaint("calibrate recording -o nowhere/a.yaml", {"nowhere"});
+  expect_complaint("calibrate missing", {"missing", "does not exist"});
+}
+
 TEST_F(ProgramTest, SaysWhatIsWrongWithTheCommandLine) {
   expect_complaint("", {"say what to do", "run, check", "--help"});
   expect_complaint("qurey room.ovimap mug", {"qurey", "'query'"});

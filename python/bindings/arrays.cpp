@@ -224,4 +224,12 @@ EmbeddingArray to_array(Embeddings rows) {
       {static_cast<std::size_t>(kept->rows()), static_cast<std::size_t>(kept->cols())}, owner);
 }
 
+Matrix4 to_matrix(const Pose& pose) {
+  using RowMajor = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+  auto* kept = new RowMajor(pose.matrix());
+  const nb::capsule owner(kept,
+                          [](void* pointer) noexcept { delete static_cast<RowMajor*>(pointer); });
+  return view<Matrix4>(kept->data(), {4, 4}, owner);
+}
+
 }  // namespace ovimap::python

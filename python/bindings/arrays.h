@@ -42,6 +42,10 @@ Embeddings read_embeddings(nb::handle object, const std::string& name, std::size
 using EmbeddingArray = nb::ndarray<nb::numpy, const float, nb::ndim<2>>;
 EmbeddingArray to_array(Embeddings rows);
 
+/// A transform as an array of its own.
+using Matrix4 = nb::ndarray<nb::numpy, const double, nb::shape<4, 4>>;
+Matrix4 to_matrix(const Pose& pose);
+
 /// An array over memory that `owner` keeps alive: no copy. Python can read it, not write.
 template <class Array, class Element>
 Array view(const Element* data, std::initializer_list<std::size_t> shape, nb::handle owner) {

@@ -13,15 +13,6 @@ namespace {
 
 using ColorView = nb::ndarray<nb::numpy, const std::uint8_t, nb::shape<-1, -1, 3>>;
 using DepthView = nb::ndarray<nb::numpy, const float, nb::ndim<2>>;
-using Matrix4 = nb::ndarray<nb::numpy, const double, nb::shape<4, 4>>;
-
-Matrix4 to_matrix(const Pose& pose) {
-  using RowMajor = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
-  auto* kept = new RowMajor(pose.matrix());
-  const nb::capsule owner(kept,
-                          [](void* pointer) noexcept { delete static_cast<RowMajor*>(pointer); });
-  return view<Matrix4>(kept->data(), {4, 4}, owner);
-}
 
 std::string to_text(const PinholeCamera& camera) {
   return concat("PinholeCamera(width=", camera.width, ", height=", camera.height,

@@ -5,6 +5,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "bindings.h"
+#include "ovimap/frames/color_calibration.h"
 #include "ovimap/frames/source_check.h"
 #include "ovimap/inference/mask_source_factory.h"
 #include "ovimap/pipeline/live_mapper.h"
@@ -42,9 +43,11 @@ std::vector<Setting> list_settings(const std::string& of) {
   if (of == "masks") return settings_of<MaskSourceConfig>();
   if (of == "query") return settings_of<QueryConfig>();
   if (of == "check") return settings_of<SourceCheckConfig>();
+  if (of == "calibrate") return settings_of<ColorCalibrationConfig>();
   if (of == "evaluation") return settings_of<EvaluationConfig>();
-  throw Error("there are no settings of '" + of +
-              "'; accepted are mapper, live, source, masks, query, check and evaluation");
+  throw Error(
+      "there are no settings of '" + of +
+      "'; accepted are mapper, live, source, masks, query, check, calibrate and evaluation");
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 from ._ovimap import (
     CheckReport,
+    ColorCalibration,
     Error,
     Finding,
     Frame,
@@ -26,6 +27,7 @@ from ._ovimap import (
     QueryMatch,
     Setting,
     StageSummary,
+    calibrate,
     check,
     commit,
     make_encoder,
@@ -39,6 +41,7 @@ from .commands import eval, run, synth
 __version__ = version()
 __all__ = [
     "CheckReport",
+    "ColorCalibration",
     "Error",
     "Finding",
     "Frame",
@@ -62,6 +65,7 @@ __all__ = [
     "Setting",
     "StageSummary",
     "__version__",
+    "calibrate",
     "check",
     "commit",
     "eval",

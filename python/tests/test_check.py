@@ -177,3 +177,13 @@ def test_a_wrong_focal_length_is_found_in_the_kitchen(kitchen, tmp_path, factor)
     (tmp_path / "calibration.yaml").unlink()
     (tmp_path / "calibration.yaml").write_text(text.replace("585.0", str(585 * factor)))
     assert "intrinsics" in [finding.name for finding in faults(tmp_path)]
+
+
+def test_calibrate_says_what_is_right_and_what_does_not_tell(kitchen, good):
+    result = ovimap.calibrate(kitchen, frames="::5", settings={"fit.starts": 2})
+    assert result.verdict == "aligned" and result.frames == 40
+    assert result.found_px < 1.05 * result.given_px and result.spread_px < 3 and result.sharpness > 0.1
+    assert abs(result.color_camera.fx - 531) < 8 and np.allclose(result.color_from_depth[:3, :3], np.eye(3), atol=0.03)
+    assert "color_from_depth:" in result.yaml
+    refused = ovimap.calibrate(good, frames="0:4")
+    assert refused.verdict == "refused" and "frames" in refused.message

@@ -275,9 +275,9 @@ void check_registration(const CheckSample& sample, CheckReport& report) {
                " px beside the edges of depth, in ", alignment.misplaced, " of ", alignment.judged,
                " parts of the image"),
         sample.registered
-            ? "put a calibration.yaml with both cameras and color_from_depth beside the recording "
-              "(docs/sources.md shows one)"
-            : "correct color_camera and color_from_depth in calibration.yaml, or record colour and "
+            ? "let ovimap calibrate find the colour camera, or put a calibration.yaml with both "
+              "cameras and color_from_depth beside the recording (docs/sources.md shows one)"
+            : "let ovimap calibrate --force find the colour camera again, or record colour and "
               "depth at the same time");
     return;
   }
@@ -286,7 +286,9 @@ void check_registration(const CheckSample& sample, CheckReport& report) {
       suspicious ? "7-Scenes records colour and depth with two cameras, here they are taken as one"
       : sample.registered ? "colour and depth share one camera"
                           : "colour and depth are two cameras of known offset",
-      suspicious ? "put a calibration.yaml beside the recording (docs/sources.md shows one)" : "");
+      suspicious ? "let ovimap calibrate find the colour camera, or put a calibration.yaml beside "
+                   "the recording (docs/sources.md shows one)"
+                 : "");
 }
 
 }  // namespace

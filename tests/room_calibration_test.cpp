@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "ovimap/frames/color_calibration.h"
+#include "ovimap/synth/furniture_catalog.h"
+#include "ovimap/synth/room_builder.h"
+#include "ovimap/synth/room_spec.h"
+#include "ovimap/synth/sensor_noise.h"
+#include "ovimap/synth/sequence.h"
+
+namespace ovimap {
+namespace {
+
+/// A furnished room seen by a noisy depth camera and by a colour camera beside it, of which the
+/// frames tell nothing.
+class TwoCameraRoom final : public FrameSource {
+ public:
+  TwoCameraRoom(const std::string& room, int frames, const ColorView& truth)
+      : spec_(small(room_spec(room))),
+        sequence_(build_room(spec_), spec_.camera, frames),
+        renderer_(sequence_.room()),
+        truth_(truth) {}
+
+  std::string kind() const override { return "two cameras"; }
+  std::int64_t size() const override { return sequence_.size(); }
+  FrameRead read(std::int64_t position) const override {
+    const Pose& pose = sequence_.true_poses()[static_cast<std::size_t>(position)];
+    const auto seed = static_cast<std::uint64_t>(position) + 1;
+    Frame frame;
+    frame.world_from_camera = pose;
+    frame.depth_camera = frame.color_camera = spec_.camera;
+    frame.depth = noisy_depth(renderer_.render(spec_.camera, pose, false), {}, seed);
+    frame.color = noisy_color(
+        renderer_.render(truth_.camera, pose * truth_.color_from_depth.inverse()).color, {}, seed);
+    return {std::move(frame), {}};
+  }
+  const PinholeCamera& camera() const { return spec_.camera; }
+
+ private:
+  static RoomSpec small(RoomSpec spec) {
+    spec.camera = spec.camera.scaled_to(320, 240);
+    return spec;
+  }
+
+  RoomSpec spec_;
+  SynthSequence sequence_;
+  Renderer renderer_;
+  ColorView truth_;
+};
+
+ColorView view(const PinholeCamera& camera, const Eigen::Vector3d& rotation,
+               const Eigen::Vector3d& translation) {
+  ColorView view{camera, Pose::Identity()};
+  view.color_from_depth.linear() =
+      Eigen::AngleAxisd(rotation.norm(), rotation.normalized()).toRotationMatrix();
+  view.color_from_depth.translation() = translation;
+  return view;
+}
+
+void expect_found_within_a_pixel(const std::string& room, const ColorView& truth) {
+  if (!std::filesystem::is_directory(default_furniture_folder()))
+    GTEST_SKIP() << "the Debian package sweethome3d-furniture is not installed";
+  const TwoCameraRoom source(room, 16, truth);
+  const ColorCalibration result = calibrate_color(source, positions({}, source.size()));
+  EXPECT_EQ(result.verdict, ColorCalibration::Verdict::kFound) << result.message;
+  EXPECT_LT(result.spread_px, 1.5);
+  for (const float depth_m : {1.f, 2.f, 3.f, 4.f}) {
+    const double px = view_difference_px(source.camera(), result.found, truth, depth_m);
+    EXPECT_LT(px, 1) << room << " at " << depth_m << " m";
+    ::testing::Test::RecordProperty(concat("px_at_", static_cast<int>(depth_m), "_m"),
+                                    std::to_string(px));
+  }
+}
+
+TEST(RoomCalibration, ShorterFocalLengthInTheTinyRoom) {
+  expect_found_within_a_pixel("tiny", view({320, 240, 218.4f, 218.4f, 159, 116},
+                                           {-0.0062, 0.0025, 0.0087}, {-0.024, 0.0034, 0.012}));
+}
+
+TEST(RoomCalibration, LongerFocalLengthInTheTinyRoom) {
+  expect_found_within_a_pixel("tiny", view({320, 240, 268.8f, 268.8f, 162.5f, 124},
+                                           {0.012, -0.015, -0.006}, {0.05, 0, -0.005}));
+}
+
+TEST(RoomCalibration, FarBesideInTheBedroom) {
+  expect_found_within_a_pixel(
+      "bedroom", view({320, 240, 192, 192, 155.5f, 122}, {0.02, 0.01, 0.015}, {-0.06, 0.02, 0}));
+}
+
+}  // namespace
+}  // namespace ovimap
