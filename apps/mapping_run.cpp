@@ -28,8 +28,10 @@ std::string effective_config(ProgramConfig config, const MappingOptions& options
 
 /// What the options ask for, opened.
 struct MappingInputs {
-  explicit MappingInputs(const MappingOptions& options) : config(read_program_config(options)) {
+  explicit MappingInputs(const MappingOptions& options, bool recorded = true)
+      : config(read_program_config(options)) {
     config.masks.runtime.threads = network_threads(config, options);
+    if (!recorded) return;
     source = open_frame_source(options.source, config.source);
     range = positions(parse_frame_range(options.frames), source->size());
   }
@@ -42,7 +44,7 @@ struct MappingInputs {
   }
 
   ProgramConfig config;
-  std::unique_ptr<FrameSource> source;
+  std::unique_ptr<FrameSource> source;  ///< null where frames are pushed
   std::vector<std::int64_t> range;
   std::shared_ptr<MaskSource> masks;
   std::shared_ptr<ImageTextEncoder> encoder;
@@ -142,7 +144,7 @@ std::unique_ptr<Checkpointer> make_checkpointer(const BegunRun& begun, const Map
 
 MapHeader make_header(const MappingInputs& inputs, const MappingOptions& options,
                       const MapperConfig& mapper) {
-  return {inputs.source->kind() + ":" + options.source,
+  return {inputs.source ? inputs.source->kind() + ":" + options.source : options.source,
           effective_config(inputs.config, options, mapper, inputs.encoder)};
 }
 
@@ -189,8 +191,8 @@ MappingRun map_recording(const MappingOptions& options, const std::string& title
 }
 
 MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& target,
-                    LiveAudience* audience) {
-  MappingInputs inputs(options);
+                    LiveAudience* audience, FrameIntake* intake) {
+  MappingInputs inputs(options, intake == nullptr);
   BegunRun begun = find_begun(target, inputs.config.memory);
   // The networks' threads inherit the priority of the one that opens them.
   std::async(std::launch::async, [&] {
@@ -199,8 +201,10 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
   }).get();
   LiveMapper mapper(inputs.config.mapper, inputs.config.live, inputs.masks, inputs.encoder);
   MapHeader header = make_header(inputs, options, mapper.config());
-  header.config_text.insert(0, concat("# live, ", fps, " frames/s\n"));
+  const std::string pace = intake ? std::string("pushed") : concat(fps, " frames/s");
+  header.config_text.insert(0, concat("# live, ", pace, "\n"));
   const SequenceResult done = resume(begun, header, inputs, mapper);
+  if (intake && !done.frames.empty()) intake->begin_at(done.frames.back().index + 1);
   auto checkpoints = make_checkpointer(begun, inputs, header, done.frames.size());
   mapper.after_frame = [&](Mapper& map, const auto& frames, const PinholeCamera& camera) {
     if (audience) audience->after_frame(map, frames, camera);
@@ -215,14 +219,15 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
   LiveRunResult live;
   {
     Progress progress("mapping live");
-    live = run_live(*inputs.source, inputs.range, mapper, fps,
-                    [&](std::size_t count, std::size_t total) {
-                      progress.show(count, total);
-                      return !interrupted();
-                    });
+    const LiveProgress look = [&](std::size_t count, std::size_t total) {
+      progress.show(count, total);
+      return !interrupted();
+    };
+    live = intake ? run_pushed(*intake, mapper, look)
+                  : run_live(*inputs.source, inputs.range, mapper, fps, look);
   }
   if (audience) header.edits = audience->end();
-  if (inputs.range.empty()) live.sequence.depth_camera = done.depth_camera;
+  if (live.sequence.depth_camera.width == 0) live.sequence.depth_camera = done.depth_camera;
   MappingRun run = finished_run(std::move(inputs), std::move(header), mapper.take(), live.sequence,
                                 std::move(checkpoints));
   run.live = std::move(live);

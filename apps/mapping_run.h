@@ -9,7 +9,7 @@ namespace ovimap::apps {
 
 /// A recording, mapped.
 struct MappingRun {
-  std::unique_ptr<FrameSource> source;
+  std::unique_ptr<FrameSource> source;  ///< null where frames were pushed
   SequenceResult sequence;
   std::optional<LiveRunResult> live;  ///< of map_live
   StageTimers timers;
@@ -49,7 +49,8 @@ class LiveAudience {
 };
 
 /// The same as a camera of `fps` frames a second would have it. Networks let the mapping go first.
+/// `intake`: frames come from there instead, at their own pace, until it ends.
 MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& target = {},
-                    LiveAudience* audience = nullptr);
+                    LiveAudience* audience = nullptr, FrameIntake* intake = nullptr);
 
 }  // namespace ovimap::apps

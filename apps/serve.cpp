@@ -23,6 +23,8 @@ struct ServeOptions {
   double fps = 30;
   bool live = false, resume = false, no_limits = false, json = false;
 
+  /// Clients send the frames.
+  bool pushed() const { return live && subject == "http"; }
   std::filesystem::path map() const { return live ? output : std::filesystem::path(subject); }
 };
 
@@ -59,20 +61,31 @@ void announce(const ServeOptions& options, const HttpServer& server) {
   std::fflush(stdout);
 }
 
+/// Frames a second that came, also those left out.
+double pushed_fps(const LiveRunResult& run) {
+  const auto frames = run.statistics.frames_pushed + run.statistics.frames_dropped;
+  return run.camera_seconds > 0 ? static_cast<double>(frames) / run.camera_seconds : 0;
+}
+
 void serve_live(const ServeOptions& options) {
+  const ProgramConfig config = read_program_config(options.mapping);
+  FrameIntake intake(static_cast<std::size_t>(config.live.queue));
   LiveService service{options.mapping,
                       {options.output, options.resume},
                       options.fps,
                       options.server,
                       options.served};
   service.served.encoder = options.mapping.encoder;
+  service.server.frames = config.source;
+  if (options.pushed()) service.intake = &intake;
   service.run([&](const HttpServer& server) { announce(options, server); },
               [&](const MappingRun& run) {
+                const double fps = options.pushed() ? pushed_fps(*run.live) : options.fps;
                 report_faults(run);
                 if (options.json)
-                  print_line({{"saved", run_json(options.output, run, options.fps)}});
+                  print_line({{"saved", run_json(options.output, run, fps)}});
                 else
-                  print_run(options.output, run, options.fps);
+                  print_run(options.output, run, fps);
                 advise_on_objects(run);
                 std::fflush(stdout);
               });
@@ -96,6 +109,8 @@ int serve(ServeOptions options) {
   options.served.encoder = options.mapping.encoder;
   options.served.model_dirs = options.mapping.model_dirs;
   options.served.threads = options.mapping.threads;
+  if (options.pushed() && options.mapping.frames != ":")
+    throw Error("--frames chooses frames of a recording; leave it away where clients send them");
   watch_for_interrupt();
   if (options.live)
     serve_live(options);
@@ -130,7 +145,11 @@ void add_live_options(CLI::App& command, ServeOptions& options) {
 
 Action add_serve(CLI::App& command) {
   auto options = std::make_shared<ServeOptions>();
-  command.add_option("MAP", options->subject, "map file; with --live a recording")->required();
+  command
+      .add_option(
+          "MAP", options->subject,
+          "map file; with --live a recording, or http: frames that clients send (docs/live.md)")
+      ->required();
   command.add_option("--port", options->server.port, "port to listen at; 0: any free one")
       ->check(CLI::Range(0, 65535))
       ->capture_default_str();

@@ -27,7 +27,7 @@ class Service : public LiveAudience {
     begun.record.semantics.encoder = encoder;
     begun.info.voxel_size_m = config.map.voxel_size_m;
     map_ = std::make_unique<ServedMap>(options_.target.map, std::move(begun), options_.served);
-    server_ = std::make_unique<ServerThread>(*map_, options_.server);
+    server_ = std::make_unique<ServerThread>(*map_, options_.server, options_.intake);
     feed_ = std::make_unique<LiveFeed>(*map_);
     announce_(server_->server());
   }
@@ -56,8 +56,9 @@ class Service : public LiveAudience {
 
 }  // namespace
 
-ServerThread::ServerThread(ServedMap& map, const ServerConfig& config)
-    : server_(map, config), running_(std::async(std::launch::async, [this] { server_.run(); })) {}
+ServerThread::ServerThread(ServedMap& map, const ServerConfig& config, FrameIntake* intake)
+    : server_(map, config, intake),
+      running_(std::async(std::launch::async, [this] { server_.run(); })) {}
 
 ServerThread::~ServerThread() {
   while (running_.valid() && running_.wait_for(kLook) != std::future_status::ready) server_.stop();
@@ -73,7 +74,7 @@ void LiveService::run(const Announce& announce,
                       const std::function<void(const MappingRun&)>& saved) const {
   check_map_target(target.map);
   Service service(*this, announce);
-  MappingRun mapped = map_live(mapping, fps, target, &service);
+  MappingRun mapped = map_live(mapping, fps, target, &service, intake);
   save_map(target.map, mapped.document);
   saved(mapped);
   const bool go_on = !interrupted();

@@ -15,7 +15,7 @@ using Announce = std::function<void(const HttpServer&)>;
 /// A server that answers in a thread of its own. Ends with the object.
 class ServerThread {
  public:
-  ServerThread(ServedMap& map, const ServerConfig& config);
+  ServerThread(ServedMap& map, const ServerConfig& config, FrameIntake* intake = nullptr);
   ~ServerThread();
 
   const HttpServer& server() const { return server_; }
@@ -27,15 +27,16 @@ class ServerThread {
   std::future<void> running_;
 };
 
-/// Maps a recording at a camera's pace and serves the map meanwhile; then saves it and goes on
-/// serving until Ctrl-C. Ctrl-C before that saves what was mapped and ends it. Returns what was
-/// mapped, its document given to the served map.
+/// Maps a recording at a camera's pace, or what clients push, and serves the map meanwhile; then
+/// saves it and goes on serving until Ctrl-C. Ctrl-C before that saves what was mapped and ends it.
+/// Returns what was mapped, its document given to the served map.
 struct LiveService {
   MappingOptions mapping;
   RunTarget target;
   double fps = 30;
   ServerConfig server;
   ServedMapConfig served;
+  FrameIntake* intake = nullptr;  ///< frames that clients push, instead of a recording's
 
   /// `saved`: called when the map is in its file.
   void run(const Announce& announce, const std::function<void(const MappingRun&)>& saved) const;

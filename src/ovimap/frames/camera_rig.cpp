@@ -220,12 +220,16 @@ Pose CameraRig::world_from_depth_camera(const Eigen::Matrix4d& stored) const {
 
 void apply_calibration(const std::filesystem::path& file, CameraRig& rig) {
   const Bytes bytes = read_file(file);
+  apply_calibration(std::string(bytes.begin(), bytes.end()), file.string(), rig);
+}
+
+void apply_calibration(const std::string& yaml, const std::string& name, CameraRig& rig) {
   try {
-    const YAML::Node root = YAML::Load(std::string(bytes.begin(), bytes.end()));
+    const YAML::Node root = YAML::Load(yaml);
     if (root.IsNull()) return;
-    apply(Section(file.string(), "", root), rig);
+    apply(Section(name, "", root), rig);
   } catch (const YAML::Exception& fault) {
-    throw Error(concat(file.string(), ": line ", fault.mark.line + 1, " is not YAML (", fault.msg,
+    throw Error(concat(name, ": line ", fault.mark.line + 1, " is not YAML (", fault.msg,
                        "); expected is as: depth_camera: {fx: 585, fy: 585, cx: 320, cy: 240}"));
   }
 }

@@ -52,6 +52,9 @@ struct CameraRig {
 /// cameras depth and color. Throws Error naming file, key, value and what is accepted.
 void apply_calibration(const std::filesystem::path& file, CameraRig& rig);
 
+/// The same for what a file, or a message, says. `name` is what messages of Error call it.
+void apply_calibration(const std::string& yaml, const std::string& name, CameraRig& rig);
+
 /// The same file's text for a rig, so that reading it back gives the rig.
 std::string calibration_text(const CameraRig& rig);
 

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "ovimap/frames/depth_decoding.h"
+#include "ovimap/frames/frame_decoder.h"
 #include "ovimap/frames/number_text.h"
 #include "ovimap/frames/rig_completion.h"
 #include "ovimap/image/codec.h"
@@ -13,8 +14,6 @@
 namespace ovimap {
 
 namespace {
-
-constexpr std::size_t kDepthValues = 65536;
 
 /// Why a frame cannot be used: "FILE: PHRASE". Caught within this file.
 struct FrameFault {
@@ -72,15 +71,7 @@ void check_size(const std::string& name, const Image<Pixel>& image, const Pinhol
 class RecordingSource : public FrameSource {
  public:
   RecordingSource(Recording recording, const FrameSourceConfig& config)
-      : recording_(std::move(recording)), config_(config), depth_m_(kDepthValues) {
-    const CameraRig& rig = recording_.rig;
-    for (std::size_t stored = 0; stored < kDepthValues; ++stored) {
-      const auto metres = static_cast<float>(static_cast<double>(stored) / rig.depth_units_per_m);
-      const bool valid = stored > 0 && metres >= config.min_depth_m && metres <= config.max_depth_m;
-      depth_m_[stored] = valid ? metres : 0.f;
-    }
-    for (const std::uint16_t stored : rig.invalid_depth) depth_m_[stored] = 0;
-  }
+      : recording_(std::move(recording)), config_(config), units_(recording_.rig, config) {}
 
   std::string kind() const override { return recording_.kind; }
   std::int64_t size() const override { return static_cast<std::int64_t>(recording_.frames.size()); }
@@ -173,13 +164,6 @@ class RecordingSource : public FrameSource {
     return std::move(png.values);
   }
 
-  DepthImage depth_of_units(const RecordedFrame& record, const std::string& name) const {
-    const Image<std::uint16_t> units = load_depth_units(record, name);
-    DepthImage depth(units.width(), units.height());
-    for (std::size_t i = 0; i < depth.size(); ++i) depth[i] = depth_m_[units[i]];
-    return depth;
-  }
-
   DepthImage depth_of_metres(const RecordedFrame& record, const std::string& name) const {
     const PinholeCamera& camera = recording_.rig.depth_camera;
     DepthImage depth = load(name, record.depth, record.depth_part, [&](const Bytes& bytes) {
@@ -201,7 +185,7 @@ class RecordingSource : public FrameSource {
     const std::string name = label(record.depth, record.depth_part, record);
     DepthImage depth = recording_.depth_encoding == DepthEncoding::kMetres
                            ? depth_of_metres(record, name)
-                           : depth_of_units(record, name);
+                           : units_.metres(load_depth_units(record, name));
     if (std::none_of(depth.begin(), depth.end(), [](float metres) { return metres > 0; }))
       fail(name,
            concat("has no depth from ", config_.min_depth_m, " to ", config_.max_depth_m, " m"));
@@ -210,7 +194,7 @@ class RecordingSource : public FrameSource {
 
   Recording recording_;
   FrameSourceConfig config_;
-  std::vector<float> depth_m_;  ///< metres for each stored value, 0 where invalid
+  DepthUnits units_;
 };
 
 std::string missing_part(const RecordedFrame& frame) {

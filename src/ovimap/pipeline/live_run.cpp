@@ -95,4 +95,29 @@ LiveRunResult run_live(const FrameSource& source, const std::vector<std::int64_t
   return result;
 }
 
+LiveRunResult run_pushed(FrameIntake& intake, LiveMapper& mapper, const LiveProgress& progress) {
+  constexpr std::chrono::milliseconds kLook{50};  // between looks at whether to go on
+  LiveRunResult result;
+  std::optional<Clock::time_point> start;  // the first frame's
+  for (std::size_t done = 0; !intake.ended();) {
+    if (std::optional<Frame> frame = intake.next(kLook)) {
+      if (!start) start = Clock::now();
+      result.sequence.depth_camera = frame->depth_camera;
+      mapper.push_and_wait(std::move(*frame));
+      result.camera_seconds = std::chrono::duration<double>(Clock::now() - *start).count();
+      ++done;
+    }
+    if (progress && !progress(done, done)) intake.finish();
+  }
+  mapper.drain();
+  if (start) result.sequence.seconds = std::chrono::duration<double>(Clock::now() - *start).count();
+  result.sequence.frames = mapper.frames();
+  result.statistics = mapper.statistics();
+  result.statistics.frames_dropped += intake.counts().skipped;
+  if (result.sequence.frames.empty())
+    throw Error("no frame came, so there is no map; docs/live.md says how to send frames");
+  check_outcome(result, mapper.config());
+  return result;
+}
+
 }  // namespace ovimap

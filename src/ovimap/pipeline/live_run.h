@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "ovimap/pipeline/frame_intake.h"
 #include "ovimap/pipeline/live_mapper.h"
 #include "ovimap/pipeline/sequence_run.h"
 
@@ -23,5 +24,12 @@ using LiveProgress = std::function<bool(std::size_t done, std::size_t total)>;
 /// were asked for and none was good, and what a stage threw.
 LiveRunResult run_live(const FrameSource& source, const std::vector<std::int64_t>& positions,
                        LiveMapper& mapper, double fps, const LiveProgress& progress = nullptr);
+
+/// Feeds the mapper what comes into `intake` until that ends, waiting for room, and drains it.
+/// `progress` is called after every frame and now and then while none comes, with the frames so
+/// far; when it returns false the run ends, and the intake with it. What the intake had no room for
+/// counts as dropped. Throws as run_live.
+LiveRunResult run_pushed(FrameIntake& intake, LiveMapper& mapper,
+                         const LiveProgress& progress = nullptr);
 
 }  // namespace ovimap

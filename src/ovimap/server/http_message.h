@@ -15,7 +15,8 @@ struct HttpRequest {
   std::map<std::string, std::string> query;    ///< decoded
   std::map<std::string, std::string> headers;  ///< names in lower case
   std::string body, remote_address;
-  std::vector<std::string> segments;  ///< what stands in the path for {...} of the route
+  std::map<std::string, std::string> parts;  ///< of a multipart/form-data body, which is then empty
+  std::vector<std::string> segments;         ///< what stands in the path for {...} of the route
 
   /// Empty where there is none.
   std::string header(const std::string& lower_case_name) const;

@@ -36,6 +36,7 @@ HttpRequest read(const httplib::Request& from) {
   for (const auto& [name, value] : from.headers)
     request.headers.try_emplace(lower_case(name), value);
   request.body = from.body;
+  for (const auto& [name, part] : from.files) request.parts.try_emplace(name, part.content);
   request.remote_address = from.remote_addr;
   return request;
 }
@@ -108,17 +109,17 @@ bool needs_length(const httplib::Request& request) {
 }  // namespace
 
 struct HttpServer::Sockets {
-  Sockets(ServedMap& map, const ServerConfig& given)
-      : events(map.events()), config(given), desk(map, given) {
-    set_limits();
+  Sockets(ServedMap& map, const ServerConfig& given, FrameIntake* intake)
+      : events(map.events()), config(given), desk(map, given, intake) {
+    set_limits(intake != nullptr);
     set_handlers();
     bind();
   }
 
-  void set_limits() {
+  void set_limits(bool takes_frames) {
     const auto most = static_cast<std::size_t>(config.max_connections);
     http.new_task_queue = [most] { return new ConnectionThreads(most); };
-    http.set_payload_max_length(config.max_body_bytes);
+    http.set_payload_max_length(takes_frames ? config.max_frame_bytes : config.max_body_bytes);
     http.set_keep_alive_max_count(kRequestsPerConnection);
     http.set_keep_alive_timeout(kIdleSeconds);
     http.set_read_timeout(config.patience_s);
@@ -144,6 +145,10 @@ struct HttpServer::Sockets {
           const_cast<httplib::Request&>(request).ranges.clear();
           if (needs_length(request)) {
             response.status = 411;
+            return httplib::Server::HandlerResponse::Handled;
+          }
+          if (auto refused = desk.early_refusal(read(request))) {
+            send(std::move(*refused), response);
             return httplib::Server::HandlerResponse::Handled;
           }
           const bool unknown_to_httplib = request.method == "TRACE" || request.method == "CONNECT";
@@ -187,8 +192,8 @@ struct HttpServer::Sockets {
   int port = 0;
 };
 
-HttpServer::HttpServer(ServedMap& map, const ServerConfig& config)
-    : sockets_(std::make_unique<Sockets>(map, config)) {}
+HttpServer::HttpServer(ServedMap& map, const ServerConfig& config, FrameIntake* intake)
+    : sockets_(std::make_unique<Sockets>(map, config, intake)) {}
 
 HttpServer::~HttpServer() = default;
 

@@ -6,6 +6,8 @@
 #include <memory>
 #include <string>
 
+#include "ovimap/frames/frame_source.h"
+#include "ovimap/pipeline/frame_intake.h"
 #include "ovimap/server/served_map.h"
 
 namespace ovimap {
@@ -19,11 +21,13 @@ struct ServerConfig {
   int max_connections = 256;   ///< served at once; more wait
   int max_event_streams = 64;  ///< of these connections
   std::size_t max_body_bytes = 1 << 16;
-  double requests_per_second = 400;  ///< of one address, on average
-  double request_burst = 2000;       ///< ... and at once: a large map's chunks
-  double work_per_second = 10;       ///< queries and corrections, which cost the most
+  std::size_t max_frame_bytes = 32 << 20;  ///< of a body that carries a frame's images
+  double requests_per_second = 400;        ///< of one address, on average
+  double request_burst = 2000;             ///< ... and at once: a large map's chunks
+  double work_per_second = 10;             ///< queries and corrections, which cost the most
   double work_burst = 40;
-  int patience_s = 5;  ///< for a client that stops reading or writing in the middle
+  FrameSourceConfig frames;  ///< limits of the depth in pushed frames
+  int patience_s = 5;        ///< for a client that stops reading or writing in the middle
 };
 
 /// Serves one map to browsers and programs (docs/http-api.md).
@@ -31,7 +35,8 @@ class HttpServer {
  public:
   /// Binds the port. `map` must outlive the server. Throws Error when the port is taken, the host
   /// is none of this machine's, or other machines could reach it and no token is set.
-  HttpServer(ServedMap& map, const ServerConfig& config);
+  /// `intake`: where frames go that clients push; null: they may not.
+  HttpServer(ServedMap& map, const ServerConfig& config, FrameIntake* intake = nullptr);
   ~HttpServer();
   HttpServer(const HttpServer&) = delete;
   HttpServer& operator=(const HttpServer&) = delete;

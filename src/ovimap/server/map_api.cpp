@@ -154,7 +154,7 @@ HttpHandler guarded(HttpHandler handler) {
 
 }  // namespace
 
-Router map_api(ServedMap& map) {
+Router map_api(ServedMap& map, FrameApi& frames) {
   Router router;
   const auto get = [&](const char* pattern, HttpHandler handler) {
     router.add("GET", pattern, guarded(std::move(handler)));
@@ -178,6 +178,9 @@ Router map_api(ServedMap& map) {
   get("/api/corrections", [&map](Request) { return json_reply(corrections_json(map)); });
   post("/api/query", [&map](Request r) { return answer_query(map, r); });
   post("/api/corrections", [&map](Request r) { return correct(map, r); });
+  post("/api/camera", [&frames](Request r) { return frames.camera(r); });
+  post(FrameApi::kFrames, [&frames](Request r) { return frames.frame(r); });
+  post("/api/finish", [&frames](Request) { return frames.finish(); });
   return router;
 }
 

@@ -4,6 +4,7 @@
 
 #include <xxhash.h>
 
+#include <charconv>
 #include <cstdio>
 
 #include "ovimap/server/compression.h"
@@ -21,6 +22,10 @@ HttpReply too_many(const char* what) {
       fault(429, std::string("too many ") + what + " from this address; wait a second");
   reply.headers.emplace("Retry-After", "1");
   return reply;
+}
+
+HttpReply too_large() {
+  return fault(413, "the request's body is too large");
 }
 
 std::string entity_tag(const std::string& body) {
@@ -63,13 +68,30 @@ void protect(HttpReply& reply) {
 
 }  // namespace
 
-RequestDesk::RequestDesk(ServedMap& map, const ServerConfig& config)
+RequestDesk::RequestDesk(ServedMap& map, const ServerConfig& config, FrameIntake* intake)
     : config_(config),
       access_(config.token),
       files_(config.viewer),
-      api_(map_api(map)),
+      frames_(intake, config.frames),
+      api_(map_api(map, frames_)),
       requests_(config.requests_per_second, config.request_burst),
       work_(config.work_per_second, config.work_burst) {}
+
+std::size_t RequestDesk::most_bytes(const HttpRequest& request) const {
+  const bool large = frames_.takes_frames() && request.path == FrameApi::kFrames;
+  return large ? config_.max_frame_bytes : config_.max_body_bytes;
+}
+
+std::optional<HttpReply> RequestDesk::early_refusal(const HttpRequest& head) const {
+  const std::string given = head.header("content-length");
+  std::size_t bytes = 0;
+  std::from_chars(given.data(), given.data() + given.size(), bytes);
+  if (bytes <= config_.max_body_bytes) return std::nullopt;
+  std::optional<HttpReply> refused = access_.refusal(head);
+  if (!refused && bytes > most_bytes(head)) refused = too_large();
+  if (refused) refused->headers["Connection"] = "close";  // the body is still on its way
+  return refused;
+}
 
 HttpReply RequestDesk::answer(const HttpRequest& request) {
   HttpReply reply = find_reply(request);
@@ -86,7 +108,12 @@ HttpReply RequestDesk::find_reply(const HttpRequest& request) {
   if (auto refusal = access_.refusal(request)) return *refusal;
   if (request.method == "GET" || request.method == "HEAD")
     if (auto file = files_.find(request.path)) return *file;
-  if (request.method == "POST" && !work_.admits(request.remote_address))
+  std::size_t bytes = request.body.size();
+  for (const auto& [name, content] : request.parts) bytes += content.size();
+  if (bytes > most_bytes(request)) return too_large();
+  // A camera's frames are held back by the queue that they go into.
+  const bool is_frame = frames_.takes_frames() && request.path == FrameApi::kFrames;
+  if (request.method == "POST" && !is_frame && !work_.admits(request.remote_address))
     return too_many("queries or corrections");
   HttpReply reply = api_.answer(request);
   return reply.stream ? counted_stream(std::move(reply)) : reply;

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "ovimap/server/access.h"
+#include "ovimap/server/frame_api.h"
 #include "ovimap/server/http_message.h"
 #include "ovimap/server/http_server.h"
 #include "ovimap/server/viewer_files.h"
@@ -16,17 +17,22 @@ namespace ovimap {
 /// limits, files or routes, ETag, compression, headers. Thread-safe.
 class RequestDesk {
  public:
-  RequestDesk(ServedMap& map, const ServerConfig& config);
+  RequestDesk(ServedMap& map, const ServerConfig& config, FrameIntake* intake);
 
+  /// The refusal of a request of which only the head was read: a body may be large, so who may not
+  /// send it is told before. Nothing where the body is to be read.
+  std::optional<HttpReply> early_refusal(const HttpRequest& head) const;
   HttpReply answer(const HttpRequest& request);
 
  private:
+  std::size_t most_bytes(const HttpRequest& request) const;
   HttpReply find_reply(const HttpRequest& request);
   HttpReply counted_stream(HttpReply reply);
 
   const ServerConfig config_;
   const AccessRule access_;
   const ViewerFiles files_;
+  FrameApi frames_;
   const Router api_;
   RateLimit requests_, work_;
   std::shared_ptr<std::atomic<int>> streams_ = std::make_shared<std::atomic<int>>(0);

@@ -22,8 +22,8 @@ namespace ovimap::fixture {
 class RunningServer {
  public:
   RunningServer(const std::filesystem::path& map, ServerConfig config,
-                const ServedMapConfig& served)
-      : map_(map, served), server_(map_, with_free_port(std::move(config))) {
+                const ServedMapConfig& served, FrameIntake* intake = nullptr)
+      : map_(map, served), server_(map_, with_free_port(std::move(config)), intake) {
     thread_ = std::thread([this] { server_.run(); });
     while (!answers()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }

@@ -1,0 +1,131 @@
+# SPDX-FileCopyrightText: 2026 The ovimap authors
+# SPDX-License-Identifier: Apache-2.0
+"""How do I map from a ROS 2 robot? Start `ovimap serve --live http -o room.ovimap`, then this node:
+
+    ros2_sender.py --color /camera/color/image_raw --depth /camera/depth/image_rect_raw --info /camera/depth/camera_info \
+        --poses /odom --url http://localhost:8080/
+
+Depth must be registered to colour, or --color-info given; poses are Odometry or PoseStamped of the camera's optical frame
+(x right, y down, z forward). Ctrl-C finishes the map and saves it. rclpy is imported only where the node runs: the rest works
+on messages of any origin."""
+import argparse
+import bisect
+
+import numpy as np
+from ovimap.bag_messages import quaternion, raw_color, raw_depth, stamp_ns, vector
+from ovimap.sender import FrameSender
+from ovimap.transforms import between, matrix_of
+
+MAX_GAP_NS = 20_000_000  # colour and depth farther apart do not belong together
+
+
+def camera_of(info):
+    """The figures of a CameraInfo message, for FrameSender; depth in millimetres, as ROS has it."""
+    k = info.k if hasattr(info, "k") else info.K
+    return {"width": info.width, "height": info.height, "fx": k[0], "fy": k[4], "cx": k[2], "cy": k[5]}
+
+
+def rig_of(depth_info, color_info=None):
+    """Both cameras; without color_info depth is registered to colour."""
+    depth = {**camera_of(depth_info), "depth_scale": 1000}
+    return depth if color_info is None else {"depth_camera": depth, "color_camera": camera_of(color_info)}
+
+
+def color_of(message):
+    """An Image as an array, a CompressedImage (JPEG or PNG) as its bytes."""
+    return raw_color(message, "colour") if hasattr(message, "encoding") else bytes(message.data)
+
+
+def depth_of(message):
+    """Millimetres as uint16, or metres as float32."""
+    return raw_depth(message, "depth")
+
+
+def pose_of(message):
+    """[4, 4] of a PoseStamped, Odometry or PoseWithCovarianceStamped message."""
+    pose = message.pose.pose if hasattr(message.pose, "pose") else message.pose
+    return matrix_of(vector(pose.position), quaternion(pose.orientation))
+
+
+class Matcher:
+    """Puts together what belongs together: depth with the nearest colour, and the pose at depth's time."""
+
+    def __init__(self, keep=60):
+        self.keep = keep
+        self.colors, self.depths, self.poses = [], [], []  # (ns, message), by time
+
+    def add(self, kind, message):
+        """Returns the frames that can be sent by now: (colour, depth, pose, seconds)."""
+        list_of = {"color": self.colors, "depth": self.depths, "pose": self.poses}[kind]
+        bisect.insort(list_of, (stamp_ns(message.header), message), key=lambda entry: entry[0])
+        del list_of[: -self.keep]
+        return [frame for frame in (self._frame(*entry) for entry in list(self.depths)) if frame]
+
+    def _frame(self, time_ns, depth):
+        # Nothing can come any more between what is older and what is newer.
+        if not self.colors or not self.poses or min(self.colors[-1][0], self.poses[-1][0]) < time_ns:
+            return None
+        self.depths.remove((time_ns, depth))
+        color_ns, color = min(self.colors, key=lambda entry: abs(entry[0] - time_ns))
+        pose = self._pose(time_ns)
+        if abs(color_ns - time_ns) > MAX_GAP_NS or pose is None:
+            return None
+        return color_of(color), depth_of(depth), pose, time_ns / 1e9
+
+    def _pose(self, time_ns):
+        after = bisect.bisect_left([entry[0] for entry in self.poses], time_ns)
+        if self.poses[after][0] == time_ns:
+            return pose_of(self.poses[after][1])
+        if after == 0:
+            return None
+        (first_ns, first), (last_ns, last) = self.poses[after - 1], self.poses[after]
+        return between(pose_of(first), pose_of(last), (time_ns - first_ns) / (last_ns - first_ns))
+
+
+def main():
+    import rclpy
+    from geometry_msgs.msg import PoseStamped
+    from nav_msgs.msg import Odometry
+    from rclpy.node import Node
+    from rclpy.qos import qos_profile_sensor_data
+    from sensor_msgs.msg import CameraInfo, CompressedImage, Image
+
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    for name in ("--color", "--depth", "--info", "--poses"):
+        parser.add_argument(name, required=True)
+    parser.add_argument("--color-info")
+    parser.add_argument("--url", default="http://localhost:8080/")
+    options = parser.parse_args()
+    rclpy.init()
+    node = Node("ovimap_sender")
+    infos, matcher, senders = {}, Matcher(), []
+
+    def send(frames):
+        if not senders:
+            if "depth" not in infos or (options.color_info and "color" not in infos):
+                return
+            senders.append(FrameSender(options.url, rig_of(infos["depth"], infos.get("color"))))
+        for frame in frames:
+            if not senders[0].send(*frame):
+                node.get_logger().info("the mapper is busy: a frame was skipped", throttle_duration_sec=5)
+
+    def listen(kind, topic, message_type):
+        node.create_subscription(message_type, topic, lambda message: send(matcher.add(kind, message)), qos_profile_sensor_data)
+
+    listen("color", options.color, CompressedImage if options.color.endswith("/compressed") else Image)
+    listen("depth", options.depth, Image)
+    listen("pose", options.poses, Odometry if "odom" in options.poses else PoseStamped)
+    for kind, topic in (("depth", options.info), ("color", options.color_info)):
+        if topic:
+            node.create_subscription(CameraInfo, topic, lambda message, kind=kind: infos.update({kind: message}), qos_profile_sensor_data)
+    try:
+        rclpy.spin(node)
+    except KeyboardInterrupt:
+        pass
+    if senders:
+        senders[0].finish()
+        print(f"{senders[0].taken} frames sent, {senders[0].skipped} skipped; the map is saved")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,146 @@
+# SPDX-FileCopyrightText: 2026 The ovimap authors
+# SPDX-License-Identifier: Apache-2.0
+"""Sends a camera's frames to `ovimap serve --live http -o MAP` (docs/live.md). Needs NumPy and Pillow alone: this file
+may be copied to the machine that has the camera."""
+
+from __future__ import annotations
+
+import http.client
+import io
+import json
+import time
+import urllib.parse
+import uuid
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from PIL import Image
+
+RETRY_S = 0.02  # between tries of a frame that the mapper had no room for
+
+
+class SendError(RuntimeError):
+    """The server refused; its sentence says why."""
+
+    def __init__(self, status: int, sentence: str) -> None:
+        super().__init__(sentence)
+        self.status = status
+
+
+class FrameSender:
+    """One camera's connection to a mapper.
+
+    url: what `ovimap serve` printed, "http://host:8080/", with ?token= where it asks for one.
+    camera: {"width", "height", "fx", "fy", "cx", "cy", "depth_scale"} for colour and depth alike, or what camera.yaml may
+        hold: "depth_camera", "color_camera", "color_from_depth", "poses".
+    jpeg_quality: of colour that comes as an array.
+
+    Raises SendError when the server refuses the camera, OSError when it cannot be reached.
+    """
+
+    def __init__(self, url: str, camera: Mapping[str, Any], *, jpeg_quality: int = 92, timeout_s: float = 20) -> None:
+        parts = urllib.parse.urlsplit(url)
+        tokens = urllib.parse.parse_qs(parts.query).get("token")
+        self._headers = {"Authorization": f"Bearer {tokens[0]}"} if tokens else {}
+        kind = http.client.HTTPSConnection if parts.scheme == "https" else http.client.HTTPConnection
+        self._connection = kind(parts.hostname or "localhost", parts.port, timeout=timeout_s)
+        rig = {"camera": dict(camera)} if "fx" in camera else dict(camera)
+        both: dict[str, Any] = rig.get("camera", {})
+        self._units_per_m = float({**both, **rig.get("depth_camera", {})}.get("depth_scale", 1000))
+        self._jpeg_quality = jpeg_quality
+        self.taken = self.skipped = 0
+        self._post_json("/api/camera", rig)
+
+    def send(self, color: npt.NDArray[np.uint8] | bytes, depth: npt.NDArray[Any] | bytes, pose: npt.ArrayLike, timestamp: float = 0.0, *,
+             name: str = "", patience_s: float = 0.0) -> bool:  # fmt: skip
+        """Sends one frame; False when the mapper had no room for it, also not within patience_s.
+
+        color: uint8 [height, width, 3], or the bytes of a JPEG or PNG.
+        depth: uint16 [height, width] in the camera's units, floats in metres (not finite: none), or the bytes of a PNG.
+        pose: [4, 4], world_from_camera of the depth camera, unless the camera's "poses" says otherwise.
+
+        Raises SendError when the frame is wrong or the map is finished."""
+        about: dict[str, Any] = {"pose": np.asarray(pose, np.float64).reshape(16).tolist(), "timestamp_s": float(timestamp)}
+        if name:
+            about["name"] = name
+        body, kind = _multipart({"color": self._color(color), "depth": self._depth(depth), "frame": json.dumps(about).encode()})
+        end = time.monotonic() + patience_s
+        while not self._offer(body, kind):
+            if time.monotonic() >= end:
+                self.skipped += 1
+                return False
+            time.sleep(RETRY_S)
+        self.taken += 1
+        return True
+
+    def finish(self, wait_s: float = 600.0) -> None:
+        """Says that no more frames come and waits until the map is saved. Raises SendError when it is not by then."""
+        self._post_json("/api/finish", {})
+        end = time.monotonic() + wait_s
+        while self._ask("GET", "/api/map", None, {})[1].get("live", False):
+            if time.monotonic() >= end:
+                raise SendError(0, f"the map was not saved within {wait_s:g} s; the server goes on with it")
+            time.sleep(0.2)
+
+    def close(self) -> None:
+        self._connection.close()
+
+    def _color(self, color: npt.NDArray[np.uint8] | bytes) -> bytes:
+        if isinstance(color, bytes):
+            return color
+        out = io.BytesIO()
+        Image.fromarray(np.ascontiguousarray(color)).save(out, "JPEG", quality=self._jpeg_quality, subsampling=0)
+        return out.getvalue()
+
+    def _depth(self, depth: npt.NDArray[Any] | bytes) -> bytes:
+        if isinstance(depth, bytes):
+            return depth
+        if np.issubdtype(depth.dtype, np.floating):
+            metres = np.where(np.isfinite(depth), depth, 0)
+            depth = np.clip(np.rint(metres * self._units_per_m), 0, 65535)
+        out = io.BytesIO()
+        Image.fromarray(np.ascontiguousarray(depth, np.uint16)).save(out, "PNG", compress_level=1)
+        return out.getvalue()
+
+    def _offer(self, body: bytes, kind: str) -> bool:
+        status, reply = self._ask("POST", "/api/frames", body, {"Content-Type": kind})
+        if status == 200:
+            return True
+        if status in (429, 503):
+            return False
+        raise SendError(status, reply.get("error", f"the server answered {status}"))
+
+    def _post_json(self, path: str, value: Any) -> None:
+        status, reply = self._ask("POST", path, json.dumps(value).encode(), {"Content-Type": "application/json"})
+        if status >= 400:
+            raise SendError(status, reply.get("error", f"the server answered {status}"))
+
+    def _ask(self, method: str, path: str, body: bytes | None, headers: dict[str, str]) -> tuple[int, dict[str, Any]]:
+        try:
+            return self._once(method, path, body, headers)
+        except (ConnectionError, http.client.BadStatusLine, http.client.CannotSendRequest):
+            self._connection.close()  # the server lets connections go that rest for a second
+            return self._once(method, path, body, headers)
+
+    def _once(self, method: str, path: str, body: bytes | None, headers: dict[str, str]) -> tuple[int, dict[str, Any]]:
+        self._connection.request(method, path, body, {**self._headers, **headers})
+        reply = self._connection.getresponse()
+        text = reply.read()
+        try:
+            value = json.loads(text)
+        except ValueError:
+            value = {}
+        return reply.status, value if isinstance(value, dict) else {}
+
+
+def _multipart(parts: dict[str, bytes]) -> tuple[bytes, str]:
+    """The body of a form with these parts, and its content type."""
+    border = uuid.uuid4().hex
+    pieces = []
+    for name, content in parts.items():
+        file = f'; filename="{name}"' if name != "frame" else ""
+        kind = "application/json" if name == "frame" else "application/octet-stream"
+        pieces += [f'--{border}\r\nContent-Disposition: form-data; name="{name}"{file}\r\nContent-Type: {kind}\r\n\r\n'.encode(), content, b"\r\n"]
+    return b"".join([*pieces, f"--{border}--\r\n".encode()]), f"multipart/form-data; boundary={border}"

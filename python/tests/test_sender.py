@@ -1,0 +1,194 @@
+# SPDX-FileCopyrightText: 2026 The ovimap authors
+# SPDX-License-Identifier: Apache-2.0
+"""Frames sent over HTTP give the map that the recording gives; a ROS 2 node's messages become such frames."""
+import importlib.util
+import json
+import os
+import pathlib
+import signal
+import subprocess
+
+import numpy as np
+import ovimap
+import pytest
+from ovimap.sender import FrameSender, SendError
+
+PROGRAM = os.environ.get("OVIMAP_PROGRAM")
+FRAMES = 12
+
+
+class Serving:
+    """`ovimap serve --live http`, until the block ends."""
+
+    def __init__(self, out, *options):
+        self.process = subprocess.Popen([PROGRAM, "serve", "http", "--live", "-o", out, "--port", "0", "--viewer", "none", "--json", *options],
+                                        stdout=subprocess.PIPE, text=True)  # fmt: skip
+        self.address = json.loads(self.process.stdout.readline())["address"]
+
+    def __enter__(self):
+        return self
+
+    def saved(self):
+        return json.loads(self.process.stdout.readline())["saved"]
+
+    def __exit__(self, *_):
+        self.process.send_signal(signal.SIGINT)
+        assert self.process.wait(timeout=60) in (0, 2)
+        self.process.stdout.close()
+
+
+def figures(camera, **more):
+    return dict(width=camera.width, height=camera.height, fx=camera.fx, fy=camera.fy, cx=camera.cx, cy=camera.cy, **more)
+
+
+def hash_of(path):
+    info = subprocess.run([PROGRAM, "info", path, "--json"], check=True, capture_output=True, text=True)
+    return json.loads(info.stdout)["content_hash"]
+
+
+needs_program = pytest.mark.skipif(not PROGRAM, reason="the program was not built; set OVIMAP_PROGRAM")
+
+
+@needs_program
+def test_sent_frames_give_the_recordings_map(room, tmp_path):
+    scale = json.loads((pathlib.Path(room).parent / "cam_params.json").read_text())["camera"]["scale"]
+    frames = list(ovimap.open_source(room).frames(f":{FRAMES}"))
+    results = pathlib.Path(room) / "results"
+    colors, depths = sorted(results.glob("frame*")), sorted(results.glob("depth*"))
+    with Serving(tmp_path / "sent.ovimap") as server:
+        sender = FrameSender(server.address, figures(frames[0].camera, depth_scale=scale))
+        for i, frame in enumerate(frames):
+            pose = np.array([float(n) for n in (pathlib.Path(room) / "traj.txt").read_text().splitlines()[i].split()])
+            assert sender.send(colors[i].read_bytes(), depths[i].read_bytes(), pose, frame.timestamp_s, patience_s=60)
+        sender.finish()
+        saved = server.saved()
+        assert sender.taken == saved["frames"] == FRAMES
+        with pytest.raises(SendError, match="finished"):
+            sender.send(colors[0].read_bytes(), depths[0].read_bytes(), np.eye(4))
+    subprocess.run([PROGRAM, "run", room, "--frames", f":{FRAMES}", "-o", tmp_path / "read.ovimap"], check=True, capture_output=True)
+    assert hash_of(tmp_path / "sent.ovimap") == hash_of(tmp_path / "read.ovimap")
+
+
+@needs_program
+def test_arrays_are_encoded_and_what_does_not_fit_is_skipped(room, tmp_path):
+    frames = list(ovimap.open_source(room).frames("0:4"))
+    with Serving(tmp_path / "a.ovimap", "--token", "secret", "--set", "live.queue=1") as server:
+        assert "token=secret" in server.address
+        with pytest.raises(SendError, match="token"):
+            FrameSender(server.address.split("?")[0], figures(frames[0].camera))
+        with pytest.raises(SendError, match="lacks 'height'"):
+            FrameSender(server.address, {"depth_camera": {"width": 4}})
+        sender = FrameSender(server.address, {"depth_camera": figures(frames[0].camera, depth_scale=5000)})
+        sent = [sender.send(np.array(f.color), np.array(f.depth), f.world_from_camera) for f in frames for _ in range(20)]
+        assert sender.taken == sum(sent) and sender.skipped == len(sent) - sum(sent)
+        with pytest.raises(SendError, match="3x2"):
+            sender.send(np.zeros((2, 3, 3), np.uint8), np.array(frames[0].depth), frames[0].world_from_camera, patience_s=9)
+        with pytest.raises(SendError, match="pose"):
+            sender.send(np.array(frames[0].color), np.array(frames[0].depth), np.zeros((4, 4)))
+        sender.finish()
+        saved = server.saved()
+        assert saved["frames"] == sender.taken and saved["live"]["frames_dropped"] >= sender.skipped
+
+
+@pytest.fixture(scope="module")
+def node():
+    path = pathlib.Path(__file__).parents[2] / "examples/ros2_sender.py"
+    spec = importlib.util.spec_from_file_location("ros2_sender", path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="module")
+def store():
+    typesys = pytest.importorskip("rosbags.typesys")
+    return typesys.get_typestore(typesys.Stores.ROS2_HUMBLE).types
+
+
+class Messages:
+    """ROS 2 messages of a frame."""
+
+    def __init__(self, types):
+        self.types = types
+
+    def make(self, name, *args, **fields):
+        return self.types[name](*args, **fields)
+
+    def header(self, time_ns):
+        stamp = self.make("builtin_interfaces/msg/Time", sec=time_ns // 10**9, nanosec=time_ns % 10**9)
+        return self.make("std_msgs/msg/Header", stamp=stamp, frame_id="optical")
+
+    def image(self, time_ns, pixels, encoding):
+        data = np.ascontiguousarray(pixels).view(np.uint8).reshape(-1)
+        height, width = pixels.shape[:2]
+        return self.make("sensor_msgs/msg/Image", header=self.header(time_ns), height=height, width=width, encoding=encoding,
+                         is_bigendian=0, step=data.size // height, data=data)  # fmt: skip
+
+    def jpeg(self, time_ns, data):
+        return self.make("sensor_msgs/msg/CompressedImage", header=self.header(time_ns), format="jpeg", data=np.frombuffer(data, np.uint8))
+
+    def pose(self, time_ns, matrix):
+        from ovimap.transforms import quaternion_of
+
+        position = self.make("geometry_msgs/msg/Point", *map(float, matrix[:3, 3]))
+        orientation = self.make("geometry_msgs/msg/Quaternion", *map(float, quaternion_of(matrix)))
+        pose = self.make("geometry_msgs/msg/Pose", position=position, orientation=orientation)
+        return self.make("geometry_msgs/msg/PoseStamped", header=self.header(time_ns), pose=pose)
+
+    def info(self, camera):
+        k = np.array([camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1], np.float64)
+        roi = self.make("sensor_msgs/msg/RegionOfInterest", x_offset=0, y_offset=0, height=0, width=0, do_rectify=False)
+        return self.make("sensor_msgs/msg/CameraInfo", header=self.header(0), height=camera.height, width=camera.width,
+                         distortion_model="plumb_bob", d=np.zeros(5), k=k, r=np.eye(3).reshape(-1), p=np.zeros(12), binning_x=0,
+                         binning_y=0, roi=roi)  # fmt: skip
+
+
+def test_messages_become_frames(node, store):
+    messages = Messages(store)
+    color = np.arange(2 * 4 * 3, dtype=np.uint8).reshape(2, 4, 3)
+    depth = np.arange(8, dtype=np.uint16).reshape(2, 4) * 500
+    assert np.array_equal(node.color_of(messages.image(0, color[:, :, ::-1], "bgr8")), color)
+    assert node.color_of(messages.jpeg(0, b"\xff\xd8 bytes")) == b"\xff\xd8 bytes"
+    assert np.array_equal(node.depth_of(messages.image(0, depth, "16UC1")), depth)
+    assert node.depth_of(messages.image(0, depth.astype(np.float32), "32FC1")).dtype == np.float32
+    camera = ovimap.PinholeCamera(4, 2, 5.0, 6.0, 1.5, 0.5)
+    one = node.rig_of(messages.info(camera))
+    assert one == figures(camera, depth_scale=1000)
+    assert set(node.rig_of(messages.info(camera), messages.info(camera))) == {"depth_camera", "color_camera"}
+
+
+def test_depth_is_matched_with_colour_and_the_pose_of_its_time(node, store):
+    messages, matcher, ms = Messages(store), node.Matcher(), 1_000_000
+    color, depth = np.zeros((2, 4, 3), np.uint8), np.ones((2, 4), np.uint16)
+    first, last = np.eye(4), np.eye(4)
+    last[0, 3] = 1.0
+    assert matcher.add("pose", messages.pose(0, first)) == []
+    assert matcher.add("depth", messages.image(25 * ms, depth, "16UC1")) == []
+    assert matcher.add("color", messages.image(20 * ms, color, "rgb8")) == []
+    assert matcher.add("pose", messages.pose(100 * ms, last)) == [], "a nearer colour image may come"
+    (frame,) = matcher.add("color", messages.image(30 * ms, color + 7, "rgb8"))
+    assert frame[0].max() == 0 or frame[0].min() == 7
+    assert np.isclose(frame[2][0, 3], 0.25) and np.isclose(frame[3], 0.025)
+    # No colour near, or no pose before: left out, and never sent later.
+    assert matcher.add("depth", messages.image(90 * ms, depth, "16UC1")) == []
+    assert matcher.add("color", messages.image(140 * ms, color, "rgb8")) == []
+    assert matcher.depths == []
+
+
+@needs_program
+def test_a_nodes_messages_are_mapped(node, store, room, tmp_path):
+    frames = list(ovimap.open_source(room).frames(":6"))
+    messages, matcher = Messages(store), node.Matcher()
+    with Serving(tmp_path / "ros.ovimap") as server:
+        sender = FrameSender(server.address, node.rig_of(messages.info(frames[0].camera)))
+        for i, frame in enumerate(frames):
+            time_ns = 10**18 + i * 33_000_000
+            depth = np.rint(np.array(frame.depth) * 1000).astype(np.uint16)
+            ready = [matcher.add("color", messages.image(time_ns + 1_000_000, np.array(frame.color), "rgb8")),
+                     matcher.add("pose", messages.pose(time_ns, np.array(frame.world_from_camera))),
+                     matcher.add("depth", messages.image(time_ns, depth, "16UC1"))]  # fmt: skip
+            for color, image, pose, seconds in sum(ready, []):
+                assert sender.send(color, image, pose, seconds, patience_s=60)
+        sender.finish()
+        assert server.saved()["frames"] == 6
+    assert ovimap.Map.open(tmp_path / "ros.ovimap").frames == 6

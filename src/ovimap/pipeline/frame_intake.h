@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <optional>
+
+#include "ovimap/frames/frame.h"
+
+namespace ovimap {
+
+/// Where frames wait that others push: at most so many, and what does not fit is counted. Every
+/// frame that is taken gets the next index. Thread-safe.
+class FrameIntake {
+ public:
+  explicit FrameIntake(std::size_t capacity) : capacity_(capacity) {}
+
+  enum class Answer {
+    kTaken,
+    kFull,   ///< as many wait as may; the frame was left out
+    kEnded,  ///< finish() was called
+  };
+  /// Does not wait. A frame without a name is named by its index.
+  Answer offer(Frame frame);
+  /// No more frames come. Those that wait are still handed out.
+  void finish();
+
+  /// Of the first frame, before any is offered: a resumed run goes on counting.
+  void begin_at(std::int64_t index);
+  /// The oldest frame that waits, once there is one; nullopt when none came for so long, or none
+  /// comes any more.
+  std::optional<Frame> next(std::chrono::milliseconds patience);
+  /// finish() was called and everything is handed out.
+  bool ended() const;
+
+  struct Counts {
+    std::int64_t taken = 0, skipped = 0, waiting = 0;
+  };
+  Counts counts() const;
+
+ private:
+  const std::size_t capacity_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Frame> frames_;
+  std::int64_t next_index_ = 0, taken_ = 0, skipped_ = 0;
+  bool finished_ = false;
+};
+
+}  // namespace ovimap

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "ovimap/frames/frame_decoder.h"
+#include "ovimap/pipeline/frame_intake.h"
+#include "ovimap/server/http_message.h"
+
+namespace ovimap {
+
+/// Takes a camera's frames from requests (docs/http-api.md, "Frames"). Thread-safe; images are
+/// decoded by the threads that ask.
+class FrameApi {
+ public:
+  static constexpr const char* kFrames = "/api/frames";  ///< the one route of large bodies
+
+  /// `intake` may be null: then every request is refused and told how frames are taken.
+  FrameApi(FrameIntake* intake, const FrameSourceConfig& config)
+      : intake_(intake), config_(config) {}
+
+  bool takes_frames() const { return intake_ != nullptr; }
+
+  // Handlers of POST. They throw BadRequest, and Error for what a frame or a camera has wrong.
+  HttpReply camera(const HttpRequest& request);
+  HttpReply frame(const HttpRequest& request);
+  HttpReply finish();
+
+ private:
+  FrameIntake& intake() const;
+  HttpReply counts(int status) const;
+
+  FrameIntake* intake_;
+  const FrameSourceConfig config_;
+  std::mutex mutex_;
+  std::shared_ptr<const FrameDecoder> decoder_;  ///< null until a camera is given
+};
+
+}  // namespace ovimap

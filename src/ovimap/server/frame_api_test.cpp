@@ -1,0 +1,194 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+// Frames pushed over HTTP, by a client.
+#include "ovimap/server/frame_api.h"
+
+#include <gtest/gtest.h>
+
+#include "ovimap/frames/sequence_fixture.h"
+#include "ovimap/io/map_file_fixture.h"
+#include "ovimap/server/server_fixture.h"
+
+namespace ovimap {
+namespace {
+
+using nlohmann::json;
+
+std::string text_of(const Bytes& bytes) {
+  return {bytes.begin(), bytes.end()};
+}
+
+class FrameApiTest : public MapFolder {
+ protected:
+  FrameApiTest() { save_map(root_ / "room.ovimap", random_document(40, 3)); }
+
+  fixture::RunningServer& serve(FrameIntake* intake, ServerConfig config = {}) {
+    ServedMapConfig served;
+    served.encoder = "none";
+    running_ = std::make_unique<fixture::RunningServer>(root_ / "room.ovimap", std::move(config),
+                                                        served, intake);
+    return *running_;
+  }
+
+  json parsed(const httplib::Result& reply, int status) const {
+    EXPECT_TRUE(reply);
+    if (!reply) return {};
+    EXPECT_EQ(reply->status, status) << reply->body;
+    const json body = json::parse(reply->body, nullptr, false);
+    if (status >= 400) {
+      EXPECT_FALSE(body.value("error", "").empty()) << reply->body;
+    }
+    return body;
+  }
+  json set_camera(const json& camera, int status) const {
+    return parsed(running_->client().Post("/api/camera", camera.dump(), "application/json"),
+                  status);
+  }
+  json camera() const {
+    const PinholeCamera& c = sequence_.depth_camera;
+    return {{"camera",
+             {{"width", c.width},
+              {"height", c.height},
+              {"fx", c.fx},
+              {"fy", c.fy},
+              {"cx", c.cx},
+              {"cy", c.cy},
+              {"depth_scale", 1000}}}};
+  }
+  json about(int index) const {
+    json pose = json::array();
+    for (int i = 0; i < 16; ++i) pose.push_back(sequence_.pose(index)(i / 4, i % 4));
+    return {{"pose", pose}, {"timestamp_s", 0.1 * index}};
+  }
+  httplib::MultipartFormDataItems frame(int index) const {
+    return {{"color", text_of(encode_png(sequence_.color(index))), "a.png", "image/png"},
+            {"depth", text_of(encode_png(sequence_.stored_depth(index))), "b.png", "image/png"},
+            {"frame", about(index).dump(), "", "application/json"}};
+  }
+  json push(const httplib::MultipartFormDataItems& items, int status) const {
+    return parsed(running_->client().Post("/api/frames", items), status);
+  }
+
+  const fixture::Sequence sequence_;
+  std::unique_ptr<fixture::RunningServer> running_;
+};
+
+TEST_F(FrameApiTest, TakesFramesUntilTheQueueIsFull) {
+  FrameIntake intake(2);
+  serve(&intake);
+  push(frame(0), 409);  // no camera yet
+  EXPECT_EQ(set_camera(camera(), 200)["taken"], 0);
+  EXPECT_EQ(push(frame(3), 200)["waiting"], 1);
+  auto named = frame(4);
+  json text = about(4);
+  text["name"] = "kitchen 4";
+  named[2].content = text.dump();
+  EXPECT_EQ(push(named, 200)["taken"], 2);
+  EXPECT_NE(push(frame(5), 503)["error"].get<std::string>().find("skipped"), std::string::npos);
+  EXPECT_EQ(intake.counts().skipped, 1);
+
+  const Frame first = *intake.next(std::chrono::milliseconds(0));
+  EXPECT_EQ(first.color, sequence_.color(3));
+  EXPECT_EQ(first.depth_camera, sequence_.depth_camera);
+  EXPECT_TRUE(first.world_from_camera.isApprox(fixture::room_pose(3), 1e-9));
+  EXPECT_DOUBLE_EQ(first.timestamp_s, 0.3);
+  EXPECT_EQ(first.name, "frame000000");
+  EXPECT_EQ(intake.next(std::chrono::milliseconds(0))->name, "kitchen 4");
+
+  EXPECT_EQ(parsed(running_->client().Post("/api/finish"), 202)["taken"], 2);
+  push(frame(6), 409);
+  EXPECT_TRUE(intake.ended());
+}
+
+TEST_F(FrameApiTest, SaysWhatIsWrongWithARequest) {
+  FrameIntake intake(2);
+  serve(&intake);
+  set_camera(json::object(), 400);
+  set_camera({{"camera", {{"width", 80}}}}, 400);
+  set_camera({{"camera", {{"width", "wide"}}}}, 400);
+  set_camera({{"kamera", 3}}, 400);
+  set_camera(json::array(), 400);
+  set_camera(camera(), 200);
+  for (std::size_t part = 0; part < 3; ++part) {
+    auto lacking = frame(0);
+    lacking.erase(lacking.begin() + static_cast<std::ptrdiff_t>(part));
+    push(lacking, 400);
+    auto broken = frame(0);
+    broken[part].content = "{nothing";
+    push(broken, 400);
+  }
+  for (const json& wrong :
+       {json{{"pose", {1, 2, 3}}}, json{{"pose", 5}}, json::array(), json{{"when", 3}},
+        json{{"pose", json(std::vector<double>(16, 1e30))}}}) {
+    auto items = frame(0);
+    items[2].content = wrong.dump();
+    push(items, 400);
+  }
+  for (const char* name : {"../up", "a/b", ".hidden"}) {
+    auto items = frame(0);
+    json text = about(0);
+    text["name"] = name;
+    items[2].content = text.dump();
+    push(items, 400);
+  }
+  auto extra = frame(0);
+  extra.push_back({"mask", "1", "", ""});
+  push(extra, 400);
+  parsed(running_->client().Post("/api/frames", "{}", "application/json"), 415);
+  EXPECT_EQ(intake.counts().taken, 0);
+
+  push(frame(0), 200);
+  set_camera(camera(), 200);  // the same again
+  json other = camera();
+  other["camera"]["fx"] = 300;
+  set_camera(other, 409);
+}
+
+TEST_F(FrameApiTest, WithoutAnIntakeItSaysHowToGetOne) {
+  serve(nullptr);
+  EXPECT_NE(set_camera(camera(), 409)["error"].get<std::string>().find("--live http"),
+            std::string::npos);
+  push(frame(0), 409);
+  parsed(running_->client().Post("/api/finish"), 409);
+}
+
+TEST_F(FrameApiTest, LargeBodiesAreForFramesOfThoseWhoMaySendThem) {
+  FrameIntake intake(2);
+  ServerConfig config;
+  config.token = "secret";
+  config.max_frame_bytes = 1 << 18;
+  serve(&intake, config);
+  const auto post = [&](const std::string& path, std::size_t bytes, bool with_token) {
+    auto client = running_->client();
+    httplib::Headers headers;
+    if (with_token) headers.emplace("Authorization", "Bearer secret");
+    const auto reply = client.Post(path, headers, std::string(bytes, 'a'), "application/json");
+    return reply ? reply->status : 0;
+  };
+  EXPECT_EQ(post("/api/frames", 1 << 17, true), 415);
+  EXPECT_EQ(post("/api/frames", 1 << 10, false), 401);
+  EXPECT_EQ(post("/api/query", 1 << 10, true), 400);
+  // Told from the head alone: a client may notice that nobody reads before it sees the answer.
+  const auto refused = [](int status, int expected) { return status == expected || status == 0; };
+  EXPECT_TRUE(refused(post("/api/frames", 1 << 17, false), 401));
+  EXPECT_TRUE(refused(post("/api/query", 1 << 17, true), 413));
+  EXPECT_TRUE(refused(post("/api/frames", 1 << 19, true), 413));
+  const fixture::RawConnection raw(running_->port());
+  raw.send("POST /api/frames HTTP/1.1\r\nHost: localhost\r\nContent-Length: 200000\r\n\r\n");
+  EXPECT_TRUE(raw.receive().starts_with("HTTP/1.1 401"));
+}
+
+TEST_F(FrameApiTest, FramesAreNotHeldBackAsQueriesAre) {
+  FrameIntake intake(1000);
+  ServerConfig config;
+  config.work_burst = 2;
+  config.work_per_second = 0.001;
+  serve(&intake, config);
+  set_camera(camera(), 200);
+  for (int i = 0; i < 6; ++i) push(frame(i), 200);
+  parsed(running_->client().Post("/api/finish"), 202);
+  parsed(running_->client().Post("/api/finish"), 429);
+}
+
+}  // namespace
+}  // namespace ovimap
