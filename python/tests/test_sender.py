@@ -49,24 +49,56 @@ def hash_of(path):
 needs_program = pytest.mark.skipif(not PROGRAM, reason="the program was not built; set OVIMAP_PROGRAM")
 
 
+class Shots:
+    """The files of a recording's first frames, as a camera's driver would have them."""
+
+    def __init__(self, room):
+        self.frames = list(ovimap.open_source(room).frames(f":{FRAMES}"))
+        folder = pathlib.Path(room)
+        scale = json.loads((folder.parent / "cam_params.json").read_text())["camera"]["scale"]
+        self.camera = figures(self.frames[0].camera, depth_scale=scale)
+        files = [sorted((folder / "results").glob(f"{kind}*")) for kind in ("frame", "depth")]
+        self.files = [(color.read_bytes(), depth.read_bytes()) for color, depth in zip(*files)]
+        self.poses = [np.array([float(n) for n in line.split()]) for line in (folder / "traj.txt").read_text().splitlines()]
+
+    def send(self, sender, chosen):
+        for i in chosen:
+            assert sender.send(*self.files[i], self.poses[i], self.frames[i].timestamp_s, patience_s=60)
+
+
+@pytest.fixture(scope="module")
+def shots(room):
+    return Shots(room)
+
+
+@pytest.fixture(scope="module")
+def hash_of_the_recording(room, tmp_path_factory):
+    path = tmp_path_factory.mktemp("read") / "read.ovimap"
+    subprocess.run([PROGRAM, "run", room, "--frames", f":{FRAMES}", "-o", path], check=True, capture_output=True)
+    return hash_of(path)
+
+
 @needs_program
-def test_sent_frames_give_the_recordings_map(room, tmp_path):
-    scale = json.loads((pathlib.Path(room).parent / "cam_params.json").read_text())["camera"]["scale"]
-    frames = list(ovimap.open_source(room).frames(f":{FRAMES}"))
-    results = pathlib.Path(room) / "results"
-    colors, depths = sorted(results.glob("frame*")), sorted(results.glob("depth*"))
+def test_sent_frames_give_the_recordings_map(shots, hash_of_the_recording, tmp_path):
     with Serving(tmp_path / "sent.ovimap") as server:
-        sender = FrameSender(server.address, figures(frames[0].camera, depth_scale=scale))
-        for i, frame in enumerate(frames):
-            pose = np.array([float(n) for n in (pathlib.Path(room) / "traj.txt").read_text().splitlines()[i].split()])
-            assert sender.send(colors[i].read_bytes(), depths[i].read_bytes(), pose, frame.timestamp_s, patience_s=60)
+        sender = FrameSender(server.address, shots.camera)
+        shots.send(sender, range(FRAMES))
         sender.finish()
-        saved = server.saved()
-        assert sender.taken == saved["frames"] == FRAMES
+        assert sender.taken == server.saved()["frames"] == FRAMES
         with pytest.raises(SendError, match="finished"):
-            sender.send(colors[0].read_bytes(), depths[0].read_bytes(), np.eye(4))
-    subprocess.run([PROGRAM, "run", room, "--frames", f":{FRAMES}", "-o", tmp_path / "read.ovimap"], check=True, capture_output=True)
-    assert hash_of(tmp_path / "sent.ovimap") == hash_of(tmp_path / "read.ovimap")
+            sender.send(*shots.files[0], shots.poses[0])
+    assert hash_of(tmp_path / "sent.ovimap") == hash_of_the_recording
+
+
+@needs_program
+def test_a_resumed_run_goes_on_counting(shots, hash_of_the_recording, tmp_path):
+    for options, chosen in (((), range(FRAMES // 2)), (("--resume",), range(FRAMES // 2, FRAMES))):
+        with Serving(tmp_path / "sent.ovimap", *options) as server:
+            sender = FrameSender(server.address, shots.camera)
+            shots.send(sender, chosen)
+            sender.finish()
+            assert server.saved()["frames"] == chosen.stop
+    assert hash_of(tmp_path / "sent.ovimap") == hash_of_the_recording
 
 
 @needs_program
