@@ -102,8 +102,9 @@ ObjectShape shape_of_points(const Eigen::Matrix3f& ground_from_world,
       static_cast<std::ptrdiff_t>(config.noise_share * static_cast<float>(heights.size()));
   const auto lowest = heights.begin() + cut, highest = heights.end() - 1 - cut;
   std::nth_element(heights.begin(), lowest, heights.end());
+  const float low = *lowest;  // the next selection moves it
   std::nth_element(lowest, highest, heights.end());
-  const float low = *lowest, high = *highest;
+  const float high = *highest;
   std::erase_if(points, [&](const auto& p) { return p.z() < low || p.z() > high; });
 
   ObjectShape shape;
