@@ -53,7 +53,7 @@ def between(first: Matrix, second: Matrix, share: float) -> Matrix:
     a, b = quaternion_of(first), quaternion_of(second)
     if a @ b < 0:
         b = -b
-    angle = float(np.arccos(min(1.0, a @ b)))
+    angle = float(np.arccos(min(1.0, float(a @ b))))
     weights = (1 - share, share) if angle < 1e-4 else (np.sin((1 - share) * angle), np.sin(share * angle))
     q = weights[0] * a + weights[1] * b
     position = (1 - share) * first[:3, 3] + share * second[:3, 3]

@@ -1,0 +1,41 @@
+# SPDX-FileCopyrightText: 2026 The ovimap authors
+# SPDX-License-Identifier: Apache-2.0
+"""Files that several processes may want, any of which may be killed at any moment."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import json
+import os
+import pathlib
+from collections.abc import Iterator
+from typing import Any
+
+
+@contextlib.contextmanager
+def exclusive(path: pathlib.Path) -> Iterator[int]:
+    """Waits until nobody else holds this lock; gives its descriptor.
+
+    A program that inherits the descriptor holds the lock too: who tries again waits for one that outlived its worker.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    lock = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        os.ftruncate(lock, 0)
+        os.write(lock, f"{os.getpid()} {os.uname().nodename}\n".encode())  # for people who wonder who holds it
+        yield lock
+    finally:
+        os.close(lock)
+
+
+def write_json(path: pathlib.Path, value: Any) -> None:
+    """Writes a file as a whole or not at all."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    new = path.with_name(f"{path.name}.{os.getpid()}.new")
+    with open(new, "w", encoding="utf-8") as file:
+        json.dump(value, file, indent=1)
+        file.flush()
+        os.fsync(file.fileno())
+    os.replace(new, path)
