@@ -199,6 +199,10 @@ def test_what_cannot_be_scored_is_refused(maps, rooms, tmp_path):
         pool_job(failed)
 
 
+def never(order, tell):
+    raise AssertionError("this job must not run")
+
+
 def test_what_needs_a_failed_job_is_left_out(machines):
     def broken(order, tell):
         raise ovimap.Error("it is broken; mend it")
