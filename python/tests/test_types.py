@@ -67,3 +67,11 @@ def test_every_public_method_is_documented_or_says_it_all():
             if not member.startswith("_") and callable(value) and text.count("\n") < 2:
                 bare.append(f"{name}.{member}")
     assert bare == ["LiveMapper.statistics"]
+
+
+def test_the_package_keeps_its_own_rules():
+    root = pathlib.Path(ovimap.__file__).parent.parent
+    settings = pathlib.Path(__file__).parents[2] / "pyproject.toml"
+    command = [sys.executable, "-m", "mypy", "--config-file", str(settings), "--cache-dir", str(root / ".mypy_cache"), "-p", "ovimap"]
+    done = subprocess.run(command, capture_output=True, text=True, env={"MYPYPATH": str(root), "PATH": ""})
+    assert "Success" in done.stdout, done.stdout + done.stderr
