@@ -15,6 +15,7 @@ import time
 import ovimap
 import pytest
 from ovimap.cluster import Job, eval_jobs, pool_job, run_jobs, scene_jobs, site_jobs
+from ovimap.cluster.jobs import STORE_BYTES
 from ovimap.cluster.scenes import scene_names
 from ovimap.cluster.site import part_ranges
 from ovimap.cluster.table import Lines, table_of
@@ -34,8 +35,8 @@ def machines():
 
     if not os.environ.get("OVIMAP_PROGRAM"):
         pytest.skip("OVIMAP_PROGRAM does not name the program")
-    made = Cluster(initialize_head=True, head_node_args={"num_cpus": 1, "include_dashboard": False})
-    made.add_node(num_cpus=1)
+    made = Cluster(initialize_head=True, head_node_args={"num_cpus": 1, "include_dashboard": False, "object_store_memory": STORE_BYTES})
+    made.add_node(num_cpus=1, object_store_memory=STORE_BYTES)
     ray.init(address=made.address, log_to_driver=False)
     yield made
     ray.shutdown()

@@ -20,6 +20,7 @@ from .._ovimap import Error
 from .program import Crash
 
 WAIT_S = 1.0  # between looks at how far the jobs are
+STORE_BYTES = 128 << 20  # jobs hand over paths and figures; Ray would take a third of the memory
 
 Work = Callable[[dict[str, Any], Callable[[int, int], None]], dict[str, Any]]
 """A job's work, on some machine: its order and whom to tell (frames done, all frames) -> its report.
@@ -107,7 +108,7 @@ def cluster(address: str = "", cpus: int | None = None) -> Iterator[None]:
         if address:
             ray.init(address=address, log_to_driver=False, logging_level=logging.ERROR)
         else:
-            ray.init(num_cpus=cpus, include_dashboard=False, log_to_driver=False, logging_level=logging.ERROR)
+            ray.init(num_cpus=cpus, object_store_memory=STORE_BYTES, include_dashboard=False, log_to_driver=False, logging_level=logging.ERROR)
     except (ConnectionError, RuntimeError, ValueError, TimeoutError) as fault:
         reason = (str(fault).strip().splitlines() or ["no answer"])[0]
         raise Error(f"no Ray cluster answers at '{address or 'local'}' ({reason}); start one with `ray start --head` and give its address") from None
