@@ -94,7 +94,7 @@ def attempt(work: Work, order: dict[str, Any], name: str, board: Any) -> Outcome
 
 
 @contextmanager
-def cluster(address: str = "", cpus: int | None = None) -> Iterator[None]:
+def cluster(address: str = "") -> Iterator[None]:
     """Connects to the cluster at an address ("auto": the one on this machine), or starts one of this machine's cores.
 
     One that is connected already is used and left as it is. Raises Error when there is none at the address.
@@ -108,7 +108,7 @@ def cluster(address: str = "", cpus: int | None = None) -> Iterator[None]:
         if address:
             ray.init(address=address, log_to_driver=False, logging_level=logging.ERROR)
         else:
-            ray.init(num_cpus=cpus, object_store_memory=STORE_BYTES, include_dashboard=False, log_to_driver=False, logging_level=logging.ERROR)
+            ray.init(object_store_memory=STORE_BYTES, include_dashboard=False, log_to_driver=False, logging_level=logging.ERROR)
     except (ConnectionError, RuntimeError, ValueError, TimeoutError) as fault:
         reason = (str(fault).strip().splitlines() or ["no answer"])[0]
         raise Error(f"no Ray cluster answers at '{address or 'local'}' ({reason}); start one with `ray start --head` and give its address") from None
@@ -171,6 +171,7 @@ def _settle(job: Job, outcome: Outcome, retries: int) -> bool:
     job.fault = outcome.fault
     if outcome.report is not None:
         job.state, job.report, job.seconds = "done", outcome.report, outcome.seconds
+        job.done = job.total
     elif outcome.lost and job.tries <= retries:
         job.state = "waiting"
         return True

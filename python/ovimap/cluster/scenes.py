@@ -64,9 +64,9 @@ def map_scene(order: dict[str, Any], tell: Callable[[int, int], None]) -> dict[s
 
 def scene_names(paths: Sequence[str]) -> list[str]:
     """The last parts of the paths, as many as tell them apart: a/room and b/room become a-room and b-room."""
-    parts = [pathlib.Path(path).parts for path in paths]
+    parts = [pathlib.Path(path).parts[1:] for path in paths]
     for count in range(1, max(map(len, parts), default=1) + 1):
-        names = ["-".join(part.strip("/") for part in each[-count:]) for each in parts]
+        names = ["-".join(each[-count:]) for each in parts]
         if len(set(names)) == len(names):
             return names
     raise Error("the scenes' paths cannot be told apart; rename one of them")

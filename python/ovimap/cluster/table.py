@@ -72,7 +72,7 @@ def table_of(jobs: Sequence[Job], rows: int) -> Table:
         if id(job) in shown:
             frames = f"{job.done} of {job.total}" if job.total else ""
             state = Text(job.state, COLOURS.get(job.state, ""))
-            table.add_row(Text(job.name), state, frames, str(job.tries or ""), Text(outcome_of(job)))
+            table.add_row(Text(job.name), state, frames, str(job.tries) if job.tries > 1 else "", Text(outcome_of(job)))
     return table
 
 
