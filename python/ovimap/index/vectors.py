@@ -98,8 +98,7 @@ class VectorFiles:
         codes = faiss.read_index(str(self.folder / self.state.codes), faiss.IO_FLAG_MMAP)
         lists = faiss.extract_index_ivf(codes)
         lists.nprobe = lists.nlist // PROBED_SHARE
-        lists.parallel_mode = 1  # the threads share the lists of one query
-        return codes
+        return codes  # one thread a query, faiss' default: two that share one wait for each other on a busy machine
 
     @cached_property
     def _vectors(self) -> npt.NDArray[np.float16]:
