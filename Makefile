@@ -6,7 +6,7 @@ OVIMAP := $(BUILD)/bin/ovimap
 JOBS ?= $(shell nproc)
 SOURCE ?= demo/tiny/room
 
-.PHONY: help setup build demo demo-lasting test asan tsan fuzz bench rivals benchmarks viewer-speed live-speed wheel clean
+.PHONY: help setup build demo demo-lasting test test-setup asan tsan fuzz bench rivals benchmarks viewer-speed live-speed wheel clean
 
 help:
 	@echo "make demo    set up, build, render a room, map it, show the objects; VIEW=1: then in a browser"
@@ -37,10 +37,13 @@ demo-lasting: build
 	@test -d "$(SOURCE)" || $(OVIMAP) synth demo/tiny --room tiny
 	@tools/demo_lasting.sh $(OVIMAP) "$(SOURCE)" demo/lasting --masks none --encoder none
 
-test: build
+test: build test-setup
 	@tools/run_tests.sh $(BUILD)
 
-asan tsan: setup
+test-setup:
+	@tools/setup.sh --tests
+
+asan tsan: test-setup
 	@cmake --preset $@ > /dev/null
 	@cmake --build --preset $@ -j $(JOBS)
 	@tools/run_tests.sh build/$@

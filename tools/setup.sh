@@ -4,7 +4,8 @@
 # Sets up what a build of ovimap needs and does not find: Debian packages, .venv, ONNX Runtime in
 # .deps, the glTF validator of the tests there, the packages of the viewer, the default mask model and the default image-text
 # encoder in .models. Does nothing for what is there already.
-# Usage: tools/setup.sh [--no-models | --fuzz]   --fuzz: also clang with libFuzzer, for make fuzz
+# Usage: tools/setup.sh [--no-models] [--tests] [--fuzz]
+#   --no-models: without them; --tests: also what the tests need beside a build; --fuzz: also clang with libFuzzer
 set -euo pipefail
 
 ROOT="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
@@ -89,13 +90,21 @@ set_up_packages() {
 
 # -------------------------------------------------------------------------------------------- .venv
 
+# The requirements of one file; a copy of it in .venv, made last, marks them as installed.
+install_python_packages() {
+  local list="$TOOLS/$1"
+  cmp -s "$list" "$VENV/$1" && return
+  say "installing the Python packages of tools/$1 into .venv"
+  quietly "pip cannot install tools/$1; check the network and pip's index" \
+    "$VENV/bin/pip" install -q --disable-pip-version-check -r "$list"
+  cp "$list" "$VENV/$1"
+}
+
 set_up_venv() {
-  cmp -s "$TOOLS/requirements.txt" "$VENV/requirements.txt" && return
-  say "creating .venv with the packages of the model tools and of the Python package"
-  quietly ".venv cannot be created; install python3-venv" python3 -m venv "$VENV"
-  quietly "pip cannot install tools/requirements.txt; check the network and pip's index" \
-    "$VENV/bin/pip" install -q --disable-pip-version-check -r "$TOOLS/requirements.txt"
-  cp "$TOOLS/requirements.txt" "$VENV/requirements.txt"  # last: it marks the whole as done
+  [ -x "$VENV/bin/pip" ] ||
+    quietly ".venv cannot be created; install python3-venv" python3 -m venv "$VENV"
+  install_python_packages requirements.txt
+  [ "$TESTS" = no ] || install_python_packages requirements-test.txt
 }
 
 # ------------------------------------------------------------------------------------- ONNX Runtime
@@ -282,17 +291,22 @@ set_up_viewer() {
   cp "$VIEWER/package-lock.json" "$VIEWER/node_modules/.installed-lock.json"  # last: it marks the whole as done
 }
 
-case "${1:-}" in
-  "" | --no-models) ;;
-  --fuzz) PACKAGE_LISTS+=("$TOOLS/debian-packages-fuzz.txt") ;;
-  *) fail "unknown argument '$1'; accepted are --no-models and --fuzz" ;;
-esac
+MODELS=yes
+TESTS=no
+for argument in "$@"; do
+  case "$argument" in
+    --no-models) MODELS=no ;;
+    --tests) TESTS=yes ;;
+    --fuzz) PACKAGE_LISTS+=("$TOOLS/debian-packages-fuzz.txt") ;;
+    *) fail "unknown argument '$argument'; accepted are --no-models, --tests and --fuzz" ;;
+  esac
+done
 set_up_packages
 set_up_venv
 set_up_runtime
 set_up_validator
 set_up_viewer
-if [ "${1:-}" != --no-models ]; then
+if [ "$MODELS" = yes ]; then
   set_up_model
   set_up_encoder
 fi
