@@ -8,6 +8,7 @@
 
 #include "arrays.h"
 #include "bindings.h"
+#include "ovimap/inference/text_cache.h"
 #include "settings.h"
 
 namespace ovimap::python {
@@ -104,6 +105,12 @@ EmbeddingArray encode_texts(ImageTextEncoder& encoder, const std::vector<std::st
   return to_array(std::move(rows));
 }
 
+/// With the lists of words that verdicts need encoded once per model and user, as the program does.
+std::shared_ptr<ImageTextEncoder> shared_encoder(std::unique_ptr<ImageTextEncoder> encoder) {
+  if (!encoder) return nullptr;
+  return remember_text_lists(std::move(encoder), text_cache_folder());
+}
+
 }  // namespace
 
 bool is_encoder_object(nb::handle encoder) {
@@ -118,7 +125,7 @@ std::shared_ptr<ImageTextEncoder> to_encoder(nb::handle encoder) {
   if (is_path(encoder)) {
     const std::string spec = to_path(encoder, "encoder").string();
     const nb::gil_scoped_release release;
-    return make_image_text_encoder(spec, {});
+    return shared_encoder(make_image_text_encoder(spec, {}));
   }
   throw nb::type_error(
       "encoder must be None, the name of a model or folder, an ImageTextEncoder, or an object with "
@@ -150,7 +157,7 @@ void bind_encoders(nb::module_& module) {
         RuntimeConfig runtime;
         runtime.threads = threads;
         const nb::gil_scoped_release release;
-        return std::shared_ptr<ImageTextEncoder>(make_image_text_encoder(spec, runtime, folders));
+        return shared_encoder(make_image_text_encoder(spec, runtime, folders));
       },
       nb::arg("spec") = "default", nb::kw_only(), nb::arg("model_dirs") = nb::list(),
       nb::arg("threads") = 0,

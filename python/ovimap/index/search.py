@@ -144,7 +144,7 @@ class ObjectIndex:
     def _open(self, path: str, revision: str) -> Map:
         known, opened = self._opened.pop(path, ("", None))
         if opened is None or known != revision:
-            opened = Map.open(path, encoder=self._choice, model_dirs=self._model_dirs)
+            opened = Map.open(path, encoder=self._text_encoder())
         self._opened[path] = (revision, opened)  # at the end: the first is the one not used for longest
         if len(self._opened) > OPEN_MAPS:
             del self._opened[next(iter(self._opened))]
