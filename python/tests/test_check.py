@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Good recordings pass; each way of spoiling one is named."""
 import os
+import pathlib
 import shutil
 
 import numpy as np
@@ -113,7 +114,7 @@ CORRUPTIONS = {
     "poses from world to camera": (spoil_poses(np.linalg.inv), "pose_convention", "direction: camera_from_world"),
     "poses in OpenGL axes": (spoil_poses(lambda p: p @ OPENGL), "pose_convention", "axes: opengl"),
     "poses in ROS axes": (spoil_poses(lambda p: p @ ROS), "pose_convention", "axes: ros"),
-    "both": (spoil_poses(lambda p: np.linalg.inv(p @ OPENGL)), "pose_convention", "camera_from_world, axes: opengl"),
+    "poses from world to camera, in OpenGL axes": (spoil_poses(lambda p: np.linalg.inv(p @ OPENGL)), "pose_convention", "camera_from_world, axes: opengl"),
     "poses in millimetres": (spoil_poses(scale_positions), "pose_unit", "in metres"),
     "the same pose for all": (spoil_poses(lambda p: np.repeat(p[:1], len(p), 0)), "still_poses", "pose for each frame"),
     "poses 4 frames late": (spoil_poses(lambda p: np.roll(p, 4, 0)), "time_offset", "4 frame(s) after"),
@@ -144,6 +145,13 @@ def test_each_corruption_is_named_with_its_remedy(recording, name):
     assert found and found[0].name == expected, found
     assert remedy in found[0].remedy
     assert {finding.name for finding in found} - {"bad_frames"} == {expected}, found
+
+
+def test_the_table_of_docs_lists_each_corruption():
+    page = (pathlib.Path(__file__).parents[2] / "docs" / "sources.md").read_text()
+    table = page.split("| what is wrong | named as | the remedy says |\n")[1].split("\n\n")[0].splitlines()[1:]
+    rows = [row.strip("| ").split(" | ") for row in table]
+    assert [(name, finding.strip("`")) for name, finding, _ in rows] == [(name, CORRUPTIONS[name][1]) for name in CORRUPTIONS]
 
 
 def copy_of_the_kitchen(kitchen, folder):
