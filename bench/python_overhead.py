@@ -53,9 +53,8 @@ def measure_mapping(program, recording, rounds):
         ]
         times = [[], []]
         for i in range(rounds + 1):  # the first round warms the disk's cache
-            for taken, command in zip(times, commands):
-                for path in maps:
-                    pathlib.Path(path).unlink(missing_ok=True)
+            for taken, command, path in zip(times, commands, maps):
+                pathlib.Path(path).unlink(missing_ok=True)
                 taken.append(seconds(command))
         hashes = [json.loads(subprocess.check_output([program, "info", path, "--json"]))["content_hash"] for path in maps]
     program_s, python_s = (statistics.median(taken[1:]) for taken in times)
