@@ -16,7 +16,8 @@ if (!program || !recording) {
 const folder = mkdtempSync(join(tmpdir(), 'ovimap-live-'));
 const map = join(folder, 'map.ovimap');
 const ALL_FRAMES = ['--fps', '1000', '--set', 'live.queue=100000', '--set', 'checkpoint.seconds=0'];
-const options = (args) => [recording, '-o', map, '--live', '--masks', 'none', '--json', ...args];
+const networks = ['--masks', 'none', '--encoder', 'none'];
+const options = (args) => [recording, '-o', map, '--live', '--json', ...networks, ...args];
 const median = (values) => [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)];
 
 /** A client that does what the page does, but draws nothing. Counts bytes as they come over the wire. */
@@ -90,13 +91,9 @@ function run(args) {
 /** Maps and serves. Returns what the program says of the run, and what the client was sent while it lasted. */
 function serve(args, withClient) {
   return new Promise((resolve) => {
-    const child = spawn(
-      program,
-      ['serve', ...args, '--port', '0', '--no-limits', '--encoder', 'none'],
-      {
-        stdio: ['ignore', 'pipe', 'inherit'],
-      },
-    );
+    const child = spawn(program, ['serve', ...args, '--port', '0', '--no-limits'], {
+      stdio: ['ignore', 'pipe', 'inherit'],
+    });
     let client = null;
     let start = 0;
     let result = null;

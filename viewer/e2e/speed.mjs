@@ -61,6 +61,9 @@ const markOf = (page, name) =>
 const drawn = (page, name) =>
   page.waitForFunction((wanted) => performance.getEntriesByName(wanted).length > 0, name);
 
+/** Until the detailed frame that follows each change is drawn, which in software takes most of a second. */
+const atRest = (page) => page.waitForTimeout(2000);
+
 async function ask(page, text) {
   await page.evaluate(() => performance.clearMarks('answer-drawn'));
   await page.fill('#query', text);
@@ -100,9 +103,9 @@ for (let run = 0; run < Number(runs); ++run) {
     await browser.close();
     continue;
   }
-  await page.waitForTimeout(500);
+  await atRest(page);
   times.still.push(await ask(page, 'largest object'));
-  await page.waitForTimeout(500);
+  await atRest(page);
   times.words.push(await ask(page, 'chair'));
   times.bare.push(await answerTime(address, 'largest object'));
   times.encoded.push(await answerTime(address, 'chair'));
