@@ -12,6 +12,9 @@ import os
 import pathlib
 import shutil
 import sys
+import zlib
+from collections import deque
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -24,6 +27,7 @@ from .transforms import Matrix, TransformTree, matrix_of, quaternion_of
 MILLIMETRES = 1000  # what 16-bit depth counts by ROS's convention (REP 118)
 FLOAT_UNITS = 5000  # to which depth in metres is rounded: 0.2 mm, up to 13 m
 MAX_TIME_GAP_S = 0.02  # colour and depth farther apart do not belong together
+WAITING_IMAGES = 8  # of a topic, not yet written
 MAX_CLOCK_JUMP_S = 5.0  # how much the clock of images may run away from the bag's within one message
 
 
@@ -39,11 +43,12 @@ class Topics:
 
 @dataclass
 class Stream:
-    """The images of one topic, written as they come."""
+    """The images of one topic, written as they come, on the threads of `pool`."""
 
     topic: str
     info_topic: str
     folder: pathlib.Path
+    pool: ThreadPoolExecutor
     depth: bool
     frame: str = ""
     units: int = MILLIMETRES
@@ -51,6 +56,7 @@ class Stream:
     times_ns: list[int] = field(default_factory=list)
     files: list[pathlib.Path] = field(default_factory=list)
     clock_offset_ns: int | None = None
+    pending: deque[Future[pathlib.Path]] = field(default_factory=deque)
 
     def check_clock(self, time_ns: int, received_ns: int) -> None:
         if time_ns == 0:
@@ -72,11 +78,20 @@ class Stream:
         if self.times_ns and time_ns == self.times_ns[-1]:
             return  # the same image twice
         self.frame = message.header.frame_id.lstrip("/")
-        data, ending = self.encode(message)
-        file = self.folder / f"{time_ns // 10**9}.{time_ns % 10**9:09d}{ending}"
-        file.write_bytes(data)
         self.times_ns.append(time_ns)
-        self.files.append(file)
+        self.pending.append(self.pool.submit(self.write_file, message, f"{time_ns // 10**9}.{time_ns % 10**9:09d}"))
+        self.finish(WAITING_IMAGES)
+
+    def write_file(self, message: Any, stem: str) -> pathlib.Path:
+        data, ending = self.encode(message)
+        file = self.folder / (stem + ending)
+        file.write_bytes(data)
+        return file
+
+    def finish(self, left: int = 0) -> None:
+        """Waits until at most `left` images are not written; raises what writing one of the others raised."""
+        while len(self.pending) > left:
+            self.files.append(self.pending.popleft().result())
 
     def encode(self, message: Any) -> tuple[bytes, str]:
         if not hasattr(message, "encoding"):
@@ -119,7 +134,7 @@ def _png(pixels: Any) -> bytes:
     from PIL import Image
 
     out = io.BytesIO()
-    Image.fromarray(pixels).save(out, "PNG", compress_level=1)
+    Image.fromarray(pixels).save(out, "PNG", compress_level=1, compress_type=zlib.Z_RLE)  # the filters do the most
     return out.getvalue()
 
 
@@ -135,13 +150,16 @@ def convert(bag: str | os.PathLike[str], out: str | os.PathLike[str], *, topics:
     if folder.exists() and any(folder.iterdir()):
         raise Error(f"'{folder}' is not empty; name a new folder")
     try:
-        with Bag(pathlib.Path(bag)) as opened:
+        # Pillow lets other threads run while it compresses.
+        with Bag(pathlib.Path(bag)) as opened, ThreadPoolExecutor(max_workers=os.cpu_count()) as pool:
             color_topic, depth_topic = _image_topics(opened, chosen)
-            color = Stream(color_topic, _info_topic(opened, color_topic), folder / "color", depth=False)
-            depth = Stream(depth_topic, _info_topic(opened, depth_topic), folder / "depth", depth=True)
+            color = Stream(color_topic, _info_topic(opened, color_topic), folder / "color", pool, depth=False)
+            depth = Stream(depth_topic, _info_topic(opened, depth_topic), folder / "depth", pool, depth=True)
             for stream in (color, depth):
                 stream.folder.mkdir(parents=True, exist_ok=True)
             tree = _read(opened, color, depth, chosen)
+            for stream in (color, depth):
+                stream.finish()
         return _write_folder(folder, color, depth, tree, chosen)
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)  # it was empty or not there: nothing half done is left
