@@ -296,7 +296,10 @@ void list_fields(CalibrationFitConfig& config, ConfigFields& fields) {
 }
 
 Eigen::Vector2f ColorView::project(const Eigen::Vector3f& x_in_depth) const {
-  return camera.project((color_from_depth * x_in_depth.cast<double>()).cast<float>());
+  const Eigen::Vector3f x_in_color = (color_from_depth * x_in_depth.cast<double>()).cast<float>();
+  if (x_in_color.z() <= 0)
+    return Eigen::Vector2f::Constant(std::numeric_limits<float>::quiet_NaN());
+  return camera.project(x_in_color);
 }
 
 EdgeScore edge_score(const EdgeFrames& frames, const FittedView& fitted, float truncation_px,

@@ -70,9 +70,11 @@ void draw_edges(const Frame& frame, const std::vector<DepthEdge>& edges, const C
   draw_background(frame.color, picture, left, top);
   for (const DepthEdge& edge : edges) {
     const Eigen::Vector2f pixel = view.project(edge.x_in_depth);
+    const bool seen = pixel.x() >= 0 && pixel.x() < static_cast<float>(frame.color.width()) &&
+                      pixel.y() >= 0 && pixel.y() < static_cast<float>(frame.color.height());
+    if (!seen) continue;
     const int x = static_cast<int>(pixel.x() + 0.5f), y = static_cast<int>(pixel.y() + 0.5f);
-    if (pixel.x() >= 0 && pixel.y() >= 0 && frame.color.contains(x, y))
-      picture.at(left + x, top + y) = paint;
+    if (frame.color.contains(x, y)) picture.at(left + x, top + y) = paint;
   }
 }
 

@@ -78,7 +78,7 @@ OVIMAP_INLINE Floats slopes(const FusionView& view, const ProjectedRow& row, Int
 }
 
 /// Distances and weights: 1/z^2 in steps of 1/4096, falling to zero between one voxel and one
-/// truncation behind the surface. Returns whether any voxel is observed.
+/// truncation behind the surface; beyond 90 m they are 0. Returns whether any voxel is observed.
 OVIMAP_INLINE bool observe(const FusionView& view, const ProjectedRow& row, ObservedRow& seen) {
   if (!any(row.inside)) return false;
   const Floats depth = gather(view.frame.depth.data(), row.pixel);

@@ -17,13 +17,23 @@ std::string name_of(std::int64_t index) {
 
 }  // namespace
 
-FrameIntake::Answer FrameIntake::offer(Frame frame) {
+FrameIntake::Answer FrameIntake::room(Offer offer) {
   const std::lock_guard lock(mutex_);
+  return room_now(offer);
+}
+
+FrameIntake::Answer FrameIntake::room_now(Offer offer) {
   if (finished_) return Answer::kEnded;
-  if (frames_.size() >= capacity_) {
-    ++skipped_;
-    return Answer::kFull;
-  }
+  if (frames_.size() < capacity_) return Answer::kTaken;
+  if (offer == Offer::kFirst) ++skipped_;
+  return Answer::kFull;
+}
+
+FrameIntake::Answer FrameIntake::offer(Frame frame, Offer offer) {
+  const std::lock_guard lock(mutex_);
+  const Answer answer = room_now(offer);
+  if (answer != Answer::kTaken) return answer;
+  if (offer == Offer::kAgain && skipped_ > 0) --skipped_;  // it was counted, and came after all
   frame.index = next_index_++;
   if (frame.name.empty()) frame.name = name_of(frame.index);
   frames_.push_back(std::move(frame));

@@ -24,8 +24,14 @@ class FrameIntake {
     kFull,   ///< as many wait as may; the frame was left out
     kEnded,  ///< finish() was called
   };
+  enum class Offer {
+    kFirst,
+    kAgain,  ///< the frame was left out before: counted already
+  };
   /// Does not wait. A frame without a name is named by its index.
-  Answer offer(Frame frame);
+  Answer offer(Frame frame, Offer offer = Offer::kFirst);
+  /// What `offer` would answer now; kFull counts as it does there, so ask for one frame once.
+  Answer room(Offer offer);
   /// No more frames come. Those that wait are still handed out.
   void finish();
 
@@ -43,6 +49,8 @@ class FrameIntake {
   Counts counts() const;
 
  private:
+  Answer room_now(Offer offer);
+
   const std::size_t capacity_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;

@@ -42,6 +42,22 @@ TEST(FrameIntake, CountsWhatDoesNotFit) {
   EXPECT_FALSE(intake.next(milliseconds(0)));
 }
 
+TEST(FrameIntake, CountsAFrameThatIsOfferedAgainOnce) {
+  FrameIntake intake(1);
+  using Offer = FrameIntake::Offer;
+  EXPECT_EQ(intake.room(Offer::kFirst), Answer::kTaken);
+  EXPECT_EQ(intake.offer({}), Answer::kTaken);
+  EXPECT_EQ(intake.offer({}), Answer::kFull);
+  EXPECT_EQ(intake.offer({}, Offer::kAgain), Answer::kFull);
+  EXPECT_EQ(intake.room(Offer::kAgain), Answer::kFull);
+  EXPECT_EQ(intake.counts().skipped, 1);
+  EXPECT_TRUE(intake.next(milliseconds(0)));
+  EXPECT_EQ(intake.offer({}, Offer::kAgain), Answer::kTaken);
+  EXPECT_EQ(intake.counts().skipped, 0) << "it was not left out after all";
+  EXPECT_EQ(intake.room(Offer::kFirst), Answer::kFull);
+  EXPECT_EQ(intake.counts().skipped, 1);
+}
+
 TEST(FrameIntake, HandsOutWhatWaitsOnceItIsFinished) {
   FrameIntake intake(4);
   intake.offer({});

@@ -12,7 +12,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kLongestName = 200;  // bytes; it names files of masks
+constexpr const char* kRetry = "ovimap-retry";  // header of a frame that was refused before
+constexpr std::size_t kLongestName = 200;       // bytes; it names files of masks
 
 const std::string& part_of(const HttpRequest& request, const char* name) {
   const auto found = request.parts.find(name);
@@ -110,23 +111,24 @@ HttpReply FrameApi::frame(const HttpRequest& request) {
   const auto color = bytes_of(part_of(request, "color")),
              depth = bytes_of(part_of(request, "depth"));
   intake();
-  std::shared_ptr<const FrameDecoder> decoder;
-  {
-    const std::lock_guard lock(mutex_);
-    decoder = decoder_;
-  }
-  if (!decoder) throw BadRequest(409, "no camera is known yet; POST /api/camera first");
-  Frame frame = decoder->decode(color, depth, pose);
+  const auto offer =
+      request.header(kRetry).empty() ? FrameIntake::Offer::kFirst : FrameIntake::Offer::kAgain;
+  // One frame at a time: they stay in order, the camera stays the same, and large images are
+  // decoded one by one, and not at all where there is no room.
+  const std::lock_guard lock(mutex_);
+  if (!decoder_) throw BadRequest(409, "no camera is known yet; POST /api/camera first");
+  if (const auto room = intake_->room(offer); room != FrameIntake::Answer::kTaken)
+    return reply_to(room);
+  Frame frame = decoder_->decode(color, depth, pose);
   frame.timestamp_s = timestamp_s;
   frame.name = name;
-  switch (intake_->offer(std::move(frame))) {
-    case FrameIntake::Answer::kTaken:
-      return counts(200);
-    case FrameIntake::Answer::kEnded:
-      return fault(409, "the map is finished and takes no more frames");
-    case FrameIntake::Answer::kFull:
-      break;
-  }
+  return reply_to(intake_->offer(std::move(frame), offer));
+}
+
+HttpReply FrameApi::reply_to(FrameIntake::Answer answer) const {
+  if (answer == FrameIntake::Answer::kTaken) return counts(200);
+  if (answer == FrameIntake::Answer::kEnded)
+    return fault(409, "the map is finished and takes no more frames");
   HttpReply reply = fault(503,
                           "the mapper is busy, so the frame was skipped; send the next one, or "
                           "this one again");

@@ -12,8 +12,8 @@
 
 namespace ovimap {
 
-/// Takes a camera's frames from requests (docs/http-api.md, "Frames"). Thread-safe; images are
-/// decoded by the threads that ask.
+/// Takes a camera's frames from requests (docs/http-api.md, "Frames"). Thread-safe; one frame is
+/// decoded at a time.
 class FrameApi {
  public:
   static constexpr const char* kFrames = "/api/frames";  ///< the one route of large bodies
@@ -32,6 +32,7 @@ class FrameApi {
  private:
   FrameIntake& intake() const;
   HttpReply counts(int status) const;
+  HttpReply reply_to(FrameIntake::Answer answer) const;
 
   FrameIntake* intake_;
   const FrameSourceConfig config_;

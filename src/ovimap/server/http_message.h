@@ -27,6 +27,8 @@ struct HttpReply {
   std::string type = "application/json";
   std::shared_ptr<const std::string> body = std::make_shared<std::string>();
   std::map<std::string, std::string> headers;
+  /// The request was not read to its end, so that nothing can follow it. Needs a body.
+  bool ends_connection = false;
   /// A stream instead of a body: gives the next piece, waiting for it; nothing ends the stream.
   std::function<std::string(bool& ended)> stream;
 };

@@ -57,12 +57,14 @@ void send(HttpReply reply, httplib::Response& to) {
   for (const auto& [name, value] : reply.headers) to.set_header(name, value);
   if (reply.stream) return send_stream(reply, to);
   if (reply.body->empty()) return to.set_content("", reply.type);
-  // By a provider, which httplib leaves as it is; it would compress a plain body once more.
-  to.set_content_provider(
-      reply.body->size(), reply.type,
-      [body = reply.body](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
-        return sink.write(body->data() + offset, length);
-      });
+  if (reply.ends_connection) to.set_header("Connection", "close");
+  // By a provider, which httplib leaves as it is; it would compress a plain body once more. One
+  // that fails after the last byte makes httplib hang up, which the header alone does not.
+  to.set_content_provider(reply.body->size(), reply.type,
+                          [body = reply.body, last = reply.ends_connection](
+                              std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+                            return sink.write(body->data() + offset, length) && !last;
+                          });
 }
 
 /// What httplib refuses by itself.
@@ -95,15 +97,16 @@ HttpReply refusal(const httplib::Request& request, int status) {
     reply = fault(405, "nothing here takes " + request.method);
     reply.headers["Allow"] = "GET, HEAD, POST";
   }
-  reply.headers["Connection"] = "close";
+  reply.ends_connection = true;
   return reply;
 }
 
+/// Bodies must say beforehand how long they are: a body in chunks is read whole, however long.
 bool needs_length(const httplib::Request& request) {
   const bool has_body =
       request.method == "POST" || request.method == "PUT" || request.method == "PATCH";
-  return has_body && !request.has_header("Content-Length") &&
-         !request.has_header("Transfer-Encoding");
+  return request.has_header("Transfer-Encoding") ||
+         (has_body && !request.has_header("Content-Length"));
 }
 
 }  // namespace

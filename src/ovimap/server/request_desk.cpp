@@ -84,12 +84,23 @@ std::size_t RequestDesk::most_bytes(const HttpRequest& request) const {
 
 std::optional<HttpReply> RequestDesk::early_refusal(const HttpRequest& head) const {
   const std::string given = head.header("content-length");
+  if (given.empty()) return std::nullopt;
   std::size_t bytes = 0;
-  std::from_chars(given.data(), given.data() + given.size(), bytes);
-  if (bytes <= config_.max_body_bytes) return std::nullopt;
-  std::optional<HttpReply> refused = access_.refusal(head);
+  const char* end = given.data() + given.size();
+  const auto [last, error] = std::from_chars(given.data(), end, bytes);
+  std::optional<HttpReply> refused;
+  if (error == std::errc::result_out_of_range)
+    refused = too_large();
+  else if (error != std::errc() || last != end)
+    refused = fault(400, "Content-Length must be a whole number");
+  else if (bytes <= config_.max_body_bytes)
+    return std::nullopt;
+  else
+    refused = access_.refusal(head);
   if (!refused && bytes > most_bytes(head)) refused = too_large();
-  if (refused) refused->headers["Connection"] = "close";  // the body is still on its way
+  if (!refused) return std::nullopt;
+  refused->ends_connection = true;  // the body is still on its way
+  protect(*refused);
   return refused;
 }
 
