@@ -64,6 +64,7 @@ class ResumeProgramTest : public ProgramTest {
   }
 
   [[noreturn]] void execute(const std::vector<std::string>& arguments) const {
+    (void)!::nice(10);  // on a busy machine, too, its killer must see what it writes
     std::vector<char*> words = {const_cast<char*>(OVIMAP_PROGRAM)};
     for (const std::string& word : arguments) words.push_back(const_cast<char*>(word.c_str()));
     words.push_back(nullptr);
@@ -102,7 +103,7 @@ TEST_F(ResumeProgramTest, AHundredKillsLoseNothing) {
   for (int kill = 0; kill < 100; ++kill) {
     // A quarter at any moment, the others between the first checkpoints.
     const bool any_moment = kill % 4 == 0;
-    const int writes = any_moment ? 0 : std::uniform_int_distribution(1, 16)(random);
+    const int writes = any_moment ? 0 : std::uniform_int_distribution(1, 8)(random);
     const double longest_ms = any_moment ? takes.count() : 10;
     const std::chrono::milliseconds delay(
         std::uniform_int_distribution(0, static_cast<int>(longest_ms))(random));
