@@ -76,11 +76,22 @@ def checkpoint_frames(map, scratch):
         return 0
 
 
-def kill_after(frames, map):
-    """Kills the worker that makes a map as soon as a checkpoint has so many frames; gives the thread that does."""
+def stalling(room, root):
+    """The room, but one frame does not come: its run cannot be over before its worker is killed."""
+    shutil.copytree(pathlib.Path(room).parent, root, copy_function=os.symlink)
+    frame = root / "room/results/depth000012.png"
+    frame.rename(frame.with_suffix(".kept"))
+    os.mkfifo(frame)
+    return str(root / "room")
+
+
+def kill_after(frames, map, scene):
+    """Kills the worker that maps a stalling scene when its checkpoint has so many frames; the try after it gets all."""
     def wait():
-        while checkpoint_frames(map, map.with_suffix(".copy")) < frames:
+        frame, end = pathlib.Path(scene) / "results/depth000012.png", time.monotonic() + 300
+        while checkpoint_frames(map, map.with_suffix(".copy")) < frames and time.monotonic() < end:
             time.sleep(0.01)
+        frame.with_suffix(".kept").replace(frame)
         os.kill(int((map.parent / "jobs/room.lock").read_text().split()[0]), signal.SIGKILL)
 
     thread = threading.Thread(target=wait, daemon=True)
@@ -95,10 +106,10 @@ def test_scenes_are_mapped_as_the_program_does(maps, rooms, tmp_path):
 
 
 def test_a_killed_worker_costs_nothing(maps, rooms, tmp_path):
-    map = tmp_path / "room.ovimap"
-    killer = kill_after(3, map)
-    [job] = run(scene_jobs(rooms[:1], tmp_path, frames=FRAMES, options=OPTIONS))
-    killer.join(timeout=0)
+    map, scene = tmp_path / "room.ovimap", stalling(rooms[0], tmp_path / "scene")
+    killer = kill_after(3, map, scene)
+    [job] = run(scene_jobs([scene], tmp_path, frames=FRAMES, options=OPTIONS))
+    killer.join(timeout=60)
     assert not killer.is_alive()
     assert (job.state, job.tries, job.fault) == ("done", 2, "")
     assert 3 <= job.report["resumed_from"] < job.report["frames"] == 40
@@ -108,13 +119,14 @@ def test_a_killed_worker_costs_nothing(maps, rooms, tmp_path):
 
 
 def test_a_worker_lost_too_often_leaves_its_checkpoint(maps, rooms, tmp_path):
-    map = tmp_path / "room.ovimap"
-    killer = kill_after(3, map)
-    [job] = run(scene_jobs(rooms[:1], tmp_path, frames=FRAMES, options=OPTIONS), retries=0)
-    killer.join()
+    map, scene = tmp_path / "room.ovimap", stalling(rooms[0], tmp_path / "scene")
+    killer = kill_after(3, map, scene)
+    [job] = run(scene_jobs([scene], tmp_path, frames=FRAMES, options=OPTIONS), retries=0)
+    killer.join(timeout=60)
+    assert not killer.is_alive()
     assert job.state == "failed" and "worker was lost" in job.fault and "goes on" in job.fault
     assert checkpoint_frames(map, map.with_suffix(".copy")) >= 3 and not map.exists()
-    [job] = run(scene_jobs(rooms[:1], tmp_path, frames=FRAMES, options=OPTIONS))
+    [job] = run(scene_jobs([scene], tmp_path, frames=FRAMES, options=OPTIONS))
     assert job.report["resumed_from"] >= 3
     assert map_facts(map).revision == map_facts(maps[0]).revision
 
