@@ -126,6 +126,9 @@ def test_a_worker_lost_too_often_leaves_its_checkpoint(maps, rooms, tmp_path):
     assert not killer.is_alive()
     assert job.state == "failed" and "worker was lost" in job.fault and "goes on" in job.fault
     assert checkpoint_frames(map, map.with_suffix(".copy")) >= 3 and not map.exists()
+    [other] = run(scene_jobs([scene], tmp_path, frames="::2", options=OPTIONS))
+    assert (other.state, other.tries) == ("failed", 1) and not map.exists(), "it went on with the frames of another order"
+    assert "was begun with other frames (:)" in other.fault and f"delete {map}.partial" in other.fault
     [job] = run(scene_jobs([scene], tmp_path, frames=FRAMES, options=OPTIONS))
     assert job.report["resumed_from"] >= 3
     assert map_facts(map).revision == map_facts(maps[0]).revision

@@ -23,6 +23,10 @@ def lock_of(map: pathlib.Path) -> pathlib.Path:
     return map.parent / FOLDER / f"{map.stem}.lock"
 
 
+def checkpoint_of(map: pathlib.Path) -> pathlib.Path:
+    return map.with_name(map.name + ".partial")
+
+
 def finished(map: pathlib.Path, order: dict[str, Any]) -> dict[str, Any] | None:
     """The report of the run that made this map by this order; None when there is work to do.
 
@@ -31,17 +35,19 @@ def finished(map: pathlib.Path, order: dict[str, Any]) -> dict[str, Any] | None:
     record = _read(record_of(map))
     if record is None or not map.is_file() or map_facts(map).content_hash != record["content_hash"]:
         return None
-    different = [key for key in order if order[key] != record["order"].get(key)]
+    different = _different(record, order)
     if different:
-        raise Error(f"{map} was made with other {different[0]} ({_words(record['order'].get(different[0]))}); "
-                    "delete it to make it anew, or give another output")
+        raise Error(f"{map} was made with {different}; delete it to make it anew, or give another output")
     report: dict[str, Any] = record["report"]
     return report
 
 
 def claim(map: pathlib.Path, order: dict[str, Any]) -> None:
-    """Notes an order before its map is written. Raises Error when a map is there that no order made."""
-    record = _read(record_of(map))
+    """Notes an order before its map is written. Raises Error when a map, or one that was begun, is there by no such order."""
+    record, begun = _read(record_of(map)), checkpoint_of(map)
+    if begun.exists() and (record is None or _different(record, order)):
+        other = _different(record, order) if record else "frames that nothing tells"
+        raise Error(f"{begun} was begun with {other}; give the same again to go on with it, or delete {begun} to begin anew")
     if map.exists() and (record is None or record["order"] != order):
         raise Error(f"{map} is there and was not made by this command; delete it, or give another output")
     write_json(record_of(map), {"order": order, "content_hash": "", "report": {}})
@@ -50,6 +56,12 @@ def claim(map: pathlib.Path, order: dict[str, Any]) -> None:
 def write_record(map: pathlib.Path, order: dict[str, Any], report: dict[str, Any]) -> None:
     """To be called when the map is there."""
     write_json(record_of(map), {"order": order, "content_hash": map_facts(map).content_hash, "report": report})
+
+
+def _different(record: dict[str, Any], order: dict[str, Any]) -> str:
+    """The first thing in which an order differs from the one noted; empty: in nothing."""
+    noted = record["order"]
+    return next((f"other {key} ({_words(noted.get(key))})" for key in order if order[key] != noted.get(key)), "")
 
 
 def _words(value: Any) -> str:

@@ -15,7 +15,7 @@ from ..files import exclusive
 from ..map_facts import MapFacts, map_facts
 from .jobs import Job
 from .program import Crash, run_program
-from .records import finished, lock_of, write_record
+from .records import checkpoint_of, claim, finished, lock_of, write_record
 
 KEPT = ("frames", "frames_skipped", "instances", "seconds")  # of what the program reports
 
@@ -52,6 +52,7 @@ def map_scene(order: dict[str, Any], tell: Callable[[int, int], None]) -> dict[s
             return report | {"there": True}
         begun = _begun(map)
         _refuse_anothers(map, begun, made_by["source"])
+        claim(map, made_by)  # the program cannot tell whose frames it goes on with
         command = ["run", made_by["source"], "-o", str(map), "--frames", made_by["frames"], "--resume"]
         command += ["--threads", str(order["cpus"]), *made_by["options"]]
         said = run_program(command, program=order["program"], lock=lock, cwd=order["cwd"], tell=tell)
@@ -72,10 +73,6 @@ def scene_names(paths: Sequence[str]) -> list[str]:
     raise Error("the scenes' paths cannot be told apart; rename one of them")
 
 
-def checkpoint_of(map: pathlib.Path) -> pathlib.Path:
-    return map.with_name(map.name + ".partial")
-
-
 def _begun(map: pathlib.Path) -> MapFacts | None:
     """What a lost worker left; None where there is no checkpoint, or none was ever completed."""
     try:
@@ -87,5 +84,6 @@ def _begun(map: pathlib.Path) -> MapFacts | None:
 def _refuse_anothers(map: pathlib.Path, begun: MapFacts | None, source: str) -> None:
     """The program goes on with any map of the same settings; it must be one of this recording, too."""
     there = begun or (map_facts(map) if map.exists() else None)
-    if there is not None and os.path.abspath(there.recording) != source:
-        raise Error(f"{map} is a map of {there.recording}, not of {source}; give another output, or delete it with what lies beside it")
+    if there is not None and not (there.recording and os.path.abspath(there.recording) == source):
+        raise Error(f"{map} is a map of {there.recording or 'pushed frames'}, not of {source}; "
+                    "give another output, or delete it with what lies beside it")
