@@ -30,7 +30,7 @@ class Encoder:
 class MapFacts:
     """The identity of a map."""
 
-    source: str  # "kind:path"
+    source: str  # "kind:path", or what its frames were pushed by, as "http"
     frames: int
     unfinished: bool  # a checkpoint
     content_hash: str  # of the voxels
@@ -39,7 +39,7 @@ class MapFacts:
 
     @property
     def recording(self) -> str:
-        """The path its frames came from."""
+        """The path its frames came from; empty where they were pushed."""
         return self.source.partition(":")[2]
 
 

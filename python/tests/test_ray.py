@@ -7,6 +7,7 @@ import os
 import pathlib
 import shutil
 import signal
+import sqlite3
 import subprocess
 import sys
 import threading
@@ -209,6 +210,12 @@ def test_what_cannot_be_scored_is_refused(maps, rooms, tmp_path):
     assert [job.order["truths"] for job in eval_jobs([str(path) for path in maps], [])] == [[room] for room in rooms]
     with pytest.raises(ovimap.Error, match="one --gt for each"):
         eval_jobs([str(path) for path in maps], rooms[:1])
+    pushed = tmp_path / "pushed.ovimap"
+    pushed.write_bytes(maps[0].read_bytes())
+    with sqlite3.connect(pushed) as file:
+        file.execute("UPDATE meta SET value = 'http' WHERE key = 'source'")
+    with pytest.raises(ovimap.Error, match=r"pushed.ovimap was made of pushed frames; name its truth with --gt"):
+        eval_jobs([str(pushed)], [])
     failed = eval_jobs([str(maps[0])], rooms[:1])
     failed[0].state = "failed"
     with pytest.raises(ovimap.Error, match="no map could be scored"):

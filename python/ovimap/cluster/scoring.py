@@ -18,12 +18,19 @@ def eval_jobs(maps: Sequence[str], truths: Sequence[str], *, classes: str = "aut
     """A job for each map. truths: in the maps' order; none: the recordings that the maps came from."""
     if truths and len(truths) != len(maps):
         raise Error(f"{len(maps)} maps and {len(truths)} truths; give one --gt for each map, in the same order")
-    truths = truths or [map_facts(map).recording for map in maps]
+    truths = truths or [_recording_of(map) for map in maps]
     choice = {"classes": classes, "encoder": encoder}
     return [
         Job(map, score, {"maps": [os.path.abspath(map)], "truths": [os.path.abspath(truth)], **choice}, cpus=cpus)
         for map, truth in zip(maps, truths, strict=True)
     ]
+
+
+def _recording_of(map: str) -> str:
+    recording = map_facts(map).recording
+    if not recording:
+        raise Error(f"{map} was made of pushed frames; name its truth with --gt")
+    return recording
 
 
 def pool_job(scenes: Sequence[Job]) -> Job:
