@@ -16,7 +16,7 @@ import time
 import ovimap
 import pytest
 from ovimap.cluster import Job, eval_jobs, pool_job, run_jobs, scene_jobs, site_jobs
-from ovimap.cluster.jobs import STORE_BYTES
+from ovimap.cluster.jobs import STORE_BYTES, Board, _read_board, _submit
 from ovimap.cluster.scenes import scene_names
 from ovimap.cluster.site import part_ranges
 from ovimap.cluster.table import Lines, table_of
@@ -142,6 +142,23 @@ def test_a_program_that_crashes_is_tried_again(machines, rooms, tmp_path):
     program.chmod(0o755)
     [job] = run(scene_jobs(rooms[:1], tmp_path, frames=":2", options=OPTIONS, program=str(program)))
     assert (job.state, job.tries) == ("done", 2)
+
+
+def test_a_job_that_waits_again_is_shown_waiting(machines):
+    board = ray.remote(Board).options(num_cpus=0).remote()
+    ray.get(board.tell.remote("first", 3, 9))  # by a try that is lost
+    job, running = Job("first", never, {}, cpus=64, tries=1), {}  # no machine has so many: it waits
+    _submit(job, board, running)
+    _read_board(board, [job], Lines(io.StringIO()))
+    assert job.state == "waiting" and job.tries == 2
+    ray.cancel(*running)
+
+
+def test_without_an_address_no_running_cluster_is_joined(machines):
+    script = "import ray; from ovimap.cluster.jobs import cluster\nwith cluster(): print(len(ray.nodes()))"
+    environment = os.environ | {"RAY_ADDRESS": machines.address}
+    done = subprocess.run([sys.executable, "-c", script], env=environment, capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (0, "1\n"), done.stderr
 
 
 def test_what_is_done_is_not_done_again(maps, rooms):

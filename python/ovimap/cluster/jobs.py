@@ -76,6 +76,9 @@ class Board:
     def tell(self, name: str, done: int, total: int) -> None:
         self.entries[name] = (done, total)
 
+    def forget(self, name: str) -> None:
+        self.entries.pop(name, None)
+
     def read(self) -> dict[str, tuple[int, int]]:
         return self.entries
 
@@ -108,7 +111,8 @@ def cluster(address: str = "") -> Iterator[None]:
         if address:
             ray.init(address=address, log_to_driver=False, logging_level=logging.ERROR)
         else:
-            ray.init(object_store_memory=STORE_BYTES, include_dashboard=False, log_to_driver=False, logging_level=logging.ERROR)
+            # "local": a cluster that runs here, or that RAY_ADDRESS names, is somebody's, and must not be joined unasked.
+            ray.init(address="local", object_store_memory=STORE_BYTES, include_dashboard=False, log_to_driver=False, logging_level=logging.ERROR)
     except (ConnectionError, RuntimeError, ValueError, TimeoutError) as fault:
         reason = (str(fault).strip().splitlines() or ["no answer"])[0]
         raise Error(f"no Ray cluster answers at '{address or 'local'}' ({reason}); start one with `ray start --head` and give its address") from None
@@ -151,6 +155,7 @@ def _ready(job: Job, audience: Audience) -> bool:
 
 def _submit(job: Job, board: Any, running: dict[Any, Job]) -> None:
     job.tries += 1
+    board.forget.remote(job.name)  # what its last try told would show it running while it waits
     # Ray's own retries stay off: they would hide from the table that a worker was lost.
     task = ray.remote(attempt).options(num_cpus=job.cpus, max_retries=0, name=job.name)
     running[task.remote(job.work, job.order, job.name, board)] = job
