@@ -7,13 +7,14 @@ import shutil
 import sqlite3
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import numpy as np
 import ovimap
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
-from ovimap.index import ObjectIndex, export_objects, object_table, vectors
+from ovimap.index import ObjectIndex, export_objects, object_table, search, vectors
 from ovimap.index.objects import object_schema
 from ovimap.index.store import Store
 from ovimap.index_command import main
@@ -100,6 +101,12 @@ def test_a_map_is_found_by_its_words(maps, tmp_path, capsys):
     assert json.loads(capsys.readouterr().out)["verdict"] == "not_in_map"
     with pytest.raises(ovimap.Error, match="empty"):
         index.query(" , ")
+
+
+@pytest.mark.filterwarnings("error")
+def test_the_worst_p_value_is_no_fault():
+    asked = [SimpleNamespace(best=SimpleNamespace(p_value=value)) for value in (1.0, None)]
+    assert search._p_among(asked, 5) == 1.0
 
 
 def test_only_what_changed_is_taken_anew(maps, tmp_path):

@@ -176,7 +176,8 @@ def _rank(asked: MapAnswer) -> tuple[bool, float, float, float]:
 def _p_among(asked: Sequence[MapAnswer], maps: int) -> float | None:
     # Each map is a try of its own, so the best of many maps scores high by chance more often (Sidak 1967).
     values = [map.best.p_value for map in asked if map.best is not None and map.best.p_value is not None]
-    return float(-np.expm1(maps * np.log1p(-min(values)))) if values else None
+    with np.errstate(divide="ignore"):  # of the logarithm of 0, when nothing is there by any chance: p is 1
+        return float(-np.expm1(maps * np.log1p(-min(values)))) if values else None
 
 
 def _false_positive_rate() -> float:
