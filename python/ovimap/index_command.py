@@ -77,10 +77,10 @@ def _query(options: argparse.Namespace) -> int:
     answer = index.query(options.text, top=options.top, negatives=negatives)
     if options.json:
         maps = [_map_json(said) for said in answer.maps]
-        print(json.dumps({"query": answer.query, "verdict": _verdict(answer.found), "p_value": answer.p_value, "maps": maps}))
+        print(json.dumps({"query": answer.query, "verdict": answer.verdict, "p_value": answer.p_value, "maps": maps}))
     else:
         _print_answer(answer)
-    return DONE if answer.found else NO
+    return {"found": DONE, "not_in_map": NO, "unknown": MENDABLE}[answer.verdict]
 
 
 def _nearest(hits: list[Hit], options: argparse.Namespace) -> int:
@@ -93,7 +93,10 @@ def _nearest(hits: list[Hit], options: argparse.Namespace) -> int:
 
 
 def _print_answer(answer: Answer) -> None:
-    if not answer.found:
+    if answer.verdict == "unknown":
+        print(f'"{answer.query}" was not found, but not all maps could be asked: bring these back and run `ovimap-index build`, '
+              "or take them out with `ovimap-index remove`")
+    elif not answer.found:
         print(f'"{answer.query}" is in none of the maps; what comes nearest:')
     for said in answer.maps:
         best = said.best
@@ -108,7 +111,7 @@ def _map_json(said: MapAnswer) -> dict[str, Any]:
     matches = said.answer.matches if said.answer is not None else []
     objects = [{"id": match.id, "score": match.score, "standard_score": match.standard_score, "p_value": match.p_value,
                 "probability": match.probability, "evidence": match.evidence} for match in matches]
-    verdict = _verdict(said.found) if said.answer is not None else None
+    verdict = None if said.answer is None else "found" if said.found else "not_in_map"
     return {"map": said.map, "verdict": verdict, "objects": objects, "notice": said.notice, "nearest": [vars(hit) for hit in said.hits[:5]]}
 
 
@@ -118,10 +121,6 @@ def _export(options: argparse.Namespace) -> int:
     rows = export_objects(options.maps, options.output)
     print(json.dumps({"table": options.output, "objects": rows}) if options.json else f"{options.output}: {rows} objects of {len(options.maps)} maps")
     return DONE
-
-
-def _verdict(found: bool) -> str:
-    return "found" if found else "not_in_map"
 
 
 def _and(text: str) -> str:

@@ -137,6 +137,19 @@ def test_a_map_that_is_gone_is_told(maps, tmp_path):
     assert str(maps[0]) in answer.maps[1].notice and answer.maps[1].hits
 
 
+def test_what_maps_that_are_gone_may_have_is_unknown(maps, tmp_path, capsys):
+    index = str(tmp_path / "index")
+    ObjectIndex.build(index, maps)
+    maps[0].unlink()
+    assert main(["query", index, "elephant"]) == 2
+    said = capsys.readouterr().out
+    assert "in none of the maps" not in said and f"{maps[0]}: not asked" in said
+    maps[1].unlink()
+    assert main(["query", index, "sofa", "--json"]) == 2
+    answer = json.loads(capsys.readouterr().out)
+    assert answer["verdict"] == "unknown" and [said["verdict"] for said in answer["maps"]] == [None, None]
+
+
 def test_maps_that_cannot_be_compared_are_left_out(maps, tmp_path, capsys):
     other, bare, broken = (tmp_path / f"{name}.ovimap" for name in ("other", "bare", "broken"))
     for path, name in ((other, "another encoder"), (bare, "")):

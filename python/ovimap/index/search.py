@@ -58,6 +58,13 @@ class Answer:
     p_value: float | None  # chance that a thing that is in none of the maps scores as high in one of them
     found: bool  # that chance is at most 5 %
 
+    @property
+    def verdict(self) -> str:
+        """As of `ovimap query`; unknown where it was not found but maps could not be asked, which may have it."""
+        if self.found:
+            return "found"
+        return "unknown" if any(said.answer is None for said in self.maps) else "not_in_map"
+
 
 class ObjectIndex:
     """The objects of many maps in one folder. Opened for questions it never changes the folder.
@@ -138,7 +145,8 @@ class ObjectIndex:
             answer = self._open(path, revision).query(text, negatives=negatives)
         except Error as fault:
             return MapAnswer(path, hits, None, str(fault))
-        same = revision == self._store.entries[path].revision
+        entry = self._store.entries.get(path)  # none: it was taken out while we ask
+        same = entry is not None and revision == entry.revision
         return MapAnswer(path, hits, answer, "" if same else "it has changed since it was indexed; `ovimap-index build` takes it anew")
 
     def _open(self, path: str, revision: str) -> Map:
