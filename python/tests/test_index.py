@@ -150,6 +150,18 @@ def test_what_maps_that_are_gone_may_have_is_unknown(maps, tmp_path, capsys):
     assert answer["verdict"] == "unknown" and [said["verdict"] for said in answer["maps"]] == [None, None]
 
 
+def test_a_reader_goes_on_with_what_a_writer_put_in_force(tmp_path):
+    Store(tmp_path).put_tables([table(f"/room/{number}", unit(50, number)) for number in range(4)], ENCODER)
+    readers = [Store(tmp_path), Store(tmp_path)]
+    Store(tmp_path).remove([f"/room/{number}" for number in range(3)])  # of most: the vectors are written anew
+    query = unit(50, 3)[7]
+    assert readers[0].search(query, 1)[0][:2] == ("/room/3", 7)
+    for path in tmp_path.glob("rows-*"):
+        path.unlink()
+    with pytest.raises(ovimap.Error, match="is damaged"):
+        readers[1].search(query, 1)
+
+
 def test_maps_that_cannot_be_compared_are_left_out(maps, tmp_path, capsys):
     other, bare, broken = (tmp_path / f"{name}.ovimap" for name in ("other", "bare", "broken"))
     for path, name in ((other, "another encoder"), (bare, "")):

@@ -97,10 +97,16 @@ class Store:
 
     def search(self, query: Vectors, count: int) -> list[tuple[str, int, float]]:
         """The objects nearest to an embedding: map, id and cosine, best first."""
-        try:
-            cosines, ids = self._vectors.search(query, count, self._numbers)
-        except (OSError, ValueError, RuntimeError) as fault:
-            raise Error(f"the index {self.folder} is damaged ({fault}); build it anew in another folder") from None
+        self.require()
+        while True:
+            known = self._state
+            try:
+                cosines, ids = self._vectors.search(query, count, self._numbers)
+                break
+            except (OSError, ValueError, RuntimeError) as fault:
+                self.read()
+                if self._state == known:  # else a writer has put other files in force and swept ours away
+                    raise Error(f"the index {self.folder} is damaged ({fault}); build it anew in another folder") from None
         return [(self.paths[id >> 32], id & 0xFFFFFFFF, cosine) for id, cosine in zip(ids.tolist(), cosines.tolist())]
 
     def put(self, maps: Iterable[str]) -> Update:
