@@ -30,6 +30,9 @@ def main(arguments: list[str] | None = None) -> int:
     except Error as fault:
         print(f"ovimap-ray: {fault}", file=sys.stderr)
         return MENDABLE
+    except OSError as fault:
+        print(f"ovimap-ray: {fault}; make room, or give a folder that can be written", file=sys.stderr)
+        return MENDABLE
     except ModuleNotFoundError as fault:
         if fault.name not in ("ray", "rich"):
             raise

@@ -162,6 +162,14 @@ def test_a_reader_goes_on_with_what_a_writer_put_in_force(tmp_path):
         readers[1].search(query, 1)
 
 
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="this system has no /dev/full")
+def test_a_full_disk_is_said_in_one_line(saved_map, tmp_path, capsys):
+    (tmp_path / f"index.json.{os.getpid()}.new").symlink_to("/dev/full")
+    assert main(["build", saved_map, "-o", str(tmp_path)]) == 2
+    told = capsys.readouterr().err
+    assert "cannot write the index" in told and "No space left" in told and "make room" in told and told.count("\n") == 1
+
+
 def test_maps_that_cannot_be_compared_are_left_out(maps, tmp_path, capsys):
     other, bare, broken = (tmp_path / f"{name}.ovimap" for name in ("other", "bare", "broken"))
     for path, name in ((other, "another encoder"), (bare, "")):

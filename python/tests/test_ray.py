@@ -254,6 +254,12 @@ def test_what_needs_a_failed_job_is_left_out(machines):
     assert (second.state, second.fault, second.tries) == ("left out", "it needs first", 0)
 
 
+def test_a_folder_that_cannot_be_written_is_said_in_one_line(machines, rooms, tmp_path):
+    (tmp_path / "jobs").write_text("a file where notes and locks are to be")
+    [job] = run(scene_jobs(rooms[:1], tmp_path))
+    assert (job.state, job.tries) == ("failed", 1) and "File exists" in job.fault and "give a folder that can be written" in job.fault
+
+
 def test_a_job_that_fits_no_machine_is_refused(machines):
     with pytest.raises(ovimap.Error, match="no machine of the cluster has 64 cores, the largest has 1"):
         run([Job("large", never, {}, cpus=64)])

@@ -92,6 +92,8 @@ def attempt(work: Work, order: dict[str, Any], name: str, board: Any) -> Outcome
         return Outcome(report, seconds=time.monotonic() - begun)
     except Error as fault:
         return Outcome(fault=str(fault))
+    except OSError as fault:
+        return Outcome(fault=f"{fault}; make room, or give a folder that can be written")
     except Crash as fault:
         return Outcome(fault=str(fault), lost=True)
 
@@ -113,7 +115,7 @@ def cluster(address: str = "") -> Iterator[None]:
         else:
             # "local": a cluster that runs here, or that RAY_ADDRESS names, is somebody's, and must not be joined unasked.
             ray.init(address="local", object_store_memory=STORE_BYTES, include_dashboard=False, log_to_driver=False, logging_level=logging.ERROR)
-    except (ConnectionError, RuntimeError, ValueError, TimeoutError) as fault:
+    except (OSError, RuntimeError, ValueError) as fault:
         reason = (str(fault).strip().splitlines() or ["no answer"])[0]
         raise Error(f"no Ray cluster answers at '{address or 'local'}' ({reason}); start one with `ray start --head` and give its address") from None
     try:

@@ -11,6 +11,7 @@ import json
 import os
 import pathlib
 from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from typing import Any
@@ -111,8 +112,7 @@ class Store:
 
     def put(self, maps: Iterable[str]) -> Update:
         """Adds maps, or takes them anew where they have changed."""
-        with exclusive(self.folder / "lock"):
-            self.read()
+        with self._writing():
             update, changed = Update(), []
             for path in dict.fromkeys(maps):
                 try:
@@ -127,20 +127,31 @@ class Store:
 
     def put_tables(self, tables: Iterable[pa.Table], encoder: Encoder) -> None:
         """Adds objects that are in no map file: tables as object_table makes them, each of one map that is not in yet."""
-        with exclusive(self.folder / "lock"):
-            self.read()
+        with self._writing():
             self._encoder = self._encoder or encoder
             self._commit([self._write(table) for table in tables], [])
 
     def remove(self, maps: Iterable[str]) -> None:
-        with exclusive(self.folder / "lock"):
-            self.read()
+        with self._writing():
             self.require()
             paths = list(dict.fromkeys(maps))
             for path in paths:
                 if path not in self.entries:
                     raise Error(f"{path} is not in the index {self.folder}; `ovimap-index list {self.folder}` names what is")
             self._commit([], paths)
+
+    @contextmanager
+    def _writing(self) -> Iterator[None]:
+        """Waits for other writers and reads what they wrote."""
+        try:
+            with exclusive(self.folder / "lock"):
+                self.read()
+                yield
+        except Error:
+            raise
+        except (OSError, RuntimeError) as fault:  # the latter is all that faiss knows
+            raise Error(f"cannot write the index {self.folder} ({fault}); it is as it was: make room, or build it anew in a "
+                        "folder that can be written") from None
 
     def _put_map(self, path: str, update: Update) -> Entry | None:
         facts, known = map_facts(path), self.entries.get(path)
@@ -169,10 +180,7 @@ class Store:
         for path in removed:
             del self.entries[path]
         self.entries |= {entry.path: entry for entry in changed}
-        try:
-            vectors = self._changed_vectors(changed)
-        except (OSError, RuntimeError) as fault:  # the latter is all that faiss knows
-            raise Error(f"cannot write the index {self.folder} ({fault}); it is as it was: make room, or build it anew elsewhere") from None
+        vectors = self._changed_vectors(changed)
         manifest = {"format": FORMAT, "encoder": asdict(self.encoder), "vectors": asdict(vectors.state), "next_number": self._next_number,
                     "maps": [asdict(entry) for entry in self.entries.values()]}
         write_json(self.folder / MANIFEST, manifest)
