@@ -8,6 +8,7 @@ from __future__ import annotations
 import http.client
 import io
 import json
+import selectors
 import time
 import urllib.parse
 import uuid
@@ -19,6 +20,8 @@ import numpy.typing as npt
 from PIL import Image
 
 RETRY_S = 0.02  # between tries of a frame that the mapper had no room for
+REST_S = 0.5  # the server lets connections go that rest for a second
+MOST_BYTES = 32 << 20  # of a frame; the server refuses more
 
 
 class SendError(RuntimeError):
@@ -51,6 +54,7 @@ class FrameSender:
         self._units_per_m = float({**both, **rig.get("depth_camera", {})}.get("depth_scale", 1000))
         self._jpeg_quality = jpeg_quality
         self.taken = self.skipped = 0
+        self._heard = 0.0  # when the last answer came
         self._post_json("/api/camera", rig)
 
     def send(self, color: npt.NDArray[np.uint8] | bytes, depth: npt.NDArray[Any] | bytes, pose: npt.ArrayLike, timestamp: float = 0.0, *,
@@ -61,28 +65,37 @@ class FrameSender:
         depth: uint16 [height, width] in the camera's units, floats in metres (not finite: none), or the bytes of a PNG.
         pose: [4, 4], world_from_camera of the depth camera, unless the camera's "poses" says otherwise.
 
-        Raises SendError when the frame is wrong or the map is finished."""
+        Raises SendError when the frame is wrong or the map is finished, and when the answer was lost: the frame may have been
+        taken, and is not sent twice."""
         about: dict[str, Any] = {"pose": np.asarray(pose, np.float64).reshape(16).tolist(), "timestamp_s": float(timestamp)}
         if name:
             about["name"] = name
         body, kind = _multipart({"color": self._color(color), "depth": self._depth(depth), "frame": json.dumps(about).encode()})
-        end = time.monotonic() + patience_s
-        while not self._offer(body, kind):
+        if len(body) > MOST_BYTES:
+            raise SendError(413, f"the frame has {len(body) / 2**20:.1f} MiB, the server takes {MOST_BYTES >> 20}; send smaller or "
+                            "compressed pictures")
+        headers, end = {"Content-Type": kind}, time.monotonic() + patience_s
+        while not self._offer(body, headers):
             if time.monotonic() >= end:
                 self.skipped += 1
                 return False
             time.sleep(RETRY_S)
+            headers["Ovimap-Retry"] = "1"  # the server has counted this frame as left out
         self.taken += 1
         return True
 
     def finish(self, wait_s: float = 600.0) -> None:
-        """Says that no more frames come and waits until the map is saved. Raises SendError when it is not by then."""
-        self._post_json("/api/finish", {})
+        """Says that no more frames come and waits until the map is saved. Raises SendError when it is not by then, or when
+        the server has ended."""
         end = time.monotonic() + wait_s
-        while self._ask("GET", "/api/map", None, {})[1].get("live", False):
-            if time.monotonic() >= end:
-                raise SendError(0, f"the map was not saved within {wait_s:g} s; the server goes on with it")
-            time.sleep(0.2)
+        try:
+            self._post_json("/api/finish", {})
+            while not self._saved():
+                if time.monotonic() >= end:
+                    raise SendError(0, f"the map was not saved within {wait_s:g} s; the server goes on with it")
+                time.sleep(0.2)
+        except (OSError, http.client.HTTPException) as fault:
+            raise SendError(0, f"the server ended before it said that the map is saved ({fault!r}); what it printed says why") from None
 
     def close(self) -> None:
         self._connection.close()
@@ -104,35 +117,66 @@ class FrameSender:
         Image.fromarray(np.ascontiguousarray(depth, np.uint16)).save(out, "PNG", compress_level=1)
         return out.getvalue()
 
-    def _offer(self, body: bytes, kind: str) -> bool:
-        status, reply = self._ask("POST", "/api/frames", body, {"Content-Type": kind})
-        if status == 200:
-            return True
+    def _offer(self, body: bytes, headers: dict[str, str]) -> bool:
+        status, reply = self._ask("POST", "/api/frames", body, headers, again=False)
         if status in (429, 503):
             return False
-        raise SendError(status, reply.get("error", f"the server answered {status}"))
+        _require(status, reply)
+        return True
 
     def _post_json(self, path: str, value: Any) -> None:
-        status, reply = self._ask("POST", path, json.dumps(value).encode(), {"Content-Type": "application/json"})
-        if status >= 400:
-            raise SendError(status, reply.get("error", f"the server answered {status}"))
+        _require(*self._ask("POST", path, json.dumps(value).encode(), {"Content-Type": "application/json"}))
 
-    def _ask(self, method: str, path: str, body: bytes | None, headers: dict[str, str]) -> tuple[int, dict[str, Any]]:
+    def _saved(self) -> bool:
+        status, reply = self._ask("GET", "/api/map", None, {})
+        if status in (429, 503):
+            return False
+        _require(status, reply)
+        return not reply.get("live", False)
+
+    def _ask(self, method: str, path: str, body: bytes | None, headers: dict[str, str], *, again: bool = True) -> tuple[int, dict[str, Any]]:
+        """again: it does no harm to ask a second time when the answer was lost."""
+        self._connect()
         try:
             return self._once(method, path, body, headers)
-        except (ConnectionError, http.client.BadStatusLine, http.client.CannotSendRequest):
-            self._connection.close()  # the server lets connections go that rest for a second
-            return self._once(method, path, body, headers)
+        except (OSError, http.client.HTTPException) as fault:
+            self._connection.close()
+            if not again:
+                raise SendError(0, f"the answer to a frame was lost ({fault!r}): it may have been taken, so it was not sent "
+                                "again; go on with the next") from None
+            if isinstance(fault, TimeoutError):
+                raise
+        self._connect()
+        return self._once(method, path, body, headers)
+
+    def _connect(self) -> None:
+        """Opens the connection anew where the server has let it go, or is about to: what is sent then would be lost."""
+        if self._connection.sock is not None:
+            with selectors.DefaultSelector() as closed:
+                closed.register(self._connection.sock, selectors.EVENT_READ)
+                if time.monotonic() - self._heard > REST_S or closed.select(0):
+                    self._connection.close()
+        if self._connection.sock is None:
+            self._connection.connect()
 
     def _once(self, method: str, path: str, body: bytes | None, headers: dict[str, str]) -> tuple[int, dict[str, Any]]:
-        self._connection.request(method, path, body, {**self._headers, **headers})
+        try:
+            self._connection.request(method, path, body, {**self._headers, **headers})
+        except (BrokenPipeError, ConnectionResetError):
+            pass  # a server that refuses a body by its head may have answered before it closed
         reply = self._connection.getresponse()
         text = reply.read()
+        self._heard = time.monotonic()
         try:
             value = json.loads(text)
         except ValueError:
             value = {}
         return reply.status, value if isinstance(value, dict) else {}
+
+
+def _require(status: int, reply: dict[str, Any]) -> None:
+    if status >= 400:
+        raise SendError(status, reply.get("error", f"the server answered {status}"))
 
 
 def _multipart(parts: dict[str, bytes]) -> tuple[bytes, str]:

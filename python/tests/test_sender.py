@@ -1,12 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
 """Frames sent over HTTP give the map that the recording gives; a ROS 2 node's messages become such frames."""
+import http.server
 import importlib.util
 import json
 import os
 import pathlib
 import signal
+import socket
 import subprocess
+import threading
 
 import numpy as np
 import ovimap
@@ -120,6 +123,91 @@ def test_arrays_are_encoded_and_what_does_not_fit_is_skipped(room, tmp_path):
         sender.finish()
         saved = server.saved()
         assert saved["frames"] == sender.taken and saved["live"]["frames_dropped"] >= sender.skipped
+
+
+class Scripted:
+    """A server that does with each request what `answer` says: a status, or None to hang up without an answer."""
+
+    def __init__(self, answer):
+        seen = self.seen = []
+
+        class Handler(http.server.BaseHTTPRequestHandler):
+            protocol_version = "HTTP/1.1"
+
+            def handle_any(self):
+                self.rfile.read(int(self.headers.get("Content-Length", 0)))
+                seen.append((self.path, self.headers.get("Ovimap-Retry")))
+                status = answer(self.path, len(seen))
+                if status is None:
+                    self.close_connection = True
+                    return
+                self.send_response(status)
+                self.send_header("Content-Length", "2")
+                self.end_headers()
+                self.wfile.write(b"{}")
+                self.close_connection = status == 201  # without saying so
+
+            do_GET = do_POST = handle_any
+
+            def log_message(self, *_):
+                pass
+
+        self.server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+        self.address = f"http://127.0.0.1:{self.server.server_port}/"
+        threading.Thread(target=self.server.serve_forever, daemon=True).start()
+
+    def frames(self):
+        return [retry for path, retry in self.seen if path == "/api/frames"]
+
+    def end(self):
+        self.server.shutdown()
+        self.server.server_close()
+
+
+CAMERA = {"width": 4, "height": 2, "fx": 5, "fy": 5, "cx": 1.5, "cy": 0.5}
+
+
+def test_a_frame_whose_answer_is_lost_is_not_sent_twice():
+    server = Scripted(lambda path, count: None if path == "/api/frames" else 200)
+    with pytest.raises(SendError, match="may have been taken"):
+        FrameSender(server.address, CAMERA).send(b"color", b"depth", np.eye(4), patience_s=9)
+    assert server.frames() == [None]
+    server.end()
+
+
+def test_a_connection_that_was_let_go_is_opened_again():
+    server = Scripted(lambda path, count: 201 if path == "/api/camera" else 200)
+    sender = FrameSender(server.address, CAMERA)
+    sender._connection.sock.recv(1, socket.MSG_PEEK)  # until it is closed there
+    assert sender.send(b"color", b"depth", np.eye(4)) and server.frames() == [None]
+    server.end()
+
+
+def test_further_tries_of_a_frame_say_so():
+    server = Scripted(lambda path, count: 503 if path == "/api/frames" and count < 4 else 200)
+    sender = FrameSender(server.address, CAMERA)
+    assert sender.send(b"color", b"depth", np.eye(4), patience_s=60) and sender.send(b"color", b"depth", np.eye(4))
+    assert server.frames() == [None, "1", "1", None] and (sender.taken, sender.skipped) == (2, 0)
+    server.end()
+
+
+def test_a_frame_that_is_too_large_is_not_sent():
+    server = Scripted(lambda path, count: 200)
+    with pytest.raises(SendError, match="33.0 MiB, the server takes 32"):
+        FrameSender(server.address, CAMERA).send(bytes(33 << 20), b"depth", np.eye(4))
+    assert server.frames() == []
+    server.end()
+
+
+def test_a_server_that_ends_before_the_map_is_saved_is_told():
+    server = Scripted(lambda path, count: 500 if path == "/api/map" else 202)
+    sender = FrameSender(server.address, CAMERA)
+    with pytest.raises(SendError, match="answered 500"):
+        sender.finish()
+    server.end()
+    sender.close()
+    with pytest.raises(SendError, match="ended before it said that the map is saved"):
+        sender.finish()
 
 
 @pytest.fixture(scope="module")
