@@ -5,17 +5,19 @@
     ros2_sender.py --color /camera/color/image_raw --depth /camera/depth/image_rect_raw --info /camera/depth/camera_info \
         --poses /odom --url http://localhost:8080/
 
-Depth must be registered to colour, or --color-info given; poses are Odometry or PoseStamped of the camera's optical frame
-(x right, y down, z forward). Ctrl-C finishes the map and saves it. rclpy is imported only where the node runs: the rest works
-on messages of any origin."""
+Depth must be registered to colour, or --color-info given: /tf_static then says how the cameras stand. Poses are Odometry or
+PoseStamped of the camera's optical frame (x right, y down, z forward). Ctrl-C finishes the map and saves it. rclpy is imported
+only where the node runs: the rest works on messages of any origin."""
 import argparse
 import bisect
 
 import numpy as np
+from ovimap import Error
 from ovimap.bag_messages import quaternion, raw_color, raw_depth, stamp_ns, vector
 from ovimap.sender import FrameSender
-from ovimap.transforms import between, matrix_of
+from ovimap.transforms import TransformTree, between, matrix_of, rotation_vector_of
 
+POSES_AN_IMAGE = 20  # at most: odometry is faster than cameras
 MAX_GAP_NS = 20_000_000  # colour and depth farther apart do not belong together
 
 
@@ -25,10 +27,13 @@ def camera_of(info):
     return {"width": info.width, "height": info.height, "fx": k[0], "fy": k[4], "cx": k[2], "cy": k[5]}
 
 
-def rig_of(depth_info, color_info=None):
-    """Both cameras; without color_info depth is registered to colour."""
+def rig_of(depth_info, color_info=None, color_from_depth=None):
+    """Both cameras; without color_info depth is registered to colour. color_from_depth: [4, 4], goes with color_info."""
     depth = {**camera_of(depth_info), "depth_scale": 1000}
-    return depth if color_info is None else {"depth_camera": depth, "color_camera": camera_of(color_info)}
+    if color_info is None:
+        return depth
+    offset = {"rotation_vector": rotation_vector_of(color_from_depth).tolist(), "translation": color_from_depth[:3, 3].tolist()}
+    return {"depth_camera": depth, "color_camera": camera_of(color_info), "color_from_depth": offset}
 
 
 def color_of(message):
@@ -56,9 +61,15 @@ class Matcher:
 
     def add(self, kind, message):
         """Returns the frames that can be sent by now: (colour, depth, pose, seconds)."""
+        self.put(kind, message)
+        return self.take()
+
+    def put(self, kind, message):
         list_of = {"color": self.colors, "depth": self.depths, "pose": self.poses}[kind]
         bisect.insort(list_of, (stamp_ns(message.header), message), key=lambda entry: entry[0])
-        del list_of[: -self.keep]
+        del list_of[: -self.keep * (POSES_AN_IMAGE if kind == "pose" else 1)]
+
+    def take(self):
         return [frame for frame in (self._frame(*entry) for entry in list(self.depths)) if frame]
 
     def _frame(self, time_ns, depth):
@@ -82,13 +93,56 @@ class Matcher:
         return between(pose_of(first), pose_of(last), (time_ns - first_ns) / (last_ns - first_ns))
 
 
+class Bridge:
+    """Sends what the messages give, from when the cameras are known; images and poses wait until then.
+
+    open_sender: makes a FrameSender of the cameras. separate: colour has a camera of its own."""
+
+    def __init__(self, open_sender, separate=False):
+        self.open_sender, self.separate = open_sender, separate
+        self.infos, self.tree, self.matcher, self.sender = {}, TransformTree(), Matcher(), None
+
+    def add(self, kind, message):
+        """Returns what is to be told, or None."""
+        self.matcher.put(kind, message)
+        if self.sender is None:
+            rig = self._rig()
+            if rig is None:
+                return "waiting for camera_info" + (" of both cameras, and for /tf_static to connect their frames" if self.separate else "")
+            self.sender = self.open_sender(rig)
+        skipped = [frame for frame in self.matcher.take() if not self.sender.send(*frame)]
+        return "the mapper is busy: a frame was skipped" if skipped else None
+
+    def add_transforms(self, message):
+        """Of /tf_static."""
+        for entry in message.transforms:
+            pose = matrix_of(vector(entry.transform.translation), quaternion(entry.transform.rotation))
+            self.tree.add(entry.header.frame_id, entry.child_frame_id, stamp_ns(entry.header), pose, static=True)
+
+    def _rig(self):
+        depth, color = self.infos.get("depth"), self.infos.get("color")
+        if depth is None or not self.separate:
+            return rig_of(depth) if depth else None
+        offset = self._color_from_depth(color, depth) if color else None
+        return None if offset is None else rig_of(depth, color, offset)
+
+    def _color_from_depth(self, color, depth):
+        if color.header.frame_id == depth.header.frame_id:
+            return np.eye(4)
+        try:
+            return self.tree.target_from(color.header.frame_id, depth.header.frame_id, stamp_ns(depth.header))
+        except Error:  # not connected yet
+            return None
+
+
 def main():
     import rclpy
     from geometry_msgs.msg import PoseStamped
     from nav_msgs.msg import Odometry
     from rclpy.node import Node
-    from rclpy.qos import qos_profile_sensor_data
+    from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
     from sensor_msgs.msg import CameraInfo, CompressedImage, Image
+    from tf2_msgs.msg import TFMessage
 
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     for name in ("--color", "--depth", "--info", "--poses"):
@@ -98,33 +152,31 @@ def main():
     options = parser.parse_args()
     rclpy.init()
     node = Node("ovimap_sender")
-    infos, matcher, senders = {}, Matcher(), []
+    bridge = Bridge(lambda rig: FrameSender(options.url, rig), separate=bool(options.color_info))
 
-    def send(frames):
-        if not senders:
-            if "depth" not in infos or (options.color_info and "color" not in infos):
-                return
-            senders.append(FrameSender(options.url, rig_of(infos["depth"], infos.get("color"))))
-        for frame in frames:
-            if not senders[0].send(*frame):
-                node.get_logger().info("the mapper is busy: a frame was skipped", throttle_duration_sec=5)
+    def take(kind, message):
+        told = bridge.add(kind, message)
+        if told:
+            node.get_logger().info(told, throttle_duration_sec=5)
 
     def listen(kind, topic, message_type):
-        node.create_subscription(message_type, topic, lambda message: send(matcher.add(kind, message)), qos_profile_sensor_data)
+        node.create_subscription(message_type, topic, lambda message: take(kind, message), qos_profile_sensor_data)
 
     listen("color", options.color, CompressedImage if options.color.endswith("/compressed") else Image)
     listen("depth", options.depth, Image)
     listen("pose", options.poses, Odometry if "odom" in options.poses else PoseStamped)
     for kind, topic in (("depth", options.info), ("color", options.color_info)):
         if topic:
-            node.create_subscription(CameraInfo, topic, lambda message, kind=kind: infos.update({kind: message}), qos_profile_sensor_data)
+            node.create_subscription(CameraInfo, topic, lambda message, kind=kind: bridge.infos.update({kind: message}), qos_profile_sensor_data)
+    kept = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)  # it is published once, maybe before we came
+    node.create_subscription(TFMessage, "/tf_static", bridge.add_transforms, kept)
     try:
         rclpy.spin(node)
     except KeyboardInterrupt:
         pass
-    if senders:
-        senders[0].finish()
-        print(f"{senders[0].taken} frames sent, {senders[0].skipped} skipped; the map is saved")
+    if bridge.sender:
+        bridge.sender.finish()
+        print(f"{bridge.sender.taken} frames sent, {bridge.sender.skipped} skipped; the map is saved")
 
 
 if __name__ == "__main__":

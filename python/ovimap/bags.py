@@ -22,7 +22,7 @@ import numpy as np
 
 from ._ovimap import Error
 from .bag_messages import CAMERA, IMAGES, ODOMETRY, POSES, TRANSFORMS, Bag, is_depth, quaternion, raw_color, raw_depth, stamp_ns, vector
-from .transforms import Matrix, TransformTree, matrix_of, quaternion_of
+from .transforms import Matrix, TransformTree, matrix_of, quaternion_of, rotation_vector_of
 
 MILLIMETRES = 1000  # what 16-bit depth counts by ROS's convention (REP 118)
 FLOAT_UNITS = 5000  # to which depth in metres is rounded: 0.2 mm, up to 13 m
@@ -331,10 +331,7 @@ def _camera_text(color: Stream, depth: Stream, offset: Matrix) -> str:
         text = ", ".join(f"{name}: {float(value)!r}" for name, value in figures.items())
         return f"{{width: {stream.info.width}, height: {stream.info.height}, {text}{more}}}"
 
-    q = quaternion_of(offset)
-    angle = 2 * np.arctan2(np.linalg.norm(q[:3]), q[3])
-    axis = q[:3] / max(float(np.linalg.norm(q[:3])), 1e-300)
-    turn = ", ".join(repr(float(value)) for value in axis * (angle - 2 * np.pi if angle > np.pi else angle))
+    turn = ", ".join(repr(float(value)) for value in rotation_vector_of(offset))
     shift = ", ".join(repr(float(value)) for value in offset[:3, 3])
     return (
         f"depth_camera: {camera(depth, f', depth_scale: {depth.units}, invalid: [0, 65535]')}\n"

@@ -48,6 +48,14 @@ def quaternion_of(matrix: Matrix) -> npt.NDArray[np.float64]:
     return np.asarray(q / np.linalg.norm(q))
 
 
+def rotation_vector_of(matrix: Matrix) -> npt.NDArray[np.float64]:
+    """[3]: the axis times the angle in radians, which is at most pi."""
+    q = quaternion_of(matrix)
+    angle = 2 * np.arctan2(np.linalg.norm(q[:3]), q[3])
+    axis = q[:3] / max(float(np.linalg.norm(q[:3])), 1e-300)
+    return np.asarray(axis * (angle - 2 * np.pi if angle > np.pi else angle))
+
+
 def between(first: Matrix, second: Matrix, share: float) -> Matrix:
     """The transform that far from the first to the second: linear, and along the arc of the rotation (slerp)."""
     a, b = quaternion_of(first), quaternion_of(second)

@@ -274,7 +274,11 @@ def test_messages_become_frames(node, store):
     camera = ovimap.PinholeCamera(4, 2, 5.0, 6.0, 1.5, 0.5)
     one = node.rig_of(messages.info(camera))
     assert one == figures(camera, depth_scale=1000)
-    assert set(node.rig_of(messages.info(camera), messages.info(camera))) == {"depth_camera", "color_camera"}
+    offset = node.matrix_of((0.1, 0.2, 0.3), (0, 0, 1, 1))
+    both = node.rig_of(messages.info(camera), messages.info(camera), offset)
+    assert set(both) == {"depth_camera", "color_camera", "color_from_depth"}
+    assert np.allclose(both["color_from_depth"]["rotation_vector"], [0, 0, np.pi / 2])
+    assert np.allclose(both["color_from_depth"]["translation"], [0.1, 0.2, 0.3])
 
 
 def test_depth_is_matched_with_colour_and_the_pose_of_its_time(node, store):
@@ -293,6 +297,54 @@ def test_depth_is_matched_with_colour_and_the_pose_of_its_time(node, store):
     assert matcher.add("depth", messages.image(90 * ms, depth, "16UC1")) == []
     assert matcher.add("color", messages.image(140 * ms, color, "rgb8")) == []
     assert matcher.depths == []
+
+
+class Sent(list):
+    """In the place of a FrameSender."""
+
+    def __call__(self, rig):
+        self.rig = rig
+        return self
+
+    def send(self, *frame):
+        self.append(frame)
+        return True
+
+
+def feed(bridge, messages, seconds):
+    """Three images and poses."""
+    for i in range(3):
+        time_ns = int((seconds + 0.033 * i) * 1e9)
+        bridge.add("pose", messages.pose(time_ns, np.eye(4)))
+        bridge.add("color", messages.image(time_ns, np.zeros((2, 4, 3), np.uint8), "rgb8"))
+        told = bridge.add("depth", messages.image(time_ns, np.ones((2, 4), np.uint16), "16UC1"))
+    return told
+
+
+def test_frames_wait_for_the_cameras(node, store):
+    messages, sent = Messages(store), Sent()
+    bridge = node.Bridge(sent)
+    assert "waiting for camera_info" in feed(bridge, messages, 10) and not sent
+    bridge.infos["depth"] = messages.info(ovimap.PinholeCamera(4, 2, 5.0, 6.0, 1.5, 0.5))
+    assert feed(bridge, messages, 11) is None
+    assert [round(frame[3]) for frame in sent] == [10] * 3 + [11] * 3
+
+
+def test_a_separate_colour_camera_stands_where_tf_says(node, store):
+    messages, sent = Messages(store), Sent()
+    bridge, camera = node.Bridge(sent, separate=True), ovimap.PinholeCamera(4, 2, 5.0, 6.0, 1.5, 0.5)
+    for kind in ("depth", "color"):
+        bridge.infos[kind] = messages.info(camera)
+        bridge.infos[kind].header.frame_id = kind
+    assert "/tf_static" in feed(bridge, messages, 10) and not sent
+    shift = messages.make("geometry_msgs/msg/Vector3", 0.05, 0.0, 0.0)
+    transform = messages.make("geometry_msgs/msg/Transform", shift, messages.make("geometry_msgs/msg/Quaternion", 0.0, 0.0, 0.0, 1.0))
+    header = messages.header(0)
+    header.frame_id = "depth"
+    entry = messages.make("geometry_msgs/msg/TransformStamped", header, "color", transform)
+    bridge.add_transforms(messages.make("tf2_msgs/msg/TFMessage", [entry]))
+    feed(bridge, messages, 11)
+    assert len(sent) == 6 and np.allclose(sent.rig["color_from_depth"]["translation"], [-0.05, 0, 0])
 
 
 @needs_program
