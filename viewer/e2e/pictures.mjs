@@ -14,7 +14,7 @@ if (!program || !recording || !out) {
   process.exit(2);
 }
 const folder = mkdtempSync(join(tmpdir(), 'ovimap-pictures-'));
-const map = join(folder, 'kitchen.ovimap');
+const map = join(folder, 'room.ovimap');
 const server = spawn(
   program,
   ['serve', recording, '--live', '-o', map, '--port', '0', '--json', '--no-limits', ...options],
