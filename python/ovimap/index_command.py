@@ -9,32 +9,16 @@ import json
 import sys
 from typing import TYPE_CHECKING, Any
 
-from ._ovimap import Error
+from .command_line import DONE, MENDABLE, NO, run_command
 
 if TYPE_CHECKING:
     from .index import Answer, MapAnswer
     from .index.search import Hit
 
-DONE, NO, MENDABLE = 0, 1, 2  # exit codes, as the program's
-
 
 def main(arguments: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
-    options = _parser().parse_args(arguments)
-    try:
-        code: int = options.command(options)
-    except Error as fault:
-        print(f"ovimap-index: {fault}", file=sys.stderr)
-        return MENDABLE
-    except OSError as fault:
-        print(f"ovimap-index: {fault}; make room, or give a folder that can be written", file=sys.stderr)
-        return MENDABLE
-    except ModuleNotFoundError as fault:
-        if fault.name not in ("faiss", "pyarrow"):
-            raise
-        print(f"ovimap-index: {fault.name} is not installed; pip install 'ovimap[index]'", file=sys.stderr)
-        return MENDABLE
-    return code
+    return run_command("ovimap-index", _parser().parse_args(arguments), extra="index", packages=("faiss", "pyarrow"))
 
 
 def _build(options: argparse.Namespace) -> int:

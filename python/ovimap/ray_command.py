@@ -11,12 +11,10 @@ import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from ._ovimap import Error
+from .command_line import DONE, MENDABLE, run_command
 
 if TYPE_CHECKING:
     from .cluster import Job
-
-DONE, MENDABLE = 0, 2  # exit codes, as the program's
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -26,22 +24,10 @@ def main(arguments: list[str] | None = None) -> int:
     options = _parser().parse_args(words[:cut])
     options.run_options = words[cut + 1:]
     try:
-        code: int = options.command(options)
-    except Error as fault:
-        print(f"ovimap-ray: {fault}", file=sys.stderr)
-        return MENDABLE
-    except OSError as fault:
-        print(f"ovimap-ray: {fault}; make room, or give a folder that can be written", file=sys.stderr)
-        return MENDABLE
-    except ModuleNotFoundError as fault:
-        if fault.name not in ("ray", "rich"):
-            raise
-        print(f"ovimap-ray: {fault.name} is not installed; pip install 'ovimap[ray]'", file=sys.stderr)
-        return MENDABLE
+        return run_command("ovimap-ray", options, extra="ray", packages=("ray", "rich"))
     except KeyboardInterrupt:
         print("ovimap-ray: stopped; the same command goes on where it stopped", file=sys.stderr)
         return MENDABLE
-    return code
 
 
 def _map(options: argparse.Namespace) -> int:

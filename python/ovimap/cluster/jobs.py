@@ -17,6 +17,7 @@ from ray.exceptions import GetTimeoutError, RayError, RayTaskError
 from ray.util.scheduling_strategies import NodeAffinitySchedulingStrategy
 
 from .._ovimap import Error
+from ..command_line import line_of
 from .program import Crash
 
 WAIT_S = 1.0  # between looks at how far the jobs are
@@ -93,7 +94,7 @@ def attempt(work: Work, order: dict[str, Any], name: str, board: Any) -> Outcome
     except Error as fault:
         return Outcome(fault=str(fault))
     except OSError as fault:
-        return Outcome(fault=f"{fault}; make room, or give a folder that can be written")
+        return Outcome(fault=line_of(fault))
     except Crash as fault:
         return Outcome(fault=str(fault), lost=True)
 
