@@ -8,6 +8,7 @@
 
 #include <spng.h>
 #include <turbojpeg.h>
+#include <zlib.h>
 
 namespace ovimap {
 
@@ -19,9 +20,12 @@ static_assert(sizeof(Rgb8) == 3, "the codecs write packed RGB");
 constexpr std::uint32_t kMaxSide_px = 1u << 15;
 constexpr std::uint64_t kMaxArea_px = 1u << 27;
 
-/// PNG: deflate's fastest level, and only the filters that compare with the left and upper pixel.
+/// PNG: deflate's fastest level, which looks for runs alone: filtered rows hold little else. Trying
+/// the upper pixel as well pays for depth and ids, not for noisy colour.
 constexpr int kPngLevel = 1;
-constexpr int kPngFilters = SPNG_FILTER_CHOICE_SUB | SPNG_FILTER_CHOICE_UP;
+constexpr int kPngStrategy = Z_RLE;
+constexpr int kColorFilters = SPNG_FILTER_CHOICE_SUB;
+constexpr int kGrayFilters = SPNG_FILTER_CHOICE_SUB | SPNG_FILTER_CHOICE_UP;
 
 using PngContext = std::unique_ptr<spng_ctx, decltype(&spng_ctx_free)>;
 using JpegHandle = std::unique_ptr<void, decltype(&tjDestroy)>;
@@ -107,7 +111,9 @@ Bytes encode_png(const void* pixels, std::size_t size_bytes, int width, int heig
   header.bit_depth = static_cast<std::uint8_t>(bits);
   spng_set_option(context.get(), SPNG_ENCODE_TO_BUFFER, 1);
   spng_set_option(context.get(), SPNG_IMG_COMPRESSION_LEVEL, kPngLevel);
-  spng_set_option(context.get(), SPNG_FILTER_CHOICE, kPngFilters);
+  spng_set_option(context.get(), SPNG_IMG_COMPRESSION_STRATEGY, kPngStrategy);
+  spng_set_option(context.get(), SPNG_FILTER_CHOICE,
+                  color == SPNG_COLOR_TYPE_GRAYSCALE ? kGrayFilters : kColorFilters);
   int code = spng_set_ihdr(context.get(), &header);
   if (code == 0)
     code = spng_encode_image(context.get(), pixels, size_bytes, SPNG_FMT_PNG, SPNG_ENCODE_FINALIZE);
