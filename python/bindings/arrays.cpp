@@ -75,8 +75,8 @@ AnyArray array_of(nb::handle object, const std::string& name, const char* expect
                 object.is_none()
                     ? "None"
                     : concat("a ", type,
-                             " that cannot be read as an array in memory; give a NumPy array, or a "
-                             "torch tensor without gradient (.detach())"));
+                             " that cannot be read as an array in memory; give a NumPy array or a "
+                             "tensor that speaks DLPack"));
   if (array.device_type() != nb::device::cpu::value)
     refuse_type(name, expected, "a " + type + " on another device; call .cpu() on it first");
   return array;
@@ -177,6 +177,19 @@ IdImage read_ids(nb::handle object, const std::string& name, int width, int heig
   if (!visit_integers(array, store) && !visit_if_any_of<bool>(array, store_bool))
     refuse_type(name, kExpected, describe(array));
   return ids;
+}
+
+Picture read_picture(nb::handle object, const char* name) {
+  constexpr const char* kExpected =
+      "uint8 [height, width, 3], red first, or uint16 [height, width]";
+  const AnyArray array = array_of(object, name, kExpected);
+  if (array.ndim() == 3) return read_color(object, name);
+  if (array.ndim() != 2) refuse_value(name, kExpected, describe(array));
+  Image<std::uint16_t> image(static_cast<int>(array.shape(1)), static_cast<int>(array.shape(0)));
+  std::uint16_t* out = image.data();
+  if (!visit_if_any_of<std::uint16_t>(array, [&out](std::uint16_t value) { *out++ = value; }))
+    refuse_type(name, kExpected, describe(array));
+  return image;
 }
 
 Pose read_pose(nb::handle object, const char* name) {

@@ -8,6 +8,7 @@
 #include <initializer_list>
 #include <optional>
 #include <string>
+#include <variant>
 
 #include "ovimap/geometry/pose.h"
 #include "ovimap/image/image.h"
@@ -32,6 +33,9 @@ DepthImage read_depth(nb::handle object, std::optional<double> depth_scale, floa
                       float max_depth_m);
 /// [height, width] integers or bool from 0 to 65535, of that size.
 IdImage read_ids(nb::handle object, const std::string& name, int width, int height);
+/// uint8 [height, width, 3] or uint16 [height, width].
+using Picture = std::variant<RgbImage, Image<std::uint16_t>>;
+Picture read_picture(nb::handle object, const char* name);
 /// [4, 4] floats: a rigid transform. Throws ValueError with pose_fault.
 Pose read_pose(nb::handle object, const char* name);
 /// [rows, dimension] floats, scaled to rows of length 1; a row that is not finite becomes zeros.

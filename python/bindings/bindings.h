@@ -11,6 +11,7 @@ namespace nb = nanobind;
 // Each adds the classes and functions of one topic to the module.
 void bind_settings(nb::module_& module);
 void bind_frames(nb::module_& module);
+void bind_images(nb::module_& module);
 void bind_sources(nb::module_& module);
 void bind_check(nb::module_& module);
 void bind_calibrate(nb::module_& module);

@@ -39,6 +39,7 @@ NB_MODULE(_ovimap, module) {
   bind_errors(module);
   bind_settings(module);
   bind_frames(module);
+  bind_images(module);
   bind_sources(module);
   bind_check(module);
   bind_calibrate(module);

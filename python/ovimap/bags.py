@@ -6,13 +6,11 @@ from __future__ import annotations
 
 import argparse
 import bisect
-import io
 import json
 import os
 import pathlib
 import shutil
 import sys
-import zlib
 from collections import deque
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
@@ -20,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from ._ovimap import Error
+from ._ovimap import Error, decode_gray_png, encode_png
 from .bag_messages import CAMERA, IMAGES, ODOMETRY, POSES, TRANSFORMS, Bag, is_depth, quaternion, raw_color, raw_depth, stamp_ns, vector
 from .transforms import Matrix, TransformTree, matrix_of, quaternion_of, rotation_vector_of
 
@@ -97,15 +95,15 @@ class Stream:
         if not hasattr(message, "encoding"):
             return self.encode_compressed(message)
         if not self.depth:
-            return _png(raw_color(message, self.topic)), ".png"
+            return encode_png(raw_color(message, self.topic)), ".png"
         return self.encode_depth(raw_depth(message, self.topic))
 
     def encode_depth(self, depth: Any) -> tuple[bytes, str]:
         if depth.dtype == np.uint16:
-            return _png(depth), ".png"
+            return encode_png(depth), ".png"
         self.units = FLOAT_UNITS
         units = np.nan_to_num(depth * np.float32(FLOAT_UNITS), nan=0, posinf=0, neginf=0)
-        return _png(np.where((units > 0) & (units < 65535), np.rint(units), 0).astype(np.uint16)), ".png"
+        return encode_png(np.where((units > 0) & (units < 65535), np.rint(units), 0).astype(np.uint16)), ".png"
 
     def encode_compressed(self, message: Any) -> tuple[bytes, str]:
         data = bytes(message.data)
@@ -123,19 +121,9 @@ class Stream:
             raise Error(f"an image of {self.topic} is compressed as '{image_format}', which holds no PNG; record it as 16UC1")
         if not image_format.startswith("32FC1"):
             return png, ".png"
-        from PIL import Image
-
-        stored = np.asarray(Image.open(io.BytesIO(png))).astype(np.float32)
+        stored = decode_gray_png(png).astype(np.float32)
         with np.errstate(divide="ignore"):
             return self.encode_depth(np.where(stored > 0, header[0] / (stored - header[1]), 0))
-
-
-def _png(pixels: Any) -> bytes:
-    from PIL import Image
-
-    out = io.BytesIO()
-    Image.fromarray(pixels).save(out, "PNG", compress_level=1, compress_type=zlib.Z_RLE)  # the filters do the most
-    return out.getvalue()
 
 
 def convert(bag: str | os.PathLike[str], out: str | os.PathLike[str], *, topics: Topics | None = None) -> dict[str, Any]:
@@ -150,7 +138,7 @@ def convert(bag: str | os.PathLike[str], out: str | os.PathLike[str], *, topics:
     if folder.exists() and any(folder.iterdir()):
         raise Error(f"'{folder}' is not empty; name a new folder")
     try:
-        # Pillow lets other threads run while it compresses.
+        # Threads, not processes: encode_png lets the others run.
         with Bag(pathlib.Path(bag)) as opened, ThreadPoolExecutor(max_workers=os.cpu_count()) as pool:
             color_topic, depth_topic = _image_topics(opened, chosen)
             color = Stream(color_topic, _info_topic(opened, color_topic), folder / "color", pool, depth=False)
