@@ -94,8 +94,9 @@ class Ownership {
       if (unit.owner == from) unit.owner = to;
   }
 
+  /// Also where one of them has lost all its surface since: what later joins it joins the other.
   void merge(InstanceId keep, InstanceId drop) {
-    if (keep == drop || !owns_any(keep) || !owns_any(drop)) return;
+    if (keep == drop) return;
     give(drop, keep);
     aliases_[drop] = keep;
     if (const auto name = names_.find(drop); name != names_.end()) {

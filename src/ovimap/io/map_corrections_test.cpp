@@ -208,6 +208,15 @@ TEST_F(MapCorrections, EditsOfWhatIsNoLongerThereDoNothing) {
   EXPECT_EQ(parts(corrected().instances), parts(record_.instances));
 }
 
+TEST_F(MapCorrections, WhatIsJoinedThroughALostObjectIsJoined) {
+  log(edit(EditAction::kMerge, {98, 3}));  // 98 has lost its surface since
+  log(edit(EditAction::kMerge, {1, 98}));
+  const MapRecord one = corrected();
+  EXPECT_EQ(parts(one.instances), (Parts{{1, {1, 2, 4}}, {7, {5, 6}}}));
+  EXPECT_EQ(one.names.at(1), "cup");
+  EXPECT_EQ(one.semantics.appearances.at(1).views.size(), 2u);
+}
+
 TEST_F(MapCorrections, ObjectsWithoutSuperPointsCanBeCorrected) {
   for (InstanceSummary& instance : record_.instances) instance.super_points.clear();
   log(edit(EditAction::kMerge, {1, 3}));

@@ -184,7 +184,9 @@ class Matchmaker {
     const auto cosine = look_similarity(a_, a, b_, b);
     const bool part = std::max(overlap.share_a, overlap.share_b) >= config_.same_share;
     const bool alike = cosine && *cosine >= config_.alike;
-    if (overlap.iou >= config_.same_iou || (part && alike))
+    const bool same_in_common = overlap.common_iou >= config_.same_common_iou &&
+                                overlap.shared_points >= static_cast<float>(config_.common_points);
+    if (overlap.iou >= config_.same_iou || same_in_common || (part && alike))
       candidates_.push_back({a, b + offset_, overlap.iou, cosine});
   }
 
@@ -241,6 +243,10 @@ void list_fields(MapMergeConfig& config, ConfigFields& fields) {
   fields.add("tolerance_m", config.tolerance_m, 0.001f, 1.f,
              "surfaces nearer to each other are at the same place, metres");
   fields.add("same_iou", config.same_iou, 0.f, 1.f, "overlap at which two objects are one");
+  fields.add("same_common_iou", config.same_common_iou, 0.f, 1.f,
+             "or where both maps have surface, if they share enough of it");
+  fields.add("common_points", config.common_points, 1, 1000000,
+             "how much that is, in points 2 cm apart");
   fields.add("same_share", config.same_share, 0.f, 1.f, "or of either one's points, if alike");
   fields.add("alike", config.alike, -1.f, 1.f, "cosine at which looks agree");
   fields.add("unlike", config.unlike, -1.f, 1.f, "cosine below which they speak against it");

@@ -13,11 +13,13 @@ namespace ovimap {
 class ConfigFields;
 
 struct MapMergeConfig {
-  float tolerance_m = 0.03f;  ///< surfaces nearer to each other are at the same place
-  float same_iou = 0.25f;     ///< overlap at which two objects are one
-  float same_share = 0.6f;    ///< or of either one's points, where the looks agree too
-  float alike = 0.6f;         ///< cosine at which looks agree
-  float unlike = 0.2f;        ///< cosine below which they speak against it
+  float tolerance_m = 0.03f;     ///< surfaces nearer to each other are at the same place
+  float same_iou = 0.25f;        ///< overlap at which two objects are one
+  float same_common_iou = 0.5f;  ///< or where both maps have surface, if they share enough of it:
+  int common_points = 25;        ///< that many points, 2 cm apart
+  float same_share = 0.6f;       ///< or of either one's points, where the looks agree too
+  float alike = 0.6f;            ///< cosine at which looks agree
+  float unlike = 0.2f;           ///< cosine below which they speak against it
 };
 void list_fields(MapMergeConfig& config, ConfigFields& fields);
 

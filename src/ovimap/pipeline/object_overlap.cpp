@@ -27,20 +27,31 @@ struct LabelledPoints {
   }
 };
 
-using Counts = std::map<std::pair<InstanceId, InstanceId>, std::size_t>;
+/// How many points of the objects of one map lie at objects of the other.
+struct SharedPoints {
+  std::map<std::pair<InstanceId, InstanceId>, float> at;  ///< by (object, object of the other)
+  std::map<InstanceId, float> anywhere;                   ///< at any object of the other
+};
 
-/// How many points of each object of `from` lie at each object of `to`.
-Counts shared_points(const LabelledPoints& from, const LabelledPoints& to, float tolerance_m) {
-  Counts counts;
+SharedPoints shared_points(const LabelledPoints& from, const LabelledPoints& to,
+                           float tolerance_m) {
+  SharedPoints counts;
   if (from.points.empty() || to.points.empty()) return counts;
   const auto nearest = NearestPoints(to.points).find_all(from.points, tolerance_m);
-  for (std::size_t i = 0; i < nearest.size(); ++i)
-    if (nearest[i]) ++counts[{from.owner[i], to.owner[nearest[i]->index]}];
+  for (std::size_t i = 0; i < nearest.size(); ++i) {
+    if (!nearest[i]) continue;
+    ++counts.at[{from.owner[i], to.owner[nearest[i]->index]}];
+    ++counts.anywhere[from.owner[i]];
+  }
   return counts;
 }
 
-std::size_t point_count(const MapRecord& map, InstanceId id) {
-  return map.surfaces.at(id).size();
+float point_count(const MapRecord& map, InstanceId id) {
+  return static_cast<float>(map.surfaces.at(id).size());
+}
+
+float iou_of(float shared, float points_a, float points_b) {
+  return shared / std::max(points_a + points_b - shared, 1.f);
 }
 
 }  // namespace
@@ -48,20 +59,23 @@ std::size_t point_count(const MapRecord& map, InstanceId id) {
 ObjectOverlaps overlaps(const MapRecord& a, const MapRecord& b, const Pose& a_from_b,
                         float tolerance_m) {
   const LabelledPoints in_a(a, Pose::Identity()), in_b(b, a_from_b);
-  const Counts at_b = shared_points(in_a, in_b, tolerance_m),
-               at_a = shared_points(in_b, in_a, tolerance_m);
+  const SharedPoints of_a = shared_points(in_a, in_b, tolerance_m),
+                     of_b = shared_points(in_b, in_a, tolerance_m);
   ObjectOverlaps result;
-  for (const auto& [pair, count] : at_b)
-    result[pair].share_a =
-        static_cast<float>(count) / static_cast<float>(point_count(a, pair.first));
-  for (const auto& [pair, count] : at_a)
-    result[{pair.second, pair.first}].share_b =
-        static_cast<float>(count) / static_cast<float>(point_count(b, pair.first));
+  for (const auto& [pair, count] : of_a.at)
+    result[pair].share_a = count / point_count(a, pair.first);
+  for (const auto& [pair, count] : of_b.at)
+    result[{pair.second, pair.first}].share_b = count / point_count(b, pair.first);
+  const auto common = [](const SharedPoints& points, InstanceId id) {
+    const auto found = points.anywhere.find(id);
+    return found == points.anywhere.end() ? 0.f : found->second;
+  };
   for (auto& [pair, overlap] : result) {
-    const auto points_a = static_cast<float>(point_count(a, pair.first)),
-               points_b = static_cast<float>(point_count(b, pair.second));
+    const float points_a = point_count(a, pair.first), points_b = point_count(b, pair.second);
     const float shared = 0.5f * (overlap.share_a * points_a + overlap.share_b * points_b);
-    overlap.iou = shared / std::max(points_a + points_b - shared, 1.f);
+    overlap.shared_points = shared;
+    overlap.iou = iou_of(shared, points_a, points_b);
+    overlap.common_iou = iou_of(shared, common(of_a, pair.first), common(of_b, pair.second));
   }
   return result;
 }

@@ -15,7 +15,9 @@ namespace ovimap {
 /// How much of two objects' surfaces lies at the same place.
 struct ObjectOverlap {
   float share_a = 0, share_b = 0;  ///< of each one's points
+  float shared_points = 0;         ///< the mean of the two counts
   float iou = 0;                   ///< shared points over all points
+  float common_iou = 0;  ///< the same, of the points where both maps have objects' surface
 };
 
 /// The overlaps of all pairs of objects that share some surface, by (id in a, id in b). Surfaces
