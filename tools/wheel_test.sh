@@ -2,8 +2,10 @@
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
 # Builds the wheel, repairs it so that it carries what it needs of this system, and tries it in a clean environment: a room
-# is mapped, saved and opened there. Leaves the wheel in build/wheel-test/repaired. Usage: tools/wheel_test.sh
+# is mapped, saved and opened there; so are the first 50 frames of a RECORDING, which is then searched (the networks are those
+# of tools/setup.sh). Leaves the wheel in build/wheel-test/repaired. Usage: tools/wheel_test.sh [RECORDING]
 set -euo pipefail
+RECORDING="${1:+$(realpath "$1")}"
 ROOT="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 WORK="$ROOT/build/wheel-test"
 rm -rf "$WORK"
@@ -28,4 +30,15 @@ made = ovimap.run(room, "a.ovimap")
 print(f"a clean environment maps {made.frames} frames: {len(made)} objects, {len(made.mesh().vertices)} vertices")
 assert made.frames == 12 and len(made.mesh().vertices) > 1000
 PYTHON
+if [ -n "$RECORDING" ]; then
+  env -u PYTHONPATH -u LD_LIBRARY_PATH OVIMAP_MODELS="$ROOT/.models" "$WORK/clean/bin/python" - "$RECORDING" <<'PYTHON'
+import sys
+import ovimap
+
+made = ovimap.run(sys.argv[1], "recording.ovimap", encoder="default", frames=":50")
+best = made.query("chair").matches[0]
+print(f"and {made.frames} frames of {sys.argv[1]}: {len(made)} objects; the best for 'chair' is object {best.id}")
+assert made.frames == 50 and len(made) > 0
+PYTHON
+fi
 du -h "$WORK"/repaired/*.whl
