@@ -204,7 +204,8 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
   const std::string pace = intake ? std::string("pushed") : concat(fps, " frames/s");
   header.config_text.insert(0, concat("# live, ", pace, "\n"));
   const SequenceResult done = resume(begun, header, inputs, mapper);
-  if (intake && !done.frames.empty()) intake->begin_at(done.frames.back().index + 1);
+  if (intake && !done.frames.empty())
+    intake->resume_at(done.frames.back().index + 1, done.depth_camera);
   auto checkpoints = make_checkpointer(begun, inputs, header, done.frames.size());
   mapper.after_frame = [&](Mapper& map, const auto& frames, const PinholeCamera& camera) {
     if (audience) audience->after_frame(map, frames, camera);

@@ -33,9 +33,9 @@ FrameIntake::Answer FrameIntake::offer(Frame frame, Offer offer) {
   const std::lock_guard lock(mutex_);
   const Answer answer = room_now(offer);
   if (answer != Answer::kTaken) return answer;
+  if (depth_camera_ && *depth_camera_ != frame.depth_camera) return Answer::kOtherCamera;
+  depth_camera_ = frame.depth_camera;
   if (offer == Offer::kAgain && skipped_ > 0) --skipped_;  // it was counted, and came after all
-  frame.index = next_index_++;
-  if (frame.name.empty()) frame.name = name_of(frame.index);
   frames_.push_back(std::move(frame));
   ++taken_;
   changed_.notify_all();
@@ -48,9 +48,19 @@ void FrameIntake::finish() {
   changed_.notify_all();
 }
 
-void FrameIntake::begin_at(std::int64_t index) {
+void FrameIntake::resume_at(std::int64_t index, const PinholeCamera& depth_camera) {
   const std::lock_guard lock(mutex_);
   next_index_ = index;
+  depth_camera_ = depth_camera;
+  const auto others = static_cast<std::int64_t>(std::erase_if(
+      frames_, [&](const Frame& frame) { return frame.depth_camera != depth_camera; }));
+  taken_ -= others;
+  skipped_ += others;
+}
+
+std::optional<PinholeCamera> FrameIntake::depth_camera() const {
+  const std::lock_guard lock(mutex_);
+  return depth_camera_;
 }
 
 std::optional<Frame> FrameIntake::next(std::chrono::milliseconds patience) {
@@ -59,6 +69,8 @@ std::optional<Frame> FrameIntake::next(std::chrono::milliseconds patience) {
   if (frames_.empty()) return std::nullopt;
   std::optional<Frame> frame(std::move(frames_.front()));
   frames_.pop_front();
+  frame->index = next_index_++;
+  if (frame->name.empty()) frame->name = name_of(frame->index);
   return frame;
 }
 

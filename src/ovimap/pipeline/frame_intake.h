@@ -13,16 +13,17 @@
 
 namespace ovimap {
 
-/// Where frames wait that others push: at most so many, and what does not fit is counted. Every
-/// frame that is taken gets the next index. Thread-safe.
+/// Where frames of one depth camera wait that others push: at most so many, and what does not fit
+/// is counted. Frames are numbered as they are handed out. Thread-safe.
 class FrameIntake {
  public:
   explicit FrameIntake(std::size_t capacity) : capacity_(capacity) {}
 
   enum class Answer {
     kTaken,
-    kFull,   ///< as many wait as may; the frame was left out
-    kEnded,  ///< finish() was called
+    kFull,         ///< as many wait as may; the frame was left out
+    kEnded,        ///< finish() was called
+    kOtherCamera,  ///< than the depth camera of the frames so far
   };
   enum class Offer {
     kFirst,
@@ -35,8 +36,11 @@ class FrameIntake {
   /// No more frames come. Those that wait are still handed out.
   void finish();
 
-  /// Of the first frame, before any is offered: a resumed run goes on counting.
-  void begin_at(std::int64_t index);
+  /// Before the first frame is handed out: a resumed run goes on counting, with its camera. What
+  /// waits of another is left out, and counted.
+  void resume_at(std::int64_t index, const PinholeCamera& depth_camera);
+  /// Of the frames so far; nullopt before the first.
+  std::optional<PinholeCamera> depth_camera() const;
   /// The oldest frame that waits, once there is one; nullopt when none came for so long, or none
   /// comes any more.
   std::optional<Frame> next(std::chrono::milliseconds patience);
@@ -55,6 +59,7 @@ class FrameIntake {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Frame> frames_;
+  std::optional<PinholeCamera> depth_camera_;
   std::int64_t next_index_ = 0, taken_ = 0, skipped_ = 0;
   bool finished_ = false;
 };

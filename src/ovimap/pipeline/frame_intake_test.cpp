@@ -26,7 +26,7 @@ Frame frame_of(const fixture::Sequence& sequence, int index) {
 
 TEST(FrameIntake, CountsWhatDoesNotFit) {
   FrameIntake intake(2);
-  intake.begin_at(7);
+  intake.resume_at(7, {});
   Frame named;
   named.name = "mine";
   EXPECT_EQ(intake.offer({}), Answer::kTaken);
@@ -40,6 +40,23 @@ TEST(FrameIntake, CountsWhatDoesNotFit) {
   EXPECT_EQ(intake.next(milliseconds(0))->name, "mine");
   EXPECT_EQ(intake.next(milliseconds(0))->index, 9);
   EXPECT_FALSE(intake.next(milliseconds(0)));
+}
+
+TEST(FrameIntake, AResumedRunGoesOnWithItsCamera) {
+  Frame mine, other;
+  mine.depth_camera = {640, 480, 500.f, 500.f, 320.f, 240.f};
+  other.depth_camera = {320, 240, 250.f, 250.f, 160.f, 120.f};
+  FrameIntake intake(4);
+  EXPECT_EQ(intake.offer(mine), Answer::kTaken);
+  EXPECT_EQ(intake.offer(other), Answer::kOtherCamera);
+  FrameIntake early(4);  // frames come while the run is still read
+  EXPECT_EQ(early.offer(other), Answer::kTaken);
+  early.resume_at(20, mine.depth_camera);
+  EXPECT_EQ(early.counts().taken, 0);
+  EXPECT_EQ(early.counts().skipped, 1);
+  EXPECT_EQ(early.offer(other), Answer::kOtherCamera);
+  EXPECT_EQ(early.offer(mine), Answer::kTaken);
+  EXPECT_EQ(early.next(milliseconds(0))->index, 20);
 }
 
 TEST(FrameIntake, CountsAFrameThatIsOfferedAgainOnce) {

@@ -13,7 +13,9 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kRetry = "ovimap-retry";  // header of a frame that was refused before
-constexpr std::size_t kLongestName = 200;       // bytes; it names files of masks
+constexpr const char* kOtherCamera =
+    "the map's frames are of another camera; send that one's, or finish and start a new map";
+constexpr std::size_t kLongestName = 200;  // bytes; it names files of masks
 
 const std::string& part_of(const HttpRequest& request, const char* name) {
   const auto found = request.parts.find(name);
@@ -89,9 +91,11 @@ HttpReply FrameApi::camera(const HttpRequest& request) {
   apply_calibration(body.dump(), "camera", rig);  // JSON is YAML
   auto decoder = std::make_shared<const FrameDecoder>(rig, config_);
   const std::lock_guard lock(mutex_);
-  if (decoder_ && intake_->counts().taken > 0 &&
-      calibration_text(decoder_->rig()) != calibration_text(decoder->rig()))
-    throw BadRequest(409, "frames were taken with another camera; finish, and start a new map");
+  const bool changed =
+      decoder_ && calibration_text(decoder_->rig()) != calibration_text(decoder->rig());
+  const auto taken_with = intake_->depth_camera();
+  if (taken_with && (changed || *taken_with != decoder->rig().depth_camera))
+    throw BadRequest(409, kOtherCamera);
   decoder_ = std::move(decoder);
   return counts(200);
 }
@@ -129,6 +133,7 @@ HttpReply FrameApi::reply_to(FrameIntake::Answer answer) const {
   if (answer == FrameIntake::Answer::kTaken) return counts(200);
   if (answer == FrameIntake::Answer::kEnded)
     return fault(409, "the map is finished and takes no more frames");
+  if (answer == FrameIntake::Answer::kOtherCamera) return fault(409, kOtherCamera);
   HttpReply reply = fault(503,
                           "the mapper is busy, so the frame was skipped; send the next one, or "
                           "this one again");

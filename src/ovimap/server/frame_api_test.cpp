@@ -100,6 +100,19 @@ TEST_F(FrameApiTest, TakesFramesUntilTheQueueIsFull) {
   EXPECT_TRUE(intake.ended());
 }
 
+TEST_F(FrameApiTest, AResumedMapTakesItsOwnCameraAlone) {
+  FrameIntake intake(2);
+  serve(&intake);
+  set_camera(camera(), 200);  // while the earlier run is still read
+  PinholeCamera other = sequence_.depth_camera;
+  other.fx *= 1.5f;
+  intake.resume_at(5, other);
+  EXPECT_NE(push(frame(0), 409)["error"].get<std::string>().find("another camera"),
+            std::string::npos);
+  set_camera(camera(), 409);
+  EXPECT_EQ(intake.counts().taken, 0);
+}
+
 TEST_F(FrameApiTest, SaysWhatIsWrongWithARequest) {
   FrameIntake intake(2);
   serve(&intake);
