@@ -10,6 +10,7 @@ PoseStamped of the camera's optical frame (x right, y down, z forward). Ctrl-C f
 only where the node runs: the rest works on messages of any origin."""
 import argparse
 import bisect
+import sys
 
 import numpy as np
 from ovimap import Error
@@ -141,6 +142,7 @@ def main():
     from nav_msgs.msg import Odometry
     from rclpy.node import Node
     from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
+    from rclpy.utilities import remove_ros_args
     from sensor_msgs.msg import CameraInfo, CompressedImage, Image
     from tf2_msgs.msg import TFMessage
 
@@ -149,7 +151,7 @@ def main():
         parser.add_argument(name, required=True)
     parser.add_argument("--color-info")
     parser.add_argument("--url", default="http://localhost:8080/")
-    options = parser.parse_args()
+    options = parser.parse_args(remove_ros_args(sys.argv)[1:])
     rclpy.init()
     node = Node("ovimap_sender")
     bridge = Bridge(lambda rig: FrameSender(options.url, rig), separate=bool(options.color_info))
