@@ -29,13 +29,6 @@ CameraRig completed(CameraRig rig) {
   return rig;
 }
 
-template <class Pixel>
-void check_size(const char* name, const Image<Pixel>& image, const PinholeCamera& camera) {
-  if (image.width() != camera.width || image.height() != camera.height)
-    throw Error(concat(name, " is ", image.width(), "x", image.height(), ", its camera ",
-                       camera.width, "x", camera.height));
-}
-
 /// What `decode` throws, with the name of the image before it.
 template <class Decode>
 auto named(const char* name, const Decode& decode) {
@@ -46,7 +39,22 @@ auto named(const char* name, const Decode& decode) {
   }
 }
 
+ImageSize size_of(const PinholeCamera& camera) {
+  return {camera.width, camera.height};
+}
+
 }  // namespace
+
+RgbImage decode_color(std::span<const std::uint8_t> bytes, const PinholeCamera& camera) {
+  return decode_rgb(bytes, size_of(camera));
+}
+
+Image<std::uint16_t> decode_stored_depth(std::span<const std::uint8_t> bytes,
+                                         const PinholeCamera& camera) {
+  GrayPng png = decode_gray(bytes, size_of(camera));
+  if (png.bits != 16) throw Error(concat("has ", png.bits, " bits, expected 16"));
+  return std::move(png.values);
+}
 
 DepthUnits::DepthUnits(const CameraRig& rig, const FrameSourceConfig& config)
     : metres_(kDepthValues) {
@@ -76,15 +84,12 @@ Frame FrameDecoder::decode(std::span<const std::uint8_t> color, std::span<const 
   frame.depth_camera = rig_.depth_camera;
   frame.color_from_depth = rig_.color_from_depth;
   frame.world_from_camera = rig_.world_from_depth_camera(pose);
-  const GrayPng stored = named("depth", [&] { return decode_gray(depth); });
-  if (stored.bits != 16) throw Error(concat("depth has ", stored.bits, " bits, expected 16"));
-  check_size("depth", stored.values, frame.depth_camera);
-  frame.depth = units_.metres(stored.values);
+  frame.depth =
+      units_.metres(named("depth", [&] { return decode_stored_depth(depth, frame.depth_camera); }));
   if (std::none_of(frame.depth.begin(), frame.depth.end(), [](float metres) { return metres > 0; }))
     throw Error(
         concat("depth has no value from ", config_.min_depth_m, " to ", config_.max_depth_m, " m"));
-  frame.color = named("color", [&] { return decode_rgb(color); });
-  check_size("color", frame.color, frame.color_camera);
+  frame.color = named("color", [&] { return decode_color(color, frame.color_camera); });
   return frame;
 }
 

@@ -11,6 +11,12 @@
 
 namespace ovimap {
 
+/// Colour and stored depth of a camera: JPEG or PNG; 16-bit grey PNG. Throw Error, a predicate ("is
+/// 640x480, expected 320x240"), where that is not what the bytes are.
+RgbImage decode_color(std::span<const std::uint8_t> bytes, const PinholeCamera& camera);
+Image<std::uint16_t> decode_stored_depth(std::span<const std::uint8_t> bytes,
+                                         const PinholeCamera& camera);
+
 /// Metres for each stored depth value.
 class DepthUnits {
  public:

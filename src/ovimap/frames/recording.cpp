@@ -61,13 +61,6 @@ auto load(const std::string& name, const std::filesystem::path& file,
   }
 }
 
-template <class Pixel>
-void check_size(const std::string& name, const Image<Pixel>& image, const PinholeCamera& camera) {
-  if (image.width() != camera.width || image.height() != camera.height)
-    fail(name, concat("is ", image.width(), "x", image.height(), ", expected ", camera.width, "x",
-                      camera.height));
-}
-
 class RecordingSource : public FrameSource {
  public:
   RecordingSource(Recording recording, const FrameSourceConfig& config)
@@ -123,8 +116,7 @@ class RecordingSource : public FrameSource {
     frame.depth = load_depth(record);
     const std::string name = label(record.color, record.color_part, record);
     frame.color = load(name, record.color, record.color_part,
-                       [](const Bytes& bytes) { return decode_rgb(bytes); });
-    check_size(name, frame.color, frame.color_camera);
+                       [&](const Bytes& bytes) { return decode_color(bytes, frame.color_camera); });
     return frame;
   }
 
@@ -157,11 +149,8 @@ class RecordingSource : public FrameSource {
                           : decode_raw_depth(bytes, camera.width, camera.height);
       });
     }
-    GrayPng png = load(name, record.depth, record.depth_part,
-                       [](const Bytes& bytes) { return decode_gray(bytes); });
-    if (png.bits != 16) fail(name, concat("depth has ", png.bits, " bits, expected 16"));
-    check_size(name, png.values, camera);
-    return std::move(png.values);
+    return load(name, record.depth, record.depth_part,
+                [&](const Bytes& bytes) { return decode_stored_depth(bytes, camera); });
   }
 
   DepthImage depth_of_metres(const RecordedFrame& record, const std::string& name) const {

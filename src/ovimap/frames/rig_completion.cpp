@@ -14,10 +14,6 @@ constexpr const char* kExample =
     "319.5, "
     "cy: 239.5, depth_scale: 1000}";
 
-struct ImageSize {
-  int width = 0, height = 0;
-};
-
 template <class ReadOne>
 ImageSize first_readable(const Recording& recording, ReadOne&& read_one) {
   for (const RecordedFrame& frame : recording.frames) {

@@ -44,10 +44,14 @@ std::string unknown_format(std::span<const std::uint8_t> bytes, std::string_view
   return bytes.empty() ? "is empty" : concat("is not ", accepted);
 }
 
-void check_size(std::uint64_t width, std::uint64_t height) {
+void check_size(std::uint64_t width, std::uint64_t height, std::optional<ImageSize> expected) {
   if (width == 0 || height == 0 || width > kMaxSide_px || height > kMaxSide_px ||
       width * height > kMaxArea_px)
     throw Error(concat("has an impossible size, ", width, "x", height));
+  if (expected &&
+      (static_cast<int>(width) != expected->width || static_cast<int>(height) != expected->height))
+    throw Error(
+        concat("is ", width, "x", height, ", expected ", expected->width, "x", expected->height));
 }
 
 [[noreturn]] void throw_png_fault(int code) {
@@ -60,25 +64,26 @@ void check_png(int code) {
   if (code != 0) throw_png_fault(code);
 }
 
-PngContext open_png(std::span<const std::uint8_t> bytes, spng_ihdr& header) {
+PngContext open_png(std::span<const std::uint8_t> bytes, spng_ihdr& header,
+                    std::optional<ImageSize> expected) {
   PngContext context(spng_ctx_new(0), &spng_ctx_free);
   if (!context) throw std::bad_alloc();
   check_png(spng_set_png_buffer(context.get(), bytes.data(), bytes.size()));
   check_png(spng_get_ihdr(context.get(), &header));
-  check_size(header.width, header.height);
+  check_size(header.width, header.height, expected);
   return context;
 }
 
-RgbImage decode_png_rgb(std::span<const std::uint8_t> bytes) {
+RgbImage decode_png_rgb(std::span<const std::uint8_t> bytes, std::optional<ImageSize> expected) {
   spng_ihdr header{};
-  const PngContext context = open_png(bytes, header);
+  const PngContext context = open_png(bytes, header, expected);
   RgbImage image(static_cast<int>(header.width), static_cast<int>(header.height));
   check_png(spng_decode_image(context.get(), image.data(), image.size() * sizeof(Rgb8),
                               SPNG_FMT_RGB8, 0));
   return image;
 }
 
-RgbImage decode_jpeg(std::span<const std::uint8_t> bytes) {
+RgbImage decode_jpeg(std::span<const std::uint8_t> bytes, std::optional<ImageSize> expected) {
   const JpegHandle handle(tjInitDecompress(), &tjDestroy);
   if (!handle) throw std::bad_alloc();
   const auto size = static_cast<unsigned long>(bytes.size());
@@ -86,7 +91,7 @@ RgbImage decode_jpeg(std::span<const std::uint8_t> bytes) {
   if (tjDecompressHeader3(handle.get(), bytes.data(), size, &width, &height, &sampling,
                           &colorspace) != 0)
     throw Error(concat("is a damaged JPEG (", tjGetErrorStr2(handle.get()), ")"));
-  check_size(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height));
+  check_size(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), expected);
   RgbImage image(width, height);
   auto* pixels = reinterpret_cast<unsigned char*>(image.data());
   if (tjDecompress2(handle.get(), bytes.data(), size, pixels, width, 0, height, TJPF_RGB, 0) != 0) {
@@ -140,16 +145,16 @@ auto read_named(const std::filesystem::path& path, Decode&& decode) {
 
 }  // namespace
 
-RgbImage decode_rgb(std::span<const std::uint8_t> bytes) {
-  if (is_png(bytes)) return decode_png_rgb(bytes);
-  if (is_jpeg(bytes)) return decode_jpeg(bytes);
+RgbImage decode_rgb(std::span<const std::uint8_t> bytes, std::optional<ImageSize> expected) {
+  if (is_png(bytes)) return decode_png_rgb(bytes, expected);
+  if (is_jpeg(bytes)) return decode_jpeg(bytes, expected);
   throw Error(unknown_format(bytes, "a PNG or JPEG"));
 }
 
-GrayPng decode_gray(std::span<const std::uint8_t> bytes) {
+GrayPng decode_gray(std::span<const std::uint8_t> bytes, std::optional<ImageSize> expected) {
   if (!is_png(bytes)) throw Error(unknown_format(bytes, "a PNG"));
   spng_ihdr header{};
-  const PngContext context = open_png(bytes, header);
+  const PngContext context = open_png(bytes, header, expected);
   if (header.color_type != SPNG_COLOR_TYPE_GRAYSCALE)
     throw Error("is a PNG in colour, accepted is one grey channel");
   if (header.bit_depth < 8)

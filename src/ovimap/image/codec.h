@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,10 +14,15 @@ namespace ovimap {
 
 using Bytes = std::vector<std::uint8_t>;
 
+struct ImageSize {
+  int width = 0, height = 0;
+};
+
 /// Reads a PNG or JPEG (told by its content) as RGB; grey becomes three equal channels, alpha is
-/// dropped. Throws Error naming the file and the fault (missing, unknown format, truncated).
+/// dropped. Throws Error naming the file and the fault (missing, unknown format, truncated, another
+/// size than `expected`, which is found before any pixel is decoded).
 RgbImage read_rgb(const std::filesystem::path& path);
-RgbImage decode_rgb(std::span<const std::uint8_t> bytes);
+RgbImage decode_rgb(std::span<const std::uint8_t> bytes, std::optional<ImageSize> expected = {});
 
 /// A single-channel PNG with its values as stored, 8 or 16 bits.
 struct GrayPng {
@@ -27,7 +33,7 @@ struct GrayPng {
 /// Reads a grey PNG without scaling its values (depth, ids). Throws Error naming the file and the
 /// fault; a colour or palette PNG is a fault.
 GrayPng read_gray(const std::filesystem::path& path);
-GrayPng decode_gray(std::span<const std::uint8_t> bytes);
+GrayPng decode_gray(std::span<const std::uint8_t> bytes, std::optional<ImageSize> expected = {});
 
 Bytes encode_png(const RgbImage& image);
 Bytes encode_png(const Image<std::uint8_t>& image);   ///< 8-bit grey

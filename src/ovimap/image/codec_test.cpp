@@ -137,6 +137,18 @@ TEST(Png, FlippedBitIsAFault) {
   EXPECT_NE(fault_of([&] { decode_gray(bytes); }).find("damaged PNG"), std::string::npos);
 }
 
+TEST(Codec, AnotherSizeIsFoundBeforeThePixels) {
+  const std::string fault = "is 24x16, expected 24x17";
+  const Bytes color = encode_png(random_rgb(24, 16)), gray = encode_png(random_gray(24, 16)),
+              jpeg = encode_jpeg(random_rgb(24, 16), 90);
+  for (const Bytes& bytes : {color, jpeg}) {
+    EXPECT_EQ(decode_rgb(bytes, ImageSize{24, 16}), decode_rgb(bytes));
+    EXPECT_EQ(fault_of([&] { decode_rgb(bytes, ImageSize{24, 17}); }), fault);
+  }
+  const auto header_alone = std::span(gray).first(60);
+  EXPECT_EQ(fault_of([&] { decode_gray(header_alone, ImageSize{24, 17}); }), fault);
+}
+
 TEST(Png, ImpossibleSizeIsRefusedBeforeMemoryIsTaken) {
   Bytes png = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
   put_chunk(png, "IHDR", {0x7f, 0xff, 0xff, 0xff, 0x7f, 0xff, 0xff, 0xff, 16, 0, 0, 0, 0});
