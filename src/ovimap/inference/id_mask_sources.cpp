@@ -49,6 +49,9 @@ GtMaskSource::GtMaskSource(const FrameSource& frames) : frames_(frames) {
 }
 
 Entities GtMaskSource::entities(const Frame& frame, std::span<const MaskPrompt>) {
+  if (frame.index < 0 || frame.index >= frames_.size())
+    throw FrameError(concat("masks 'gt' know frames 0 to ", frames_.size() - 1,
+                            " of their recording, and this frame's index is ", frame.index));
   const std::optional<IdImage> ids = of_this_frame([&] { return frames_.truth_ids(frame.index); });
   return ids ? entities_of_ids(*ids)
              : Entities{IdImage(frame.color.width(), frame.color.height()), {}};

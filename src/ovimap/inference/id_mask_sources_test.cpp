@@ -53,6 +53,11 @@ TEST(GtMaskSource, GivesTheTruth) {
   EXPECT_EQ(entities.scores.size(), 1u);
   EXPECT_EQ(entities.ids.at(1, 1), 1);
   EXPECT_TRUE(source->entities(frame_at(0), {}).scores.empty());
+  for (const std::int64_t index : {-1, 3}) {
+    Frame other = frame_at(0);
+    other.index = index;
+    EXPECT_THROW(source->entities(other, {}), FrameError);
+  }
 }
 
 TEST(KeptMaskSource, AsksOnlyOnce) {

@@ -50,16 +50,18 @@ class AppearanceBuilder {
   /// `encoder` may be null: then only crops are kept, which can be embedded later.
   AppearanceBuilder(const SemanticsConfig& config, std::shared_ptr<ImageTextEncoder> encoder);
 
-  /// Chooses and cuts out views of one frame; returns how many. Throws what the encoder threw.
+  /// Throws what the encoder threw since the last report, once; its views stay without embedding.
+  void rethrow_failure() { queue_.rethrow_failure(); }
+  /// Chooses and cuts out views of one frame; returns how many.
   int choose(const Frame& frame, const SeenObjects& seen, const InstanceRegistry& registry);
   /// Hands the chosen views to the encoder; `wait`: not before it has room for them.
   void submit(bool wait = true);
   /// Whether the encoder's queue is at most half full.
   bool keeps_up() const { return 2 * queue_.waiting() <= config_.queue.capacity; }
 
-  /// Waits until the encoder has answered for every view handed to it.
+  /// Waits until the encoder has answered for every view handed to it. Throws as rethrow_failure.
   void catch_up(const InstanceRegistry& registry);
-  /// Waits until every chosen view is embedded. Throws what the encoder threw.
+  /// The same for every chosen view, after the last frame; called again, it does not throw.
   void finish(const InstanceRegistry& registry);
   /// All that was gathered; call finish() first.
   Appearances take() { return std::move(appearances_); }

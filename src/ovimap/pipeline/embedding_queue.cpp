@@ -40,9 +40,8 @@ void EmbeddingQueue::submit(std::vector<EmbeddingRequest> requests, bool wait) {
   for (EmbeddingRequest& request : requests) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] {
-      return !wait || failure_ || waiting_.size() < static_cast<std::size_t>(config_.capacity);
+      return !wait || waiting_.size() < static_cast<std::size_t>(config_.capacity);
     });
-    rethrow_failure();
     waiting_.push_back(std::move(request));
     lock.unlock();
     changed_.notify_all();
@@ -51,19 +50,22 @@ void EmbeddingQueue::submit(std::vector<EmbeddingRequest> requests, bool wait) {
 
 std::vector<EmbeddingAnswer> EmbeddingQueue::take() {
   const std::lock_guard lock(mutex_);
-  rethrow_failure();
+  if (failure_) return {};
   return std::exchange(answered_, {});
 }
 
 std::vector<EmbeddingAnswer> EmbeddingQueue::finish() {
-  std::unique_lock lock(mutex_);
-  changed_.wait(lock, [&] { return failure_ || (waiting_.empty() && under_way_ == 0); });
+  {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return waiting_.empty() && under_way_ == 0; });
+  }
   rethrow_failure();
-  return std::exchange(answered_, {});
+  return take();
 }
 
 void EmbeddingQueue::rethrow_failure() {
-  if (failure_) std::rethrow_exception(failure_);
+  const std::unique_lock lock(mutex_);
+  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
 void EmbeddingQueue::work() {
@@ -83,31 +85,33 @@ void EmbeddingQueue::work() {
     changed_.notify_all();
     std::vector<EmbeddingAnswer> answers;
     std::exception_ptr failure;
-    try {
-      answers = answer(batch);
-    } catch (...) {
-      failure = std::current_exception();
+    for (ImageTextEncoder* encoder : {encoder_.get(), static_cast<ImageTextEncoder*>(nullptr)}) {
+      try {
+        answers = answer(batch, encoder);
+        break;
+      } catch (...) {  // then without it: the crops can be embedded later
+        if (!failure) failure = std::current_exception();
+      }
     }
     {
       const std::lock_guard lock(mutex_);
       std::move(answers.begin(), answers.end(), std::back_inserter(answered_));
       under_way_ = 0;
-      failure_ = failure;
+      if (!failure_) failure_ = failure;
     }
     changed_.notify_all();
-    if (failure) return;
   }
 }
 
-std::vector<EmbeddingAnswer> EmbeddingQueue::answer(
-    const std::vector<EmbeddingRequest>& batch) const {
+std::vector<EmbeddingAnswer> EmbeddingQueue::answer(const std::vector<EmbeddingRequest>& batch,
+                                                    ImageTextEncoder* encoder) const {
   std::vector<const ObjectCrop*> objects;
   for (const EmbeddingRequest& request : batch) objects.push_back(&request.crop);
   std::vector<Eigen::VectorXf> embeddings(batch.size());
   const auto start = std::chrono::steady_clock::now();
-  if (encoder_) embeddings = embed_objects(*encoder_, objects, crops_);
+  if (encoder) embeddings = embed_objects(*encoder, objects, crops_);
   const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - start;
-  const double each_ms = encoder_ ? taken.count() / static_cast<double>(batch.size()) : 0;
+  const double each_ms = encoder ? taken.count() / static_cast<double>(batch.size()) : 0;
   std::vector<EmbeddingAnswer> answers;
   for (std::size_t i = 0; i < batch.size(); ++i)
     answers.push_back({batch[i].ticket, std::move(embeddings[i]),

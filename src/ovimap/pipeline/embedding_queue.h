@@ -37,7 +37,8 @@ struct EmbeddingAnswer {
   double milliseconds = 0;    ///< its share of the batch's time; 0 without an encoder
 };
 
-/// Embeds views on a thread of its own that lets the mapper go first, in the order they come.
+/// Embeds views on a thread of its own that lets the mapper go first, in the order they come. When
+/// the encoder throws, the views it was given stay without embedding, and the next ones are tried.
 class EmbeddingQueue {
  public:
   /// Without an encoder, crops are only packed for the map.
@@ -46,20 +47,22 @@ class EmbeddingQueue {
   /// What still waits is dropped.
   ~EmbeddingQueue();
 
-  /// `wait`: blocks while the queue is full; else it holds more than its capacity for once. Throws
-  /// what the encoder threw on an earlier view.
+  /// `wait`: blocks while the queue is full; else it holds more than its capacity for once.
   void submit(std::vector<EmbeddingRequest> requests, bool wait = true);
   /// Views that no work has begun on.
   int waiting() const;
-  /// What has been answered since the last call, in the order of submission.
+  /// What has been answered since the last call, in the order of submission; nothing while what the
+  /// encoder threw is not reported.
   std::vector<EmbeddingAnswer> take();
-  /// Waits for everything, then the same. Throws what the encoder threw.
+  /// Waits for everything, then the same. Throws as rethrow_failure; called again, it does not.
   std::vector<EmbeddingAnswer> finish();
+  /// Throws the first thing the encoder threw since the last report, once.
+  void rethrow_failure();
 
  private:
   void work();
-  std::vector<EmbeddingAnswer> answer(const std::vector<EmbeddingRequest>& batch) const;
-  void rethrow_failure();
+  std::vector<EmbeddingAnswer> answer(const std::vector<EmbeddingRequest>& batch,
+                                      ImageTextEncoder* encoder) const;
 
   EmbeddingQueueConfig config_;
   CropConfig crops_;

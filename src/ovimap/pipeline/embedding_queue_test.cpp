@@ -30,7 +30,7 @@ class PatientEncoder : public ColorEncoder {
     }
     opened_.notify_all();
   }
-  bool fails = false;
+  std::atomic<bool> fails = false;
 
  private:
   std::mutex gate_;
@@ -112,8 +112,28 @@ TEST(EmbeddingQueue, PassesOnWhatTheEncoderThrows) {
   EmbeddingQueue queue({}, {}, encoder);
   queue.submit(one(1, RgbImage(4, 4)));
   EXPECT_THROW(queue.finish(), Error);
-  EXPECT_THROW(queue.submit(one(2, RgbImage(4, 4))), Error);
-  EXPECT_THROW(queue.take(), Error);
+  const auto broken = queue.finish();
+  ASSERT_EQ(broken.size(), 1u);
+  EXPECT_EQ(broken[0].embedding.size(), 0);
+  EXPECT_FALSE(broken[0].crop.empty()) << "it can be embedded later";
+}
+
+TEST(EmbeddingQueue, GoesOnAfterAFailure) {
+  auto encoder = std::make_shared<PatientEncoder>();
+  encoder->fails = true;
+  encoder->open();
+  EmbeddingQueue queue({.capacity = 1, .batch = 1}, {}, encoder);
+  for (std::uint64_t i = 0; i < 5; ++i) queue.submit(one(i, RgbImage(4, 4)));
+  while (queue.waiting() > 0) std::this_thread::yield();
+  EXPECT_TRUE(queue.take().empty()) << "not before it is reported";
+  EXPECT_THROW(queue.finish(), Error);
+  encoder->fails = false;
+  queue.submit(one(5, RgbImage(4, 4, {250, 0, 0})));
+  const auto answers = queue.finish();
+  ASSERT_EQ(answers.size(), 6u);
+  EXPECT_EQ(answers[4].embedding.size(), 0);
+  EXPECT_EQ(answers[5].embedding.size(), 3);
+  EXPECT_NO_THROW(queue.rethrow_failure());
 }
 
 TEST(EmbeddingQueue, CanBeLeftInTheMiddle) {

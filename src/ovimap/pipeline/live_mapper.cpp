@@ -79,11 +79,11 @@ void LiveMapper::drain() {
 }
 
 void LiveMapper::cancel() {
-  stop_stages();
+  stop();
   join();
 }
 
-void LiveMapper::stop_stages() {
+void LiveMapper::stop() {
   cancelled_ = true;
   incoming_.cancel();
   prepared_.cancel();
@@ -238,7 +238,7 @@ void LiveMapper::fail(std::exception_ptr failure) {
     const std::lock_guard lock(mutex_);
     if (!failure_) failure_ = std::move(failure);
   }
-  stop_stages();
+  stop();
 }
 
 void LiveMapper::rethrow_failure() {

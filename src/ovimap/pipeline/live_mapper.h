@@ -65,6 +65,8 @@ class LiveMapper {
   void drain();
   /// Stops as soon as each stage has finished what it is at. What was fused stays.
   void cancel();
+  /// The same without waiting for the stages, from any thread: calls that wait for them return.
+  void stop();
 
   /// The map and everything about it, once drained or cancelled. Call once.
   Mapper take();
@@ -106,7 +108,6 @@ class LiveMapper {
   }
   template <class Work>
   void run_stage(const Work& work);
-  void stop_stages();
   void fail(std::exception_ptr failure);
   void rethrow_failure();
   void join();

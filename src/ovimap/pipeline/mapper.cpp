@@ -59,6 +59,7 @@ FrameReport Mapper::process(const Frame& frame) {
 }
 
 FrameReport Mapper::fuse(const PreparedFrame& prepared, const FrameSegments* cut) {
+  builder_->rethrow_failure();  // before anything changes
   const std::vector<SegmentAssociation> associations = find_labels(prepared, cut);
   const std::vector<Label> labels = labels_of(associations);
   {

@@ -43,13 +43,13 @@ class Mapper {
   explicit Mapper(const MapperConfig& config, std::shared_ptr<MaskSource> masks = nullptr,
                   std::shared_ptr<ImageTextEncoder> encoder = nullptr);
 
-  /// Fuses one frame. Throws what the mask source throws; the map is then as it was before the
-  /// frame. Throws what the encoder threw on views of earlier frames.
+  /// Fuses one frame. Throws what the mask source throws, and, once, what the encoder threw on
+  /// views of earlier frames; the map is then as it was before the frame, which can be given again.
   FrameReport process(const Frame& frame);
 
   // The parts of `process`, for a pipeline that runs the others on threads of its own.
 
-  /// Adds geometry, colour and, unless `cut` is null, labels.
+  /// Adds geometry, colour and, unless `cut` is null, labels. Throws what the encoder threw.
   FrameReport fuse(const PreparedFrame& prepared, const FrameSegments* cut);
   /// Adds the labels of a frame that was fused without, some time ago: its segments vote with the
   /// depth and pose of their own frame on the map as it is now.
@@ -80,7 +80,8 @@ class Mapper {
 
   /// Waits until every view chosen so far is embedded. Throws what the encoder threw.
   void await_encoder();
-  /// The same after the last frame.
+  /// The same after the last frame. Called again after it threw, it finishes without the views that
+  /// the encoder failed on.
   void finish();
   /// What the objects look like; waits likewise. Call once, after the last frame.
   Appearances take_appearances();
