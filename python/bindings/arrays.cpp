@@ -65,6 +65,14 @@ bool on_processor(nb::handle object) {
   return nb::cast<int>(nb::int_(device[0])) == nb::device::cpu::value;
 }
 
+/// " of >f4".
+std::string type_of_elements(nb::handle object) {
+  if (!nb::hasattr(object, "dtype")) return {};
+  const nb::object type = object.attr("dtype");
+  const nb::object name = nb::hasattr(type, "str") ? type.attr("str") : type;
+  return concat(" of ", nb::cast<std::string>(nb::str(name)));
+}
+
 AnyArray array_of(nb::handle object, const std::string& name, const char* expected) {
   const std::string type = nb::cast<std::string>(nb::handle(object.type()).attr("__name__"));
   if (!on_processor(object))
@@ -74,9 +82,10 @@ AnyArray array_of(nb::handle object, const std::string& name, const char* expect
     refuse_type(name, expected,
                 object.is_none()
                     ? "None"
-                    : concat("a ", type,
-                             " that cannot be read as an array in memory; give a NumPy array or a "
-                             "tensor that speaks DLPack"));
+                    : concat("a ", type, type_of_elements(object),
+                             " that cannot be read as an array; give a NumPy array of plain "
+                             "numbers in this machine's byte order, or a tensor that speaks "
+                             "DLPack"));
   if (array.device_type() != nb::device::cpu::value)
     refuse_type(name, expected, "a " + type + " on another device; call .cpu() on it first");
   return array;

@@ -6,6 +6,7 @@
 #include "bindings.h"
 #include "ovimap/frames/color_calibration.h"
 #include "settings.h"
+#include "without_gil.h"
 
 namespace ovimap::python {
 
@@ -77,7 +78,7 @@ void bind_calibrate(nb::module_& module) {
       [](const nb::object& path, const std::string& frames, const Settings& settings) {
         const std::filesystem::path folder = to_path(path, "path");
         const auto config = configured<ColorCalibrationConfig>(settings);
-        const nb::gil_scoped_release release;
+        const WithoutGil release;
         return calibrate(folder, frames, config);
       },
       nb::arg("path"), nb::kw_only(), nb::arg("frames") = ":", nb::arg("settings") = nb::none(),

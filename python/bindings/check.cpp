@@ -6,6 +6,7 @@
 #include "bindings.h"
 #include "ovimap/frames/source_check.h"
 #include "settings.h"
+#include "without_gil.h"
 
 namespace ovimap::python {
 
@@ -52,7 +53,7 @@ void bind_check(nb::module_& module) {
       [](const nb::object& path, const Settings& settings) {
         const std::filesystem::path folder = to_path(path, "path");
         const auto config = configured<SourceCheckConfig>(settings);
-        const nb::gil_scoped_release release;
+        const WithoutGil release;
         return check_source(folder, config);
       },
       nb::arg("path"), nb::kw_only(), nb::arg("settings") = nb::none(),

@@ -8,8 +8,10 @@
 
 #include "arrays.h"
 #include "bindings.h"
+#include "callback.h"
 #include "ovimap/inference/text_cache.h"
 #include "settings.h"
+#include "without_gil.h"
 
 namespace ovimap::python {
 
@@ -20,7 +22,7 @@ using ColorView = nb::ndarray<nb::numpy, const std::uint8_t, nb::shape<-1, -1, 3
 /// Stands for a model's digest where its maker gives none: two of one name and length are taken for
 /// the same.
 std::string digest_of(nb::handle encoder, const std::string& name, int dimension) {
-  if (nb::hasattr(encoder, "digest")) return nb::cast<std::string>(encoder.attr("digest"));
+  if (nb::hasattr(encoder, "digest")) return nb::cast<std::string>(nb::str(encoder.attr("digest")));
   const nb::object sha256 = nb::module_::import_("hashlib").attr("sha256");
   const std::string text = concat("python ", name, " ", dimension);
   return nb::cast<std::string>(sha256(nb::bytes(text.data(), text.size())).attr("hexdigest")());
@@ -53,22 +55,24 @@ class PythonEncoder : public ImageTextEncoder {
   std::optional<MatchCalibration> calibration() const override { return std::nullopt; }
 
   Embeddings encode_images(std::span<const RgbImage> images) override {
-    const nb::gil_scoped_acquire acquire;
-    nb::list arrays;
-    for (const RgbImage& image : images) arrays.append(to_array_copy(image));
-    return read_embeddings(encoder_.attr("encode_images")(arrays), "what encode_images returned",
-                           images.size(), identity_.dimension);
+    return call_python([&] {
+      nb::list arrays;
+      for (const RgbImage& image : images) arrays.append(to_array_copy(image));
+      return read_embeddings(encoder_.attr("encode_images")(arrays), "what encode_images returned",
+                             images.size(), identity_.dimension);
+    });
   }
 
   Embeddings encode_texts(std::span<const std::string> texts) override {
-    const nb::gil_scoped_acquire acquire;
-    if (!nb::hasattr(encoder_, "encode_texts"))
-      throw Error(concat("encoder '", identity_.name,
-                         "' has no encode_texts, so words cannot be searched; give it one, or "
-                         "search by object or picture"));
-    const std::vector<std::string> list(texts.begin(), texts.end());
-    return read_embeddings(encoder_.attr("encode_texts")(list), "what encode_texts returned",
-                           texts.size(), identity_.dimension);
+    return call_python([&] {
+      if (!nb::hasattr(encoder_, "encode_texts"))
+        throw Error(concat("encoder '", identity_.name,
+                           "' has no encode_texts, so words cannot be searched; give it one, or "
+                           "search by object or picture"));
+      const std::vector<std::string> list(texts.begin(), texts.end());
+      return read_embeddings(encoder_.attr("encode_texts")(list), "what encode_texts returned",
+                             texts.size(), identity_.dimension);
+    });
   }
 
  private:
@@ -90,7 +94,7 @@ EmbeddingArray encode_images(ImageTextEncoder& encoder, const std::vector<nb::ob
   for (const nb::object& image : images) pixels.push_back(read_color(image, "image"));
   Embeddings rows;
   {
-    const nb::gil_scoped_release release;
+    const WithoutGil release;
     rows = encoder.encode_images(pixels);
   }
   return to_array(std::move(rows));
@@ -99,7 +103,7 @@ EmbeddingArray encode_images(ImageTextEncoder& encoder, const std::vector<nb::ob
 EmbeddingArray encode_texts(ImageTextEncoder& encoder, const std::vector<std::string>& texts) {
   Embeddings rows;
   {
-    const nb::gil_scoped_release release;
+    const WithoutGil release;
     rows = encoder.encode_texts(texts);
   }
   return to_array(std::move(rows));
@@ -124,7 +128,7 @@ std::shared_ptr<ImageTextEncoder> to_encoder(nb::handle encoder) {
   if (nb::hasattr(encoder, "encode_images")) return std::make_shared<PythonEncoder>(encoder);
   if (is_path(encoder)) {
     const std::string spec = to_path(encoder, "encoder").string();
-    const nb::gil_scoped_release release;
+    const WithoutGil release;
     return shared_encoder(make_image_text_encoder(spec, {}));
   }
   throw nb::type_error(
@@ -156,7 +160,7 @@ void bind_encoders(nb::module_& module) {
         const auto folders = to_paths(model_dirs, "model_dirs");
         RuntimeConfig runtime;
         runtime.threads = threads;
-        const nb::gil_scoped_release release;
+        const WithoutGil release;
         return shared_encoder(make_image_text_encoder(spec, runtime, folders));
       },
       nb::arg("spec") = "default", nb::kw_only(), nb::arg("model_dirs") = nb::list(),

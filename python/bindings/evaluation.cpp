@@ -7,6 +7,7 @@
 #include "settings.h"
 #ifdef OVIMAP_SYNTH
 #include "synth_room.h"
+#include "without_gil.h"
 #endif
 
 namespace ovimap::python {
@@ -27,7 +28,7 @@ std::string evaluate(const nb::object& maps, const nb::object& truths, const std
   options.classes = classes;
   options.encoder = encoder;
   options.model_dirs = to_paths(model_dirs, "model_dirs");
-  const nb::gil_scoped_release release;
+  const WithoutGil release;
   std::vector<MapAndTruth> pairs;
   for (std::size_t i = 0; i < map_paths.size(); ++i)
     pairs.push_back({map_paths[i], truth_paths[i]});
@@ -41,7 +42,7 @@ std::string evaluate(const nb::object& maps, const nb::object& truths, const std
 #ifdef OVIMAP_SYNTH
 std::string synthesize(const nb::object& out, const apps::RoomOptions& options) {
   const std::filesystem::path folder = to_path(out, "out");
-  const nb::gil_scoped_release release;
+  const WithoutGil release;
   return apps::write_room(folder, options, "room").scene;
 }
 #endif

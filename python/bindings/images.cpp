@@ -8,6 +8,7 @@
 #include "arrays.h"
 #include "bindings.h"
 #include "ovimap/image/codec.h"
+#include "without_gil.h"
 
 namespace ovimap::python {
 
@@ -19,7 +20,7 @@ nb::bytes png_of(nb::handle image) {
   const Picture picture = read_picture(image, "image");
   Bytes png;
   {
-    const nb::gil_scoped_release release;
+    const WithoutGil release;
     png = std::visit([](const auto& pixels) { return encode_png(pixels); }, picture);
   }
   return nb::bytes(png.data(), png.size());
@@ -29,7 +30,7 @@ GrayArray values_of(const nb::bytes& png) {
   const auto* data = static_cast<const std::uint8_t*>(png.data());
   auto values = std::make_unique<Image<std::uint16_t>>();
   {
-    const nb::gil_scoped_release release;
+    const WithoutGil release;
     *values = decode_gray({data, png.size()}).values;
   }
   const std::size_t shape[] = {static_cast<std::size_t>(values->height()),

@@ -5,6 +5,7 @@
 #include <nanobind/stl/string.h>
 
 #include <mutex>
+#include <optional>
 
 #include "bindings.h"
 #include "encoders.h"
@@ -12,6 +13,7 @@
 #include "masks.h"
 #include "open_handle.h"
 #include "ovimap/io/map_file.h"
+#include "without_gil.h"
 
 namespace ovimap::python {
 
@@ -55,30 +57,47 @@ class LiveMapperHandle final : public OpenHandle {
   std::size_t save(const std::filesystem::path& path, const std::string& source) {
     const auto turn = calls_.begin("LiveMapper");
     check_map_target(path);
-    if (!map_.ready()) take_map(open_mapper(), source);
+    if (!map_.ready()) take_map(source);
     return map_.save(path);
   }
 
  protected:
   nb::object self() override { return nb::find(*this); }
   void close() noexcept override {
+    {
+      const std::lock_guard lock(mutex_);
+      if (mapper_) mapper_->stop();
+    }
+    calls_.close();
     const std::lock_guard lock(mutex_);
     mapper_.reset();
+    finished_.reset();
     map_.drop();
   }
 
  private:
-  void take_map(LiveMapper& live, const std::string& source) {
-    if (!cancelled_) live.drain();
-    sequence_.frames = live.frames();
-    if (sequence_.frames.empty())
-      throw Error("no frame was mapped, so there is nothing to save; push some first");
-    Mapper mapper = live.take();
-    mapper.finish();
-    map_.take(std::move(mapper), sequence_, source, config_text_);
-    const std::lock_guard lock(mutex_);
-    last_statistics_ = live.statistics();
-    mapper_.reset();
+  /// Whatever throws, what was fused waits for the next call.
+  void take_map(const std::string& source) {
+    if (!finished_) {
+      LiveMapper& live = open_mapper();
+      if (!cancelled_) live.drain();
+      sequence_.frames = live.frames();
+      if (sequence_.frames.empty())
+        throw Error("no frame was mapped, so there is nothing to save; push some first");
+      require_motion(sequence_.frames, live.config());
+      finished_.emplace(live.take());
+      const std::lock_guard lock(mutex_);
+      last_statistics_ = live.statistics();
+      mapper_.reset();
+    }
+    try {
+      finished_->finish();
+    } catch (...) {
+      if (!cancelled_) throw;
+      finished_->finish();  // cancelled for this, as a rule: the views stay without embedding
+    }
+    map_.take(std::move(*finished_), sequence_, source, config_text_);
+    finished_.reset();
   }
 
   LiveMapper& open_mapper() {
@@ -88,6 +107,7 @@ class LiveMapperHandle final : public OpenHandle {
   }
 
   Frame taken(const Frame& frame) {
+    require_one_camera(sequence_.depth_camera, frame.depth_camera);
     Frame mine = frame;
     if (mine.index < 0) mine.index = next_index_;
     next_index_ = mine.index + 1;
@@ -100,6 +120,7 @@ class LiveMapperHandle final : public OpenHandle {
   mutable std::mutex mutex_;  ///< for statistics, which any thread may ask for
   std::unique_ptr<LiveMapper> mapper_;
   LiveStatistics last_statistics_;
+  std::optional<Mapper> finished_;  ///< taken from the threads, not yet a map
   SequenceResult sequence_;
   std::int64_t next_index_ = 0;
   bool cancelled_ = false;
@@ -133,7 +154,7 @@ push, drain or save; after cancel, save keeps what was fused. One call at a time
 
 void bind_live_mapper(nb::module_& module) {
   bind_statistics(module);
-  const auto release = nb::call_guard<nb::gil_scoped_release>();
+  const auto release = nb::call_guard<WithoutGil>();
   nb::class_<LiveMapperHandle>(module, "LiveMapper", kLiveText)
       .def(
           "__init__",
@@ -164,7 +185,7 @@ void bind_live_mapper(nb::module_& module) {
           "save",
           [](LiveMapperHandle& self, const nb::object& path, const std::string& source) {
             const std::filesystem::path file = to_path(path, "path");
-            const nb::gil_scoped_release without_gil;
+            const WithoutGil without_gil;
             return self.save(file, source);
           },
           nb::arg("path"), nb::kw_only(), nb::arg("source") = "python",

@@ -17,6 +17,7 @@
 #include "ovimap/io/ply.h"
 #include "saved_map.h"
 #include "settings.h"
+#include "without_gil.h"
 
 namespace ovimap::python {
 
@@ -167,7 +168,7 @@ std::shared_ptr<SavedMap> open_map(const nb::object& path, const nb::object& enc
   const std::string spec = object              ? ""
                            : encoder.is_none() ? "none"
                                                : to_path(encoder, "encoder").string();
-  const nb::gil_scoped_release release;
+  const WithoutGil release;
   return std::make_shared<SavedMap>(file, config, made, spec, folders);
 }
 
@@ -269,14 +270,14 @@ void bind_map(nb::module_& module) {
          "Mapper takes it. settings: as ovimap.settings(\"query\") lists them. Raises Error for "
          "what "
          "is no sound map.")
-      .def("mesh", &SavedMap::mesh, nb::call_guard<nb::gil_scoped_release>(),
+      .def("mesh", &SavedMap::mesh, nb::call_guard<WithoutGil>(),
            "Reads the voxels and extracts the surface, with instance ids as labels. Raises Error "
            "for a map without voxels.")
       .def(
           "export",
           [](const SavedMap& self, const nb::object& path) {
             const std::filesystem::path out = to_path(path, "path");
-            const nb::gil_scoped_release release;
+            const WithoutGil release;
             export_map(self, out);
           },
           nb::arg("path"), nb::sig("def export(self, path: str | os.PathLike[str]) -> None"),

@@ -3,6 +3,8 @@
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/string.h>
 
+#include <cmath>
+
 #include "arrays.h"
 #include "bindings.h"
 #include "encoders.h"
@@ -10,6 +12,7 @@
 #include "masks.h"
 #include "open_handle.h"
 #include "ovimap/io/map_file.h"
+#include "without_gil.h"
 
 namespace ovimap::python {
 
@@ -32,8 +35,9 @@ class MapperHandle final : public OpenHandle {
     const auto turn = calls_.begin("Mapper");
     Mapper& mapper = open_mapper();
     if (frame.index < 0) frame.index = static_cast<std::int64_t>(sequence_.frames.size());
+    require_one_camera(sequence_.depth_camera, frame.depth_camera);
     const FrameReport report = mapper.process(frame);
-    if (sequence_.frames.empty()) sequence_.depth_camera = frame.depth_camera;
+    sequence_.depth_camera = frame.depth_camera;
     sequence_.frames.push_back(
         {frame.index, frame.timestamp_s, frame.name, frame.world_from_camera, report.labelled});
     if (sequence_.frames.size() == kFramesUntilMotion)
@@ -73,6 +77,7 @@ class MapperHandle final : public OpenHandle {
  protected:
   nb::object self() override { return nb::find(*this); }
   void close() noexcept override {
+    calls_.close();
     mapper_.reset();
     map_.drop();
   }
@@ -142,7 +147,9 @@ masks: None (geometry alone), the name of a model or a folder of PNGs, a MaskSou
     asked; FrameError leaves that frame out.
 encoder: None, "default", the name of a model, an ImageTextEncoder, or an object with name,
     dimension and encode_images(list of uint8 [h, w, 3]) -> [images, dimension] (and
-    encode_texts(list of str) -> [texts, dimension] for searching). It is called from another thread.
+    encode_texts(list of str) -> [texts, dimension] for searching). It is called from another thread;
+    what it raises comes out of the next call, once, and the views it was given stay without
+    embedding: process the frame again, or save again, to go on.
 preset: "default" or "reference". settings: as ovimap.settings("mapper") lists them.
 
 Synchronous and deterministic: the same frames give the same map, bit for bit. One call at a time;
@@ -158,6 +165,17 @@ MapperSetup mapper_setup(const std::string& preset, const Settings& settings) {
   return setup;
 }
 
+void require_one_camera(const PinholeCamera& depth_camera, const PinholeCamera& next) {
+  constexpr float kSameZoom = 0.1f;  // phones give every frame focal lengths of its own
+  if (depth_camera.width == 0) return;
+  const bool same = depth_camera.width == next.width && depth_camera.height == next.height &&
+                    std::abs(next.fx - depth_camera.fx) <= kSameZoom * depth_camera.fx;
+  if (!same)
+    throw Error(
+        "this frame is of another depth camera than those before; a map has one: make another "
+        "Mapper and merge the maps (ovimap merge)");
+}
+
 void FinishedMap::take(Mapper&& mapper, const SequenceResult& sequence, const std::string& source,
                        const std::string& config_text) {
   document_ =
@@ -171,7 +189,11 @@ std::size_t FinishedMap::save(const std::filesystem::path& path) const {
 
 void bind_mapper(nb::module_& module) {
   bind_reports(module);
-  const auto release = nb::call_guard<nb::gil_scoped_release>();
+  module.def(
+      "check_map_target", [](const nb::object& path) { check_map_target(to_path(path, "path")); },
+      nb::arg("path"), nb::sig("def check_map_target(path: str | os.PathLike[str]) -> None"),
+      "Raises Error where no map can be written; changes nothing.");
+  const auto release = nb::call_guard<WithoutGil>();
   nb::class_<MapperHandle>(module, "Mapper", kMapperText)
       .def(
           "__init__",
@@ -195,7 +217,7 @@ void bind_mapper(nb::module_& module) {
           "save",
           [](MapperHandle& self, const nb::object& path, const std::string& source) {
             const std::filesystem::path file = to_path(path, "path");
-            const nb::gil_scoped_release without_gil;
+            const WithoutGil without_gil;
             return self.save(file, source);
           },
           nb::arg("path"), nb::kw_only(), nb::arg("source") = "python",

@@ -19,6 +19,9 @@ struct MapperSetup {
 };
 MapperSetup mapper_setup(const std::string& preset, const Settings& settings);
 
+/// A map is of one depth camera (a width of 0: of none yet). Throws Error for another.
+void require_one_camera(const PinholeCamera& depth_camera, const PinholeCamera& next);
+
 /// What was mapped, until it is saved; it stays when that fails.
 class FinishedMap {
  public:

@@ -8,10 +8,12 @@
 
 #include "arrays.h"
 #include "bindings.h"
+#include "callback.h"
 #include "ovimap/inference/entity_ids.h"
 #include "ovimap/inference/mask_source_factory.h"
 #include "settings.h"
 #include "source.h"
+#include "without_gil.h"
 
 namespace ovimap::python {
 
@@ -35,13 +37,14 @@ class CallableMasks : public MaskSource {
   bool is_slow() const override { return true; }
 
   Entities entities(const Frame& frame, std::span<const MaskPrompt> prompts) override {
-    const nb::gil_scoped_acquire acquire;
-    try {
-      return ask(frame, prompts);
-    } catch (const nb::python_error& error) {
-      if (!error.matches(frame_error_type())) throw;
-      throw FrameError(nb::cast<std::string>(nb::str(error.value())));
-    }
+    return call_python([&] {
+      try {
+        return ask(frame, prompts);
+      } catch (const nb::python_error& error) {
+        if (!error.matches(frame_error_type())) throw;
+        throw FrameError(nb::cast<std::string>(nb::str(error.value())));
+      }
+    });
   }
 
  private:
@@ -76,7 +79,7 @@ std::shared_ptr<MaskSource> open_masks(const std::string& spec, const Source* so
   const auto config = configured<MaskSourceConfig>(settings);
   const MaskSourceContext context{source ? source->frames.get() : nullptr,
                                   to_paths(model_dirs, "model_dirs")};
-  const nb::gil_scoped_release release;
+  const WithoutGil release;
   if (spec == "gt" && source) return std::make_shared<TruthMasks>(source->frames);
   return make_mask_source(spec, config, context);
 }
@@ -119,7 +122,7 @@ void bind_masks(nb::module_& module) {
           [](MaskSource& masks, const Frame& frame) {
             Entities found;
             {
-              const nb::gil_scoped_release release;
+              const WithoutGil release;
               found = masks.entities(frame, {});
             }
             auto* kept = new IdImage(std::move(found.ids));

@@ -3,6 +3,7 @@
 #include <nanobind/stl/string.h>
 
 #include "bindings.h"
+#include "callback.h"
 #include "open_handle.h"
 #include "ovimap/base/error.h"
 #include "ovimap/base/version.h"
@@ -37,6 +38,7 @@ NB_MODULE(_ovimap, module) {
   module.def("version", &version, "Version of the library, \"0.1.0\".");
   module.def("commit", &commit, "The commit the library was built from, or \"unknown\".");
   bind_errors(module);
+  bind_callback_errors();
   bind_settings(module);
   bind_frames(module);
   bind_images(module);

@@ -5,6 +5,8 @@
 #include <set>
 #include <vector>
 
+#include "without_gil.h"
+
 namespace ovimap::python {
 
 namespace {
@@ -28,8 +30,10 @@ void OpenHandle::close_all() {
   const std::set<OpenHandle*> handles = open_handles();
   std::vector<nb::object> kept;
   for (OpenHandle* handle : handles) kept.push_back(handle->self());
+  WithoutGil::end();
   const nb::gil_scoped_release release;
   for (OpenHandle* handle : handles) handle->close();
+  WithoutGil::await_all();
 }
 
 }  // namespace ovimap::python

@@ -38,7 +38,10 @@ class OneCall {
   class Turn {
    public:
     explicit Turn(std::atomic<bool>& busy) : busy_(busy) {}
-    ~Turn() { busy_ = false; }
+    ~Turn() {
+      busy_ = false;
+      busy_.notify_all();
+    }
     Turn(const Turn&) = delete;
     Turn& operator=(const Turn&) = delete;
 
@@ -53,9 +56,14 @@ class OneCall {
                          "call at a time"));
     return Turn(busy_);
   }
+  /// Waits for the call under way, and refuses all that come. Without the GIL, which it may need.
+  void close() {
+    if (closed_.exchange(true)) return;
+    while (busy_.exchange(true)) busy_.wait(true);
+  }
 
  private:
-  std::atomic<bool> busy_ = false;
+  std::atomic<bool> busy_ = false, closed_ = false;
 };
 
 }  // namespace ovimap::python

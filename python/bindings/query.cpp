@@ -7,6 +7,7 @@
 #include "arrays.h"
 #include "bindings.h"
 #include "saved_map.h"
+#include "without_gil.h"
 
 namespace ovimap::python {
 
@@ -22,11 +23,11 @@ QueryAnswer query(SavedMap& map, const std::string& text, const std::vector<std:
 QueryAnswer query_like(SavedMap& map, const nb::object& what, bool relevance) {
   if (nb::isinstance<nb::int_>(what)) {
     const auto id = nb::cast<InstanceId>(what);
-    const nb::gil_scoped_release release;
+    const WithoutGil release;
     return map.engine(false).find_like(id, relevance);
   }
   const RgbImage image = read_color(what, "picture");
-  const nb::gil_scoped_release release;
+  const WithoutGil release;
   return map.engine(true).find_like(image, "picture", relevance);
 }
 
@@ -73,7 +74,7 @@ void bind_query(nb::module_& module, nb::class_<SavedMap>& map) {
   bind_answers(module);
   map.def("query", &query, nb::arg("text"), nb::kw_only(),
           nb::arg("negatives") = std::vector<std::string>(), nb::arg("relevance") = false,
-          nb::call_guard<nb::gil_scoped_release>(),
+          nb::call_guard<WithoutGil>(),
           "Asks in words: \"mug\", \"red chair, armchair\", \"mug on the table\" (docs/query.md). "
           "negatives: what it must not be. relevance: rate every object. The first question opens "
           "the encoder. Raises Error for an empty text or a map without embeddings.")

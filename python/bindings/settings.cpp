@@ -17,7 +17,10 @@ namespace ovimap::python {
 namespace {
 
 std::string text_of(nb::handle value) {
-  if (nb::isinstance<nb::bool_>(value)) return nb::cast<bool>(value) ? "true" : "false";
+  const char* type = Py_TYPE(value.ptr())->tp_name;
+  if (nb::isinstance<nb::bool_>(value) || type == std::string_view("numpy.bool") ||
+      type == std::string_view("numpy.bool_"))
+    return PyObject_IsTrue(value.ptr()) == 1 ? "true" : "false";
   return nb::cast<std::string>(nb::str(value));
 }
 
@@ -64,7 +67,9 @@ bool is_path(nb::handle path) {
 std::filesystem::path to_path(nb::handle path, const char* name) {
   if (!is_path(path))
     throw nb::type_error(concat(name, " must be a path: a string or os.PathLike").c_str());
-  return nb::cast<std::string>(nb::str(path));
+  PyObject* bytes = nullptr;  // as the system has it: not every file name is UTF-8
+  if (PyUnicode_FSConverter(path.ptr(), &bytes) == 0) throw nb::python_error();
+  return std::string(nb::steal<nb::bytes>(bytes).c_str());
 }
 
 std::vector<std::filesystem::path> to_paths(nb::handle paths, const char* name) {

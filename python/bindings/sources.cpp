@@ -3,9 +3,11 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
 
 #include <future>
+#include <mutex>
 
 #include "arrays.h"
 #include "bindings.h"
@@ -13,6 +15,7 @@
 #include "ovimap/pipeline/sequence_run.h"
 #include "settings.h"
 #include "source.h"
+#include "without_gil.h"
 
 namespace ovimap::python {
 
@@ -27,6 +30,7 @@ class FrameIterator {
   }
 
   Frame next() {
+    const std::lock_guard lock(mutex_);
     while (ahead_.valid()) {
       const std::int64_t position = positions_[begun_ - 1];
       FrameRead read = ahead_.get();
@@ -44,6 +48,7 @@ class FrameIterator {
   }
 
   std::vector<std::pair<std::int64_t, std::string>> skipped() const {
+    const std::lock_guard lock(mutex_);
     std::vector<std::pair<std::int64_t, std::string>> result;
     for (const SkippedFrame& frame : skipped_) result.emplace_back(frame.position, frame.fault);
     return result;
@@ -59,6 +64,7 @@ class FrameIterator {
     ++begun_;
   }
 
+  mutable std::mutex mutex_;  // threads may share one
   std::shared_ptr<const FrameSource> frames_;
   std::vector<std::int64_t> positions_;
   std::vector<SkippedFrame> skipped_;
@@ -81,8 +87,9 @@ Frame read_frame(const Source& source, std::int64_t position) {
   return std::move(*read.frame);
 }
 
-FrameIterator iterate(const Source& source, const std::string& range) {
-  return FrameIterator(source.frames, positions(parse_frame_range(range), source.frames->size()));
+std::unique_ptr<FrameIterator> iterate(const Source& source, const std::string& range) {
+  return std::make_unique<FrameIterator>(
+      source.frames, positions(parse_frame_range(range), source.frames->size()));
 }
 
 using IdArray = nb::ndarray<nb::numpy, const std::uint16_t, nb::ndim<2>>;
@@ -107,7 +114,7 @@ void bind_sources(nb::module_& module) {
       .def(
           "__iter__", [](nb::handle self) { return nb::borrow(self); },
           nb::sig("def __iter__(self) -> FrameIterator"))
-      .def("__next__", &FrameIterator::next, nb::call_guard<nb::gil_scoped_release>())
+      .def("__next__", &FrameIterator::next, nb::call_guard<WithoutGil>())
       .def("__len__", &FrameIterator::size, "Frames in the range, unusable ones included.")
       .def_prop_ro("skipped", &FrameIterator::skipped,
                    "(position, fault) of the frames met so far that cannot be used");
@@ -119,8 +126,7 @@ void bind_sources(nb::module_& module) {
           "the layout: \"replica\", \"tum\", \"folder\" ...")
       .def_ro("path", &Source::path)
       .def("__len__", [](const Source& source) { return source.frames->size(); })
-      .def("__getitem__", &read_frame, nb::arg("position"),
-           nb::call_guard<nb::gil_scoped_release>())
+      .def("__getitem__", &read_frame, nb::arg("position"), nb::call_guard<WithoutGil>())
       .def("__iter__", [](const Source& source) { return iterate(source, ":"); })
       .def("frames", &iterate, nb::arg("range") = ":",
            "The frames of a range \"FIRST:LAST:STEP\", each part optional.")
@@ -132,7 +138,7 @@ void bind_sources(nb::module_& module) {
       [](const nb::object& path, const Settings& settings) {
         const std::filesystem::path folder = to_path(path, "path");
         const auto config = configured<FrameSourceConfig>(settings);
-        const nb::gil_scoped_release release;
+        const WithoutGil release;
         return Source{open_frame_source(folder, config), folder.string()};
       },
       nb::arg("path"), nb::kw_only(), nb::arg("settings") = nb::none(),

@@ -4,13 +4,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 from collections.abc import Callable, Sequence
 from typing import Any
 
 from . import _ovimap
-from ._ovimap import Error, FrameError, Map, Mapper, make_mask_source, open_source
+from ._ovimap import Error, FrameError, FrameIterator, Map, Mapper, make_mask_source, open_source
 
 Path = str | os.PathLike[str]
 
@@ -31,25 +32,44 @@ def run(
     masks and encoder as Mapper takes them; "gt": the recording's own masks; encoder "auto": the default one where
     there are masks. frames: "FIRST:LAST:STEP", each part optional. Frames that cannot be used are left out, as the
     program does. progress(done, total) is called after each frame and may return False to end early: what was mapped
-    is saved. Raises Error when no frame is usable.
+    is saved. It is too when Ctrl-C or what a callable raises ends the run, unless there was a map at that path; then
+    that is raised. Raises Error when no frame is usable, and before the first frame where the map cannot be written.
     """
+    _ovimap.check_map_target(map)
+    there_before = os.path.exists(map)
     recording = open_source(source)
     if isinstance(masks, str):
         masks = make_mask_source(masks, recording)
     if isinstance(encoder, str) and encoder == "auto":
         encoder = "none" if masks is None else "default"
     mapper = Mapper(masks, encoder, preset=preset, settings=settings)
-    chosen = recording.frames(frames)
-    for done, frame in enumerate(chosen, 1):
+    made_from = f"{recording.kind}:{recording.path}"
+    try:
+        _process(mapper, recording.frames(frames), progress)
+        mapper.save(map, source=made_from)
+    except BaseException:
+        if mapper.frames > 0 and not there_before:
+            _save_what_stands(mapper, map, made_from)
+        raise
+    return Map.open(map)
+
+
+def _process(mapper: Mapper, frames: FrameIterator, progress: Callable[[int, int], Any] | None) -> None:
+    for done, frame in enumerate(frames, 1):
         try:
             mapper.process(frame)
         except FrameError:
             if mapper.frames == 0:  # what is wrong with the first is wrong with all as a rule
                 raise
-        if progress is not None and progress(done, len(chosen)) is False:
+        if progress is not None and progress(done, len(frames)) is False:
             break
-    mapper.save(map, source=f"{recording.kind}:{recording.path}")
-    return Map.open(map)
+
+
+def _save_what_stands(mapper: Mapper, map: Path, made_from: str) -> None:
+    for _ in range(2):  # what the encoder raised meanwhile comes out first
+        with contextlib.suppress(Exception):
+            mapper.save(map, source=made_from)
+            return
 
 
 def eval(

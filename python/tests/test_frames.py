@@ -72,6 +72,11 @@ def test_a_tensor_on_a_gpu_is_refused_with_the_remedy(camera, images):
         ovimap.Frame(Tensor(images[0], (2, 0)), images[1], np.eye(4), camera)
 
 
+def test_numbers_of_another_byte_order_are_refused_with_the_remedy(camera, images):
+    with pytest.raises(TypeError, match="came a ndarray of >f4 that cannot be read as an array; .* in this machine's byte order"):
+        ovimap.Frame(images[0], images[1].astype(">f4"), np.eye(4), camera)
+
+
 def test_depth_in_units_is_divided_by_its_scale_and_limited(camera, images):
     units = np.full((camera.height, camera.width), 1500, np.uint16)
     units[0, :3] = 0, 50, 65535
