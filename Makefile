@@ -67,7 +67,7 @@ benchmarks: build
 	@python3 tools/benchmarks.py $(OVIMAP) $(if $(KITCHEN),--kitchen "$(KITCHEN)") $(if $(ONLY),--only $(ONLY))
 
 wheel: setup
-	@tools/wheel_test.sh
+	@tools/wheel_test.sh $(if $(SOURCE),"$(SOURCE)")
 
 viewer-speed: build
 	@test -f "$(MAP)" || { echo "name a map: make viewer-speed MAP=room.ovimap"; exit 1; }
