@@ -195,7 +195,7 @@ def _read(bag: Bag, color: Stream, depth: Stream, chosen: Topics) -> TransformTr
     streams = {color.topic: color, depth.topic: depth}
     odometry = [chosen.poses] if chosen.poses else bag.topics(ODOMETRY)
     transforms = bag.topics(*TRANSFORMS)
-    tree, extra = TransformTree(), TransformTree()
+    tree, given = TransformTree(), {topic: TransformTree() for topic in odometry}
     for topic, received_ns, message in bag.messages({*streams, color.info_topic, depth.info_topic, *transforms, *odometry}):
         if topic in streams:
             streams[topic].write(message, received_ns)
@@ -205,14 +205,23 @@ def _read(bag: Bag, color: Stream, depth: Stream, chosen: Topics) -> TransformTr
                 static = topic.endswith("static")
                 tree.add(entry.header.frame_id, entry.child_frame_id, stamp_ns(entry.header), pose, static=static)
         elif topic in odometry:
-            _add_pose(extra, bag.types[topic], message, chosen)
+            _add_pose(given[topic], bag.types[topic], message, chosen)
         for stream in streams.values():
             if topic == stream.info_topic:
                 stream.info = message
-    for child, link in extra.links.items():
-        if chosen.poses or child not in tree.links:
-            tree.links[child or depth.frame] = link
+    _add_links(tree, given, depth.frame, chosen)
     return tree
+
+
+def _add_links(tree: TransformTree, given: dict[str, TransformTree], camera: str, chosen: Topics) -> None:
+    """Odometry says where a frame is of which tf says nothing, and a chosen topic says it instead of tf."""
+    links = [(child or camera, topic, link) for topic, odometry in given.items() for child, link in odometry.links.items()]
+    giver: dict[str, str] = {}
+    for child, topic, link in links:
+        if child in giver:
+            raise Error(f"{giver[child]} and {topic} both give the poses of the frame '{child}'; name one of them with --poses")
+        if chosen.poses or child not in tree.links:
+            giver[child], tree.links[child] = topic, link
 
 
 def _add_pose(tree: TransformTree, kind: str, message: Any, chosen: Topics) -> None:

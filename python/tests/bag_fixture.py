@@ -31,6 +31,7 @@ class Options:
     color_from_depth: np.ndarray | None = None  # where colour has a camera of its own
     compressed_depth: bool = False
     poses: str = "tf"  # tf, odometry or none
+    more_odometry: tuple[str, ...] = ()  # topics that say the camera stands a metre aside
     info: bool = True
     jump_after: int | None = None  # images, then the clock starts anew
     between: bool = False  # poses at other times than the images
@@ -92,13 +93,13 @@ class Recorder:
         self.write(topic, "tf2_msgs/msg/TFMessage", time_ns,
                    transforms=[stamped(header=self.header(time_ns, parent), child_frame_id=child, transform=transform)])  # fmt: skip
 
-    def odometry(self, time_ns, parent, child, pose):
+    def odometry(self, time_ns, parent, child, pose, topic="/odom"):
         translation, rotation = self.parts(pose)
         position = self.type("geometry_msgs/msg/Point")(translation.x, translation.y, translation.z)
         zero, none = self.type("geometry_msgs/msg/Vector3")(0.0, 0.0, 0.0), np.zeros(36)
         pose = self.type("geometry_msgs/msg/Pose")(position=position, orientation=rotation)
         twist = self.type("geometry_msgs/msg/Twist")(linear=zero, angular=zero)
-        self.write("/odom", "nav_msgs/msg/Odometry", time_ns, header=self.header(time_ns, parent), child_frame_id=child,
+        self.write(topic, "nav_msgs/msg/Odometry", time_ns, header=self.header(time_ns, parent), child_frame_id=child,
                    pose=self.type("geometry_msgs/msg/PoseWithCovariance")(pose=pose, covariance=none),
                    twist=self.type("geometry_msgs/msg/TwistWithCovariance")(twist=twist, covariance=none))  # fmt: skip
 
@@ -126,6 +127,10 @@ def write_pose(recorder, options, time_ns, pose):
     elif options.poses == "odometry":
         recorder.odometry(time_ns, "odom", "base", pose @ np.linalg.inv(base))
         recorder.transform("/tf_static", time_ns, "base", "depth_optical", base)
+    aside = np.eye(4)
+    aside[1, 3] = 1
+    for topic in options.more_odometry:
+        recorder.odometry(time_ns, "odom", "depth_optical", aside @ pose, topic)
 
 
 def record(path, shots, camera, options=Options()):

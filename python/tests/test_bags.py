@@ -65,6 +65,22 @@ def test_odometry_on_a_robot_gives_the_cameras_poses(shots, camera, tmp_path):
         assert frame.timestamp_s == pytest.approx((START_NS + frame.index * STEP_NS) / 1e9 + 0.001, abs=1e-6)
 
 
+def test_of_two_odometries_of_one_frame_one_must_be_chosen(shots, camera, tmp_path):
+    both = Options(poses="none", more_odometry=("/filtered", "/wheels"))
+    bag = record(tmp_path / "a", shots[:3], camera, both)
+    said = refusal(bag, tmp_path / "out")
+    assert said == "/filtered and /wheels both give the poses of the frame 'depth_optical'; name one of them with --poses"
+    done = convert(bag, tmp_path / "out", topics=Topics(poses="/wheels"))
+    poses = [frame.world_from_camera for frame in ovimap.open_source(done["source"])]
+    np.testing.assert_allclose([pose[1, 3] for pose in poses], [shot.pose[1, 3] + 1 for shot in shots[:3]])
+
+
+def test_where_tf_says_it_odometry_is_not_asked(shots, camera, tmp_path):
+    bag = record(tmp_path / "a", shots[:3], camera, Options(more_odometry=("/filtered", "/wheels")))
+    poses = [frame.world_from_camera for frame in ovimap.open_source(convert(bag, tmp_path / "out")["source"])]
+    np.testing.assert_allclose(poses, [shot.pose for shot in shots[:3]], atol=1e-9)
+
+
 def test_poses_between_the_images_are_interpolated(shots, camera, tmp_path):
     done = convert(record(tmp_path / "a", shots, camera, Options(between=True)), tmp_path / "out")
     poses = [frame.world_from_camera for frame in ovimap.open_source(done["source"])]
