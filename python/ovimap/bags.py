@@ -56,6 +56,15 @@ class Stream:
     clock_offset_ns: int | None = None
     pending: deque[Future[pathlib.Path]] = field(default_factory=deque)
 
+    def see_camera(self, info: Any) -> None:
+        k = _field(info, "k")
+        if not (min(info.width, info.height, k[0], k[4]) > 0 and np.isfinite(k).all()):
+            raise Error(
+                f"{self.info_topic} holds no calibration ({info.width}x{info.height}, fx {k[0]:g}, fy {k[4]:g}); calibrate the "
+                "camera, give its driver the result, and record the bag anew"
+            )
+        self.info = info
+
     def check_clock(self, time_ns: int, received_ns: int) -> None:
         if time_ns == 0:
             raise Error(f"the images of {self.topic} have no time stamps; record them with header.stamp set")
@@ -131,8 +140,8 @@ def convert(bag: str | os.PathLike[str], out: str | os.PathLike[str], *, topics:
 
     bag: a .bag file, a ROS 2 bag's folder, or an .mcap file. Poses come from tf, odometry or stamped poses; images
     stay as they were compressed. Returns {"source", "frames", "left_out", "color", "depth", "world", "notices"}.
-    Raises Error for a bag that is cut off, whose clock jumps, or that lacks images, camera_info or poses, and where
-    `topics` must choose.
+    Raises Error for a bag that is cut off, whose clock jumps, or that lacks images, camera_info with a calibration or
+    poses, and where `topics` must choose.
     """
     chosen, folder = topics or Topics(), pathlib.Path(out)
     if folder.exists() and any(folder.iterdir()):
@@ -208,7 +217,7 @@ def _read(bag: Bag, color: Stream, depth: Stream, chosen: Topics) -> TransformTr
             _add_pose(given[topic], bag.types[topic], message, chosen)
         for stream in streams.values():
             if topic == stream.info_topic:
-                stream.info = message
+                stream.see_camera(message)
     _add_links(tree, given, depth.frame, chosen)
     return tree
 

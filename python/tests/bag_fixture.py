@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bags as recorders write them, made from frames."""
 import io
+import struct
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,9 +31,10 @@ class Options:
     color_camera: object = None
     color_from_depth: np.ndarray | None = None  # where colour has a camera of its own
     compressed_depth: bool = False
-    poses: str = "tf"  # tf, odometry or none
+    poses: str = "tf"  # tf, odometry, stamped (as /pose) or none
     more_odometry: tuple[str, ...] = ()  # topics that say the camera stands a metre aside
     info: bool = True
+    distortion: float = 0.0
     jump_after: int | None = None  # images, then the clock starts anew
     between: bool = False  # poses at other times than the images
 
@@ -73,10 +75,10 @@ class Recorder:
         self.write(topic, "sensor_msgs/msg/CompressedImage", time_ns, header=self.header(stamp_ns, frame), format=image_format,
                    data=np.frombuffer(data, np.uint8))  # fmt: skip
 
-    def info(self, topic, time_ns, frame, camera):
+    def info(self, topic, time_ns, frame, camera, distortion=0.0):
         names = "DKRP" if self.ros1 else "dkrp"
         k = np.array([camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1], np.float64)
-        figures = dict(zip(names, (np.zeros(5), k, np.eye(3).reshape(-1), np.hstack([k.reshape(3, 3), np.zeros((3, 1))]).reshape(-1))))
+        figures = dict(zip(names, (np.full(5, distortion), k, np.eye(3).reshape(-1), np.hstack([k.reshape(3, 3), np.zeros((3, 1))]).reshape(-1))))
         roi = self.type("sensor_msgs/msg/RegionOfInterest")(x_offset=0, y_offset=0, height=0, width=0, do_rectify=False)
         self.write(topic, "sensor_msgs/msg/CameraInfo", time_ns, header=self.header(time_ns, frame), height=camera.height,
                    width=camera.width, distortion_model="plumb_bob", binning_x=0, binning_y=0, roi=roi, **figures)  # fmt: skip
@@ -93,11 +95,14 @@ class Recorder:
         self.write(topic, "tf2_msgs/msg/TFMessage", time_ns,
                    transforms=[stamped(header=self.header(time_ns, parent), child_frame_id=child, transform=transform)])  # fmt: skip
 
-    def odometry(self, time_ns, parent, child, pose, topic="/odom"):
+    def pose(self, pose):
         translation, rotation = self.parts(pose)
         position = self.type("geometry_msgs/msg/Point")(translation.x, translation.y, translation.z)
+        return self.type("geometry_msgs/msg/Pose")(position=position, orientation=rotation)
+
+    def odometry(self, time_ns, parent, child, pose, topic="/odom"):
         zero, none = self.type("geometry_msgs/msg/Vector3")(0.0, 0.0, 0.0), np.zeros(36)
-        pose = self.type("geometry_msgs/msg/Pose")(position=position, orientation=rotation)
+        pose = self.pose(pose)
         twist = self.type("geometry_msgs/msg/Twist")(linear=zero, angular=zero)
         self.write(topic, "nav_msgs/msg/Odometry", time_ns, header=self.header(time_ns, parent), child_frame_id=child,
                    pose=self.type("geometry_msgs/msg/PoseWithCovariance")(pose=pose, covariance=none),
@@ -110,10 +115,21 @@ def png(pixels):
     return out.getvalue()
 
 
+def quantized(metres, most_m=10.0, quantization=100.0):
+    """Metres as compressed_depth_image_transport stores them: a header, and 16 bits of inverse depth."""
+    a = quantization * (quantization + 1)
+    b = 1 - a / most_m
+    stored = np.zeros(metres.shape, np.uint16)
+    seen = metres > 0
+    stored[seen] = np.rint(a / metres[seen] + b)
+    return struct.pack("<iff", 0, a, b), stored
+
+
 def write_depth(recorder, options, time_ns, stamp_ns, shot):
     encoding = "16UC1" if shot.depth.dtype == np.uint16 else "32FC1"
     if options.compressed_depth:
-        recorder.compressed("/depth/image/compressedDepth", time_ns, stamp_ns, "depth_optical", bytes(12) + png(shot.depth),
+        header, stored = quantized(shot.depth) if encoding == "32FC1" else (bytes(12), shot.depth)
+        recorder.compressed("/depth/image/compressedDepth", time_ns, stamp_ns, "depth_optical", header + png(stored),
                             f"{encoding}; compressedDepth png")  # fmt: skip
     else:
         recorder.image("/depth/image", time_ns, stamp_ns, "depth_optical", shot.depth, encoding)
@@ -127,6 +143,8 @@ def write_pose(recorder, options, time_ns, pose):
     elif options.poses == "odometry":
         recorder.odometry(time_ns, "odom", "base", pose @ np.linalg.inv(base))
         recorder.transform("/tf_static", time_ns, "base", "depth_optical", base)
+    elif options.poses == "stamped":
+        recorder.write("/pose", "geometry_msgs/msg/PoseStamped", time_ns, header=recorder.header(time_ns, "world"), pose=recorder.pose(pose))
     aside = np.eye(4)
     aside[1, 3] = 1
     for topic in options.more_odometry:
@@ -142,8 +160,8 @@ def record(path, shots, camera, options=Options()):
         time_ns = START_NS + i * STEP_NS
         stamp_ns = time_ns if options.jump_after is None or i < options.jump_after else START_NS + (i - options.jump_after) * STEP_NS
         if options.info:
-            recorder.info("/color/camera_info", time_ns, color_frame, options.color_camera or camera)
-            recorder.info("/depth/camera_info", time_ns, "depth_optical", camera)
+            recorder.info("/color/camera_info", time_ns, color_frame, options.color_camera or camera, options.distortion)
+            recorder.info("/depth/camera_info", time_ns, "depth_optical", camera, options.distortion)
         if own_camera and i == 0:
             recorder.transform("/tf_static", time_ns, "depth_optical", "color_optical", np.linalg.inv(options.color_from_depth))
         for shift in (-STEP_NS // 4, STEP_NS // 4) if options.between else (0,):

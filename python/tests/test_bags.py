@@ -10,7 +10,7 @@ import numpy as np
 import ovimap
 import pytest
 from bag_fixture import START_NS, STEP_NS, Options, Shot, record
-from ovimap.bags import Topics, convert, main
+from ovimap.bags import Stream, Topics, convert, main
 from ovimap.transforms import between, matrix_of, quaternion_of
 from PIL import Image
 
@@ -152,6 +152,15 @@ def test_what_a_bag_lacks_is_named(shots, camera, tmp_path):
     (tmp_path / "full").mkdir()
     (tmp_path / "full/a").touch()
     assert "is not empty" in refusal(good, tmp_path / "full")
+
+
+def test_a_camera_without_calibration_is_refused_before_its_images_are_read(shots, camera, tmp_path, monkeypatch):
+    unknown = ovimap.PinholeCamera(camera.width, camera.height, 0, 0, 0, 0)
+    bag = record(tmp_path / "a", shots[:3], camera, Options(color_camera=unknown))
+    monkeypatch.setattr(Stream, "write", lambda *_: pytest.fail("an image was read"))
+    said = refusal(bag, tmp_path / "out")
+    assert f"/color/camera_info holds no calibration ({camera.width}x{camera.height}, fx 0, fy 0); calibrate the camera" in said
+    assert not (tmp_path / "out").exists()
 
 
 def test_a_clock_that_jumps_is_an_error(shots, camera, tmp_path):
