@@ -200,9 +200,18 @@ def _info_topic(bag: Bag, image_topic: str) -> str:
     raise Error(f"the bag has no camera_info beside {image_topic} (it has {', '.join(infos) or 'none'}); record that topic too")
 
 
+def _pose_topics(bag: Bag, chosen: Topics) -> list[str]:
+    if chosen.poses is None:
+        return bag.topics(ODOMETRY)
+    known = bag.topics(ODOMETRY, *POSES)
+    if chosen.poses not in known:
+        raise Error(f"the bag has no odometry or stamped poses '{chosen.poses}'; it has {', '.join(known) or 'none at all'}")
+    return [chosen.poses]
+
+
 def _read(bag: Bag, color: Stream, depth: Stream, chosen: Topics) -> TransformTree:
     streams = {color.topic: color, depth.topic: depth}
-    odometry = [chosen.poses] if chosen.poses else bag.topics(ODOMETRY)
+    odometry = _pose_topics(bag, chosen)
     transforms = bag.topics(*TRANSFORMS)
     tree, given = TransformTree(), {topic: TransformTree() for topic in odometry}
     for topic, received_ns, message in bag.messages({*streams, color.info_topic, depth.info_topic, *transforms, *odometry}):
@@ -214,7 +223,7 @@ def _read(bag: Bag, color: Stream, depth: Stream, chosen: Topics) -> TransformTr
                 static = topic.endswith("static")
                 tree.add(entry.header.frame_id, entry.child_frame_id, stamp_ns(entry.header), pose, static=static)
         elif topic in odometry:
-            _add_pose(given[topic], bag.types[topic], message, chosen)
+            _add_pose(given[topic], bag.types[topic], message)
         for stream in streams.values():
             if topic == stream.info_topic:
                 stream.see_camera(message)
@@ -233,9 +242,7 @@ def _add_links(tree: TransformTree, given: dict[str, TransformTree], camera: str
             giver[child], tree.links[child] = topic, link
 
 
-def _add_pose(tree: TransformTree, kind: str, message: Any, chosen: Topics) -> None:
-    if kind not in (ODOMETRY, *POSES):
-        raise Error(f"--poses {chosen.poses} is of type {kind}; accepted are Odometry and PoseStamped")
+def _add_pose(tree: TransformTree, kind: str, message: Any) -> None:
     pose = message.pose if kind == POSES[0] else message.pose.pose
     child = message.child_frame_id if kind == ODOMETRY else ""  # a pose names no child: the camera's
     tree.add(message.header.frame_id, child, stamp_ns(message.header), matrix_of(vector(pose.position), quaternion(pose.orientation)))

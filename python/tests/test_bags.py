@@ -75,6 +75,14 @@ def test_of_two_odometries_of_one_frame_one_must_be_chosen(shots, camera, tmp_pa
     np.testing.assert_allclose([pose[1, 3] for pose in poses], [shot.pose[1, 3] + 1 for shot in shots[:3]])
 
 
+def test_stamped_poses_are_the_cameras(shots, camera, tmp_path):
+    bag = record(tmp_path / "a", shots[:3], camera, Options(poses="stamped"))
+    done = convert(bag, tmp_path / "out", topics=Topics(poses="/pose"))
+    assert done["world"] == "world" and done["frames"] == 3
+    poses = [frame.world_from_camera for frame in ovimap.open_source(done["source"])]
+    np.testing.assert_allclose(poses, [shot.pose for shot in shots[:3]], atol=1e-9)
+
+
 def test_where_tf_says_it_odometry_is_not_asked(shots, camera, tmp_path):
     bag = record(tmp_path / "a", shots[:3], camera, Options(more_odometry=("/filtered", "/wheels")))
     poses = [frame.world_from_camera for frame in ovimap.open_source(convert(bag, tmp_path / "out")["source"])]
@@ -108,6 +116,17 @@ def test_depth_in_metres_is_kept_to_a_fifth_of_a_millimetre(shots, camera, tmp_p
     frames = list(ovimap.open_source(done["source"]))
     np.testing.assert_array_equal(frames[0].depth[0, :2], 0)
     np.testing.assert_allclose(frames[1].depth, metres[1].depth, atol=1.1e-4)
+
+
+def test_compressed_depth_in_metres_is_kept_as_well_as_it_was_stored(shots, camera, tmp_path):
+    metres = [dataclasses.replace(shot, depth=(shot.depth / 1000).astype(np.float32)) for shot in shots[:2]]
+    metres[0].depth[0, :2] = 0
+    done = convert(record(tmp_path / "a", metres, camera, Options(compressed_depth=True)), tmp_path / "out")
+    frames = list(ovimap.open_source(done["source"]))
+    np.testing.assert_array_equal(frames[0].depth[0, :2], 0)
+    for frame, shot in zip(frames, metres):
+        step = shot.depth**2 / (100 * 101)  # of the stored inverse
+        assert np.all(np.abs(frame.depth - shot.depth) < 0.51 * step + 1.1e-4)
 
 
 def test_color_with_a_camera_of_its_own_keeps_its_offset(shots, camera, tmp_path):
@@ -147,6 +166,9 @@ def test_what_a_bag_lacks_is_named(shots, camera, tmp_path):
     assert "nothing in the bag moves the camera's frame 'depth_optical'" in refusal(bag, out)
     good = record(tmp_path / "c", few, camera)
     assert "the bag has no images '/front'; it has /color/image, /depth/image" in refusal(good, out, color="/front")
+    assert refusal(good, out, poses="/tf") == "the bag has no odometry or stamped poses '/tf'; it has none at all"
+    odometry = record(tmp_path / "d", few, camera, Options(poses="odometry"))
+    assert "no odometry or stamped poses '/nothing'; it has /odom" in refusal(odometry, out, poses="/nothing")
     assert "is no ancestor" in refusal(good, out, world="moon")
     assert "there is no bag" in refusal(tmp_path / "nowhere.bag", out)
     (tmp_path / "full").mkdir()
