@@ -20,6 +20,7 @@ import numpy as np
 
 from ._ovimap import Error, decode_gray_png, encode_png
 from .bag_messages import CAMERA, IMAGES, ODOMETRY, POSES, TRANSFORMS, Bag, is_depth, quaternion, raw_color, raw_depth, stamp_ns, vector
+from .command_line import DONE, run_command
 from .transforms import Matrix, TransformTree, matrix_of, quaternion_of, rotation_vector_of
 
 MILLIMETRES = 1000  # what 16-bit depth counts by ROS's convention (REP 118)
@@ -141,7 +142,7 @@ def convert(bag: str | os.PathLike[str], out: str | os.PathLike[str], *, topics:
     bag: a .bag file, a ROS 2 bag's folder, or an .mcap file. Poses come from tf, odometry or stamped poses; images
     stay as they were compressed. Returns {"source", "frames", "left_out", "color", "depth", "world", "notices"}.
     Raises Error for a bag that is cut off, whose clock jumps, or that lacks images, camera_info with a calibration or
-    poses, and where `topics` must choose.
+    poses, and where `topics` must choose; OSError for a folder that cannot be written.
     """
     chosen, folder = topics or Topics(), pathlib.Path(out)
     if folder.exists() and any(folder.iterdir()):
@@ -355,6 +356,19 @@ def _camera_text(color: Stream, depth: Stream, offset: Matrix) -> str:
 
 def main(arguments: list[str] | None = None) -> int:
     """The command ovimap-bag."""
+    return run_command("ovimap-bag", _parser().parse_args(arguments), extra="bags", packages=("rosbags",))
+
+
+def _command(options: argparse.Namespace) -> int:
+    topics = Topics(options.color, options.depth, options.poses, options.world)
+    done = convert(options.bag, options.out, topics=topics)
+    for notice in done["notices"]:
+        print(f"ovimap-bag: {notice}", file=sys.stderr)
+    print(json.dumps(done) if options.json else f"{done['source']}: {done['frames']} frames, {done['left_out']} left out")
+    return DONE
+
+
+def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="ovimap-bag", description="turns a ROS bag or MCAP file into a folder that ovimap reads")
     parser.add_argument("bag", help="a .bag file, a ROS 2 bag's folder or an .mcap file")
     parser.add_argument("out", help="folder to write")
@@ -363,17 +377,8 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--poses", help="topic of odometry or stamped poses of the camera, instead of tf")
     parser.add_argument("--world", help="frame to give poses in; default: the root of the transforms")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
-    options = parser.parse_args(arguments)
-    try:
-        topics = Topics(options.color, options.depth, options.poses, options.world)
-        done = convert(options.bag, options.out, topics=topics)
-    except Error as fault:
-        print(f"ovimap-bag: {fault}", file=sys.stderr)
-        return 2
-    for notice in done["notices"]:
-        print(f"ovimap-bag: {notice}", file=sys.stderr)
-    print(json.dumps(done) if options.json else f"{done['source']}: {done['frames']} frames, {done['left_out']} left out")
-    return 0
+    parser.set_defaults(command=_command)
+    return parser
 
 
 if __name__ == "__main__":

@@ -211,6 +211,27 @@ def test_the_command_prints_what_it_did(shots, camera, tmp_path, capsys):
     assert done.returncode == 0 and "3 frames, 0 left out" in done.stdout
 
 
+def test_an_output_that_cannot_be_written_is_one_line(shots, camera, tmp_path, capsys):
+    bag = str(record(tmp_path / "a", shots[:3], camera))
+    (tmp_path / "file").write_text("a file")
+    for out in (tmp_path / "file", tmp_path / "file/out", "/proc/out"):
+        assert main([bag, str(out)]) == 2
+        said = capsys.readouterr().err
+        assert said.startswith("ovimap-bag: ") and "give a folder that can be written" in said and said.count("\n") == 1
+    assert (tmp_path / "file").read_text() == "a file"
+    limited = f"ulimit -f 8; exec {sys.executable} -m ovimap.bags {bag} {tmp_path}/full"  # no file beyond a few KiB
+    done = subprocess.run(["bash", "-c", limited], capture_output=True, text=True)
+    assert done.returncode == 2 and "File too large" in done.stderr and done.stderr.count("\n") == 1
+    assert not (tmp_path / "full").exists()
+
+
+def test_what_is_not_corrected_is_told(shots, camera, tmp_path, capsys):
+    bag = str(record(tmp_path / "a", shots[:3], camera, Options(distortion=0.1)))
+    assert main([bag, str(tmp_path / "out")]) == 0
+    said, told = capsys.readouterr()
+    assert "3 frames" in said and "ovimap-bag: /depth/image is distorted" in told
+
+
 def test_rotations_survive_as_quaternions():
     random = np.random.default_rng(3)
     for q in [*random.normal(size=(50, 4)), (1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1)]:
