@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
-"""Sends a camera's frames to `ovimap serve --live http -o MAP` (docs/live.md). Needs NumPy and Pillow alone: this file
-may be copied to the machine that has the camera."""
+"""Sends a camera's frames to `ovimap serve --live http -o MAP` (docs/live.md). Needs NumPy alone, and Pillow for
+pictures that come as arrays: this file may be copied to the machine that has the camera."""
 
 from __future__ import annotations
 
@@ -17,7 +17,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from PIL import Image
 
 RETRY_S = 0.02  # between tries of a frame that the mapper had no room for
 REST_S = 0.5  # the server lets connections go that rest for a second
@@ -62,12 +61,14 @@ class FrameSender:
         """Sends one frame; False when the mapper had no room for it, also not within patience_s.
 
         color: uint8 [height, width, 3], or the bytes of a JPEG or PNG.
-        depth: uint16 [height, width] in the camera's units, floats in metres (not finite: none), or the bytes of a PNG.
+        depth: uint16 [height, width] in the camera's units, floats in metres, or the bytes of a PNG. Floats that are not finite
+            or do not fit into 16 bits of the camera's units are sent as 0, which is none.
         pose: [4, 4], world_from_camera of the depth camera, unless the camera's "poses" says otherwise.
 
+        Raises TypeError and ValueError for another type or shape and for a pose that is not finite, of which nothing is sent.
         Raises SendError when the frame is wrong or the map is finished, and when the answer was lost: the frame may have been
         taken, and is not sent twice."""
-        about: dict[str, Any] = {"pose": np.asarray(pose, np.float64).reshape(16).tolist(), "timestamp_s": float(timestamp)}
+        about: dict[str, Any] = {"pose": _pose(pose), "timestamp_s": _time(timestamp)}
         if name:
             about["name"] = name
         body, kind = _multipart({"color": self._color(color), "depth": self._depth(depth), "frame": json.dumps(about).encode()})
@@ -103,19 +104,23 @@ class FrameSender:
     def _color(self, color: npt.NDArray[np.uint8] | bytes) -> bytes:
         if isinstance(color, bytes):
             return color
-        out = io.BytesIO()
-        Image.fromarray(np.ascontiguousarray(color)).save(out, "JPEG", quality=self._jpeg_quality, subsampling=0)
-        return out.getvalue()
+        if _type_of(color) != "uint8":
+            raise TypeError(f"color must be uint8 or the bytes of a JPEG or PNG; it is {_type_of(color)}")
+        if color.ndim != 3 or color.shape[2] != 3:
+            raise ValueError(f"color must be [height, width, 3], red first; its shape is {list(color.shape)}")
+        return _encoded(color, "JPEG", quality=self._jpeg_quality, subsampling=0)
 
     def _depth(self, depth: npt.NDArray[Any] | bytes) -> bytes:
         if isinstance(depth, bytes):
             return depth
-        if np.issubdtype(depth.dtype, np.floating):
-            metres = np.where(np.isfinite(depth), depth, 0)
-            depth = np.clip(np.rint(metres * self._units_per_m), 0, 65535)
-        out = io.BytesIO()
-        Image.fromarray(np.ascontiguousarray(depth, np.uint16)).save(out, "PNG", compress_level=1)
-        return out.getvalue()
+        if _type_of(depth) not in ("uint16", "float16", "float32", "float64"):
+            raise TypeError(f"depth must be uint16 in the camera's units, floats in metres, or the bytes of a PNG; it is {_type_of(depth)}")
+        if depth.ndim != 2:
+            raise ValueError(f"depth must be [height, width]; its shape is {list(depth.shape)}")
+        if depth.dtype.kind == "f":
+            units = depth.astype(np.float64) * self._units_per_m
+            depth = np.where((units > 0) & (units < 65535), np.rint(units), 0)
+        return _encoded(depth.astype(np.uint16), "PNG", compress_level=1)
 
     def _offer(self, body: bytes, headers: dict[str, str]) -> bool:
         status, reply = self._ask("POST", "/api/frames", body, headers, again=False)
@@ -177,6 +182,37 @@ class FrameSender:
 def _require(status: int, reply: dict[str, Any]) -> None:
     if status >= 400:
         raise SendError(status, reply.get("error", f"the server answered {status}"))
+
+
+def _pose(pose: npt.ArrayLike) -> list[float]:
+    matrix = np.asarray(pose, np.float64)
+    if matrix.shape != (4, 4):
+        raise ValueError(f"pose must be [4, 4]; its shape is {list(matrix.shape)}")
+    if not np.isfinite(matrix).all():
+        raise ValueError("the pose has numbers that are not finite; leave frames out whose pose is not known")
+    numbers: list[float] = matrix.reshape(16).tolist()
+    return numbers
+
+
+def _time(timestamp: float) -> float:
+    if not np.isfinite(timestamp):
+        raise ValueError(f"timestamp must be seconds; it is {timestamp}")
+    return float(timestamp)
+
+
+def _type_of(picture: Any) -> str:
+    return picture.dtype.name if isinstance(picture, np.ndarray) else type(picture).__name__
+
+
+def _encoded(picture: npt.NDArray[Any], kind: str, **options: int) -> bytes:
+    try:
+        from PIL import Image
+    except ModuleNotFoundError as fault:
+        message = "sending arrays needs Pillow; run `pip install pillow`, or send the bytes of JPEG and PNG files"
+        raise ModuleNotFoundError(message, name=fault.name) from None
+    out = io.BytesIO()
+    Image.fromarray(np.ascontiguousarray(picture)).save(out, kind, **options)
+    return out.getvalue()
 
 
 def _multipart(parts: dict[str, bytes]) -> tuple[bytes, str]:

@@ -6,9 +6,11 @@ import importlib.util
 import json
 import os
 import pathlib
+import shutil
 import signal
 import socket
 import subprocess
+import sys
 import threading
 
 import numpy as np
@@ -62,7 +64,7 @@ class Shots:
         self.camera = figures(self.frames[0].camera, depth_scale=scale)
         files = [sorted((folder / "results").glob(f"{kind}*")) for kind in ("frame", "depth")]
         self.files = [(color.read_bytes(), depth.read_bytes()) for color, depth in zip(*files)]
-        self.poses = [np.array([float(n) for n in line.split()]) for line in (folder / "traj.txt").read_text().splitlines()]
+        self.poses = [np.array(line.split(), np.float64).reshape(4, 4) for line in (folder / "traj.txt").read_text().splitlines()]
 
     def send(self, sender, chosen):
         for i in chosen:
@@ -165,6 +167,76 @@ class Scripted:
 
 
 CAMERA = {"width": 4, "height": 2, "fx": 5, "fy": 5, "cx": 1.5, "cy": 0.5}
+
+
+@pytest.fixture
+def sender():
+    """Of a server that takes everything."""
+    server = Scripted(lambda path, count: 200)
+    yield FrameSender(server.address, CAMERA)
+    server.end()
+
+
+def decoded(sender, depth):
+    return ovimap.decode_gray_png(sender._depth(depth))
+
+
+def test_depth_is_sent_as_it_is_or_not_at_all(sender):
+    units = np.array([[0, 1, 1500, 65535]], np.uint16)
+    assert np.array_equal(decoded(sender, units), units) and np.array_equal(decoded(sender, units.astype(">u2")), units)
+    for depth in (np.array([[70000, -5]]), units.astype(np.int16), units.astype(np.uint32), units > 0, units.tolist(), bytearray(8)):
+        with pytest.raises(TypeError, match="depth must be uint16 in the camera's units, floats in metres"):
+            sender.send(b"color", depth, np.eye(4))
+    with pytest.raises(ValueError, match=r"depth must be \[height, width\]; its shape is \[1, 4, 1\]"):
+        sender.send(b"color", units[:, :, None], np.eye(4))
+
+
+@pytest.mark.parametrize("kind", [np.float16, np.float32, np.float64])
+def test_metres_beyond_16_bits_are_none(sender, kind):
+    metres = np.array([[1.5, 65.53, 65.6, 70, -1, 0, np.nan, np.inf, -np.inf]], kind)
+    expected = [1500, round(1000 * float(metres[0, 1])), 0, 0, 0, 0, 0, 0, 0]
+    assert decoded(sender, metres).tolist() == [expected]
+
+
+def test_colour_that_is_no_rgb_is_refused(sender):
+    rgb = np.zeros((2, 4, 3), np.uint8)
+    assert sender._color(rgb).startswith(b"\xff\xd8")
+    for color in (rgb.astype(np.float32), rgb.tolist(), memoryview(b"color")):
+        with pytest.raises(TypeError, match="color must be uint8 or the bytes"):
+            sender.send(color, b"depth", np.eye(4))
+    for color in (np.zeros((2, 4, 4), np.uint8), rgb[:, :, 0], rgb[None]):
+        with pytest.raises(ValueError, match=r"color must be \[height, width, 3\], red first; its shape is \["):
+            sender.send(color, b"depth", np.eye(4))
+
+
+def test_a_pose_that_says_nothing_is_not_sent(sender):
+    unknown = np.eye(4)
+    unknown[0, 3] = np.nan
+    with pytest.raises(ValueError, match="not finite; leave frames out whose pose is not known"):
+        sender.send(b"color", b"depth", unknown)
+    for pose in (np.eye(3), np.eye(4)[:3], np.eye(4).reshape(16)):
+        with pytest.raises(ValueError, match=r"pose must be \[4, 4\]; its shape is \["):
+            sender.send(b"color", b"depth", pose)
+    with pytest.raises(ValueError, match="timestamp must be seconds; it is nan"):
+        sender.send(b"color", b"depth", np.eye(4), float("nan"))
+    assert (sender.taken, sender.skipped) == (0, 0)
+
+
+def test_the_file_works_alone_and_needs_pillow_for_arrays_only(tmp_path):
+    script = """
+import sys, numpy
+sys.modules["PIL"] = None  # as where it is not installed
+from sender import FrameSender
+sender = FrameSender(sys.argv[1], {"fx": 5})
+print(sender.send(b"color", b"depth", numpy.eye(4)))
+sender.send(b"color", numpy.ones((2, 4)), numpy.eye(4))
+"""
+    shutil.copy(pathlib.Path(ovimap.__file__).with_name("sender.py"), tmp_path)
+    server = Scripted(lambda path, count: 200)
+    done = subprocess.run([sys.executable, "-c", script, server.address], cwd=tmp_path, capture_output=True, text=True, env={"PATH": ""})
+    server.end()
+    assert done.stdout == "True\n" and "ovimap" not in done.stderr
+    assert done.stderr.splitlines()[-1].startswith("ModuleNotFoundError: sending arrays needs Pillow; run `pip install pillow`")
 
 
 def test_a_frame_whose_answer_is_lost_is_not_sent_twice():
