@@ -6,8 +6,9 @@
         --poses /odom --url http://localhost:8080/
 
 Depth must be registered to colour, or --color-info given: /tf_static then says how the cameras stand. Poses are Odometry or
-PoseStamped of the camera's optical frame (x right, y down, z forward). Ctrl-C finishes the map and saves it. rclpy is imported
-only where the node runs: the rest works on messages of any origin."""
+PoseStamped of the camera's optical frame (x right, y down, z forward). Ctrl-C finishes the map and saves it. A message that
+cannot be read and a frame that the mapper refuses are left out, told and counted. rclpy is imported only where the node runs:
+the rest works on messages of any origin."""
 import argparse
 import bisect
 import sys
@@ -15,8 +16,8 @@ import sys
 import numpy as np
 from ovimap import Error
 from ovimap.bag_messages import quaternion, raw_color, raw_depth, stamp_ns, vector
-from ovimap.sender import FrameSender
-from ovimap.transforms import TransformTree, between, matrix_of, rotation_vector_of
+from ovimap.sender import FrameSender, SendError
+from ovimap.transforms import Link, TransformTree, matrix_of, rotation_vector_of
 
 POSES_AN_IMAGE = 20  # at most: odometry is faster than cameras
 MAX_GAP_NS = 20_000_000  # colour and depth farther apart do not belong together
@@ -53,12 +54,16 @@ def pose_of(message):
     return matrix_of(vector(pose.position), quaternion(pose.orientation))
 
 
+READ = {"color": color_of, "depth": depth_of, "pose": pose_of}
+
+
 class Matcher:
     """Puts together what belongs together: depth with the nearest colour, and the pose at depth's time."""
 
     def __init__(self, keep=60):
         self.keep = keep
-        self.colors, self.depths, self.poses = [], [], []  # (ns, message), by time
+        self.colors, self.depths = [], []  # (ns, image), by time
+        self.poses = Link("world", static=False)
 
     def add(self, kind, message):
         """Returns the frames that can be sent by now: (colour, depth, pose, seconds)."""
@@ -66,32 +71,34 @@ class Matcher:
         return self.take()
 
     def put(self, kind, message):
-        list_of = {"color": self.colors, "depth": self.depths, "pose": self.poses}[kind]
-        bisect.insort(list_of, (stamp_ns(message.header), message), key=lambda entry: entry[0])
-        del list_of[: -self.keep * (POSES_AN_IMAGE if kind == "pose" else 1)]
+        """Raises ovimap.Error for a message that cannot be read."""
+        time_ns, value = stamp_ns(message.header), READ[kind](message)
+        if kind == "pose":
+            self.poses.add(time_ns, value)
+            del self.poses.times_ns[: -self.keep * POSES_AN_IMAGE], self.poses.matrices[: -self.keep * POSES_AN_IMAGE]
+        else:
+            images = self.colors if kind == "color" else self.depths
+            bisect.insort(images, (time_ns, value), key=time_of)
+            del images[: -self.keep]
 
     def take(self):
-        return [frame for frame in (self._frame(*entry) for entry in list(self.depths)) if frame]
+        if not self.colors or not self.poses.times_ns:
+            return []
+        # Nothing can come any more between what is older and what is newer.
+        due = bisect.bisect_right(self.depths, min(self.colors[-1][0], self.poses.times_ns[-1]), key=time_of)
+        depths, self.depths = self.depths[:due], self.depths[due:]
+        return [frame for frame in (self._frame(*entry) for entry in depths) if frame]
 
     def _frame(self, time_ns, depth):
-        # Nothing can come any more between what is older and what is newer.
-        if not self.colors or not self.poses or min(self.colors[-1][0], self.poses[-1][0]) < time_ns:
-            return None
-        self.depths.remove((time_ns, depth))
         color_ns, color = min(self.colors, key=lambda entry: abs(entry[0] - time_ns))
-        pose = self._pose(time_ns)
+        pose = self.poses.at(time_ns)
         if abs(color_ns - time_ns) > MAX_GAP_NS or pose is None:
             return None
-        return color_of(color), depth_of(depth), pose, time_ns / 1e9
+        return color, depth, pose, time_ns / 1e9
 
-    def _pose(self, time_ns):
-        after = bisect.bisect_left([entry[0] for entry in self.poses], time_ns)
-        if self.poses[after][0] == time_ns:
-            return pose_of(self.poses[after][1])
-        if after == 0:
-            return None
-        (first_ns, first), (last_ns, last) = self.poses[after - 1], self.poses[after]
-        return between(pose_of(first), pose_of(last), (time_ns - first_ns) / (last_ns - first_ns))
+
+def time_of(entry):
+    return entry[0]
 
 
 class Bridge:
@@ -102,17 +109,38 @@ class Bridge:
     def __init__(self, open_sender, separate=False):
         self.open_sender, self.separate = open_sender, separate
         self.infos, self.tree, self.matcher, self.sender = {}, TransformTree(), Matcher(), None
+        self.refused = 0  # messages and frames
 
     def add(self, kind, message):
         """Returns what is to be told, or None."""
-        self.matcher.put(kind, message)
+        try:
+            self.matcher.put(kind, message)
+        except Error as fault:
+            return self._refuse(fault)
         if self.sender is None:
             rig = self._rig()
             if rig is None:
                 return "waiting for camera_info" + (" of both cameras, and for /tf_static to connect their frames" if self.separate else "")
             self.sender = self.open_sender(rig)
-        skipped = [frame for frame in self.matcher.take() if not self.sender.send(*frame)]
-        return "the mapper is busy: a frame was skipped" if skipped else None
+        told = [self._send(frame) for frame in self.matcher.take()]
+        return next(filter(None, told), None)
+
+    def finish(self):
+        """Saves the map, if one was begun. Returns what is to be told, or None."""
+        if self.sender is None:
+            return None
+        self.sender.finish()
+        return f"{self.sender.taken} frames sent, {self.sender.skipped} skipped, {self.refused} refused; the map is saved"
+
+    def _send(self, frame):
+        try:
+            return None if self.sender.send(*frame) else "the mapper is busy: a frame was skipped"
+        except (SendError, ValueError) as fault:  # the next may be good
+            return self._refuse(fault)
+
+    def _refuse(self, fault):
+        self.refused += 1
+        return f"refused ({self.refused} so far): {fault}"
 
     def add_transforms(self, message):
         """Of /tf_static."""
@@ -134,6 +162,16 @@ class Bridge:
             return self.tree.target_from(color.header.frame_id, depth.header.frame_id, stamp_ns(depth.header))
         except Error:  # not connected yet
             return None
+
+
+def run(spin, bridge):
+    """Calls spin until it ends; however it does, the map is saved."""
+    try:
+        spin()
+    except KeyboardInterrupt:
+        pass
+    finally:
+        print(bridge.finish() or "no camera_info came, so no map was begun")
 
 
 def main():
@@ -172,13 +210,7 @@ def main():
             node.create_subscription(CameraInfo, topic, lambda message, kind=kind: bridge.infos.update({kind: message}), qos_profile_sensor_data)
     kept = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)  # it is published once, maybe before we came
     node.create_subscription(TFMessage, "/tf_static", bridge.add_transforms, kept)
-    try:
-        rclpy.spin(node)
-    except KeyboardInterrupt:
-        pass
-    if bridge.sender:
-        bridge.sender.finish()
-        print(f"{bridge.sender.taken} frames sent, {bridge.sender.skipped} skipped; the map is saved")
+    run(lambda: rclpy.spin(node), bridge)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
 """Frames sent over HTTP give the map that the recording gives; a ROS 2 node's messages become such frames."""
+import contextlib
 import http.server
 import importlib.util
 import json
@@ -371,8 +372,30 @@ def test_depth_is_matched_with_colour_and_the_pose_of_its_time(node, store):
     assert matcher.depths == []
 
 
+def test_a_pose_is_not_made_up_in_a_gap(node, store):
+    messages, ms = Messages(store), 1_000_000
+    for gap, frames in ((500, 1), (501, 0)):
+        matcher = node.Matcher()
+        matcher.add("pose", messages.pose(0, np.eye(4)))
+        matcher.add("depth", messages.image(100 * ms, np.ones((2, 4), np.uint16), "16UC1"))
+        matcher.add("color", messages.image(100 * ms, np.zeros((2, 4, 3), np.uint8), "rgb8"))
+        assert len(matcher.add("pose", messages.pose(gap * ms, np.eye(4)))) == frames
+
+
+def test_only_so_much_is_kept(node, store):
+    messages, matcher = Messages(store), node.Matcher(keep=2)
+    for i in range(100):
+        matcher.add("pose", messages.pose(i, np.eye(4)))
+        matcher.add("depth", messages.image(i, np.ones((2, 4), np.uint16), "16UC1"))
+    assert matcher.poses.times_ns == list(range(60, 100)) and len(matcher.poses.matrices) == 40
+    assert [time_ns for time_ns, _ in matcher.depths] == [98, 99]
+
+
 class Sent(list):
     """In the place of a FrameSender."""
+
+    taken = skipped = 0
+    finished = False
 
     def __call__(self, rig):
         self.rig = rig
@@ -380,7 +403,11 @@ class Sent(list):
 
     def send(self, *frame):
         self.append(frame)
+        self.taken += 1
         return True
+
+    def finish(self):
+        self.finished = True
 
 
 def feed(bridge, messages, seconds):
@@ -400,6 +427,59 @@ def test_frames_wait_for_the_cameras(node, store):
     bridge.infos["depth"] = messages.info(ovimap.PinholeCamera(4, 2, 5.0, 6.0, 1.5, 0.5))
     assert feed(bridge, messages, 11) is None
     assert [round(frame[3]) for frame in sent] == [10] * 3 + [11] * 3
+
+
+def test_what_is_refused_is_told_and_counted_and_the_next_is_sent(node, store):
+    class Picky(Sent):
+        def send(self, *frame):
+            if len(self) == 1 and not self.skipped:
+                self.skipped = 1
+                raise SendError(400, "its depth has no value from 0.1 to 10 m")
+            return super().send(*frame)
+
+    messages, sent = Messages(store), Picky()
+    bridge = node.Bridge(sent)
+    bridge.infos["depth"] = messages.info(ovimap.PinholeCamera(4, 2, 5.0, 6.0, 1.5, 0.5))
+    feed(bridge, messages, 10)
+    assert len(sent) == 2 and bridge.refused == 1
+    unread = messages.image(10**10, np.zeros((2, 4), np.uint8), "bayer_rggb8")
+    assert "refused (2 so far): colour has the encoding 'bayer_rggb8'" in bridge.add("color", unread)
+    feed(bridge, messages, 11)
+    assert len(sent) == 5 and bridge.refused == 2
+
+
+@needs_program
+def test_a_frame_that_the_program_refuses_costs_only_itself(node, store, tmp_path):
+    messages = Messages(store)
+    with Serving(tmp_path / "a.ovimap") as server:
+        bridge = node.Bridge(lambda rig: FrameSender(server.address, rig))
+        bridge.infos["depth"] = messages.info(ovimap.PinholeCamera(64, 48, 60, 60, 31.5, 23.5))
+        told = []
+        for i, depth in enumerate((2000, 0, 2000)):
+            time_ns, pose = 10**10 + i * 33_000_000, np.eye(4)
+            pose[0, 3] = 0.01 * i
+            bridge.add("pose", messages.pose(time_ns, pose))
+            bridge.add("color", messages.image(time_ns, np.zeros((48, 64, 3), np.uint8), "rgb8"))
+            told.append(bridge.add("depth", messages.image(time_ns, np.full((48, 64), depth, np.uint16), "16UC1")))
+        assert (told[0], told[2]) == (None, None) and told[1].startswith("refused (1 so far): ") and "depth" in told[1]
+        assert bridge.finish() == "2 frames sent, 0 skipped, 1 refused; the map is saved"
+        assert server.saved()["frames"] == 2
+
+
+@pytest.mark.parametrize("fault", [None, KeyboardInterrupt, RuntimeError])
+def test_the_map_is_saved_however_the_node_ends(node, store, fault, capsys):
+    messages, sent = Messages(store), Sent()
+    bridge = node.Bridge(sent)
+    bridge.infos["depth"] = messages.info(ovimap.PinholeCamera(4, 2, 5.0, 6.0, 1.5, 0.5))
+
+    def spin():
+        feed(bridge, messages, 10)
+        if fault:
+            raise fault
+
+    with pytest.raises(RuntimeError) if fault is RuntimeError else contextlib.nullcontext():
+        node.run(spin, bridge)
+    assert sent.finished and "3 frames sent, 0 skipped, 0 refused; the map is saved" in capsys.readouterr().out
 
 
 def test_a_separate_colour_camera_stands_where_tf_says(node, store):
