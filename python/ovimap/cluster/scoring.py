@@ -18,19 +18,11 @@ def eval_jobs(maps: Sequence[str], truths: Sequence[str], *, classes: str = "aut
     """A job for each map. truths: in the maps' order; none: the recordings that the maps came from."""
     if truths and len(truths) != len(maps):
         raise Error(f"{len(maps)} maps and {len(truths)} truths; give one --gt for each map, in the same order")
-    truths = truths or [_recording_of(map) for map in maps]
-    choice = {"classes": classes, "encoder": encoder}
+    choice = {"classes": classes, "encoder": encoder, "cwd": os.getcwd()}
     return [
-        Job(map, score, {"maps": [os.path.abspath(map)], "truths": [os.path.abspath(truth)], **choice}, cpus=cpus)
-        for map, truth in zip(maps, truths, strict=True)
+        Job(map, score, {"maps": [os.path.abspath(map)], "truths": [truth], **choice}, cpus=cpus)
+        for map, truth in zip(maps, truths or [""] * len(maps), strict=True)
     ]
-
-
-def _recording_of(map: str) -> str:
-    recording = map_facts(map).recording
-    if not recording:
-        raise Error(f"{map} was made of pushed frames; name its truth with --gt")
-    return recording
 
 
 def pool_job(scenes: Sequence[Job]) -> Job:
@@ -43,5 +35,13 @@ def pool_job(scenes: Sequence[Job]) -> Job:
 
 
 def score(order: dict[str, Any], tell: Callable[[int, int], None]) -> dict[str, Any]:
-    """Runs on a worker."""
-    return eval(order["maps"], order["truths"], classes=order["classes"], encoder=order["encoder"])
+    """Runs on a worker. A map is asked for its recording here, so that one that cannot be read fails alone."""
+    truths = [os.path.join(order["cwd"], truth or _recording_of(map)) for map, truth in zip(order["maps"], order["truths"], strict=True)]
+    return eval(order["maps"], truths, classes=order["classes"], encoder=order["encoder"])
+
+
+def _recording_of(map: str) -> str:
+    recording = map_facts(map).recording
+    if not recording:
+        raise Error(f"{map} was made of pushed frames; name its truth with --gt")
+    return recording
