@@ -201,7 +201,15 @@ void CheckpointFile::put_all(const std::filesystem::path& map) {
 }
 
 void CheckpointFile::remove_when_closed() {
+  const std::lock_guard lock(mutex_);
   remove_ = true;
+  try {  // tiles may be needed for long; killed meanwhile, the file must not pass for unfinished
+    begin();
+    database_->exec(concat("DROP TABLE IF EXISTS ", map_tables::kMeta.name));
+    transaction_->commit();
+  } catch (const SQLite::Exception&) {  // the map is saved, and this file goes soon
+  }
+  transaction_.reset();
 }
 
 }  // namespace ovimap

@@ -71,7 +71,8 @@ class CheckpointFile {
   /// Puts all tiles of a saved map.
   void put_all(const std::filesystem::path& map);
 
-  /// The run has ended, and its map is saved: the file goes when this object does.
+  /// The run has ended, and its map is saved: from now on the file holds no checkpoint, only tiles,
+  /// and goes when this object does.
   void remove_when_closed();
 
  private:

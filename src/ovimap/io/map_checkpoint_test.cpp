@@ -105,6 +105,20 @@ TEST_F(Checkpoints, TilesPutInBetweenCountFromTheNextOn) {
   EXPECT_EQ(difference(document, load_map(path)), "");
 }
 
+TEST_F(Checkpoints, AFinishedRunsFileHoldsNone) {
+  const fs::path path = root_ / "room.ovimap.partial", copy = root_ / "killed.partial";
+  const MapDocument document = random_document(20, 1);
+  CheckpointFile file(path, CheckpointFile::Start::kAnew);
+  file.write(checkpoint_of(document, document.map.ordered_slots()));
+  file.put(7, {1, {1, 2, 3}});
+  file.remove_when_closed();
+  EXPECT_EQ(file.get(7).data, (Bytes{1, 2, 3})) << "tiles are needed while the map is looked at";
+  for (const char* suffix : {"", "-wal"})  // what a power cut would leave now
+    if (fs::exists(path.string() + suffix))
+      fs::copy_file(path.string() + suffix, copy.string() + suffix);
+  EXPECT_FALSE(holds_checkpoint(copy));
+}
+
 TEST_F(Checkpoints, ASecondWriterIsRefused) {
   const MapDocument document = random_document(4, 3);
   const fs::path path = root_ / "a.partial";
