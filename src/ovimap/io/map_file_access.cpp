@@ -8,6 +8,7 @@
 #include <cctype>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -28,6 +29,7 @@ namespace fs = std::filesystem;
 
 constexpr int kApplicationId = 'O' << 24 | 'V' << 16 | 'I' << 8 | 'M';
 constexpr std::string_view kMagic("SQLite format 3\0", 16);
+constexpr std::size_t kApplicationIdAt = 68;  // bytes from the start of a SQLite file
 constexpr std::array<const char*, 3> kSidecars = {"-journal", "-wal", "-shm"};
 
 fs::path with_suffix(fs::path path, const std::string& suffix) {
@@ -200,6 +202,17 @@ void check_plain_tables(SQLite::Database& database) {
     throw Error("it holds views, triggers or virtual tables");
 }
 
+/// Whether a file holds something that is not a map, which saving must not take away.
+bool is_something_else(const fs::path& path) {
+  std::array<char, kApplicationIdAt + 4> start{};
+  std::ifstream file(path, std::ios::binary);
+  file.read(start.data(), start.size());
+  if (file.gcount() == 0) return false;
+  return file.gcount() != static_cast<std::streamsize>(start.size()) ||
+         !std::string_view(start.data(), start.size()).starts_with(kMagic) ||
+         std::string_view(start.data() + kApplicationIdAt, 4) != "OVIM";
+}
+
 /// The file that saving to `path` replaces: through a link, what it points to. Devices and pipes
 /// must not be renamed away.
 fs::path writable_target(const fs::path& path) {
@@ -209,6 +222,7 @@ fs::path writable_target(const fs::path& path) {
     throw Error(concat("cannot write map '", path.string(), "': ", why, "; give a file name"));
   };
   if (!path.has_filename() || type == fs::file_type::directory) refuse("it is a folder");
+  if (type == fs::file_type::regular && is_something_else(path)) refuse("it holds no map");
   if (type == fs::file_type::regular) return fs::canonical(path);
   if (type == fs::file_type::not_found && fs::is_symlink(path, ignored))
     refuse("it is a link to nowhere");
