@@ -37,7 +37,10 @@ class PythonEncoder : public ImageTextEncoder {
           "an encoder must have the attributes name (a string) and dimension (numbers in an "
           "embedding)");
     identity_.name = nb::cast<std::string>(nb::str(encoder.attr("name")));
-    identity_.dimension = nb::cast<int>(nb::int_(encoder.attr("dimension")));
+    const nb::object dimension = encoder.attr("dimension");
+    if (!PyIndex_Check(dimension.ptr()))
+      throw nb::type_error("an encoder's dimension must be an integer: numbers in an embedding");
+    identity_.dimension = nb::cast<int>(nb::steal(PyNumber_Index(dimension.ptr())));
     if (identity_.dimension < 1 || identity_.name.empty())
       throw nb::value_error("an encoder needs a name and a dimension of at least 1");
     identity_.digest = digest_of(encoder, identity_.name, identity_.dimension);

@@ -107,7 +107,7 @@ class LiveMapperHandle final : public OpenHandle {
   }
 
   Frame taken(const Frame& frame) {
-    require_one_camera(sequence_.depth_camera, frame.depth_camera);
+    require_fitting(frame, sequence_.depth_camera);
     Frame mine = frame;
     if (mine.index < 0) mine.index = next_index_;
     next_index_ = mine.index + 1;

@@ -3,6 +3,7 @@
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/string.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "arrays.h"
@@ -35,7 +36,7 @@ class MapperHandle final : public OpenHandle {
     const auto turn = calls_.begin("Mapper");
     Mapper& mapper = open_mapper();
     if (frame.index < 0) frame.index = static_cast<std::int64_t>(sequence_.frames.size());
-    require_one_camera(sequence_.depth_camera, frame.depth_camera);
+    require_fitting(frame, sequence_.depth_camera);
     const FrameReport report = mapper.process(frame);
     sequence_.depth_camera = frame.depth_camera;
     sequence_.frames.push_back(
@@ -165,7 +166,12 @@ MapperSetup mapper_setup(const std::string& preset, const Settings& settings) {
   return setup;
 }
 
-void require_one_camera(const PinholeCamera& depth_camera, const PinholeCamera& next) {
+void require_fitting(const Frame& frame, const PinholeCamera& depth_camera) {
+  if (std::none_of(frame.depth.begin(), frame.depth.end(), [](float metres) { return metres > 0; }))
+    throw FrameError(
+        "this frame has no depth that counts: floats are metres, integers depth_scale a metre, and "
+        "what is not from min_depth_m to max_depth_m is none");
+  const PinholeCamera& next = frame.depth_camera;
   constexpr float kSameZoom = 0.1f;  // phones give every frame focal lengths of its own
   if (depth_camera.width == 0) return;
   const bool same = depth_camera.width == next.width && depth_camera.height == next.height &&

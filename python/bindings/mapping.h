@@ -19,8 +19,9 @@ struct MapperSetup {
 };
 MapperSetup mapper_setup(const std::string& preset, const Settings& settings);
 
-/// A map is of one depth camera (a width of 0: of none yet). Throws Error for another.
-void require_one_camera(const PinholeCamera& depth_camera, const PinholeCamera& next);
+/// Whether a frame fits into a map whose frames so far are of `depth_camera` (a width of 0: of none
+/// yet). Throws Error for another camera, FrameError for a frame without any depth.
+void require_fitting(const Frame& frame, const PinholeCamera& depth_camera);
 
 /// What was mapped, until it is saved; it stays when that fails.
 class FinishedMap {

@@ -4,6 +4,8 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
+
 #include "arrays.h"
 #include "bindings.h"
 #include "saved_map.h"
@@ -21,8 +23,11 @@ QueryAnswer query(SavedMap& map, const std::string& text, const std::vector<std:
 }
 
 QueryAnswer query_like(SavedMap& map, const nb::object& what, bool relevance) {
-  if (nb::isinstance<nb::int_>(what)) {
-    const auto id = nb::cast<InstanceId>(what);
+  const bool is_array =
+      nb::hasattr(what, "ndim") && !nb::cast<bool>(what.attr("ndim").equal(nb::int_(0)));
+  if (PyIndex_Check(what.ptr()) && !is_array) {
+    const auto number = nb::cast<std::int64_t>(nb::steal(PyNumber_Index(what.ptr())));
+    const auto id = static_cast<InstanceId>(std::clamp<std::int64_t>(number, 0, ~InstanceId{0}));
     const WithoutGil release;
     return map.engine(false).find_like(id, relevance);
   }

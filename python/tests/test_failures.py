@@ -198,6 +198,32 @@ def test_a_live_camera_that_never_moves_is_told(camera, tmp_path):
         mapper.save(tmp_path / "a.ovimap")
 
 
+def test_frames_without_depth_are_told(camera):
+    frame = wall(camera, 0)
+    for depth, options in ((frame.depth * 1000, {}), (np.full((48, 64), 2, np.uint16), {"depth_scale": 1000})):
+        empty = ovimap.Frame(frame.color, depth, np.eye(4), camera, **options)
+        for add in (ovimap.Mapper().process, ovimap.LiveMapper().push):
+            with pytest.raises(ovimap.FrameError, match="no depth that counts: floats are metres"):
+                add(empty)
+
+
+def test_a_file_that_is_no_map_is_not_replaced(room, tmp_path):
+    notes = tmp_path / "notes.txt"
+    notes.write_text("precious")
+    with pytest.raises(ovimap.Error, match="it holds no map; give a file name"):
+        ovimap.run(room, notes)
+    assert notes.read_text() == "precious"
+
+
+def test_ids_may_be_numpys(saved_map):
+    opened = ovimap.Map.open(saved_map)
+    first = opened.instances.ids[0]
+    assert opened.query_like(first).matches[0].id == opened.query_like(int(first)).matches[0].id
+    for wrong in (-1, 10**12):
+        with pytest.raises(ovimap.Error, match="no object"):
+            opened.query_like(wrong)
+
+
 def test_paths_are_what_the_system_takes_for_paths(room, saved_map, tmp_path):
     entry = next(entry for entry in os.scandir(os.path.dirname(room)) if entry.path == os.fspath(room))
     assert len(ovimap.open_source(entry)) == len(ovimap.open_source(room))

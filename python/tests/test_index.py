@@ -276,3 +276,11 @@ def test_what_is_no_index_is_said_in_one_line(tmp_path, capsys):
     environment = os.environ | {"PYTHONPATH": f"{tmp_path}:{os.environ['PYTHONPATH']}"}
     done = subprocess.run([sys.executable, "-m", "ovimap.index_command", "list", "a"], env=environment, capture_output=True, text=True)
     assert done.returncode == 2 and done.stderr == "ovimap-index: pyarrow is not installed; pip install 'ovimap[index]'\n"
+
+
+def test_what_is_no_embedding_is_told_from_a_damaged_index(maps, tmp_path):
+    ObjectIndex.build(tmp_path / "index", maps[0])  # one path, not a list
+    index = ObjectIndex(tmp_path / "index")
+    for wrong in ("chair", np.zeros(7, np.float32), np.zeros((1, 768), np.float32)):
+        with pytest.raises(ovimap.Error, match="embedding must be .* floats"):
+            index.nearest(wrong)

@@ -87,6 +87,7 @@ class ObjectIndex:
         A map that cannot be in the index is left out and named in the result. Killed at any moment it leaves the
         index as it was.
         """
+        maps = [maps] if isinstance(maps, (str, os.PathLike)) else maps
         return Store(folder).put(os.path.abspath(path) for path in maps)
 
     @staticmethod
@@ -103,7 +104,10 @@ class ObjectIndex:
         return sum(entry.objects for entry in self.maps)
 
     def nearest(self, embedding: Vectors, count: int = 10) -> list[Hit]:
-        """The objects whose embeddings are nearest to one of length 1, best first."""
+        """The objects whose embeddings are nearest to one of length 1, floats [dimension], best first."""
+        if np.shape(embedding) != (self._store.encoder.dimension,) or np.asarray(embedding).dtype.kind != "f":
+            raise Error(f"embedding must be {self._store.encoder.dimension} floats, as '{self._store.encoder.name}' makes them; "
+                        "for words there is nearest_to_text")
         return [Hit(*found) for found in self._store.search(embedding, count)]
 
     def nearest_to_text(self, text: str, count: int = 10) -> list[Hit]:
