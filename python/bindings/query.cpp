@@ -23,8 +23,7 @@ QueryAnswer query(SavedMap& map, const std::string& text, const std::vector<std:
 }
 
 QueryAnswer query_like(SavedMap& map, const nb::object& what, bool relevance) {
-  const bool is_array =
-      nb::hasattr(what, "ndim") && !nb::cast<bool>(what.attr("ndim").equal(nb::int_(0)));
+  const bool is_array = nb::hasattr(what, "ndim") && !what.attr("ndim").equal(nb::int_(0));
   if (PyIndex_Check(what.ptr()) && !is_array) {
     const auto number = nb::cast<std::int64_t>(nb::steal(PyNumber_Index(what.ptr())));
     const auto id = static_cast<InstanceId>(std::clamp<std::int64_t>(number, 0, ~InstanceId{0}));
