@@ -3,6 +3,7 @@
 #include "ovimap/inference/text_cache.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <fstream>
 
@@ -54,8 +55,8 @@ class TextCacheTest : public ::testing::Test {
     return found;
   }
 
-  const std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / "ovimap_text_cache_test";
+  const std::filesystem::path folder_ = std::filesystem::temp_directory_path() /
+                                        ("ovimap_text_cache_test_" + std::to_string(::getpid()));
   int asked_ = 0;
 };
 
