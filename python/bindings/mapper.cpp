@@ -3,7 +3,6 @@
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/string.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "arrays.h"
@@ -12,6 +11,7 @@
 #include "mapping.h"
 #include "masks.h"
 #include "open_handle.h"
+#include "ovimap/frames/frame_decoder.h"
 #include "ovimap/io/map_file.h"
 #include "without_gil.h"
 
@@ -167,7 +167,7 @@ MapperSetup mapper_setup(const std::string& preset, const Settings& settings) {
 }
 
 void require_fitting(const Frame& frame, const PinholeCamera& depth_camera) {
-  if (std::none_of(frame.depth.begin(), frame.depth.end(), [](float metres) { return metres > 0; }))
+  if (!has_depth(frame.depth))
     throw FrameError(
         "this frame has no depth that counts: floats are metres, integers depth_scale a metre, and "
         "what is not from min_depth_m to max_depth_m is none");

@@ -56,6 +56,10 @@ Image<std::uint16_t> decode_stored_depth(std::span<const std::uint8_t> bytes,
   return std::move(png.values);
 }
 
+bool has_depth(const DepthImage& depth) {
+  return std::any_of(depth.begin(), depth.end(), [](float metres) { return metres > 0; });
+}
+
 DepthUnits::DepthUnits(const CameraRig& rig, const FrameSourceConfig& config)
     : metres_(kDepthValues) {
   for (std::size_t stored = 0; stored < kDepthValues; ++stored) {
@@ -86,7 +90,7 @@ Frame FrameDecoder::decode(std::span<const std::uint8_t> color, std::span<const 
   frame.world_from_camera = rig_.world_from_depth_camera(pose);
   frame.depth =
       units_.metres(named("depth", [&] { return decode_stored_depth(depth, frame.depth_camera); }));
-  if (std::none_of(frame.depth.begin(), frame.depth.end(), [](float metres) { return metres > 0; }))
+  if (!has_depth(frame.depth))
     throw Error(
         concat("depth has no value from ", config_.min_depth_m, " to ", config_.max_depth_m, " m"));
   frame.color = named("color", [&] { return decode_color(color, frame.color_camera); });

@@ -17,6 +17,9 @@ RgbImage decode_color(std::span<const std::uint8_t> bytes, const PinholeCamera& 
 Image<std::uint16_t> decode_stored_depth(std::span<const std::uint8_t> bytes,
                                          const PinholeCamera& camera);
 
+/// Whether a depth image has any; one without is of no use to a map.
+bool has_depth(const DepthImage& depth);
+
 /// Metres for each stored depth value.
 class DepthUnits {
  public:

@@ -175,7 +175,7 @@ class RecordingSource : public FrameSource {
     DepthImage depth = recording_.depth_encoding == DepthEncoding::kMetres
                            ? depth_of_metres(record, name)
                            : units_.metres(load_depth_units(record, name));
-    if (std::none_of(depth.begin(), depth.end(), [](float metres) { return metres > 0; }))
+    if (!has_depth(depth))
       fail(name,
            concat("has no depth from ", config_.min_depth_m, " to ", config_.max_depth_m, " m"));
     return depth;
