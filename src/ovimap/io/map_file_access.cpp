@@ -27,7 +27,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kApplicationId = 'O' << 24 | 'V' << 16 | 'I' << 8 | 'M';
+constexpr std::string_view kApplication = "OVIM";
+constexpr int kApplicationId =
+    kApplication[0] << 24 | kApplication[1] << 16 | kApplication[2] << 8 | kApplication[3];
 constexpr std::string_view kMagic("SQLite format 3\0", 16);
 constexpr std::size_t kApplicationIdAt = 68;  // bytes from the start of a SQLite file
 constexpr std::array<const char*, 3> kSidecars = {"-journal", "-wal", "-shm"};
@@ -204,13 +206,13 @@ void check_plain_tables(SQLite::Database& database) {
 
 /// Whether a file holds something that is not a map, which saving must not take away.
 bool is_something_else(const fs::path& path) {
-  std::array<char, kApplicationIdAt + 4> start{};
+  std::array<char, kApplicationIdAt + kApplication.size()> start{};
   std::ifstream file(path, std::ios::binary);
   file.read(start.data(), start.size());
   if (file.gcount() == 0) return false;
   return file.gcount() != static_cast<std::streamsize>(start.size()) ||
          !std::string_view(start.data(), start.size()).starts_with(kMagic) ||
-         std::string_view(start.data() + kApplicationIdAt, 4) != "OVIM";
+         !std::string_view(start.data(), start.size()).ends_with(kApplication);
 }
 
 /// The file that saving to `path` replaces: through a link, what it points to. Devices and pipes
