@@ -66,6 +66,11 @@ class Answer:
         return "unknown" if any(said.answer is None for said in self.maps) else "not_in_map"
 
 
+def _absolute(maps: Iterable[str | os.PathLike[str]] | str | os.PathLike[str]) -> list[str]:
+    """Of several maps, or of one: a string is no list of letters."""
+    return [os.path.abspath(path) for path in ([maps] if isinstance(maps, (str, os.PathLike)) else maps)]
+
+
 class ObjectIndex:
     """The objects of many maps in one folder. Opened for questions it never changes the folder.
 
@@ -87,13 +92,12 @@ class ObjectIndex:
         A map that cannot be in the index is left out and named in the result. Killed at any moment it leaves the
         index as it was.
         """
-        maps = [maps] if isinstance(maps, (str, os.PathLike)) else maps
-        return Store(folder).put(os.path.abspath(path) for path in maps)
+        return Store(folder).put(_absolute(maps))
 
     @staticmethod
     def remove(folder: str | os.PathLike[str], maps: Iterable[str | os.PathLike[str]]) -> None:
         """Takes maps out. Raises Error for one that is not in."""
-        Store(folder).remove([os.path.abspath(path) for path in maps])
+        Store(folder).remove(_absolute(maps))
 
     @property
     def maps(self) -> list[Entry]:
