@@ -180,20 +180,25 @@ def test_a_run_whose_encoder_fails_saves_what_it_has(room, tmp_path):
     assert ovimap.Map.open(tmp_path / "a.ovimap").frames > 0
 
 
-def test_frames_of_another_camera_are_refused(camera):
+MAPPERS = [(ovimap.Mapper, "process"), (ovimap.LiveMapper, "push_and_wait")]
+
+
+@pytest.mark.parametrize("made, add", MAPPERS)
+def test_frames_of_another_camera_are_refused(camera, made, add):
     other = ovimap.PinholeCamera(width=160, height=120, fx=150, fy=150, cx=79.5, cy=59.5)
     zoomed = ovimap.PinholeCamera(width=64, height=48, fx=62, fy=62, cx=31.5, cy=23.5)
-    for mapper, add in ((m := ovimap.Mapper(), m.process), (m := ovimap.LiveMapper(), m.push_and_wait)):
-        add(wall(camera, 0))
-        add(wall(zoomed, 1))  # as phones have it
-        with pytest.raises(ovimap.Error, match="another depth camera"):
-            add(wall(other, 2))
+    give = getattr(made(), add)
+    give(wall(camera, 0))
+    give(wall(zoomed, 1))  # as phones have it
+    with pytest.raises(ovimap.Error, match="another depth camera"):
+        give(wall(other, 2))
 
 
-def test_a_live_camera_that_never_moves_is_told(camera, tmp_path):
-    mapper = ovimap.LiveMapper()
+@pytest.mark.parametrize("made, add", MAPPERS)
+def test_a_camera_that_never_moves_is_told(camera, tmp_path, made, add):
+    mapper = made()
     for _ in range(3):
-        mapper.push_and_wait(wall(camera, 0))
+        getattr(mapper, add)(wall(camera, 0))
     with pytest.raises(ovimap.Error, match="same pose"):
         mapper.save(tmp_path / "a.ovimap")
 
