@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "ovimap/base/error.h"
 
@@ -237,21 +238,27 @@ Embeddings read_embeddings(nb::handle object, const std::string& name, std::size
   return values;
 }
 
+std::optional<std::int64_t> read_integer(nb::handle object) {
+  if (!PyIndex_Check(object.ptr())) return std::nullopt;
+  const nb::object number = nb::steal(PyNumber_Index(object.ptr()));
+  if (!number.is_valid()) {  // an array of more than one
+    PyErr_Clear();
+    return std::nullopt;
+  }
+  int overflow = 0;
+  const std::int64_t value = PyLong_AsLongLongAndOverflow(number.ptr(), &overflow);
+  using Limits = std::numeric_limits<std::int64_t>;
+  return overflow == 0 ? value : overflow > 0 ? Limits::max() : Limits::min();
+}
+
 EmbeddingArray to_array(Embeddings rows) {
-  auto* kept = new Embeddings(std::move(rows));
-  const nb::capsule owner(kept,
-                          [](void* pointer) noexcept { delete static_cast<Embeddings*>(pointer); });
-  return view<EmbeddingArray>(
-      kept->data(),
-      {static_cast<std::size_t>(kept->rows()), static_cast<std::size_t>(kept->cols())}, owner);
+  return own<EmbeddingArray>(std::move(rows), {static_cast<std::size_t>(rows.rows()),
+                                               static_cast<std::size_t>(rows.cols())});
 }
 
 Matrix4 to_matrix(const Pose& pose) {
   using RowMajor = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
-  auto* kept = new RowMajor(pose.matrix());
-  const nb::capsule owner(kept,
-                          [](void* pointer) noexcept { delete static_cast<RowMajor*>(pointer); });
-  return view<Matrix4>(kept->data(), {4, 4}, owner);
+  return own<Matrix4>(RowMajor(pose.matrix()), {4, 4});
 }
 
 }  // namespace ovimap::python

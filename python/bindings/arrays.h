@@ -8,6 +8,7 @@
 #include <initializer_list>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 
 #include "ovimap/geometry/pose.h"
@@ -42,6 +43,9 @@ Pose read_pose(nb::handle object, const char* name);
 Embeddings read_embeddings(nb::handle object, const std::string& name, std::size_t rows,
                            int dimension);
 
+/// An integer of Python's or NumPy's, or the nearest one that fits; nullopt for anything else.
+std::optional<std::int64_t> read_integer(nb::handle object);
+
 /// Embeddings as an array of their own.
 using EmbeddingArray = nb::ndarray<nb::numpy, const float, nb::ndim<2>>;
 EmbeddingArray to_array(Embeddings rows);
@@ -52,8 +56,24 @@ Matrix4 to_matrix(const Pose& pose);
 
 /// An array over memory that `owner` keeps alive: no copy. Python can read it, not write.
 template <class Array, class Element>
-Array view(const Element* data, std::initializer_list<std::size_t> shape, nb::handle owner) {
+Array view(Element* data, std::initializer_list<std::size_t> shape, nb::handle owner) {
   return Array(data, shape.size(), shape.begin(), owner);
+}
+
+/// An array over the memory of a value that it takes over: no copy.
+template <class Array, class Value>
+Array own(Value&& value, std::initializer_list<std::size_t> shape) {
+  auto* kept = new Value(std::move(value));
+  const nb::capsule owner(kept,
+                          [](void* pointer) noexcept { delete static_cast<Value*>(pointer); });
+  return view<Array>(kept->data(), shape, owner);
+}
+
+/// [height, width]
+template <class Array, class Pixel>
+Array own_image(Image<Pixel>&& image) {
+  return own<Array>(std::move(image), {static_cast<std::size_t>(image.height()),
+                                       static_cast<std::size_t>(image.width())});
 }
 
 }  // namespace ovimap::python

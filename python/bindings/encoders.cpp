@@ -6,6 +6,9 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
+#include <limits>
+
 #include "arrays.h"
 #include "bindings.h"
 #include "callback.h"
@@ -37,10 +40,11 @@ class PythonEncoder : public ImageTextEncoder {
           "an encoder must have the attributes name (a string) and dimension (numbers in an "
           "embedding)");
     identity_.name = nb::cast<std::string>(nb::str(encoder.attr("name")));
-    const nb::object dimension = encoder.attr("dimension");
-    if (!PyIndex_Check(dimension.ptr()))
+    const auto dimension = read_integer(encoder.attr("dimension"));
+    if (!dimension)
       throw nb::type_error("an encoder's dimension must be an integer: numbers in an embedding");
-    identity_.dimension = nb::cast<int>(nb::steal(PyNumber_Index(dimension.ptr())));
+    identity_.dimension =
+        static_cast<int>(std::clamp<std::int64_t>(*dimension, 0, std::numeric_limits<int>::max()));
     if (identity_.dimension < 1 || identity_.name.empty())
       throw nb::value_error("an encoder needs a name and a dimension of at least 1");
     identity_.digest = digest_of(encoder, identity_.name, identity_.dimension);

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nanobind/stl/string.h>
 
-#include <memory>
 #include <utility>
 
 #include "arrays.h"
@@ -28,18 +27,12 @@ nb::bytes png_of(nb::handle image) {
 
 GrayArray values_of(const nb::bytes& png) {
   const auto* data = static_cast<const std::uint8_t*>(png.data());
-  auto values = std::make_unique<Image<std::uint16_t>>();
+  Image<std::uint16_t> values;
   {
     const WithoutGil release;
-    *values = decode_gray({data, png.size()}).values;
+    values = decode_gray({data, png.size()}).values;
   }
-  const std::size_t shape[] = {static_cast<std::size_t>(values->height()),
-                               static_cast<std::size_t>(values->width())};
-  std::uint16_t* first = values->data();
-  const nb::capsule owner(values.release(), [](void* image) noexcept {
-    delete static_cast<Image<std::uint16_t>*>(image);
-  });
-  return GrayArray(first, 2, shape, owner);
+  return own_image<GrayArray>(std::move(values));
 }
 
 }  // namespace

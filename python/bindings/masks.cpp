@@ -125,13 +125,8 @@ void bind_masks(nb::module_& module) {
               const WithoutGil release;
               found = masks.entities(frame, {});
             }
-            auto* kept = new IdImage(std::move(found.ids));
-            const nb::capsule owner(
-                kept, [](void* pointer) noexcept { delete static_cast<IdImage*>(pointer); });
-            return view<nb::ndarray<nb::numpy, const std::uint16_t, nb::ndim<2>>>(
-                kept->data(),
-                {static_cast<std::size_t>(kept->height()), static_cast<std::size_t>(kept->width())},
-                owner);
+            return own_image<nb::ndarray<nb::numpy, const std::uint16_t, nb::ndim<2>>>(
+                std::move(found.ids));
           },
           nb::arg("frame"),
           "The entities of a frame, without prompts: uint16 [height, width] in the colour image, 0 "

@@ -23,10 +23,8 @@ QueryAnswer query(SavedMap& map, const std::string& text, const std::vector<std:
 }
 
 QueryAnswer query_like(SavedMap& map, const nb::object& what, bool relevance) {
-  const bool is_array = nb::hasattr(what, "ndim") && !what.attr("ndim").equal(nb::int_(0));
-  if (PyIndex_Check(what.ptr()) && !is_array) {
-    const auto number = nb::cast<std::int64_t>(nb::steal(PyNumber_Index(what.ptr())));
-    const auto id = static_cast<InstanceId>(std::clamp<std::int64_t>(number, 0, ~InstanceId{0}));
+  if (const auto number = read_integer(what)) {
+    const auto id = static_cast<InstanceId>(std::clamp<std::int64_t>(*number, 0, ~InstanceId{0}));
     const WithoutGil release;
     return map.engine(false).find_like(id, relevance);
   }

@@ -97,12 +97,7 @@ using IdArray = nb::ndarray<nb::numpy, const std::uint16_t, nb::ndim<2>>;
 std::optional<IdArray> truth_ids(const Source& source, std::int64_t position) {
   std::optional<IdImage> ids = source.frames->truth_ids(checked_position(source, position));
   if (!ids) return std::nullopt;
-  auto* kept = new IdImage(std::move(*ids));
-  const nb::capsule owner(kept,
-                          [](void* pointer) noexcept { delete static_cast<IdImage*>(pointer); });
-  return view<IdArray>(
-      kept->data(),
-      {static_cast<std::size_t>(kept->height()), static_cast<std::size_t>(kept->width())}, owner);
+  return own_image<IdArray>(std::move(*ids));
 }
 
 }  // namespace
