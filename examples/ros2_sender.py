@@ -15,7 +15,7 @@ import sys
 
 import numpy as np
 from ovimap import Error
-from ovimap.bag_messages import quaternion, raw_color, raw_depth, stamp_ns, vector
+from ovimap.bag_messages import distortion_notice, quaternion, raw_color, raw_depth, stamp_ns, vector
 from ovimap.sender import FrameSender, SendError
 from ovimap.transforms import Link, TransformTree, matrix_of, rotation_vector_of
 
@@ -104,10 +104,11 @@ def time_of(entry):
 class Bridge:
     """Sends what the messages give, from when the cameras are known; images and poses wait until then.
 
-    open_sender: makes a FrameSender of the cameras. separate: colour has a camera of its own."""
+    open_sender: makes a FrameSender of the cameras. separate: colour has a camera of its own. topics: of the images, "depth" and
+    "color". warn: takes a line that a person should know, once."""
 
-    def __init__(self, open_sender, separate=False):
-        self.open_sender, self.separate = open_sender, separate
+    def __init__(self, open_sender, separate=False, topics=None, warn=print):
+        self.open_sender, self.separate, self.topics, self.warn = open_sender, separate, topics or {}, warn
         self.infos, self.tree, self.matcher, self.sender = {}, TransformTree(), Matcher(), None
         self.refused = 0  # messages and frames
 
@@ -122,6 +123,7 @@ class Bridge:
             if rig is None:
                 return "waiting for camera_info" + (" of both cameras, and for /tf_static to connect their frames" if self.separate else "")
             self.sender = self.open_sender(rig)
+            self._warn_of_distortion()
         told = [self._send(frame) for frame in self.matcher.take()]
         return next(filter(None, told), None)
 
@@ -147,6 +149,12 @@ class Bridge:
         for entry in message.transforms:
             pose = matrix_of(vector(entry.transform.translation), quaternion(entry.transform.rotation))
             self.tree.add(entry.header.frame_id, entry.child_frame_id, stamp_ns(entry.header), pose, static=True)
+
+    def _warn_of_distortion(self):
+        for kind, info in self.infos.items():
+            notice = distortion_notice(self.topics.get(kind, kind), info)
+            if notice:
+                self.warn(notice)
 
     def _rig(self):
         depth, color = self.infos.get("depth"), self.infos.get("color")
@@ -192,7 +200,8 @@ def main():
     options = parser.parse_args(remove_ros_args(sys.argv)[1:])
     rclpy.init()
     node = Node("ovimap_sender")
-    bridge = Bridge(lambda rig: FrameSender(options.url, rig), separate=bool(options.color_info))
+    bridge = Bridge(lambda rig: FrameSender(options.url, rig), separate=bool(options.color_info),
+                    topics={"depth": options.depth, "color": options.color}, warn=node.get_logger().warning)  # fmt: skip
 
     def take(kind, message):
         told = bridge.add(kind, message)

@@ -18,6 +18,7 @@ CAMERA = "sensor_msgs/msg/CameraInfo"
 TRANSFORMS = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")
 ODOMETRY = "nav_msgs/msg/Odometry"
 POSES = ("geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/PoseWithCovarianceStamped")
+LEAST_DISTORTION = 1e-3  # smaller coefficients move no pixel of a usual image by one
 CUT_OFF = "it is cut off or was never closed; try `rosbag reindex`, `ros2 bag reindex` or `mcap recover`"
 
 
@@ -70,6 +71,21 @@ def _text(fault: Exception) -> str:
 
 def stamp_ns(header: Any) -> int:
     return int(header.stamp.sec) * 1_000_000_000 + int(header.stamp.nanosec)
+
+
+def field_of(info: Any, name: str) -> Any:
+    return getattr(info, name) if hasattr(info, name) else getattr(info, name.upper())  # ROS 1 has capitals
+
+
+def distortion_notice(topic: str, info: Any) -> str:
+    """What to tell of images whose camera_info says that the lens bends straight lines; empty where it does not.
+
+    Images that were rectified come with the camera_info of those that were not, so the topic's name decides."""
+    coefficients = np.asarray(field_of(info, "d"), np.float64).ravel()
+    largest = max(coefficients.tolist(), key=abs, default=0.0)
+    if abs(largest) < LEAST_DISTORTION or "rect" in topic:
+        return ""
+    return f"{topic} is distorted (its largest coefficient is {largest:g}), which is not corrected; rectified images give sharper maps"
 
 
 def vector(value: Any) -> tuple[float, float, float]:

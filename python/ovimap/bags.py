@@ -19,7 +19,22 @@ from typing import Any
 import numpy as np
 
 from ._ovimap import Error, decode_gray_png, encode_png
-from .bag_messages import CAMERA, IMAGES, ODOMETRY, POSES, TRANSFORMS, Bag, is_depth, quaternion, raw_color, raw_depth, stamp_ns, vector
+from .bag_messages import (
+    CAMERA,
+    IMAGES,
+    ODOMETRY,
+    POSES,
+    TRANSFORMS,
+    Bag,
+    distortion_notice,
+    field_of,
+    is_depth,
+    quaternion,
+    raw_color,
+    raw_depth,
+    stamp_ns,
+    vector,
+)
 from .command_line import DONE, run_command
 from .transforms import Matrix, TransformTree, matrix_of, quaternion_of, rotation_vector_of
 
@@ -58,7 +73,7 @@ class Stream:
     pending: deque[Future[pathlib.Path]] = field(default_factory=deque)
 
     def see_camera(self, info: Any) -> None:
-        k = _field(info, "k")
+        k = field_of(info, "k")
         if not (min(info.width, info.height, k[0], k[4]) > 0 and np.isfinite(k).all()):
             raise Error(
                 f"{self.info_topic} holds no calibration ({info.width}x{info.height}, fx {k[0]:g}, fy {k[4]:g}); calibrate the "
@@ -238,7 +253,7 @@ def _add_links(tree: TransformTree, given: dict[str, TransformTree], camera: str
     giver: dict[str, str] = {}
     for child, topic, link in links:
         if child in giver:
-            raise Error(f"{giver[child]} and {topic} both give the poses of the frame '{child}'; name one of them with --poses")
+            raise Error(f"{giver[child]} and {topic} both give the poses of the frame '{child}'; name one of them as the topic of poses")
         if chosen.poses or child not in tree.links:
             giver[child], tree.links[child] = topic, link
 
@@ -275,7 +290,7 @@ def _write_folder(folder: pathlib.Path, color: Stream, depth: Stream, tree: Tran
         )
     (folder / "poses.txt").write_text("".join(lines))
     offset = _color_from_depth(tree, color, depth)
-    notices = [_notice(stream) for stream in (color, depth) if _notice(stream)]
+    notices = [notice for stream in (color, depth) if (notice := distortion_notice(stream.topic, stream.info))]
     (folder / "camera.yaml").write_text(_camera_text(color, depth, offset))
     return {
         "source": str(folder),
@@ -296,7 +311,7 @@ def _world(tree: TransformTree, frame: str, wanted: str | None) -> str:
     if all(tree.links[name].static for name in chain[:end]):
         raise Error(
             f"nothing in the bag moves the camera's frame '{frame}' (known: {' -> '.join(chain)}); record /tf and /tf_static, "
-            "or odometry, or name a topic of poses with --poses"
+            "or odometry, or name a topic of poses"
         )
     return chain[end]
 
@@ -327,20 +342,9 @@ def _color_from_depth(tree: TransformTree, color: Stream, depth: Stream) -> Matr
     return offset
 
 
-def _notice(stream: Stream) -> str:
-    distortion = np.abs(np.asarray(_field(stream.info, "d"), np.float64))
-    if distortion.size == 0 or distortion.max() < 1e-3 or "rect" in stream.topic:
-        return ""
-    return f"{stream.topic} is distorted, which is not corrected; record rectified images for sharper maps"
-
-
-def _field(info: Any, name: str) -> Any:
-    return getattr(info, name) if hasattr(info, name) else getattr(info, name.upper())  # ROS 1 has capitals
-
-
 def _camera_text(color: Stream, depth: Stream, offset: Matrix) -> str:
     def camera(stream: Stream, more: str = "") -> str:
-        k = _field(stream.info, "k")
+        k = field_of(stream.info, "k")
         figures = {"fx": k[0], "fy": k[4], "cx": k[2], "cy": k[5]}
         text = ", ".join(f"{name}: {float(value)!r}" for name, value in figures.items())
         return f"{{width: {stream.info.width}, height: {stream.info.height}, {text}{more}}}"

@@ -20,6 +20,9 @@ import numpy.typing as npt
 
 RETRY_S = 0.02  # between tries of a frame that the mapper had no room for
 REST_S = 0.5  # the server lets connections go that rest for a second
+DEFAULT_PORT = 8080  # of `ovimap serve`
+CAMERAS = ("camera", "depth_camera", "color_camera")
+FIGURES = ("width", "height", "fx", "fy", "cx", "cy")
 MOST_BYTES = 32 << 20  # of a frame; the server refuses more
 
 
@@ -34,21 +37,23 @@ class SendError(RuntimeError):
 class FrameSender:
     """One camera's connection to a mapper.
 
-    url: what `ovimap serve` printed, "http://host:8080/", with ?token= where it asks for one.
-    camera: {"width", "height", "fx", "fy", "cx", "cy", "depth_scale"} for colour and depth alike, or what camera.yaml may
-        hold: "depth_camera", "color_camera", "color_from_depth", "poses".
+    url: what `ovimap serve` printed, "http://host:8080/", with ?token= where it asks for one; "host:8080" will do.
+    camera: width, height, fx, fy, cx and cy in pixels and depth_scale (units a metre, 1000 if left out) for colour and depth
+        alike, as a dict or a PinholeCamera; or what camera.yaml may hold: {"camera": {...}}, or "depth_camera", "color_camera",
+        "color_from_depth", "poses".
     jpeg_quality: of colour that comes as an array.
 
-    Raises SendError when the server refuses the camera, OSError when it cannot be reached.
+    Raises ValueError for an address or camera that is not whole, SendError when the server refuses the camera, OSError when it
+    cannot be reached.
     """
 
-    def __init__(self, url: str, camera: Mapping[str, Any], *, jpeg_quality: int = 92, timeout_s: float = 20) -> None:
-        parts = urllib.parse.urlsplit(url)
+    def __init__(self, url: str, camera: Mapping[str, Any] | object, *, jpeg_quality: int = 92, timeout_s: float = 20) -> None:
+        parts = _address(url)
         tokens = urllib.parse.parse_qs(parts.query).get("token")
         self._headers = {"Authorization": f"Bearer {tokens[0]}"} if tokens else {}
         kind = http.client.HTTPSConnection if parts.scheme == "https" else http.client.HTTPConnection
-        self._connection = kind(parts.hostname or "localhost", parts.port, timeout=timeout_s)
-        rig = {"camera": dict(camera)} if "fx" in camera else dict(camera)
+        self._connection = kind(parts.hostname or "", parts.port, timeout=timeout_s)
+        rig = _rig(camera)
         both: dict[str, Any] = rig.get("camera", {})
         self._units_per_m = float({**both, **rig.get("depth_camera", {})}.get("depth_scale", 1000))
         self._jpeg_quality = jpeg_quality
@@ -182,6 +187,35 @@ class FrameSender:
 def _require(status: int, reply: dict[str, Any]) -> None:
     if status >= 400:
         raise SendError(status, reply.get("error", f"the server answered {status}"))
+
+
+def _address(url: str) -> urllib.parse.SplitResult:
+    accepted = 'give what `ovimap serve` printed, as "http://localhost:8080/" or "localhost:8080"'
+    try:
+        parts = urllib.parse.urlsplit(url if "://" in url else f"http://{url}")
+        sound = parts.scheme in ("http", "https") and bool(parts.hostname) and parts.port != 0
+    except ValueError:  # of the port
+        sound = False
+    if not sound:
+        raise ValueError(f"'{url}' is no address of a server; {accepted}")
+    if "://" not in url and parts.port is None:
+        parts = parts._replace(netloc=f"{parts.netloc}:{DEFAULT_PORT}")
+    return parts
+
+
+def _rig(camera: Mapping[str, Any] | object) -> dict[str, Any]:
+    """As camera.yaml has it, whichever way it was given."""
+    if not isinstance(camera, Mapping):
+        camera = {name: getattr(camera, name) for name in (*FIGURES, "depth_scale") if hasattr(camera, name)}
+    rig = dict(camera) if any(name in camera for name in CAMERAS) else {"camera": dict(camera)}
+    for name in CAMERAS:
+        if name in rig:
+            given = rig[name] if isinstance(rig[name], Mapping) else {}
+            missing = [figure for figure in FIGURES if figure not in given]
+            if missing:
+                raise ValueError(f"'{name}' lacks {', '.join(missing)}; a camera has {', '.join(FIGURES)} in pixels, and depth_scale, "
+                                 "the units of its depth in a metre, where that is not 1000")
+    return rig
 
 
 def _pose(pose: npt.ArrayLike) -> list[float]:

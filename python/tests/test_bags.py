@@ -69,7 +69,7 @@ def test_of_two_odometries_of_one_frame_one_must_be_chosen(shots, camera, tmp_pa
     both = Options(poses="none", more_odometry=("/filtered", "/wheels"))
     bag = record(tmp_path / "a", shots[:3], camera, both)
     said = refusal(bag, tmp_path / "out")
-    assert said == "/filtered and /wheels both give the poses of the frame 'depth_optical'; name one of them with --poses"
+    assert said == "/filtered and /wheels both give the poses of the frame 'depth_optical'; name one of them as the topic of poses"
     done = convert(bag, tmp_path / "out", topics=Topics(poses="/wheels"))
     poses = [frame.world_from_camera for frame in ovimap.open_source(done["source"])]
     np.testing.assert_allclose([pose[1, 3] for pose in poses], [shot.pose[1, 3] + 1 for shot in shots[:3]])
@@ -229,7 +229,7 @@ def test_what_is_not_corrected_is_told(shots, camera, tmp_path, capsys):
     bag = str(record(tmp_path / "a", shots[:3], camera, Options(distortion=0.1)))
     assert main([bag, str(tmp_path / "out")]) == 0
     said, told = capsys.readouterr()
-    assert "3 frames" in said and "ovimap-bag: /depth/image is distorted" in told
+    assert "3 frames" in said and "ovimap-bag: /depth/image is distorted (its largest coefficient is 0.1)" in told
 
 
 def test_rotations_survive_as_quaternions():

@@ -114,8 +114,6 @@ def test_arrays_are_encoded_and_what_does_not_fit_is_skipped(room, tmp_path):
         assert "token=secret" in server.address
         with pytest.raises(SendError, match="token"):
             FrameSender(server.address.split("?")[0], figures(frames[0].camera))
-        with pytest.raises(SendError, match="lacks 'height'"):
-            FrameSender(server.address, {"depth_camera": {"width": 4}})
         sender = FrameSender(server.address, {"depth_camera": figures(frames[0].camera, depth_scale=5000)})
         sent = [sender.send(np.array(f.color), np.array(f.depth), f.world_from_camera) for f in frames for _ in range(20)]
         assert sender.taken == sum(sent) and sender.skipped == len(sent) - sum(sent)
@@ -126,6 +124,34 @@ def test_arrays_are_encoded_and_what_does_not_fit_is_skipped(room, tmp_path):
         sender.finish()
         saved = server.saved()
         assert saved["frames"] == sender.taken and saved["live"]["frames_dropped"] >= sender.skipped
+
+
+@needs_program
+def test_address_and_camera_may_be_given_in_every_obvious_form(camera, tmp_path):
+    with Serving(tmp_path / "a.ovimap") as server:
+        host = server.address.removeprefix("http://").rstrip("/")
+        for address in (server.address, host, host + "/"):
+            for given in (figures(camera), figures(camera, depth_scale=1000), {"camera": figures(camera)}, camera, {"depth_camera": figures(camera)}):
+                FrameSender(address, given).close()
+
+
+@pytest.mark.parametrize("address", ["", "http://", "ftp://host:8080", "host:port", "http://host:99999"])
+def test_what_is_no_address_is_told(camera, address):
+    with pytest.raises(ValueError, match="is no address of a server; give what `ovimap serve` printed"):
+        FrameSender(address, figures(camera))
+
+
+@pytest.mark.parametrize("given, lacking", [
+    ({"fx": 5, "fy": 5, "width": 4, "height": 4}, "'camera' lacks cx, cy;"),
+    ({}, "'camera' lacks width, height, fx, fy, cx, cy;"),
+    ({"depth_camera": {"width": 4}}, "'depth_camera' lacks height, fx, fy, cx, cy;"),
+    ({"camera": None}, "'camera' lacks width"),
+    (None, "'camera' lacks width"),
+])  # fmt: skip
+def test_what_a_camera_lacks_is_told_in_one_line(given, lacking):
+    with pytest.raises(ValueError, match=lacking) as told:
+        FrameSender("localhost:1", given)
+    assert "in pixels, and depth_scale" in str(told.value) and "\n" not in str(told.value)
 
 
 class Scripted:
@@ -228,7 +254,7 @@ def test_the_file_works_alone_and_needs_pillow_for_arrays_only(tmp_path):
 import sys, numpy
 sys.modules["PIL"] = None  # as where it is not installed
 from sender import FrameSender
-sender = FrameSender(sys.argv[1], {"fx": 5})
+sender = FrameSender(sys.argv[1], dict(width=4, height=2, fx=5, fy=5, cx=1.5, cy=0.5))
 print(sender.send(b"color", b"depth", numpy.eye(4)))
 sender.send(b"color", numpy.ones((2, 4)), numpy.eye(4))
 """
@@ -427,6 +453,22 @@ def test_frames_wait_for_the_cameras(node, store):
     bridge.infos["depth"] = messages.info(ovimap.PinholeCamera(4, 2, 5.0, 6.0, 1.5, 0.5))
     assert feed(bridge, messages, 11) is None
     assert [round(frame[3]) for frame in sent] == [10] * 3 + [11] * 3
+
+
+def test_lens_distortion_is_told_once(node, store):
+    messages, told = Messages(store), []
+    for topic, coefficients, expected in (
+        ("/depth/image_raw", (0.01, -0.3, 0, 0, 0), ["/depth/image_raw is distorted (its largest coefficient is -0.3)"]),
+        ("/depth/image_rect", (0.01, -0.3, 0, 0, 0), []),
+        ("/depth/image_raw", (), []),
+    ):
+        bridge = node.Bridge(Sent(), topics={"depth": topic}, warn=told.append)
+        bridge.infos["depth"] = messages.info(ovimap.PinholeCamera(4, 2, 5.0, 6.0, 1.5, 0.5))
+        bridge.infos["depth"].d = np.array(coefficients, np.float64)
+        feed(bridge, messages, 10)
+        feed(bridge, messages, 11)
+        assert [line.split(",")[0] for line in told] == expected
+        told.clear()
 
 
 def test_what_is_refused_is_told_and_counted_and_the_next_is_sent(node, store):
