@@ -50,9 +50,13 @@ def map_facts(path: str | os.PathLike[str], *, checkpoint: bool = False) -> MapF
     must be over.
     """
     try:
+        with open(path, "rb"):
+            pass  # the system says better than SQLite why not
         with contextlib.closing(sqlite3.connect(_uri(path, "rw" if checkpoint else "ro"), uri=True)) as file:
             meta = dict(file.execute("SELECT key, value FROM meta").fetchall())
             checks = file.execute("SELECT name, rows, hash FROM checks WHERE name <> 'meta' ORDER BY name").fetchall()
+    except OSError as fault:
+        raise Error(f"cannot open map '{os.fspath(path)}': {fault.strerror}; give a map file that `ovimap run` wrote") from None
     except sqlite3.Error as fault:
         raise Error(f"{os.fspath(path)} is no map ({fault}); give a file that `ovimap run` wrote") from None
     encoder = Encoder(meta.get("encoder.name", ""), int(meta.get("encoder.dimension") or 0), meta.get("encoder.digest", ""))

@@ -134,7 +134,16 @@ def test_a_map_that_is_gone_is_told(maps, tmp_path):
     maps[0].unlink()
     answer = ObjectIndex(tmp_path / "index").query("sofa")
     assert [said.answer is None for said in answer.maps] == [False, True] and answer.found
-    assert str(maps[0]) in answer.maps[1].notice and answer.maps[1].hits
+    told = answer.maps[1].notice
+    assert "not there any more" in told and f"ovimap-index remove {tmp_path}/index {maps[0]}" in told and answer.maps[1].hits
+    assert "unable to open" not in told and "\n" not in told
+
+
+def test_what_cannot_be_opened_is_told_as_the_system_says_it(tmp_path):
+    (tmp_path / "folder.ovimap").mkdir()
+    for name, why in (("missing.ovimap", "No such file or directory"), ("folder.ovimap", "Is a directory")):
+        update = ObjectIndex.build(tmp_path / "index", [tmp_path / name])
+        assert list(update.refused.values()) == [f"cannot open map '{tmp_path / name}': {why}; give a map file that `ovimap run` wrote"]
 
 
 def test_what_maps_that_are_gone_may_have_is_unknown(maps, tmp_path, capsys):
@@ -193,7 +202,7 @@ def test_an_index_of_ones_own_encoder(room, tmp_path):
     index, opened = ObjectIndex(tmp_path / "index", encoder=Colours()), ovimap.Map.open(tmp_path / "a.ovimap", encoder=Colours())
     expected = opened.instances.ids[np.argmax(opened.embeddings[:, 0])]
     assert index.nearest_to_text("red")[0].object == expected
-    with pytest.raises(ovimap.Error, match="--encoder"):
+    with pytest.raises(ovimap.Error, match="name that model as the encoder"):
         ObjectIndex(tmp_path / "index").query("red")
 
 

@@ -148,6 +148,9 @@ class ObjectIndex:
             count *= 4
 
     def _ask(self, path: str, hits: list[Hit], text: str, negatives: Sequence[str]) -> MapAnswer:
+        if not os.path.exists(path):
+            return MapAnswer(path, hits, None, f"the map is not there any more; bring it back, or index it where it is now (`ovimap-index build "
+                             f"MAP -o {self._store.folder}`) and take this one out (`ovimap-index remove {self._store.folder} {path}`)")
         try:
             revision = map_facts(path).revision
             answer = self._open(path, revision).query(text, negatives=negatives)
@@ -178,7 +181,7 @@ class ObjectIndex:
         digest = given.digest if isinstance(given, ImageTextEncoder) else wanted.digest
         if given is None or (given.name, given.dimension, digest) != (wanted.name, wanted.dimension, wanted.digest):
             raise Error(f"the index has embeddings of {wanted}, which {choice if isinstance(choice, str) else given.name} did not make; "
-                        "name that model with --encoder")
+                        "name that model as the encoder")
         return given
 
 
