@@ -19,6 +19,7 @@ TRANSFORMS = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")
 ODOMETRY = "nav_msgs/msg/Odometry"
 POSES = ("geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/PoseWithCovarianceStamped")
 LEAST_DISTORTION = 1e-3  # smaller coefficients move no pixel of a usual image by one
+STORAGE = (".bag", ".mcap", ".db3")
 CUT_OFF = "it is cut off or was never closed; try `rosbag reindex`, `ros2 bag reindex` or `mcap recover`"
 
 
@@ -34,6 +35,8 @@ class Bag:
         self.path = path
         if not path.exists():
             raise Error(f"there is no bag '{path}'; name a .bag file, a ROS 2 bag's folder or an .mcap file")
+        if not _may_be_bag(path):
+            raise Error(f"'{path}' is no bag; name a .bag file, a ROS 2 bag's folder or an .mcap file")
         store = get_typestore(Stores.ROS1_NOETIC if path.suffix == ".bag" else Stores.LATEST)
         try:
             self.reader: Any = AnyReader([path], default_typestore=store)
@@ -63,6 +66,12 @@ class Bag:
             raise
         except Exception as fault:
             raise Error(f"bag '{self.path}' cannot be read to its end ({_text(fault)}); {CUT_OFF}") from None
+
+
+def _may_be_bag(path: pathlib.Path) -> bool:
+    if not path.is_dir():
+        return path.suffix in STORAGE
+    return any(file.name == "metadata.yaml" or file.suffix in STORAGE for file in path.iterdir())
 
 
 def _text(fault: Exception) -> str:

@@ -171,6 +171,10 @@ def test_what_a_bag_lacks_is_named(shots, camera, tmp_path):
     assert "no odometry or stamped poses '/nothing'; it has /odom" in refusal(odometry, out, poses="/nothing")
     assert "is no ancestor" in refusal(good, out, world="moon")
     assert "there is no bag" in refusal(tmp_path / "nowhere.bag", out)
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "notes.txt").write_text("no bag")
+    for name in ("folder", "notes.txt"):
+        assert refusal(tmp_path / name, out) == f"'{tmp_path / name}' is no bag; name a .bag file, a ROS 2 bag's folder or an .mcap file"
     (tmp_path / "full").mkdir()
     (tmp_path / "full/a").touch()
     assert "is not empty" in refusal(good, tmp_path / "full")
