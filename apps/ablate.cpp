@@ -241,8 +241,7 @@ Action add_ablate(CLI::App& command) {
   one_value(command.add_option("--set", options->mapping.settings,
                                "one setting of all variants, a.b=c; may be repeated"));
   add_model_dirs(command, options->mapping.model_dirs);
-  command.add_option("--frames", options->mapping.frames,
-                     "which frames: FIRST:LAST:STEP, each part optional");
+  add_frame_range(command, options->mapping.frames);
   command.add_option("--threads", options->mapping.threads, "threads to use; 0: all cores")
       ->check(CLI::Range(0, 1024));
   command.add_flag("--json", options->json, "print one JSON object");

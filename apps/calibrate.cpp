@@ -121,8 +121,7 @@ Action add_calibrate(CLI::App& command) {
   auto options = std::make_shared<CalibrateOptions>();
   command.add_option("SOURCE", options->source, "recording")->required();
   command.add_option("-o,--output", options->out, "file to write; default SOURCE/calibration.yaml");
-  one_value(command.add_option("--frames", options->frames, "A:B:STEP, which frames to use"))
-      ->capture_default_str();
+  add_frame_range(command, options->frames);
   command.add_option("--picture", options->picture,
                      "PNG: edges of depth over colour, as given (left) and as found (right)");
   command.add_flag("--force", options->force, "replace FILE, also where colour is right already");

@@ -52,11 +52,14 @@ void print(const CheckReport& report) {
 
 Action add_check(CLI::App& command) {
   auto source = std::make_shared<std::string>();
+  auto frames = std::make_shared<std::string>(":");
   auto json = std::make_shared<bool>(false);
   command.add_option("SOURCE", *source, "recording")->required();
+  add_frame_range(command, *frames);
   command.add_flag("--json", *json, "print one JSON object");
-  return [source, json] {
-    const CheckReport report = check_source(std::filesystem::path(*source));
+  return [source, frames, json] {
+    const CheckReport report =
+        check_source(std::filesystem::path(*source), {}, parse_frame_range(*frames));
     if (*json)
       print_json(json_of(report));
     else

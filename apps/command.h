@@ -94,6 +94,9 @@ int network_threads(const ProgramConfig& config, const MappingOptions& options);
 /// The map's mesh with instance ids. Throws Error for a map without voxels, as `embed` makes.
 Mesh mesh_of(const MapDocument& document, const std::filesystem::path& map);
 
+/// --frames, for parse_frame_range.
+void add_frame_range(CLI::App& command, std::string& frames);
+
 /// Options of which each takes one value, so that what follows is not swallowed.
 CLI::Option* one_value(CLI::Option* option);
 void add_model_dirs(CLI::App& command, std::vector<std::filesystem::path>& model_dirs);

@@ -35,10 +35,14 @@ void add_mapping_settings(CLI::App& command, MappingOptions& options) {
   command.add_option("--config", options.config_file, "YAML file of settings");
   one_value(command.add_option("--set", options.settings, "one setting, a.b=c; may be repeated"));
   add_model_dirs(command, options.model_dirs);
-  command.add_option("--frames", options.frames,
-                     "which frames: FIRST:LAST:STEP, each part optional");
+  add_frame_range(command, options.frames);
   command.add_option("--threads", options.threads, "threads to use; 0: all cores")
       ->check(CLI::Range(0, 1024));
+}
+
+void add_frame_range(CLI::App& command, std::string& frames) {
+  one_value(
+      command.add_option("--frames", frames, "which frames: FIRST:LAST:STEP, each part optional"));
 }
 
 void add_max_memory(CLI::App& command, MappingOptions& options) {

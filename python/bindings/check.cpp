@@ -50,18 +50,19 @@ void bind_check(nb::module_& module) {
       .def_ro("findings", &CheckReport::findings);
   module.def(
       "check",
-      [](const nb::object& path, const Settings& settings) {
+      [](const nb::object& path, const std::string& frames, const Settings& settings) {
         const std::filesystem::path folder = to_path(path, "path");
         const auto config = configured<SourceCheckConfig>(settings);
         const WithoutGil release;
-        return check_source(folder, config);
+        return check_source(folder, config, parse_frame_range(frames));
       },
-      nb::arg("path"), nb::kw_only(), nb::arg("settings") = nb::none(),
-      nb::sig("def check(path: str | os.PathLike[str], *, settings: dict[str, typing.Any] | None = "
-              "None) -> CheckReport"),
+      nb::arg("path"), nb::kw_only(), nb::arg("frames") = ":", nb::arg("settings") = nb::none(),
+      nb::sig("def check(path: str | os.PathLike[str], *, frames: str = ':', settings: dict[str, "
+              "typing.Any] | None = None) -> CheckReport"),
       "Reads some frames of a recording and says what is wrong with it: depth in another unit, "
       "poses "
-      "inverted or in other axes, unusable frames. Raises Error when it cannot be opened.");
+      "inverted or in other axes, unusable frames. frames: \"FIRST:LAST:STEP\", each part optional. "
+      "Raises Error when it cannot be opened.");
 }
 
 }  // namespace ovimap::python

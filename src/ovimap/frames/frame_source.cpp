@@ -21,6 +21,27 @@ std::optional<std::int64_t> parse_part(std::string_view text, std::int64_t absen
   return value;
 }
 
+class ChosenFrames : public FrameSource {
+ public:
+  ChosenFrames(std::unique_ptr<FrameSource> source, std::vector<std::int64_t> positions)
+      : source_(std::move(source)), positions_(std::move(positions)) {}
+
+  std::string kind() const override { return source_->kind(); }
+  std::int64_t size() const override { return static_cast<std::int64_t>(positions_.size()); }
+  FrameRead read(std::int64_t position) const override { return source_->read(at(position)); }
+  std::optional<IdImage> truth_ids(std::int64_t position) const override {
+    return source_->truth_ids(at(position));
+  }
+
+ private:
+  std::int64_t at(std::int64_t position) const {
+    return positions_[static_cast<std::size_t>(position)];
+  }
+
+  std::unique_ptr<FrameSource> source_;
+  std::vector<std::int64_t> positions_;
+};
+
 }  // namespace
 
 void list_fields(FrameSourceConfig& config, ConfigFields& fields) {
@@ -78,6 +99,15 @@ std::vector<FaultCount> count_faults(const std::vector<std::string>& faults) {
   std::stable_sort(counts.begin(), counts.end(),
                    [](const FaultCount& a, const FaultCount& b) { return a.frames > b.frames; });
   return counts;
+}
+
+std::unique_ptr<FrameSource> choose_frames(std::unique_ptr<FrameSource> source,
+                                           const FrameRange& range) {
+  std::vector<std::int64_t> chosen = positions(range, source->size());
+  if (chosen.empty())
+    throw Error(concat("the chosen range holds none of the recording's ", source->size(),
+                       " frames, which count from 0"));
+  return std::make_unique<ChosenFrames>(std::move(source), std::move(chosen));
 }
 
 }  // namespace ovimap

@@ -79,4 +79,9 @@ struct FrameRange {
 FrameRange parse_frame_range(const std::string& text);
 std::vector<std::int64_t> positions(const FrameRange& range, std::int64_t size);
 
+/// The frames of a range, as if the recording had no others; each keeps the Frame::index that it
+/// has there. Throws Error when the range holds none.
+std::unique_ptr<FrameSource> choose_frames(std::unique_ptr<FrameSource> source,
+                                           const FrameRange& range);
+
 }  // namespace ovimap

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "ovimap/base/config.h"
+#include "ovimap/frames/sequence_fixture.h"
 
 namespace ovimap {
 namespace {
@@ -43,6 +44,18 @@ TEST(FrameSourceConfig, ListsItsFields) {
   EXPECT_FLOAT_EQ(config.max_depth_m, 4.5f);
   EXPECT_EQ(fields.fields().size(), 4u);
   EXPECT_THROW(fields.set("min_depth_m", "-1"), Error);
+}
+
+TEST(ChosenFrames, AreThoseOfTheRange) {
+  fixture::TemporaryFolder folder;
+  fixture::Sequence sequence;
+  fixture::write_seven_scenes(folder.path(), sequence);
+  const auto chosen = choose_frames(open_frame_source(folder.path()), parse_frame_range("1::3"));
+  ASSERT_EQ(chosen->size(), (sequence.frames + 1) / 3);
+  const FrameRead read = chosen->read(1);
+  ASSERT_TRUE(read.frame);
+  EXPECT_EQ(read.frame->index, 4) << "as the recording counts";
+  EXPECT_THROW(choose_frames(open_frame_source(folder.path()), parse_frame_range("500:")), Error);
 }
 
 }  // namespace

@@ -338,11 +338,12 @@ CheckReport check_source(const FrameSource& source, const SourceCheckConfig& con
   return report;
 }
 
-CheckReport check_source(const std::filesystem::path& path, const SourceCheckConfig& config) {
+CheckReport check_source(const std::filesystem::path& path, const SourceCheckConfig& config,
+                         const FrameRange& range) {
   FrameSourceConfig unlimited;
   unlimited.min_depth_m = 0;
   unlimited.max_depth_m = std::numeric_limits<float>::max();
-  return check_source(*open_frame_source(path, unlimited), config);
+  return check_source(*choose_frames(open_frame_source(path, unlimited), range), config);
 }
 
 }  // namespace ovimap

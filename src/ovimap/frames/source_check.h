@@ -66,7 +66,9 @@ struct CheckReport {
 CheckReport check_source(const FrameSource& source, const SourceCheckConfig& config = {});
 
 /// The same for a path, opened without limits of depth, so that depth in a wrong unit is seen as
-/// such. Throws Error when it cannot be opened.
-CheckReport check_source(const std::filesystem::path& path, const SourceCheckConfig& config = {});
+/// such. Only the frames of `range` are looked at, as if there were no others. Throws Error when it
+/// cannot be opened or the range is empty.
+CheckReport check_source(const std::filesystem::path& path, const SourceCheckConfig& config = {},
+                         const FrameRange& range = {});
 
 }  // namespace ovimap
