@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "ovimap/base/config.h"
+#include "ovimap/base/edit_distance.h"
 #include "ovimap/base/error.h"
 
 namespace ovimap::apps {
@@ -21,7 +21,7 @@ std::vector<std::string> command_names(const CLI::App& app) {
 std::vector<std::string> long_options(const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options())
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    for (const std::string& name : option->get_lnames()) names.push_back(name);
   return names;
 }
 
@@ -29,6 +29,72 @@ std::string joined(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
   return text;
+}
+
+/// ", did you mean 'WORD'?"; only where one is near.
+std::string suggestion(const std::string& word, const std::vector<std::string>& known,
+                       const char* before = "") {
+  const std::string likely = likely_word(word, known);
+  return likely.empty() ? std::string(";") : concat(", did you mean '", before, likely, "'?");
+}
+
+bool contains(const std::vector<std::string>& words, const std::string& word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+/// The argument that stands where one of the command's own commands should and is near to one;
+/// empty when there is none.
+std::string mistyped_action(const std::vector<std::string>& actions,
+                            const std::vector<std::string>& arguments) {
+  std::string mistyped;
+  for (std::size_t i = 1; i < arguments.size(); ++i) {
+    if (contains(actions, arguments[i])) return {};
+    if (mistyped.empty() && !arguments[i].starts_with('-') &&
+        !likely_word(arguments[i], actions).empty())
+      mistyped = arguments[i];
+  }
+  return mistyped;
+}
+
+/// Where the first argument is no command.
+std::string fault_before_command(const CLI::App& app, const std::string& first) {
+  if (first.starts_with("--"))
+    return concat("'", first, "' is no option of ovimap itself",
+                  suggestion(first.substr(2), long_options(app), "--"),
+                  " give a command first, see `ovimap --help`");
+  return concat("there is no command '", first, "'", suggestion(first, command_names(app)),
+                " `ovimap --help` lists them");
+}
+
+/// An option that the command does not have; empty when there is none.
+std::string option_fault(const CLI::App& command, const std::vector<std::string>& arguments) {
+  const std::vector<std::string> options = long_options(command);
+  for (const std::string& argument : arguments) {
+    const std::string name = argument.substr(0, argument.find('='));
+    if (name == "--" || !name.starts_with("--")) continue;
+    if (!contains(options, name.substr(2)))
+      return concat("'", name, "' is no option of ", command.get_name(),
+                    suggestion(name.substr(2), options, "--"), " `ovimap ", command.get_name(),
+                    " --help` lists them");
+  }
+  return {};
+}
+
+/// What the command is to do is misspelt or missing; empty when neither.
+std::string action_fault(const CLI::App& command, const CLI::ParseError& error,
+                         const std::vector<std::string>& arguments) {
+  const std::vector<std::string> actions = command_names(command);
+  const std::string& name = command.get_name();
+  if (const std::string action = mistyped_action(actions, arguments); !action.empty())
+    return concat("'", action, "' is nothing that ", name, " does", suggestion(action, actions),
+                  " `ovimap ", name, " --help` lists it all");
+  const bool chosen = std::any_of(arguments.begin(), arguments.end(), [&](const auto& argument) {
+    return contains(actions, argument);
+  });
+  if (actions.empty() || chosen || dynamic_cast<const CLI::RequiredError*>(&error) == nullptr)
+    return {};
+  return concat("say what ", name, " is to do: ", joined(actions), "; `ovimap ", name,
+                " --help` explains each");
 }
 
 }  // namespace
@@ -39,19 +105,11 @@ std::string usage_fault(const CLI::App& app, const CLI::ParseError& error,
   if (arguments.empty())
     return concat("say what to do: ", joined(commands), "; `ovimap --help` explains each");
   const std::string& first = arguments.front();
-  if (std::find(commands.begin(), commands.end(), first) == commands.end()) {
-    if (first.starts_with('-')) return concat(error.what(), "; see `ovimap --help`");
-    return concat("there is no command '", first, "', did you mean '",
-                  nearest_word(first, commands), "'? `ovimap --help` lists them");
-  }
-  const std::vector<std::string> options = long_options(*app.get_subcommand(first));
-  for (const std::string& argument : arguments) {
-    const std::string name = argument.substr(0, argument.find('='));
-    if (name == "--" || !name.starts_with("--")) continue;
-    if (std::find(options.begin(), options.end(), name) == options.end())
-      return concat("'", name, "' is no option of ", first, ", did you mean '",
-                    nearest_word(name, options), "'? `ovimap ", first, " --help` lists them");
-  }
+  if (!contains(commands, first)) return fault_before_command(app, first);
+  const CLI::App& command = *app.get_subcommand(first);
+  if (const std::string fault = option_fault(command, arguments); !fault.empty()) return fault;
+  if (const std::string fault = action_fault(command, error, arguments); !fault.empty())
+    return fault;
   return concat(error.what(), "; see `ovimap ", first, " --help`");
 }
 

@@ -119,6 +119,8 @@ TEST_F(ProgramTest, SkipsAndCountsBadFrames) {
 
 TEST_F(ProgramTest, ChecksRecordings) {
   EXPECT_EQ(run("check recording").code, 0);
+  EXPECT_EQ(run_json("check recording --frames 1:5:2 --json")["frames"], 2);
+  expect_complaint("check recording --frames 500:", {"the chosen range holds none"});
   sequence_.stored_pose = [](const Pose& pose) { return pose.inverse().matrix(); };
   sequence_.frames = 40;
   std::filesystem::create_directories(path("inverted"));
@@ -146,7 +148,16 @@ TEST_F(ProgramTest, SaysWhatIsWrongWithTheCommandLine) {
   expect_complaint("", {"say what to do", "run, check", "--help"});
   expect_complaint("qurey room.ovimap mug", {"qurey", "'query'"});
   expect_complaint("run recording --mask sam -o a.ovimap", {"'--mask'", "'--masks'"});
-  expect_complaint("fly", {"ovimap"});
+  expect_complaint("fly", {"there is no command 'fly'; `ovimap --help`"});
+  expect_complaint("run recording --jsno -o a.ovimap", {"'--jsno'", "did you mean '--json'"});
+  expect_complaint("run recording --max-mem 1G -o a.ovimap", {"did you mean '--max-memory'"});
+  expect_complaint("check recording --weather fine",
+                   {"'--weather' is no option of check; `ovimap check --help` lists them"});
+  expect_complaint("edit room.ovimap renam 1 cup", {"'renam'", "edit", "did you mean 'rename'"});
+  expect_complaint("models verfy x", {"'verfy'", "did you mean 'verify'"});
+  expect_complaint("models", {"say what models is to do: list, verify, path;"});
+  expect_complaint("edit room.ovimap", {"say what edit is to do: rename, merge"});
+  expect_complaint("--versoin", {"did you mean '--version'"});
   expect_complaint("run recording", {"output"});
   expect_complaint("run recording -o a.ovimap --set map.voxel=1", {"map.voxel_size_m"});
   expect_complaint("run recording -o a.ovimap --set map.voxel_size_m=-1", {"0.001 to 1"});
@@ -164,6 +175,7 @@ TEST_F(ProgramTest, SaysWhatIsWrongWithTheRecording) {
   std::filesystem::create_directories(path("empty"));
   expect_complaint("run nowhere -o a.ovimap", {"nowhere"});
   expect_complaint("run empty -o a.ovimap", {"empty"});
+  expect_complaint("run replica -o a.ovimap", {"'replica/scene' in it is a recording; give that"});
   for (int i = 0; i < sequence_.frames; ++i)
     write_file(path("recording/frame-" + fixture::padded(i, 6) + ".depth.png"),
                encode_png(Image<std::uint16_t>(80, 60)));

@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <charconv>
-#include <numeric>
+
+#include "ovimap/base/edit_distance.h"
 
 namespace ovimap {
 
@@ -26,20 +27,6 @@ Number parse_number(const std::string& name, std::string_view text, Number min, 
     throw Error(
         concat("setting ", name, " is '", text, "'; accepted is a number from ", min, " to ", max));
   return value;
-}
-
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0]++;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
-    }
-  }
-  return row.back();
 }
 
 }  // namespace
@@ -108,10 +95,13 @@ void ConfigFields::group(const std::string& prefix,
 void ConfigFields::set(std::string_view name, std::string_view text) {
   for (const ConfigField& field : fields_)
     if (field.name == name) return field.set(text);
-  std::vector<std::string> names;
-  for (const ConfigField& field : fields_) names.push_back(field.name);
-  throw Error(
-      concat("there is no setting '", name, "'; did you mean '", nearest_word(name, names), "'?"));
+  std::vector<std::string> names, containing;
+  for (const ConfigField& field : fields_) {
+    names.push_back(field.name);
+    if (field.name.find(name) != std::string::npos) containing.push_back(field.name);
+  }
+  throw Error(concat("there is no setting '", name, "'; did you mean '",
+                     nearest_word(name, containing.empty() ? names : containing), "'?"));
 }
 
 std::string ConfigFields::dump() const {

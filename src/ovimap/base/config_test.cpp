@@ -56,6 +56,8 @@ TEST(ConfigFields, NamesTheNearestFieldForAnUnknownOne) {
   ConfigFields fields = fields_of(config);
   EXPECT_NE(message_of(fields, "part.cuont", "1").find("did you mean 'part.count'"),
             std::string::npos);
+  EXPECT_NE(message_of(fields, "siz", "1").find("did you mean 'part.size_m'"), std::string::npos)
+      << "though 'part.on' is nearer in letters";
 }
 
 TEST(ConfigFields, RefusesWhatIsOutOfRangeOrUnreadable) {

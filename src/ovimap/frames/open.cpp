@@ -12,11 +12,30 @@ const Reader* const kReaders[] = {&kReplicaReader, &kSevenScenesReader, &kIclNui
                                   &kTumReader,     &kScanNetReader,     &kSensReader,
                                   &kRedwoodReader, &kRecord3dReader,    &kFolderReader};
 
-const Reader& find_reader(const std::filesystem::path& folder) {
+const Reader* reader_of(const std::filesystem::path& folder) {
   for (const Reader* reader : kReaders)
-    if (reader->recognises(folder)) return *reader;
+    if (reader->recognises(folder)) return reader;
+  return nullptr;
+}
+
+/// The first folder in this one that holds a recording, by name; empty when there is none.
+std::filesystem::path recording_in(const std::filesystem::path& folder) {
+  std::filesystem::path first;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) try {
+      const bool earlier = first.empty() || entry.path() < first;
+      if (earlier && entry.is_directory() && reader_of(entry.path())) first = entry.path();
+    } catch (const std::filesystem::filesystem_error&) {  // not for us to read
+    }
+  return first;
+}
+
+const Reader& find_reader(const std::filesystem::path& folder) {
+  if (const Reader* reader = reader_of(folder)) return *reader;
   if (std::filesystem::is_empty(folder))
     throw Error(concat(folder.string(), " is empty; give the folder of a recording"));
+  if (const std::filesystem::path inside = recording_in(folder); !inside.empty())
+    throw Error(concat(folder.string(), " holds no frames itself, but '", inside.string(),
+                       "' in it is a recording; give that"));
   std::string looked_for;
   for (const Reader* reader : kReaders)
     looked_for += concat(looked_for.empty() ? "" : "; ", reader->looks_for);

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/base/edit_distance.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "ovimap/base/config.h"
+
+namespace ovimap {
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0]++;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
+    }
+  }
+  return row.back();
+}
+
+std::string likely_word(std::string_view word, const std::vector<std::string>& candidates) {
+  constexpr std::size_t kLettersAMistake = 4, kShortestStart = 3;
+  const std::string nearest = nearest_word(word, candidates);
+  if (edit_distance(word, nearest) <= 1 + word.size() / kLettersAMistake) return nearest;
+  const auto begun = std::find_if(
+      candidates.begin(), candidates.end(), [&](const std::string& candidate) {
+        return word.size() >= kShortestStart && candidate.starts_with(word);
+      });
+  return begun == candidates.end() ? std::string() : *begun;
+}
+
+}  // namespace ovimap
