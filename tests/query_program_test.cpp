@@ -3,6 +3,10 @@
 // `ovimap query` as a user meets it.
 #include "program_fixture.h"
 
+#include <sys/stat.h>
+
+#include <cstdlib>
+
 namespace ovimap {
 namespace {
 
@@ -42,6 +46,34 @@ TEST_F(QueryProgramTest, AnswersInTheDocumentedShape) {
   EXPECT_EQ(results[0]["query"], "table");
   EXPECT_EQ(results[1]["reading"], "largest [object]");
   EXPECT_EQ(results[1]["verdict"], "found");
+}
+
+TEST_F(QueryProgramTest, EncodesTheWordsOfVerdictsOnceForAllProcesses) {
+  map_with(golden_model("minilm"));
+  const std::string ask = "query room.ovimap table --json" + kEncoder;
+  const auto with_cache = [&](const char* folder) {
+    ::setenv("XDG_CACHE_HOME", path(folder).c_str(), 1);
+    const ProgramResult answer = run(ask);
+    ::unsetenv("XDG_CACHE_HOME");
+    EXPECT_LE(answer.code, 1) << answer.err;
+    return answer.out;
+  };
+  const auto stored = [&] {
+    std::vector<std::pair<std::filesystem::path, std::uint64_t>> files;
+    for (const auto& entry : std::filesystem::directory_iterator(path("cache/ovimap"))) {
+      struct stat about = {};
+      EXPECT_EQ(::stat(entry.path().c_str(), &about), 0);
+      files.emplace_back(entry.path(), about.st_ino);
+    }
+    return files;
+  };
+  const std::string first = with_cache("cache");
+  const auto files = stored();
+  ASSERT_EQ(files.size(), 1u);
+  EXPECT_EQ(with_cache("cache"), first);
+  EXPECT_EQ(stored(), files) << "encoding them again would have replaced the file";
+  fixture::write_text(path("file"), "where a folder of caches should be");
+  EXPECT_EQ(with_cache("file"), first);
 }
 
 TEST_F(QueryProgramTest, FindsLookAlikes) {
