@@ -23,6 +23,14 @@ void report_bad_masks(const LiveStatistics& done) {
                  static_cast<long long>(done.masks_failed), done.mask_fault.c_str());
 }
 
+void report_encoder(const LiveStatistics& done) {
+  if (done.views_failed > 0)
+    std::fprintf(stderr,
+                 "ovimap: the encoder failed on %lld view(s), the first: %s; `ovimap reembed` gives "
+                 "their objects embeddings\n",
+                 static_cast<long long>(done.views_failed), done.encoder_fault.c_str());
+}
+
 nlohmann::json lag_json(const StageSummary& lag) {
   return {{"p50_ms", lag.p50_ms}, {"p95_ms", lag.p95_ms}, {"p99_ms", lag.p99_ms}};
 }
@@ -39,6 +47,7 @@ nlohmann::json live_json(const LiveRunResult& live, double fps) {
           {"masks_skipped", done.masks_skipped},
           {"masks_failed", done.masks_failed},
           {"views_skipped", done.views_skipped},
+          {"views_failed", done.views_failed},
           {"geometry_lag", lag_json(done.geometry_lag)},
           {"mask_lag", lag_json(done.mask_lag)}};
 }
@@ -71,7 +80,9 @@ double frames_per_second(const MappingRun& run) {
 
 void report_faults(const MappingRun& run) {
   report_skipped(run.sequence);
-  if (run.live) report_bad_masks(run.live->statistics);
+  if (!run.live) return;
+  report_bad_masks(run.live->statistics);
+  report_encoder(run.live->statistics);
 }
 
 nlohmann::json run_json(const std::filesystem::path& map, const MappingRun& run, double fps) {

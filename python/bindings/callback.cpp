@@ -3,6 +3,7 @@
 #include "callback.h"
 
 #include <exception>
+#include <string>
 
 namespace ovimap::python {
 
@@ -14,10 +15,21 @@ void release(PyObject* object) {
   Py_DECREF(object);
 }
 
+/// "ValueError: it has 7 numbers".
+std::string line_of(const nb::python_error& error) {
+  const std::string type = nb::cast<std::string>(error.type().attr("__name__"));
+  try {
+    const std::string text = nb::cast<std::string>(nb::str(error.value()));
+    return text.empty() ? type : type + ": " + text.substr(0, text.find('\n'));
+  } catch (const nb::python_error&) {  // what its own __str__ raises
+    return type;
+  }
+}
+
 }  // namespace
 
 CallbackError::CallbackError(const nb::python_error& error)
-    : std::runtime_error(error.what()), exception_(error.value().inc_ref().ptr(), &release) {
+    : std::runtime_error(line_of(error)), exception_(error.value().inc_ref().ptr(), &release) {
   if (error.traceback().is_valid())
     PyException_SetTraceback(exception_.get(), error.traceback().ptr());
 }

@@ -40,8 +40,12 @@ class LiveMapperHandle final : public OpenHandle {
     open_mapper().push_and_wait(taken(frame));
   }
   void drain() {
-    const auto turn = calls_.begin("LiveMapper");
-    open_mapper().drain();
+    {
+      const WithoutGil release;
+      const auto turn = calls_.begin("LiveMapper");
+      open_mapper().drain();
+    }
+    warn_of_encoder();
   }
   void cancel() {
     const auto turn = calls_.begin("LiveMapper");
@@ -55,10 +59,16 @@ class LiveMapperHandle final : public OpenHandle {
   }
 
   std::size_t save(const std::filesystem::path& path, const std::string& source) {
-    const auto turn = calls_.begin("LiveMapper");
-    check_map_target(path);
-    if (!map_.ready()) take_map(source);
-    return map_.save(path);
+    std::size_t objects = 0;
+    {
+      const WithoutGil release;
+      const auto turn = calls_.begin("LiveMapper");
+      check_map_target(path);
+      if (!map_.ready()) take_map(source);
+      objects = map_.save(path);
+    }
+    warn_of_encoder();
+    return objects;
   }
 
  protected:
@@ -90,14 +100,25 @@ class LiveMapperHandle final : public OpenHandle {
       last_statistics_ = live.statistics();
       mapper_.reset();
     }
-    try {
-      finished_->finish();
-    } catch (...) {
-      if (!cancelled_) throw;
-      finished_->finish();  // cancelled for this, as a rule: the views stay without embedding
+    finished_->finish();
+    EncoderFailures failures = finished_->encoder_failures();
+    {
+      const std::lock_guard lock(mutex_);
+      last_statistics_.views_failed = failures.views;
+      last_statistics_.encoder_fault = std::move(failures.first);
     }
     map_.take(std::move(*finished_), sequence_, source, config_text_);
     finished_.reset();
+  }
+
+  /// Once, with the GIL held. Throws where warnings are errors.
+  void warn_of_encoder() {
+    const LiveStatistics done = statistics();
+    if (done.views_failed == 0 || std::exchange(warned_, true)) return;
+    const std::string text =
+        concat("the encoder failed on ", done.views_failed, " view(s), the first: ",
+               done.encoder_fault, "; `ovimap reembed` gives their objects embeddings");
+    if (PyErr_WarnEx(PyExc_RuntimeWarning, text.c_str(), 1) < 0) nb::raise_python_error();
   }
 
   LiveMapper& open_mapper() {
@@ -123,7 +144,7 @@ class LiveMapperHandle final : public OpenHandle {
   std::optional<Mapper> finished_;  ///< taken from the threads, not yet a map
   SequenceResult sequence_;
   std::int64_t next_index_ = 0;
-  bool cancelled_ = false;
+  bool cancelled_ = false, warned_ = false;
   FinishedMap map_;
 };
 
@@ -139,6 +160,9 @@ void bind_statistics(nb::module_& module) {
       .def_ro("masks_failed", &LiveStatistics::masks_failed, "frames whose masks were bad")
       .def_ro("mask_fault", &LiveStatistics::mask_fault, "of the first that failed")
       .def_ro("views_skipped", &LiveStatistics::views_skipped, "looks at objects left out")
+      .def_ro("views_failed", &LiveStatistics::views_failed,
+              "views without embedding, because the encoder raised something")
+      .def_ro("encoder_fault", &LiveStatistics::encoder_fault, "of the first of these")
       .def_ro("geometry_lag", &LiveStatistics::geometry_lag, "from push until the frame was fused")
       .def_ro("mask_lag", &LiveStatistics::mask_lag, "from push until its masks were in the map");
 }
@@ -147,8 +171,9 @@ constexpr const char* kLiveText = R"(Mapper for a camera that does not wait (doc
 
 Frames go through threads of their own; when it falls behind it leaves out masks first, views
 second, frames last, and counts them. Arguments as those of Mapper, which are called from those
-threads; live: as ovimap.settings("live") lists them. What a callable raises comes out of the next
-push, drain or save; after cancel, save keeps what was fused. One call at a time.)";
+threads; live: as ovimap.settings("live") lists them. What masks raise comes out of the next push,
+drain or save; after cancel, save keeps what was fused. What the encoder raises costs its views their
+embedding: statistics() counts them, and drain or save warns. One call at a time.)";
 
 }  // namespace
 
@@ -176,7 +201,7 @@ void bind_live_mapper(nb::module_& module) {
            "Takes a frame without waiting; False when it had to be dropped.")
       .def("push_and_wait", &LiveMapperHandle::push_and_wait, nb::arg("frame"), release,
            "Takes a frame; waits for room.")
-      .def("drain", &LiveMapperHandle::drain, release,
+      .def("drain", &LiveMapperHandle::drain,
            "Waits until everything pushed is in the map; then no more frames are taken.")
       .def("cancel", &LiveMapperHandle::cancel, release,
            "Stops as soon as each stage has finished what it is at. What was fused stays.")
@@ -184,9 +209,7 @@ void bind_live_mapper(nb::module_& module) {
       .def(
           "save",
           [](LiveMapperHandle& self, const nb::object& path, const std::string& source) {
-            const std::filesystem::path file = to_path(path, "path");
-            const WithoutGil without_gil;
-            return self.save(file, source);
+            return self.save(to_path(path, "path"), source);
           },
           nb::arg("path"), nb::kw_only(), nb::arg("source") = "python",
           nb::sig("def save(self, path: str | os.PathLike[str], *, source: str = 'python') -> int"),

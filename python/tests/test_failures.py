@@ -91,19 +91,46 @@ def test_what_masks_raise_comes_out_of_every_call_until_it_is_cancelled(camera, 
     assert ovimap.Map.open(tmp_path / "a.ovimap").frames == mapper.statistics().frames_fused > 0
 
 
-@pytest.mark.parametrize("returned, error", [(None, RuntimeError), (np.zeros((1, 7)), ValueError)])
-def test_a_live_map_outlives_its_encoder(frames, tmp_path, returned, error):
+@pytest.mark.parametrize("returned, fault", [(None, "RuntimeError: out of memory"), (np.zeros((1, 7)), "what encode_images returned must be")])
+def test_a_live_map_outlives_its_encoder(frames, tmp_path, returned, fault):
     mapper = ovimap.LiveMapper(encoder=FailingEncoder(returned), live={"view_interval": 1})
-    with pytest.raises(error):
-        for frame in frames:
-            mapper.push_and_wait(frame)
+    for frame in frames:
+        mapper.push_and_wait(frame)
+    with pytest.warns(RuntimeWarning, match="the encoder failed on [0-9]+ view"):
         mapper.drain()
-    mapper.cancel()
+    done = mapper.statistics()
+    assert done.views_failed > 0 and fault in done.encoder_fault and done.frames_fused == len(frames)
     with pytest.raises(ovimap.Error, match="missing"):
         mapper.save(tmp_path / "missing/a.ovimap")
     for name in ("a.ovimap", "b.ovimap"):
         mapper.save(tmp_path / name)
-        assert ovimap.Map.open(tmp_path / name).frames == mapper.statistics().frames_fused > 0
+        made = ovimap.Map.open(tmp_path / name)
+        assert made.frames == len(frames) and len(made) > 0 and not made.embeddings.any()
+
+
+def test_a_live_map_that_is_cancelled_counts_what_its_encoder_raised(frames, tmp_path):
+    mapper = ovimap.LiveMapper(encoder=FailingEncoder(), live={"view_interval": 1})
+    for frame in frames:
+        mapper.push_and_wait(frame)
+    while mapper.statistics().frames_fused < len(frames):
+        pass
+    mapper.cancel()
+    with pytest.warns(RuntimeWarning, match="out of memory"):
+        mapper.save(tmp_path / "a.ovimap")
+    assert mapper.statistics().views_failed > 0
+
+
+def test_messages_name_arguments_not_the_programs_options(room, tmp_path):
+    still = [ovimap.Frame(frame.color, frame.depth, np.eye(4), frame.camera) for frame in list(ovimap.open_source(room).frames(":3"))]
+    mapper = ovimap.Mapper()
+    for frame in still:
+        mapper.process(frame)
+    with pytest.raises(ovimap.Error, match="settings={'allow_still_camera': True}") as told:
+        mapper.save(tmp_path / "a.ovimap")
+    assert "--" not in str(told.value)
+    with pytest.raises(ovimap.Error, match="or name its folder with model_dirs or OVIMAP_MODELS") as told:
+        ovimap.make_encoder("nothing-such")
+    assert "--" not in str(told.value)
 
 
 def test_true_masks_of_a_frame_that_the_recording_has_not(room, camera):

@@ -52,6 +52,9 @@ class AppearanceBuilder {
 
   /// Throws what the encoder threw since the last report, once; its views stay without embedding.
   void rethrow_failure() { queue_.rethrow_failure(); }
+  /// From now on what the encoder throws is counted alone.
+  void forgive_encoder() { queue_.forgive_failures(); }
+  EncoderFailures encoder_failures() const { return queue_.failures(); }
   /// Chooses and cuts out views of one frame; returns how many.
   int choose(const Frame& frame, const SeenObjects& seen, const InstanceRegistry& registry);
   /// Hands the chosen views to the encoder; `wait`: not before it has room for them.

@@ -12,6 +12,20 @@
 
 namespace ovimap {
 
+namespace {
+
+std::string message_of(const std::exception_ptr& failure) {
+  try {
+    std::rethrow_exception(failure);
+  } catch (const std::exception& fault) {
+    return fault.what();
+  } catch (...) {
+    return "no reason given";
+  }
+}
+
+}  // namespace
+
 void list_fields(EmbeddingQueueConfig& config, ConfigFields& fields) {
   fields.add("capacity", config.capacity, 1, 1000000,
              "views that wait for the encoder at most; then the mapper waits");
@@ -68,6 +82,24 @@ void EmbeddingQueue::rethrow_failure() {
   if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
+void EmbeddingQueue::forgive_failures() {
+  const std::lock_guard lock(mutex_);
+  forgiving_ = true;
+  failure_ = nullptr;
+}
+
+EncoderFailures EmbeddingQueue::failures() const {
+  const std::lock_guard lock(mutex_);
+  return failures_;
+}
+
+/// With the lock held.
+void EmbeddingQueue::note_failure(std::exception_ptr failure, std::size_t views) {
+  if (failures_.views == 0) failures_.first = message_of(failure);
+  failures_.views += static_cast<std::int64_t>(views);
+  if (!forgiving_ && !failure_) failure_ = std::move(failure);
+}
+
 void EmbeddingQueue::work() {
   lower_thread_priority();
   while (true) {
@@ -97,7 +129,7 @@ void EmbeddingQueue::work() {
       const std::lock_guard lock(mutex_);
       std::move(answers.begin(), answers.end(), std::back_inserter(answered_));
       under_way_ = 0;
-      if (!failure_) failure_ = failure;
+      if (failure) note_failure(std::move(failure), batch.size());
     }
     changed_.notify_all();
   }

@@ -7,6 +7,7 @@
 #include <exception>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -37,6 +38,12 @@ struct EmbeddingAnswer {
   double milliseconds = 0;    ///< its share of the batch's time; 0 without an encoder
 };
 
+/// What an encoder threw, all told.
+struct EncoderFailures {
+  std::int64_t views = 0;  ///< that stay without embedding for it
+  std::string first;       ///< its message
+};
+
 /// Embeds views on a thread of its own that lets the mapper go first, in the order they come. When
 /// the encoder throws, the views it was given stay without embedding, and the next ones are tried.
 class EmbeddingQueue {
@@ -58,9 +65,13 @@ class EmbeddingQueue {
   std::vector<EmbeddingAnswer> finish();
   /// Throws the first thing the encoder threw since the last report, once.
   void rethrow_failure();
+  /// From now on what the encoder throws is counted alone.
+  void forgive_failures();
+  EncoderFailures failures() const;
 
  private:
   void work();
+  void note_failure(std::exception_ptr failure, std::size_t views);
   std::vector<EmbeddingAnswer> answer(const std::vector<EmbeddingRequest>& batch,
                                       ImageTextEncoder* encoder) const;
 
@@ -73,8 +84,9 @@ class EmbeddingQueue {
   std::deque<EmbeddingRequest> waiting_;
   std::vector<EmbeddingAnswer> answered_;
   std::size_t under_way_ = 0;
-  bool stop_ = false;
+  bool stop_ = false, forgiving_ = false;
   std::exception_ptr failure_;
+  EncoderFailures failures_;
   std::thread worker_;  // last: it starts when everything else is there
 };
 

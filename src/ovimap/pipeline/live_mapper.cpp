@@ -17,6 +17,16 @@ double milliseconds_since(std::chrono::steady_clock::time_point start) {
       .count();
 }
 
+/// A camera does not wait, and what it saw does not come again: an encoder that fails must not end
+/// the run.
+std::unique_ptr<Mapper> forgiving_mapper(const MapperConfig& config,
+                                         std::shared_ptr<MaskSource> masks,
+                                         std::shared_ptr<ImageTextEncoder> encoder) {
+  auto mapper = std::make_unique<Mapper>(config, std::move(masks), std::move(encoder));
+  mapper->forgive_encoder();
+  return mapper;
+}
+
 }  // namespace
 
 void list_fields(LiveConfig& config, ConfigFields& fields) {
@@ -37,7 +47,7 @@ LiveMapper::LiveMapper(const MapperConfig& config, const LiveConfig& live,
     : config_(config),
       live_(live),
       mask_source_(masks),
-      mapper_(std::make_unique<Mapper>(config, std::move(masks), std::move(encoder))),
+      mapper_(forgiving_mapper(config, std::move(masks), std::move(encoder))),
       schedule_(live.masks),
       incoming_(static_cast<std::size_t>(live.queue)),
       prepared_(1),
@@ -138,7 +148,16 @@ void LiveMapper::fuse_frames() {
   }
   wanted_masks_.close();
   while (auto late = found_masks_.pop()) apply_masks(std::move(*late));
-  if (!cancelled_) mapper_->finish();
+  if (cancelled_) return;
+  mapper_->finish();
+  count_encoder_failures();
+}
+
+void LiveMapper::count_encoder_failures() {
+  EncoderFailures failures = mapper_->encoder_failures();
+  const std::lock_guard lock(mutex_);
+  statistics_.views_failed = failures.views;
+  statistics_.encoder_fault = std::move(failures.first);
 }
 
 void LiveMapper::fuse(Prepared prepared) {
@@ -170,6 +189,7 @@ void LiveMapper::fuse(Prepared prepared) {
     mapper_->look_at_objects(frame, Mapper::Encoder::kRunOn);
   }
   if (after_frame) after_frame(*mapper_, frames_, frame.depth_camera);
+  count_encoder_failures();
   const std::lock_guard lock(mutex_);
   ++statistics_.frames_fused;
   statistics_.views_skipped += look && no_time;

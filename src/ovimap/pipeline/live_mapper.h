@@ -35,15 +35,18 @@ struct LiveStatistics {
   std::int64_t masks_skipped = 0;  ///< frames that wanted masks while the network was busy
   std::int64_t masks_failed = 0;   ///< frames whose masks were bad
   std::int64_t views_skipped = 0;  ///< looks at objects left out
+  std::int64_t views_failed = 0;   ///< views without embedding, because the encoder threw
   StageSummary geometry_lag, mask_lag;
-  std::string mask_fault;  ///< of the first that failed
+  std::string mask_fault;     ///< of the first that failed
+  std::string encoder_fault;  ///< likewise
 };
 
 /// Mapper for a camera that does not wait. Frames go through threads of their own: one prepares
 /// (registration, surface, and regions where there are no masks), one fuses, one runs the mask
 /// network, one the encoder. Masks that come late are applied with the depth and pose of their own
 /// frame. When it falls behind it leaves out masks first, views second, frames last, and counts
-/// them. All calls but `statistics` come from one thread.
+/// them. Bad masks and an encoder that throws cost what they were asked for, and are counted too;
+/// whatever else throws ends the run. All calls but `statistics` come from one thread.
 class LiveMapper {
  public:
   LiveMapper(const MapperConfig& config, const LiveConfig& live,
@@ -98,7 +101,7 @@ class LiveMapper {
   void fuse_frames();
   void find_masks();
   void fuse(Prepared prepared);
-  void look_at_objects(const Frame& frame);
+  void count_encoder_failures();
   void apply_masks(Prepared late);
   void apply_late_masks();
   std::shared_ptr<const FrameSegments> masks_for(const Prepared& prepared);

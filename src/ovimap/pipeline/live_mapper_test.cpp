@@ -3,6 +3,7 @@
 #include "ovimap/pipeline/live_mapper.h"
 
 #include <random>
+#include <stdexcept>
 
 #include <gtest/gtest.h>
 
@@ -196,6 +197,43 @@ TEST(LiveMapper, ABrokenMaskSourceEndsTheRunWithItsMessage) {
     FAIL() << "the failure must come out";
   } catch (const Error& error) {
     EXPECT_STREQ(error.what(), "mask source is broken");
+  }
+}
+
+/// Fails on its first batches, as one does that runs out of memory.
+class FailingColors : public ColorEncoder {
+ public:
+  explicit FailingColors(int failures) : failures_(failures) {}
+  Embeddings encode_images(std::span<const RgbImage> images) override {
+    if (failures_-- > 0) throw std::runtime_error("out of memory");
+    return ColorEncoder::encode_images(images);
+  }
+
+ private:
+  int failures_;  // the encoder is asked by one thread
+};
+
+std::int64_t embedded_views(const Appearances& appearances) {
+  std::int64_t count = 0;
+  for (const auto& [id, appearance] : appearances)
+    for (const ObjectView& view : appearance.views) count += view.embedding.size() > 0;
+  return count;
+}
+
+TEST(LiveMapper, AnEncoderThatFailsIsCountedAndCostsItsViewsAlone) {
+  constexpr int kAlways = 1000000;
+  for (const int failures : {1, kAlways}) {
+    LiveMapper mapper(mapper_config(1), live_config(1), std::make_shared<DeskMasks>(),
+                      std::make_shared<FailingColors>(failures));
+    for (const Frame& frame : desk_frames()) mapper.push_and_wait(frame);
+    mapper.drain();
+    const LiveStatistics done = mapper.statistics();
+    EXPECT_EQ(done.frames_fused, done.frames_pushed);
+    EXPECT_GT(done.views_failed, 0);
+    EXPECT_EQ(done.encoder_fault, "out of memory");
+    const Appearances found = mapper.take().take_appearances();
+    EXPECT_GT(found.size(), 0u);
+    EXPECT_EQ(embedded_views(found) == 0, failures == kAlways);
   }
 }
 

@@ -78,6 +78,10 @@ class Mapper {
   /// only.
   void restore(MapDocument&& document);
 
+  /// From now on what the encoder throws is counted instead of thrown; its views stay without
+  /// embedding.
+  void forgive_encoder() { builder_->forgive_encoder(); }
+  EncoderFailures encoder_failures() const { return builder_->encoder_failures(); }
   /// Waits until every view chosen so far is embedded. Throws what the encoder threw.
   void await_encoder();
   /// The same after the last frame. Called again after it threw, it finishes without the views that
