@@ -79,9 +79,15 @@ def class_lines(node):
     return [*lines, *members, *([""] if members else [])]
 
 
-def module_lines(title, path):
+def taken_from_bindings():
+    """What the package gives out of its bindings; the rest is for its own files."""
+    tree = ast.parse((PACKAGE / "__init__.py").read_text())
+    return {name.name for node in tree.body if isinstance(node, ast.ImportFrom) and node.module == "_ovimap" for name in node.names}
+
+
+def module_lines(title, path, chosen=None):
     tree = PlainTypes().visit(ast.parse(path.read_text()))
-    nodes = public(tree.body)
+    nodes = [node for node in public(tree.body) if chosen is None or node.name in chosen]
     lines = [f"## {title}", ""]
     if path.suffix == ".py":
         lines += [*described(tree)]
@@ -92,7 +98,7 @@ def module_lines(title, path):
 
 def page(stub):
     lines = [HEAD]
-    lines += module_lines("Maps, mappers, frames", stub)
+    lines += module_lines("Maps, mappers, frames", stub, taken_from_bindings())
     lines += module_lines("Whole commands", PACKAGE / "commands.py")
     for path in sorted(PACKAGE.glob("*.py")):
         if path.stem not in ("__init__", "commands"):

@@ -1,9 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
+#include <nanobind/stl/map.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <cstdio>
 
 #include "arrays.h"
@@ -87,7 +89,12 @@ void bind_instances(nb::module_& module) {
             return view<Counts>(all.views.data(), {all.ids.size()}, nb::find(all));
           },
           "int64 [objects]: frames in which it was seen")
-      .def_ro("names", &Instances::names, "given by people; empty strings otherwise");
+      .def_ro("names", &Instances::names, "given by people; empty strings otherwise")
+      .def("__repr__", [](const Instances& all) {
+        const auto named = std::count_if(all.names.begin(), all.names.end(),
+                                         [](const std::string& name) { return !name.empty(); });
+        return concat("Instances(", all.ids.size(), " objects, ", named, " named)");
+      });
 }
 
 void bind_mesh(nb::module_& module) {
@@ -125,7 +132,12 @@ void bind_mesh(nb::module_& module) {
             return view<Triangles>(mesh.triangles.empty() ? nullptr : mesh.triangles[0].data(),
                                    {mesh.triangles.size(), 3}, nb::find(mesh));
           },
-          "uint32 [triangles, 3]: vertex indices, counter-clockwise from outside");
+          "uint32 [triangles, 3]: vertex indices, counter-clockwise from outside")
+      .def("__repr__", [](const Mesh& mesh) {
+        return concat("Mesh(", mesh.vertices.size(), " vertices, ", mesh.triangles.size(),
+                      " triangles", mesh.colors.empty() ? "" : ", colours",
+                      mesh.labels.empty() ? "" : ", labels", ")");
+      });
 }
 
 void write_text(const std::filesystem::path& path, const std::string& text) {
@@ -158,6 +170,33 @@ std::string hash_text(const SavedMap& map) {
   return text;
 }
 
+std::string counted(std::size_t count, const char* thing) {
+  return concat(count, " ", thing, count == 1 ? "" : "s");
+}
+
+/// Map('room.ovimap': 12 objects from 60 frames, embeddings of 'default-encoder'; 2 skipped: ...).
+std::string to_text(const SavedMap& map) {
+  const std::string& encoder = map.info().encoder.name;
+  std::string text = concat("Map('", map.path().string(), "': ",
+                            counted(map.index().size(), "object"), " from ",
+                            counted(static_cast<std::size_t>(map.info().frames), "frame"), ", ");
+  text += encoder.empty() ? "no embeddings" : concat("embeddings of '", encoder, "'");
+  std::string reasons;
+  std::size_t skipped = 0;
+  for (const FaultCount& fault : map.skipped) {
+    skipped += static_cast<std::size_t>(fault.frames);
+    reasons += concat(reasons.empty() ? "" : ", ", fault.frames, " ", fault.phrase);
+  }
+  if (skipped > 0) text += concat("; ", counted(skipped, "frame"), " skipped: ", reasons);
+  return text + ")";
+}
+
+std::map<std::string, std::int64_t> skipped_by_reason(const SavedMap& map) {
+  std::map<std::string, std::int64_t> counts;
+  for (const FaultCount& fault : map.skipped) counts[fault.phrase] += fault.frames;
+  return counts;
+}
+
 std::shared_ptr<SavedMap> open_map(const nb::object& path, const nb::object& encoder,
                                    const Settings& settings, const nb::object& model_dirs) {
   const std::filesystem::path file = to_path(path, "path");
@@ -175,8 +214,11 @@ std::shared_ptr<SavedMap> open_map(const nb::object& path, const nb::object& enc
 void bind_properties(nb::class_<SavedMap>& map) {
   map.def_prop_ro("path", [](const SavedMap& self) { return self.path().string(); })
       .def("__len__", [](const SavedMap& self) { return self.index().size(); })
+      .def("__repr__", &to_text)
       .def_prop_ro(
           "frames", [](const SavedMap& self) { return self.info().frames; }, "frames in the map")
+      .def_prop_ro("skipped", &skipped_by_reason,
+                   "frames that ovimap.run left out, by reason; empty for a map that was opened")
       .def_prop_ro(
           "mask_frames", [](const SavedMap& self) { return self.info().mask_frames; },
           "frames with 2D masks")
@@ -284,6 +326,14 @@ void bind_map(nb::module_& module) {
           "Writes the mesh as .ply or .glb (a named node per object), or the list of objects as "
           ".json or .csv.");
   bind_properties(map);
+  module.def(
+      "note_skipped",
+      [](SavedMap& made, const std::vector<std::string>& faults) {
+        made.skipped = count_faults(faults);
+      },
+      nb::arg("made"), nb::arg("faults"),
+      nb::sig("def note_skipped(made: Map, faults: list[str]) -> None"),
+      "What Map.skipped says: \"FILE: REASON\" of each frame that was left out.");
   bind_query(module, map);
 }
 

@@ -7,12 +7,27 @@
 #include "open_handle.h"
 #include "ovimap/base/error.h"
 #include "ovimap/base/version.h"
+#include "wording.h"
 
 namespace ovimap::python {
 
 namespace {
 
-PyObject* g_frame_error = nullptr;  // the module keeps it alive
+PyObject *g_error = nullptr, *g_frame_error = nullptr;  // the module keeps them alive
+
+void raise(PyObject* type, const Error& error) {
+  PyErr_SetString(type, in_python_words(error.what()).c_str());
+}
+
+void translate(const std::exception_ptr& thrown, void*) {
+  try {
+    std::rethrow_exception(thrown);
+  } catch (const FrameError& error) {
+    raise(g_frame_error, error);
+  } catch (const Error& error) {
+    raise(g_error, error);
+  }
+}
 
 void bind_errors(nb::module_& module) {
   auto error = nb::exception<Error>(module, "Error", PyExc_RuntimeError);
@@ -23,7 +38,9 @@ void bind_errors(nb::module_& module) {
   frame_error.attr("__doc__") =
       "An Error of one frame alone: what was mapped stands, and the frames after it may be sound. "
       "Masks may raise it to leave a frame out.";
+  g_error = error.ptr();
   g_frame_error = frame_error.ptr();
+  nb::register_exception_translator(&translate, nullptr);  // asked before those of the classes
 }
 
 }  // namespace

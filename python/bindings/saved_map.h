@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "ovimap/frames/frame_source.h"
 #include "ovimap/pipeline/map_search.h"
 #include "ovimap/semantics/query_engine.h"
 
@@ -32,6 +33,9 @@ class SavedMap {
 
   /// Thread-safe. `words`: whether the question needs the encoder.
   const QueryEngine& engine(bool words);
+
+  /// Frames that were left out when it was made, where that is known.
+  std::vector<FaultCount> skipped;
 
   /// The surface with instance ids as labels. Throws Error for a map without voxels.
   Mesh mesh() const;

@@ -120,6 +120,11 @@ void bind_sources(nb::module_& module) {
           "kind", [](const Source& source) { return source.frames->kind(); },
           "the layout: \"replica\", \"tum\", \"folder\" ...")
       .def_ro("path", &Source::path)
+      .def("__repr__",
+           [](const Source& source) {
+             return concat("FrameSource(", source.frames->kind(), " '", source.path, "': ",
+                           source.frames->size(), " frames)");
+           })
       .def("__len__", [](const Source& source) { return source.frames->size(); })
       .def("__getitem__", &read_frame, nb::arg("position"), nb::call_guard<WithoutGil>())
       .def("__iter__", [](const Source& source) { return iterate(source, ":"); })

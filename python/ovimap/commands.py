@@ -31,9 +31,10 @@ def run(
 
     masks and encoder as Mapper takes them; "gt": the recording's own masks; encoder "auto": the default one where
     there are masks. frames: "FIRST:LAST:STEP", each part optional. Frames that cannot be used are left out, as the
-    program does. progress(done, total) is called after each frame and may return False to end early: what was mapped
-    is saved. It is too when Ctrl-C or what a callable raises ends the run, unless there was a map at that path; then
-    that is raised. Raises Error when no frame is usable, and before the first frame where the map cannot be written.
+    program does; the map's `skipped` counts them by reason. progress(done, total) is called after each frame and may
+    return False to end early: what was mapped is saved. It is too when Ctrl-C or what a callable raises ends the run,
+    unless there was a map at that path; then that is raised. Raises Error when no frame is usable, and before the
+    first frame where the map cannot be written.
     """
     _ovimap.check_map_target(map)
     there_before = os.path.exists(map)
@@ -44,25 +45,32 @@ def run(
         encoder = "none" if masks is None else "default"
     mapper = Mapper(masks, encoder, preset=preset, settings=settings)
     made_from = f"{recording.kind}:{recording.path}"
+    chosen = recording.frames(frames)
     try:
-        _process(mapper, recording.frames(frames), progress)
+        refused = _process(mapper, chosen, progress)
         mapper.save(map, source=made_from)
     except BaseException:
         if mapper.frames > 0 and not there_before:
             _save_what_stands(mapper, map, made_from)
         raise
-    return Map.open(map)
+    made = Map.open(map)
+    _ovimap.note_skipped(made, [*(fault for _, fault in chosen.skipped), *refused])
+    return made
 
 
-def _process(mapper: Mapper, frames: FrameIterator, progress: Callable[[int, int], Any] | None) -> None:
+def _process(mapper: Mapper, frames: FrameIterator, progress: Callable[[int, int], Any] | None) -> list[str]:
+    """Returns why frames were left out that could be read."""
+    refused: list[str] = []
     for done, frame in enumerate(frames, 1):
         try:
             mapper.process(frame)
-        except FrameError:
+        except FrameError as fault:
             if mapper.frames == 0:  # what is wrong with the first is wrong with all as a rule
                 raise
+            refused.append(str(fault))
         if progress is not None and progress(done, len(frames)) is False:
             break
+    return refused
 
 
 def _save_what_stands(mapper: Mapper, map: Path, made_from: str) -> None:

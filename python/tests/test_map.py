@@ -27,6 +27,14 @@ def test_objects_are_arrays_of_equal_length(opened):
     assert "map.voxel_size_m" in opened.config_text and opened.camera.width > 0
 
 
+def test_what_is_printed_says_what_it_is(opened, saved_map):
+    assert repr(opened).startswith(f"Map('{saved_map}': {len(opened)} objects from {opened.frames} frames, embeddings of '{opened.encoder}')")
+    assert repr(opened.instances) == f"Instances({len(opened)} objects, 0 named)"
+    mesh = opened.mesh()
+    assert repr(mesh) == f"Mesh({len(mesh.vertices)} vertices, {len(mesh.triangles)} triangles, colours, labels)"
+    assert opened.skipped == {}
+
+
 def test_embeddings_are_a_view(opened):
     assert opened.embeddings.shape[0] == len(opened) and opened.embeddings.dtype == np.float32
     assert np.shares_memory(opened.embeddings, opened.embeddings)

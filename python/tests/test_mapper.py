@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Mapper: the program's result, and callables that do anything but what they should."""
 import os
+import shutil
 import subprocess
 import sys
 import threading
@@ -106,7 +107,19 @@ def test_a_frame_whose_masks_raise_frame_error_is_left_out(room, tmp_path):
         return source.truth_ids(frame.index)
 
     made = ovimap.run(room, tmp_path / "a.ovimap", masks=masks, encoder=None, frames="0:31:10", settings={"mask_interval": 1})
-    assert made.frames == 3
+    assert made.frames == 3 and made.skipped == {"blurred": 1}
+    assert repr(made).endswith("from 3 frames, no embeddings; 1 frame skipped: 1 blurred)")
+
+
+def test_a_run_counts_what_it_left_out_by_reason(room, tmp_path):
+    shutil.copytree(room, tmp_path / "room")
+    shutil.copy(f"{room}/../cam_params.json", tmp_path)
+    for number in (3, 5):
+        (tmp_path / f"room/results/depth{number:06d}.png").write_bytes(b"none")
+    made = ovimap.run(tmp_path / "room", tmp_path / "a.ovimap", frames=":8")
+    assert made.frames == 6 and list(made.skipped.values()) == [2], made.skipped
+    assert "6 frames, no embeddings; 2 frames skipped: 2 " in repr(made)
+    assert ovimap.Map.open(tmp_path / "a.ovimap").skipped == {}
 
 
 def test_a_call_from_its_own_callback_is_refused(frames):

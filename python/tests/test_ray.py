@@ -225,14 +225,14 @@ def test_scores_are_pooled_over_what_could_be_scored(truths_given, maps, rooms, 
 
 
 def test_what_cannot_be_scored_is_refused(maps, rooms, tmp_path):
-    with pytest.raises(ovimap.Error, match="one --gt for each"):
+    with pytest.raises(ovimap.Error, match="one truth for each"):
         eval_jobs([str(path) for path in maps], rooms[:1])
     pushed = tmp_path / "pushed.ovimap"
     pushed.write_bytes(maps[0].read_bytes())
     with sqlite3.connect(pushed) as file:
         file.execute("UPDATE meta SET value = 'http' WHERE key = 'source'")
     [job] = run(eval_jobs([str(pushed)], []))
-    assert job.state == "failed" and job.fault == f"{pushed} was made of pushed frames; name its truth with --gt"
+    assert job.state == "failed" and job.fault == f"{pushed} was made of pushed frames; name its truth"
     failed = eval_jobs([str(maps[0])], rooms[:1])
     failed[0].state = "failed"
     with pytest.raises(ovimap.Error, match="no map could be scored"):

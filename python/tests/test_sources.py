@@ -87,6 +87,17 @@ def test_true_ids_are_images_of_the_color_cameras_size(room):
     assert ids.dtype == np.uint16 and ids.shape == source[0].color.shape[:2] and len(np.unique(ids)) > 2
 
 
+def test_a_source_says_what_it_is(room):
+    source = ovimap.open_source(room)
+    assert repr(source) == f"FrameSource(replica '{source.path}': {len(source)} frames)"
+
+
+def test_a_check_may_look_at_some_frames(room):
+    assert ovimap.check(room, frames="0:20:2").frames == 10
+    with pytest.raises(ovimap.Error, match="the chosen range holds none"):
+        ovimap.check(room, frames="100000:")
+
+
 def test_check_passes_the_room_and_names_a_fault(room, tmp_path):
     report = ovimap.check(room)
     assert report.ok and report.usable == report.checked and report.depth_agreement > 0.8

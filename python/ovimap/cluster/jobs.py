@@ -213,4 +213,4 @@ def _require_room(cpus: float) -> None:
     nodes: list[dict[str, Any]] = ray.nodes()
     most = max((node["Resources"].get("CPU", 0) for node in nodes if node["Alive"]), default=0)
     if most < cpus:
-        raise Error(f"no machine of the cluster has {cpus:g} cores, the largest has {most:g}; give --cpus {max(most, 1):g} or fewer")
+        raise Error(f"no machine of the cluster has {cpus:g} cores, the largest has {most:g}; give each job {max(most, 1):g} cpus or fewer")

@@ -33,8 +33,8 @@ def find_program(given: str = "") -> str:
     asked = given or os.environ.get("OVIMAP_PROGRAM") or "ovimap"
     found = shutil.which(asked)
     if not found:
-        raise Error(f"there is no program '{asked}' on {os.uname().nodename}; build it (make build) and name it with "
-                    "--program or OVIMAP_PROGRAM, by a path that every machine has")
+        raise Error(f"there is no program '{asked}' on {os.uname().nodename}; build it (make build) and name it, "
+                    "as the program or in OVIMAP_PROGRAM, by a path that every machine has")
     return found
 
 

@@ -17,7 +17,7 @@ from .jobs import Job
 def eval_jobs(maps: Sequence[str], truths: Sequence[str], *, classes: str = "auto", encoder: str = "auto", cpus: int = 1) -> list[Job]:
     """A job for each map. truths: in the maps' order; none: the recordings that the maps came from."""
     if truths and len(truths) != len(maps):
-        raise Error(f"{len(maps)} maps and {len(truths)} truths; give one --gt for each map, in the same order")
+        raise Error(f"{len(maps)} maps and {len(truths)} truths; give one truth for each map, in the same order")
     choice = {"classes": classes, "encoder": encoder, "cwd": os.getcwd()}
     return [
         Job(map, score, {"maps": [os.path.abspath(map)], "truths": [truth], **choice}, cpus=cpus)
@@ -43,5 +43,5 @@ def score(order: dict[str, Any], tell: Callable[[int, int], None]) -> dict[str, 
 def _recording_of(map: str) -> str:
     recording = map_facts(map).recording
     if not recording:
-        raise Error(f"{map} was made of pushed frames; name its truth with --gt")
+        raise Error(f"{map} was made of pushed frames; name its truth")
     return recording

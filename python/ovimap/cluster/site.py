@@ -25,7 +25,7 @@ def part_ranges(frames: int, parts: int, overlap: int) -> list[tuple[int, int]]:
         raise Error("a site has 2 parts or more; for one, use `ovimap run`")
     if frames // parts <= overlap:
         raise Error(f"{parts} parts of {frames} frames have {frames // parts} frames each, which must be more than the "
-                    f"overlap of {overlap}; give fewer --parts or a smaller --overlap")
+                    f"overlap of {overlap}; give fewer parts or a smaller overlap")
     cuts = [frames * part // parts for part in range(parts + 1)]
     return [(first, min(end + overlap, frames)) for first, end in zip(cuts, cuts[1:])]
 

@@ -34,8 +34,8 @@ void require_embeddings(const SearchIndex& index) {
     throw Error("the map holds no object to be found; map the recording again with more frames");
   if (index.embedded() == 0)
     throw Error(concat("none of the map's ", index.size(),
-                       " objects has an embedding; map with "
-                       "--encoder, or run `ovimap reembed` on it"));
+                       " objects has an embedding; map with an encoder (--encoder), or run "
+                       "`ovimap reembed` on it"));
 }
 
 void require_embedding_length(const SearchIndex& index, Eigen::Index length,
