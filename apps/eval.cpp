@@ -52,14 +52,11 @@ int eval(const EvalOptions& options) {
   for (const std::string& notice : evaluation.notices)
     std::fprintf(stderr, "ovimap: %s\n", notice.c_str());
   const ProtocolChoice protocols{options.protocol != "reference", options.protocol != "standard"};
-  std::vector<EvalFigures> scenes;
-  for (std::size_t i = 0; i < pairs.size(); ++i)
-    scenes.push_back(figures_of(evaluation, i, config, protocols));
-  const EvalFigures all = figures_of(evaluation, config, protocols);
-  const std::string tables = eval_markdown(evaluation, all, scenes);
+  const EvalTable table = table_of(evaluation, config, protocols);
+  const std::string tables = eval_markdown(evaluation, table);
   if (!options.markdown.empty()) write_markdown(options.markdown, tables);
   if (options.json)
-    print_json(eval_json(evaluation, all, scenes));
+    print_json(eval_json(evaluation, table));
   else
     std::printf("%s", tables.c_str());
   return kDone;

@@ -9,6 +9,8 @@ namespace ovimap::apps {
 
 namespace {
 
+constexpr const char* kPool = "all";
+
 nlohmann::json json_of(const StandardScores& scores) {
   return {{"miou", scores.miou},
           {"ap25", scores.ap25},
@@ -215,7 +217,7 @@ EvalFigures pooled(const Evaluation& evaluation, std::size_t first, std::size_t 
 EvalFigures figures_of(const Evaluation& evaluation, const EvaluationConfig& config,
                        const ProtocolChoice& protocols) {
   EvalFigures figures = pooled(evaluation, 0, evaluation.scenes.size(), config, protocols);
-  figures.name = "all";
+  figures.name = kPool;
   figures.geometry = mean_geometry(evaluation.scenes);
   return figures;
 }
@@ -228,8 +230,22 @@ EvalFigures figures_of(const Evaluation& evaluation, std::size_t scene,
   return figures;
 }
 
-nlohmann::json eval_json(const Evaluation& evaluation, const EvalFigures& all,
-                         const std::vector<EvalFigures>& scenes) {
+EvalTable table_of(const Evaluation& evaluation, const EvaluationConfig& config,
+                   const ProtocolChoice& protocols) {
+  EvalTable table;
+  for (std::size_t i = 0; i < evaluation.scenes.size(); ++i)
+    table.scenes.push_back(figures_of(evaluation, i, config, protocols));
+  if (table.scenes.size() == 1) {
+    table.all = table.scenes.front();
+    table.all.name = kPool;
+  } else {
+    table.all = figures_of(evaluation, config, protocols);
+  }
+  return table;
+}
+
+nlohmann::json eval_json(const Evaluation& evaluation, const EvalTable& table) {
+  const auto& [all, scenes] = table;
   nlohmann::json json = {{"scenes", nlohmann::json::object()}, {"notices", evaluation.notices}};
   const std::optional<LabelSet>& set = evaluation.classes;
   for (const EvalFigures& scene : scenes) json["scenes"][scene.name] = scene_json(scene, set);
@@ -246,8 +262,8 @@ nlohmann::json eval_json(const Evaluation& evaluation, const EvalFigures& all,
   return json;
 }
 
-std::string eval_markdown(const Evaluation& evaluation, const EvalFigures& all,
-                          const std::vector<EvalFigures>& scenes) {
+std::string eval_markdown(const Evaluation& evaluation, const EvalTable& table) {
+  const auto& [all, scenes] = table;
   std::string text = "Objects, whatever their class";
   if (all.standard)
     text += concat(": ", all.standard->truth_instances, " true, ",

@@ -32,11 +32,18 @@ EvalFigures figures_of(const Evaluation& evaluation, const EvaluationConfig& con
 EvalFigures figures_of(const Evaluation& evaluation, std::size_t scene,
                        const EvaluationConfig& config, const ProtocolChoice& protocols);
 
-nlohmann::json eval_json(const Evaluation& evaluation, const EvalFigures& all,
-                         const std::vector<EvalFigures>& scenes);
+/// All scenes pooled, and each of them.
+struct EvalTable {
+  EvalFigures all;
+  std::vector<EvalFigures> scenes;
+};
+/// What is pooled of one scene is that scene's, and not computed again.
+EvalTable table_of(const Evaluation& evaluation, const EvaluationConfig& config,
+                   const ProtocolChoice& protocols);
+
+nlohmann::json eval_json(const Evaluation& evaluation, const EvalTable& table);
 
 /// Tables that a terminal and a Markdown page both show well.
-std::string eval_markdown(const Evaluation& evaluation, const EvalFigures& all,
-                          const std::vector<EvalFigures>& scenes);
+std::string eval_markdown(const Evaluation& evaluation, const EvalTable& table);
 
 }  // namespace ovimap::apps

@@ -5,6 +5,7 @@
 #include "bindings.h"
 #include "eval_report.h"
 #include "settings.h"
+#include "wording.h"
 #ifdef OVIMAP_SYNTH
 #include "synth_room.h"
 #include "without_gil.h"
@@ -32,11 +33,9 @@ std::string evaluate(const nb::object& maps, const nb::object& truths, const std
   std::vector<MapAndTruth> pairs;
   for (std::size_t i = 0; i < map_paths.size(); ++i)
     pairs.push_back({map_paths[i], truth_paths[i]});
-  const Evaluation evaluation = evaluate_maps(pairs, options, config);
-  std::vector<apps::EvalFigures> scenes;
-  for (std::size_t i = 0; i < pairs.size(); ++i)
-    scenes.push_back(apps::figures_of(evaluation, i, config, {}));
-  return apps::eval_json(evaluation, apps::figures_of(evaluation, config, {}), scenes).dump();
+  Evaluation evaluation = evaluate_maps(pairs, options, config);
+  for (std::string& notice : evaluation.notices) notice = in_python_words(notice);
+  return apps::eval_json(evaluation, apps::table_of(evaluation, config, {})).dump();
 }
 
 #ifdef OVIMAP_SYNTH
