@@ -152,6 +152,7 @@ MappingRun finished_run(MappingInputs&& inputs, MapHeader header, Mapper&& mappe
                         SequenceResult sequence, std::unique_ptr<Checkpointer> checkpoints) {
   MappingRun run;
   run.source = std::move(inputs.source);
+  run.masks_wanted = inputs.masks != nullptr;
   run.sequence = std::move(sequence);
   mapper.finish();
   if (checkpoints) {

@@ -10,6 +10,7 @@ namespace ovimap::apps {
 /// A recording, mapped.
 struct MappingRun {
   std::unique_ptr<FrameSource> source;  ///< null where frames were pushed
+  bool masks_wanted = false;            ///< there was a source of 2D masks
   SequenceResult sequence;
   std::optional<LiveRunResult> live;  ///< of map_live
   StageTimers timers;

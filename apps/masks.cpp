@@ -24,14 +24,15 @@ class RememberingMaskSource : public MaskSource {
  public:
   explicit RememberingMaskSource(std::unique_ptr<MaskSource> source) : source_(std::move(source)) {}
   std::string kind() const override { return source_->kind(); }
-  Entities entities(const Frame& frame, std::span<const MaskPrompt> prompts) override {
+  std::optional<Entities> entities(const Frame& frame,
+                                   std::span<const MaskPrompt> prompts) override {
     return last_ = source_->entities(frame, prompts);
   }
-  const Entities& last() const { return last_; }
+  const std::optional<Entities>& last() const { return last_; }
 
  private:
   std::unique_ptr<MaskSource> source_;
-  Entities last_;
+  std::optional<Entities> last_;
 };
 
 /// The pixels of a frame as what 3D protocols compare. True objects of which less is seen than a
@@ -75,8 +76,9 @@ void print_scores(const StandardScores& scores) {
 }
 
 struct Findings {
-  std::int64_t frames = 0, entities = 0;
-  std::vector<LabelledScene> scenes;  ///< of --score, one a frame
+  std::int64_t frames = 0, entities = 0;  ///< of frames with masks
+  std::int64_t frames_without_masks = 0;
+  std::vector<LabelledScene> scenes;  ///< of --score, one a frame that has masks and truth
   StageTimers timers;
 };
 
@@ -94,14 +96,22 @@ Findings find_masks(const FrameSource& source, const std::vector<std::int64_t>& 
     const auto frame = std::make_shared<const Frame>(std::move(*read.frame));
     cut_segments(prepare_frame(frame, config.mapper, findings.timers), &masks, config.mapper,
                  findings.timers);
-    const Entities& found = masks.last();
+    if (!masks.last()) {
+      ++findings.frames_without_masks;
+      continue;
+    }
+    const Entities& found = *masks.last();
     ++findings.frames;
     findings.entities += static_cast<std::int64_t>(found.scores.size());
-    if (truth)
-      findings.scenes.push_back(
-          labelled_pixels(truth->entities(*frame, {}), found, config.masks.sam.min_mask_px));
+    const auto true_ids = truth ? truth->entities(*frame, {}) : std::nullopt;
+    if (true_ids)
+      findings.scenes.push_back(labelled_pixels(*true_ids, found, config.masks.sam.min_mask_px));
   }
-  if (findings.frames == 0) throw Error("none of the frames is usable; `ovimap check` tells more");
+  if (findings.frames + findings.frames_without_masks == 0)
+    throw Error("none of the frames is usable; `ovimap check` tells more");
+  if (findings.frames == 0)
+    throw Error(concat("none of the ", findings.frames_without_masks, " frames has masks of '",
+                       masks.kind(), "'; name a source that has some (--masks), or other frames"));
   return findings;
 }
 
@@ -110,6 +120,9 @@ void print(const MasksOptions& options, const Findings& findings) {
               static_cast<long long>(findings.frames),
               static_cast<double>(findings.entities) / static_cast<double>(findings.frames),
               findings.timers.summary().at("masks").p50_ms);
+  if (findings.frames_without_masks > 0)
+    std::printf("%lld more frames have no masks\n",
+                static_cast<long long>(findings.frames_without_masks));
   if (options.score) print_scores(standard_scores(findings.scenes));
   if (!options.folder.empty())
     std::printf("written to %s; map with --masks %s\n", options.folder.c_str(),
@@ -118,6 +131,7 @@ void print(const MasksOptions& options, const Findings& findings) {
 
 nlohmann::json to_json(const MasksOptions& options, const Findings& findings) {
   nlohmann::json report = {{"frames", findings.frames},
+                           {"frames_without_masks", findings.frames_without_masks},
                            {"entities", findings.entities},
                            {"stages", stages_json(findings.timers)}};
   if (!options.folder.empty()) report["folder"] = options.folder.string();

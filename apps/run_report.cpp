@@ -46,6 +46,7 @@ nlohmann::json live_json(const LiveRunResult& live, double fps) {
           {"masks_late", done.masks_late},
           {"masks_skipped", done.masks_skipped},
           {"masks_failed", done.masks_failed},
+          {"masks_absent", done.masks_absent},
           {"views_skipped", done.views_skipped},
           {"views_failed", done.views_failed},
           {"geometry_lag", lag_json(done.geometry_lag)},
@@ -80,6 +81,11 @@ double frames_per_second(const MappingRun& run) {
 
 void report_faults(const MappingRun& run) {
   report_skipped(run.sequence);
+  if (run.masks_wanted && run.document.mask_frames == 0)
+    std::fprintf(stderr,
+                 "ovimap: none of the %zu frames had masks, so the map tells no objects apart; name "
+                 "a mask file after its frame or its number, or map with --masks none\n",
+                 run.sequence.frames.size());
   if (!run.live) return;
   report_bad_masks(run.live->statistics);
   report_encoder(run.live->statistics);
@@ -117,7 +123,7 @@ void print_run(const std::filesystem::path& map, const MappingRun& run, double f
 }
 
 void advise_on_objects(const MappingRun& run) {
-  if (!run.document.instances.empty()) return;
+  if (!run.document.instances.empty() || (run.masks_wanted && run.document.mask_frames == 0)) return;
   std::fprintf(stderr,
                "ovimap: no object was seen often enough to be kept; map more frames, or --set %s=1 "
                "where masks are slow\n",

@@ -50,7 +50,7 @@ class Steps {
     StageTimers ignored;
     frame_ = std::make_unique<PreparedFrame>(
         prepare_frame(std::make_shared<const Frame>(std::move(*read.frame)), config_, ignored));
-    cut_ = cut_segments(*frame_, nullptr, config_, ignored);
+    cut_ = *cut_segments(*frame_, nullptr, config_, ignored);
     const Frame& frame = *frame_->frame;
     write_raw(folder_ / "depth", frame.depth.data(), frame.depth.size());
     write_raw(folder_ / "color", frame_->color.data(), frame_->color.size());

@@ -158,6 +158,8 @@ void bind_statistics(nb::module_& module) {
       .def_ro("masks_skipped", &LiveStatistics::masks_skipped,
               "frames that wanted masks while the network was busy")
       .def_ro("masks_failed", &LiveStatistics::masks_failed, "frames whose masks were bad")
+      .def_ro("masks_absent", &LiveStatistics::masks_absent,
+              "frames that the source had no masks of")
       .def_ro("mask_fault", &LiveStatistics::mask_fault, "of the first that failed")
       .def_ro("views_skipped", &LiveStatistics::views_skipped, "looks at objects left out")
       .def_ro("views_failed", &LiveStatistics::views_failed,

@@ -100,7 +100,7 @@ class MapperHandle final : public OpenHandle {
 void bind_reports(nb::module_& module) {
   nb::class_<FrameReport>(module, "FrameReport", "What became of one frame.")
       .def_ro("regions", &FrameReport::regions, "geometric regions")
-      .def_ro("entities", &FrameReport::entities, "2D entities; 0 when the frame had no masks")
+      .def_ro("entities", &FrameReport::entities, "2D entities; 0 as well when the frame was not masked")
       .def_ro("segments", &FrameReport::segments, "pieces lifted to 3D")
       .def_ro("founded", &FrameReport::founded, "new super-points")
       .def_ro("views", &FrameReport::views, "views of objects chosen for embedding")
@@ -143,9 +143,10 @@ void bind_reports(nb::module_& module) {
 constexpr const char* kMapperText = R"(Builds a map of objects frame by frame.
 
 masks: None (geometry alone), the name of a model or a folder of PNGs, a MaskSource, or a callable
-    (frame, prompts) -> integer ids [height, width] of frame.color's size, 0 = no entity. It is
-    asked on every fifth frame unless mask_interval is set. What it raises ends the call that
-    asked; FrameError leaves that frame out.
+    (frame, prompts) -> integer ids [height, width] of frame.color's size, 0 = no entity, or None:
+    there are no masks of this frame, which then adds geometry and colour alone, while an image of
+    zeros says that no entity is to be seen. It is asked on every fifth frame unless mask_interval
+    is set. What it raises ends the call that asked; FrameError leaves that frame out.
 encoder: None, "default", the name of a model, an ImageTextEncoder, or an object with name,
     dimension and encode_images(list of uint8 [h, w, 3]) -> [images, dimension] (and
     encode_texts(list of str) -> [texts, dimension] for searching). It is called from another thread;

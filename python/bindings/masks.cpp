@@ -36,7 +36,8 @@ class CallableMasks : public MaskSource {
   /// A user's model is taken for a network: mask_interval says on which frames it is asked.
   bool is_slow() const override { return true; }
 
-  Entities entities(const Frame& frame, std::span<const MaskPrompt> prompts) override {
+  std::optional<Entities> entities(const Frame& frame,
+                                   std::span<const MaskPrompt> prompts) override {
     return call_python([&] {
       try {
         return ask(frame, prompts);
@@ -48,9 +49,10 @@ class CallableMasks : public MaskSource {
   }
 
  private:
-  Entities ask(const Frame& frame, std::span<const MaskPrompt> prompts) const {
+  std::optional<Entities> ask(const Frame& frame, std::span<const MaskPrompt> prompts) const {
     // A copy: the callable may keep it, and the mapper's frame does not last.
     const nb::object ids = callable_(Frame(frame), std::vector(prompts.begin(), prompts.end()));
+    if (ids.is_none()) return std::nullopt;
     return entities_of_ids(read_ids(ids, "what the masks callable returned", frame.color.width(),
                                     frame.color.height()));
   }
@@ -65,7 +67,8 @@ class TruthMasks : public MaskSource {
       : frames_(std::move(frames)),
         masks_(make_mask_source("gt", {}, {.frames = frames_.get(), .model_dirs = {}})) {}
   std::string kind() const override { return masks_->kind(); }
-  Entities entities(const Frame& frame, std::span<const MaskPrompt> prompts) override {
+  std::optional<Entities> entities(const Frame& frame,
+                                   std::span<const MaskPrompt> prompts) override {
     return masks_->entities(frame, prompts);
   }
 
@@ -93,7 +96,7 @@ std::shared_ptr<MaskSource> to_masks(nb::handle masks) {
   if (PyCallable_Check(masks.ptr())) return std::make_shared<CallableMasks>(masks);
   throw nb::type_error(
       "masks must be None, the name of a model or folder, a MaskSource, or a callable of (frame, "
-      "prompts) that returns an id image");
+      "prompts) that returns an id image or None");
 }
 
 void bind_masks(nb::module_& module) {
@@ -119,18 +122,20 @@ void bind_masks(nb::module_& module) {
       .def_prop_ro("kind", &MaskSource::kind, "\"sam\", \"entity\", \"dir\" or \"gt\"")
       .def(
           "__call__",
-          [](MaskSource& masks, const Frame& frame) {
-            Entities found;
+          [](MaskSource& masks, const Frame& frame) -> nb::object {
+            std::optional<Entities> found;
             {
               const WithoutGil release;
               found = masks.entities(frame, {});
             }
-            return own_image<nb::ndarray<nb::numpy, const std::uint16_t, nb::ndim<2>>>(
-                std::move(found.ids));
+            if (!found) return nb::none();
+            return nb::cast(own_image<nb::ndarray<nb::numpy, const std::uint16_t, nb::ndim<2>>>(
+                std::move(found->ids)));
           },
           nb::arg("frame"),
+          nb::sig("def __call__(self, frame: Frame) -> numpy.typing.NDArray[numpy.uint16] | None"),
           "The entities of a frame, without prompts: uint16 [height, width] in the colour image, 0 "
-          "= none.");
+          "= none; None where there are no masks of the frame.");
   module.def(
       "make_mask_source", &open_masks, nb::arg("spec"), nb::arg("source") = nb::none(),
       nb::kw_only(), nb::arg("settings") = nb::none(), nb::arg("model_dirs") = nb::list(),

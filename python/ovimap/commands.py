@@ -7,6 +7,7 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import warnings
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -31,10 +32,10 @@ def run(
 
     masks and encoder as Mapper takes them; "gt": the recording's own masks; encoder "auto": the default one where
     there are masks. frames: "FIRST:LAST:STEP", each part optional. Frames that cannot be used are left out, as the
-    program does; the map's `skipped` counts them by reason. progress(done, total) is called after each frame and may
-    return False to end early: what was mapped is saved. It is too when Ctrl-C or what a callable raises ends the run,
-    unless there was a map at that path; then that is raised. Raises Error when no frame is usable, and before the
-    first frame where the map cannot be written.
+    program does; the map's `skipped` counts them by reason, and a warning says when none had masks. progress(done, total) is
+    called after each frame and may return False to end early: what was mapped is saved. It is too when Ctrl-C or what a
+    callable raises ends the run, unless there was a map at that path; then that is raised. Raises Error when no frame is
+    usable, and before the first frame where the map cannot be written.
     """
     _ovimap.check_map_target(map)
     there_before = os.path.exists(map)
@@ -55,6 +56,8 @@ def run(
         raise
     made = Map.open(map)
     _ovimap.note_skipped(made, [*(fault for _, fault in chosen.skipped), *refused])
+    if masks is not None and made.mask_frames == 0:
+        warnings.warn(f"none of the {made.frames} frames had masks, so the map tells no objects apart", stacklevel=2)
     return made
 
 

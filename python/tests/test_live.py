@@ -53,6 +53,15 @@ def test_masks_that_raise_frame_error_are_counted(camera):
     assert done.masks_failed == 1 and done.mask_fault == "blurred" and done.frames_fused == 1
 
 
+def test_frames_that_masks_do_not_know_are_counted(camera):
+    mapper = ovimap.LiveMapper(lambda frame, prompts: None, live={"wait_for_masks": True})
+    for index in range(3):
+        mapper.push_and_wait(wall(camera, index))
+    mapper.drain()
+    done = mapper.statistics()
+    assert (done.masks_absent, done.masks_failed, done.mask_frames, done.frames_fused) == (3, 0, 0, 3)
+
+
 def test_a_mapper_may_be_dropped_while_its_masks_are_at_work(camera):
     inside, go_on = threading.Event(), threading.Event()
 

@@ -66,13 +66,12 @@ def test_masks_of_a_callable_are_those_of_the_truth(room, frames, tmp_path):
 @pytest.mark.parametrize(
     "returned, error, words",
     [
-        (None, TypeError, "what the masks callable returned must be integers or bool .* came None"),
         (np.zeros((2, 2), int), ValueError, r"must be integers or bool \[\d+, \d+\], the size of the colour image; came int64 \[2, 2\]"),
         ("full", TypeError, "float64"),
         ("negative", ValueError, "ids from 0 to 65535; came the id -1"),
     ],
 )
-def test_masks_that_are_none_are_refused(frames, returned, error, words):
+def test_masks_that_do_not_fit_are_refused(frames, returned, error, words):
     def masks(frame, prompts):
         if isinstance(returned, str):
             size = frame.color.shape[:2]
@@ -83,6 +82,27 @@ def test_masks_that_are_none_are_refused(frames, returned, error, words):
     with pytest.raises(error, match=words):
         mapper.process(frames[0])
     assert mapper.frames == 0
+
+
+def test_frames_without_masks_are_no_evidence_and_empty_masks_are(room, tmp_path):
+    source = ovimap.open_source(room)
+
+    def every(step, otherwise):
+        return lambda frame, prompts: source.truth_ids(frame.index) if frame.index % step == 0 else otherwise(frame)
+
+    def mapped(name, masks):
+        return ovimap.run(room, tmp_path / name, masks=masks, encoder=None, frames="::4", settings={"mask_interval": 1})
+
+    sparse = mapped("sparse.ovimap", every(40, lambda frame: None))
+    assert sparse.frames > 10 * (sparse.mask_frames - 1) and sparse.mask_frames >= 2
+    assert len(sparse.instances) > 0
+    empty = mapped("empty.ovimap", every(40, lambda frame: np.zeros(frame.color.shape[:2], np.uint8)))
+    assert empty.mask_frames == empty.frames and len(empty.instances) < len(sparse.instances)
+
+
+def test_a_run_whose_frames_have_no_masks_says_so(room, tmp_path):
+    with pytest.warns(UserWarning, match="none of the .* frames had masks"):
+        ovimap.run(room, tmp_path / "a.ovimap", masks=lambda frame, prompts: None, encoder=None, frames="::30")
 
 
 def test_what_masks_raise_comes_out_with_its_traceback(frames):

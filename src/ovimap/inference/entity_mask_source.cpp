@@ -132,7 +132,8 @@ EntityMaskSource::EntityMaskSource(const ModelFolder& model, const EntityConfig&
                        "[1,queries,height,width]; export the network again"));
 }
 
-Entities EntityMaskSource::entities(const Frame& frame, std::span<const MaskPrompt>) {
+std::optional<Entities> EntityMaskSource::entities(const Frame& frame,
+                                                   std::span<const MaskPrompt>) {
   const FloatTensor image = image_tensor(frame.color, model_.input);
   const std::vector<TensorInput> inputs = {
       {model_.input_of(kNetwork, "image"), image.shape, std::span<const float>(image.values)}};

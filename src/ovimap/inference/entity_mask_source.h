@@ -23,7 +23,8 @@ class EntityMaskSource : public MaskSource {
                    const RuntimeConfig& runtime);
   std::string kind() const override { return "entity"; }
   bool is_slow() const override { return true; }
-  Entities entities(const Frame& frame, std::span<const MaskPrompt> prompts) override;
+  std::optional<Entities> entities(const Frame& frame,
+                                   std::span<const MaskPrompt> prompts) override;
 
  private:
   ModelFolder model_;

@@ -29,7 +29,7 @@ void expect_golden(const std::filesystem::path& folder) {
   EXPECT_EQ(source.kind(), "entity");
   Frame frame;
   frame.color = read_rgb(folder / "image.png");
-  const Entities entities = source.entities(frame, {});
+  const Entities entities = *source.entities(frame, {});
   EXPECT_EQ(entities.ids, read_gray(folder / "ids.png").values);
   std::ifstream expected(folder / "scores.txt");
   for (const float score : entities.scores) {

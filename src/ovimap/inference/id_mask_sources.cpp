@@ -48,13 +48,14 @@ GtMaskSource::GtMaskSource(const FrameSource& frames) : frames_(frames) {
                      " source has none; choose none, sam, a folder of masks or a model"));
 }
 
-Entities GtMaskSource::entities(const Frame& frame, std::span<const MaskPrompt>) {
+std::optional<Entities> GtMaskSource::entities(const Frame& frame,
+                                               std::span<const MaskPrompt>) {
   if (frame.index < 0 || frame.index >= frames_.size())
     throw FrameError(concat("masks 'gt' know frames 0 to ", frames_.size() - 1,
                             " of their recording, and this frame's index is ", frame.index));
   const std::optional<IdImage> ids = of_this_frame([&] { return frames_.truth_ids(frame.index); });
-  return ids ? entities_of_ids(*ids)
-             : Entities{IdImage(frame.color.width(), frame.color.height()), {}};
+  if (!ids) return std::nullopt;
+  return entities_of_ids(*ids);
 }
 
 DirMaskSource::DirMaskSource(const fs::path& folder, const FrameSource* frames) : folder_(folder) {
@@ -95,9 +96,10 @@ const fs::path* DirMaskSource::file_of(const std::string& name, std::int64_t ind
   return found == by_index_.end() ? nullptr : &found->second;
 }
 
-Entities DirMaskSource::entities(const Frame& frame, std::span<const MaskPrompt>) {
+std::optional<Entities> DirMaskSource::entities(const Frame& frame,
+                                                std::span<const MaskPrompt>) {
   const fs::path* file = file_of(frame.name, frame.index);
-  if (!file) return {IdImage(frame.color.width(), frame.color.height()), {}};
+  if (!file) return std::nullopt;
   const GrayPng mask = of_this_frame([&] { return read_gray(*file); });
   if (!mask.values.same_size(frame.color))
     throw FrameError(concat("mask ", file->string(), " is ", mask.values.width(), "x",
@@ -116,12 +118,14 @@ KeptMaskSource::KeptMaskSource(fs::path folder, std::unique_ptr<MaskSource> sour
                        "; choose a place that you can write to"));
 }
 
-Entities KeptMaskSource::entities(const Frame& frame, std::span<const MaskPrompt> prompts) {
+std::optional<Entities> KeptMaskSource::entities(const Frame& frame,
+                                                 std::span<const MaskPrompt> prompts) {
   const fs::path file = folder_ / concat(frame.index, ".png");
   if (fs::exists(file)) return entities_of_ids(read_gray(file).values);
-  Entities entities = source_->entities(frame, prompts);
-  write_file(file, encode_png(entities.ids));
-  return entities_of_ids(entities.ids);
+  const std::optional<Entities> entities = source_->entities(frame, prompts);
+  if (!entities) return std::nullopt;
+  write_file(file, encode_png(entities->ids));
+  return entities_of_ids(entities->ids);
 }
 
 }  // namespace ovimap

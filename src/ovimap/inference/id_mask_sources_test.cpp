@@ -49,10 +49,10 @@ TEST(GtMaskSource, GivesTheTruth) {
   const TestFrames frames(true);
   const auto source = make_mask_source("gt", {}, {&frames, {}});
   EXPECT_EQ(source->kind(), "gt");
-  const Entities entities = source->entities(frame_at(1), {});
+  const Entities entities = *source->entities(frame_at(1), {});
   EXPECT_EQ(entities.scores.size(), 1u);
   EXPECT_EQ(entities.ids.at(1, 1), 1);
-  EXPECT_TRUE(source->entities(frame_at(0), {}).scores.empty());
+  EXPECT_FALSE(source->entities(frame_at(0), {})) << "no true image: not masked";
   for (const std::int64_t index : {-1, 3}) {
     Frame other = frame_at(0);
     other.index = index;
@@ -66,8 +66,9 @@ TEST(KeptMaskSource, AsksOnlyOnce) {
     explicit Counting(int& asked) : asked_(asked) {}
     std::string kind() const override { return "counting"; }
     bool is_slow() const override { return true; }
-    Entities entities(const Frame& frame, std::span<const MaskPrompt>) override {
+    std::optional<Entities> entities(const Frame& frame, std::span<const MaskPrompt>) override {
       ++asked_;
+      if (frame.index == 2) return std::nullopt;
       Entities found{IdImage(frame.color.width(), frame.color.height()), {0.5f, 0.25f}};
       found.ids.at(0, 0) = 2;
       found.ids.at(1, 0) = 1;
@@ -84,15 +85,18 @@ TEST(KeptMaskSource, AsksOnlyOnce) {
     EXPECT_EQ(source.kind(), "counting");
     EXPECT_TRUE(source.is_slow());
     for (std::int64_t i = 0; i < 2; ++i) {
-      const Entities entities = source.entities(frame_at(i), {});
+      const Entities entities = *source.entities(frame_at(i), {});
       EXPECT_EQ(entities.scores, (std::vector<float>{1, 1}));
       EXPECT_EQ(entities.ids.at(0, 0), 2);
       EXPECT_EQ(entities.ids.at(1, 0), 1);
     }
   }
   EXPECT_EQ(asked, 2);
+  KeptMaskSource source(folder.path() / "masks", std::make_unique<Counting>(asked));
+  EXPECT_FALSE(source.entities(frame_at(2), {})) << "not masked";
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "masks/2.png")) << "and so not kept";
   // What was kept is what any folder of masks is.
-  EXPECT_EQ(DirMaskSource(folder.path() / "masks").entities(frame_at(1), {}).scores.size(), 2u);
+  EXPECT_EQ(DirMaskSource(folder.path() / "masks").entities(frame_at(1), {})->scores.size(), 2u);
 }
 
 TEST(GtMaskSource, NeedsTruth) {
@@ -112,12 +116,22 @@ TEST(DirMaskSource, FindsFilesByNameOrIndex) {
     const TestFrames frames(false);
     const auto source = make_mask_source(scratch.path().string(), {}, {&frames, {}});
     EXPECT_EQ(source->kind(), "dir");
-    const Entities entities = source->entities(frame_at(1), {});
+    const Entities entities = *source->entities(frame_at(1), {});
     EXPECT_EQ(entities.scores.size(), 1u) << name;
     EXPECT_EQ(entities.ids.at(3, 2), 1) << name;
-    EXPECT_TRUE(source->entities(frame_at(0), {}).scores.empty()) << name;
-    EXPECT_EQ(source->entities(frame_at(0), {}).ids.width(), 4) << name;
+    EXPECT_FALSE(source->entities(frame_at(0), {})) << name;
   }
+}
+
+TEST(DirMaskSource, AFileWithoutEntitiesIsAMaskAndNoFileIsNone) {
+  const ScratchFolder scratch("dir_empty");
+  write_ids(scratch.path() / "0.png", 4, 3, 0);
+  DirMaskSource source(scratch.path());
+  const std::optional<Entities> nothing = source.entities(frame_at(0), {});
+  ASSERT_TRUE(nothing.has_value());
+  EXPECT_TRUE(nothing->scores.empty());
+  EXPECT_EQ(nothing->ids.width(), 4);
+  EXPECT_FALSE(source.entities(frame_at(1), {}).has_value());
 }
 
 TEST(DirMaskSource, NamesFileAndBothSizes) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -37,10 +38,13 @@ class MaskSource {
   /// Takes seconds a frame (a network): worth asking on some frames only.
   virtual bool is_slow() const { return false; }
 
-  /// The entities of `frame`. `prompts` are hints that a source may ignore. Throws Error when the
-  /// source cannot deliver for a reason the user can mend (mask file of another size, model
-  /// failure).
-  virtual Entities entities(const Frame& frame, std::span<const MaskPrompt> prompts) = 0;
+  /// The entities of `frame`. Two answers name none: Entities with empty `scores` say that nothing
+  /// is to be seen, which counts against what the map holds there; nullopt says that the source has
+  /// no masks of this frame (a folder without its file), which says nothing. `prompts` are hints
+  /// that a source may ignore. Throws Error when the source cannot deliver for a reason the user can
+  /// mend (mask file of another size, model failure).
+  virtual std::optional<Entities> entities(const Frame& frame,
+                                           std::span<const MaskPrompt> prompts) = 0;
 };
 
 }  // namespace ovimap

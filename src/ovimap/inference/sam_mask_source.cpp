@@ -13,7 +13,8 @@ SamMaskSource::SamMaskSource(const ModelFolder& model, const SamConfig& config,
                              const RuntimeConfig& runtime)
     : network_(model, runtime), config_(config) {}
 
-Entities SamMaskSource::entities(const Frame& frame, std::span<const MaskPrompt> prompts) {
+std::optional<Entities> SamMaskSource::entities(const Frame& frame,
+                                                std::span<const MaskPrompt> prompts) {
   const ImageFeatures features = network_.encode(frame.color);
   const LogitGrid grid = logit_grid(features.frame, network_.input_size_px(), network_.grid_size(),
                                     frame.color.width(), frame.color.height());

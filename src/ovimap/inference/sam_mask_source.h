@@ -17,7 +17,8 @@ class SamMaskSource : public MaskSource {
   SamMaskSource(const ModelFolder& model, const SamConfig& config, const RuntimeConfig& runtime);
   std::string kind() const override { return "sam"; }
   bool is_slow() const override { return true; }
-  Entities entities(const Frame& frame, std::span<const MaskPrompt> prompts) override;
+  std::optional<Entities> entities(const Frame& frame,
+                                   std::span<const MaskPrompt> prompts) override;
 
  private:
   void ask_where_unexplained(const ImageFeatures& features, std::span<const MaskPrompt> regions,

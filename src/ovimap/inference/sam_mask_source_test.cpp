@@ -71,7 +71,7 @@ TEST_P(SamSignature, DecodesBatchesInOrder) {
 TEST_P(SamSignature, FindsThePatches) {
   SamMaskSource source(golden(GetParam()), small_image_config(), {});
   EXPECT_EQ(source.kind(), "sam");
-  const Entities entities = source.entities(patches(), {});
+  const Entities entities = *source.entities(patches(), {});
   ASSERT_EQ(entities.scores.size(), 3u);
   ASSERT_TRUE(entities.ids.same_size(patches().color));
   const std::uint16_t floor = entities.ids.at(50, 20), table = entities.ids.at(34, 24),
@@ -89,7 +89,7 @@ TEST_P(SamSignature, FindsThePatchesOnAGrid) {
   config.prompting = Prompting::kGrid;
   config.grid_side = 8;
   SamMaskSource source(golden(GetParam()), config, {});
-  const Entities entities = source.entities(patches(), {});
+  const Entities entities = *source.entities(patches(), {});
   ASSERT_EQ(entities.scores.size(), 3u);
   EXPECT_EQ((std::set<std::uint16_t>{entities.ids.at(50, 20), entities.ids.at(34, 24),
                                      entities.ids.at(21, 13)}),
@@ -140,7 +140,7 @@ TEST(SamMaskSource, AsksNoMoreThanItsBudget) {
   SamConfig config = small_image_config();
   config.max_decoder_prompts = 1;
   SamMaskSource source(golden("batched"), config, {});
-  EXPECT_EQ(source.entities(patches(), {}).scores.size(), 1u);
+  EXPECT_EQ(source.entities(patches(), {})->scores.size(), 1u);
 }
 
 TEST(SamMaskSource, RegionsArePromptedFirst) {
@@ -150,7 +150,7 @@ TEST(SamMaskSource, RegionsArePromptedFirst) {
   SamMaskSource source(golden("batched"), config, {});
   const std::vector<MaskPrompt> prompts = {
       {{21, 13}, Eigen::AlignedBox2f(Eigen::Vector2f(16, 8), Eigen::Vector2f(27, 19)), 144}};
-  const Entities entities = source.entities(patches(), prompts);
+  const Entities entities = *source.entities(patches(), prompts);
   ASSERT_EQ(entities.scores.size(), 1u);
   EXPECT_EQ(entities.ids.at(21, 13), 1);
   EXPECT_EQ(entities.ids.at(50, 20), 0);
@@ -162,7 +162,7 @@ TEST(SamMaskSource, SameAnswerForAnyNumberOfThreads) {
   two.threads = 2;
   SamMaskSource a(golden("batched"), small_image_config(), one);
   SamMaskSource b(golden("batched"), small_image_config(), two);
-  EXPECT_EQ(a.entities(patches(), {}).ids, b.entities(patches(), {}).ids);
+  EXPECT_EQ(a.entities(patches(), {})->ids, b.entities(patches(), {})->ids);
 }
 
 TEST(SamNetwork, SaysWhichTensorIsWrong) {
@@ -198,7 +198,7 @@ TEST(SamMaskSource, DefaultModelSeparatesPlainObjects) {
   frame.color = RgbImage(320, 240, Rgb8{90, 90, 95});
   fill_box(frame.color, 40, 60, 120, 180, Rgb8{210, 60, 50});
   fill_box(frame.color, 190, 80, 270, 150, Rgb8{40, 120, 220});
-  const Entities entities = source->entities(frame, {});
+  const Entities entities = *source->entities(frame, {});
   const std::uint16_t red = entities.ids.at(80, 120), blue = entities.ids.at(230, 115);
   EXPECT_NE(red, 0);
   EXPECT_NE(blue, 0);

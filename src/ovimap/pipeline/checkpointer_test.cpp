@@ -32,7 +32,9 @@ MapperConfig small_views() {
 class CheckpointerTest : public ::testing::Test {
  protected:
   Mapper mapper() const {
-    return Mapper(small_views(), std::make_shared<DeskMasks>(), std::make_shared<ColorEncoder>());
+    auto masks = std::make_shared<DeskMasks>();
+    masks->masked_every = masked_every_;
+    return Mapper(small_views(), masks, std::make_shared<ColorEncoder>());
   }
 
   Checkpointer checkpointer(int frames, CheckpointFile::Start start, std::size_t done = 0) const {
@@ -81,21 +83,32 @@ class CheckpointerTest : public ::testing::Test {
     return finish(std::move(resumed), sequence, &checkpoints);
   }
 
+  /// Kills a run after each of some numbers of frames and compares with one that was not.
+  void expect_resumed_runs_to_end_alike() const {
+    Mapper whole = mapper();
+    const SequenceResult sequence = run_sequence(scene_, positions({}, scene_.size()), whole);
+    const Bytes expected = finish(std::move(whole), sequence);
+    for (const int frames : {3, 6, 9, DeskScene::kFrames}) {
+      begin(frames);
+      ASSERT_TRUE(holds_checkpoint(partial_)) << frames;
+      EXPECT_EQ(resume(), expected) << "killed after " << frames << " frames";
+      EXPECT_FALSE(fs::exists(partial_));
+    }
+  }
+
+  std::int64_t masked_every_ = 1;
   DeskScene scene_;
   fixture::TemporaryFolder folder_;
   fs::path partial_ = checkpoint_path(folder_.path() / "map.ovimap");
 };
 
 TEST_F(CheckpointerTest, AResumedRunEndsAsIfNeverInterrupted) {
-  Mapper whole = mapper();
-  const SequenceResult sequence = run_sequence(scene_, positions({}, scene_.size()), whole);
-  const Bytes expected = finish(std::move(whole), sequence);
-  for (const int frames : {3, 6, 9, DeskScene::kFrames}) {
-    begin(frames);
-    ASSERT_TRUE(holds_checkpoint(partial_)) << frames;
-    EXPECT_EQ(resume(), expected) << "killed after " << frames << " frames";
-    EXPECT_FALSE(fs::exists(partial_));
-  }
+  expect_resumed_runs_to_end_alike();
+}
+
+TEST_F(CheckpointerTest, SoDoesOneWhoseMasksAreMissingOnSomeFrames) {
+  masked_every_ = 4;
+  expect_resumed_runs_to_end_alike();
 }
 
 TEST_F(CheckpointerTest, CheckpointsDoNotChangeTheMap) {

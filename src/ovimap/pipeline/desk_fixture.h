@@ -93,11 +93,13 @@ class DeskScene : public FrameSource {
 class DeskMasks : public MaskSource {
  public:
   std::string kind() const override { return "desk"; }
-  Entities entities(const Frame& frame, std::span<const MaskPrompt>) override {
+  std::optional<Entities> entities(const Frame& frame, std::span<const MaskPrompt>) override {
     if (frame.index == failing_frame) throw Error("mask source is broken");
-    return {*scene_.truth_ids(frame.index), {1.f, 1.f, 1.f}};
+    if (frame.index % masked_every != 0) return std::nullopt;
+    return Entities{*scene_.truth_ids(frame.index), {1.f, 1.f, 1.f}};
   }
   std::int64_t failing_frame = -1;
+  std::int64_t masked_every = 1;  ///< the frames between are not masked
 
  private:
   DeskScene scene_;

@@ -117,10 +117,15 @@ class FurnishedRoom : public FrameSource {
 class FurnishedMasks : public MaskSource {
  public:
   explicit FurnishedMasks(const FurnishedRoom& room) : room_(room) {}
+  std::int64_t masked_every = 1;  ///< the frames between are not masked
+  bool blind = false;             ///< sees nothing from the second frame on
   std::string kind() const override { return "furnished"; }
-  Entities entities(const Frame& frame, std::span<const MaskPrompt>) override {
-    return {*room_.truth_ids(frame.index),
-            std::vector<float>(room_.things.size() + room_.shell.size(), 1.f)};
+  std::optional<Entities> entities(const Frame& frame, std::span<const MaskPrompt>) override {
+    if (frame.index % masked_every != 0) return std::nullopt;
+    if (blind && frame.index != 0)
+      return Entities{IdImage(frame.color.width(), frame.color.height()), {}};
+    return Entities{*room_.truth_ids(frame.index),
+                    std::vector<float>(room_.things.size() + room_.shell.size(), 1.f)};
   }
 
  private:

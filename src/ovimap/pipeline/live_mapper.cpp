@@ -128,7 +128,7 @@ void LiveMapper::prepare_frames() {
         prepare_frame(std::move(next->frame), config_, prepare_timers_));
     if (!mask_source_)
       prepared.cut = std::make_shared<const FrameSegments>(
-          cut_segments(*prepared.frame, nullptr, config_, prepare_timers_));
+          *cut_segments(*prepared.frame, nullptr, config_, prepare_timers_));
     prepared_.push(std::move(prepared));
   }
   prepared_.close();
@@ -170,6 +170,7 @@ void LiveMapper::fuse(Prepared prepared) {
       schedule_.chosen(frame);
       if (live_.wait_for_masks) {
         prepared.cut = masks_for(prepared);
+        if (!prepared.cut) schedule_.went_without();
       } else if (wanted_masks_.try_push(prepared)) {
         ++masks_under_way_;
       }
@@ -203,7 +204,7 @@ void LiveMapper::apply_late_masks() {
 
 void LiveMapper::apply_masks(Prepared late) {
   --masks_under_way_;
-  if (!late.cut) return;  // they were bad
+  if (!late.cut) return schedule_.went_without();
   begin("apply_masks");
   mapper_->label(*late.frame, *late.cut);
   for (FrameLogEntry& entry : std::views::reverse(frames_))
@@ -229,17 +230,19 @@ void LiveMapper::find_masks() {
   found_masks_.close();
 }
 
-/// Null when the frame's masks are bad; other frames may do better.
+/// Null when the frame's masks are bad or there are none of it; other frames may do better.
 std::shared_ptr<const FrameSegments> LiveMapper::masks_for(const Prepared& prepared) {
   begin("masks");
   try {
-    return std::make_shared<const FrameSegments>(
-        cut_segments(*prepared.frame, mask_source_.get(), config_, mask_timers_));
+    if (auto cut = cut_segments(*prepared.frame, mask_source_.get(), config_, mask_timers_))
+      return std::make_shared<const FrameSegments>(std::move(*cut));
+    const std::lock_guard lock(mutex_);
+    ++statistics_.masks_absent;
   } catch (const FrameError& fault) {
     const std::lock_guard lock(mutex_);
     if (statistics_.masks_failed++ == 0) statistics_.mask_fault = fault.what();
-    return nullptr;
   }
+  return nullptr;
 }
 
 // ----------------------------------------------------------------------------------------- threads

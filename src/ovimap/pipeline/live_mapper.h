@@ -34,6 +34,7 @@ struct LiveStatistics {
   std::int64_t masks_late = 0;     ///< ... after their frame was fused
   std::int64_t masks_skipped = 0;  ///< frames that wanted masks while the network was busy
   std::int64_t masks_failed = 0;   ///< frames whose masks were bad
+  std::int64_t masks_absent = 0;   ///< frames that the source had no masks of
   std::int64_t views_skipped = 0;  ///< looks at objects left out
   std::int64_t views_failed = 0;   ///< views without embedding, because the encoder threw
   StageSummary geometry_lag, mask_lag;
@@ -93,7 +94,7 @@ class LiveMapper {
   };
   struct Prepared {
     std::shared_ptr<const PreparedFrame> frame;
-    std::shared_ptr<const FrameSegments> cut;  ///< null: none, or masks are to come
+    std::shared_ptr<const FrameSegments> cut;  ///< null: not masked, or masks are to come
     Clock::time_point pushed;
   };
 

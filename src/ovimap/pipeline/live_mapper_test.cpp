@@ -87,6 +87,54 @@ TEST(LiveMapper, EqualsTheMapperWhenItWaitsForMasks) {
   compare_with_mapper(std::make_shared<DeskMasks>(), 5);
 }
 
+std::shared_ptr<DeskMasks> sparse_masks(std::int64_t masked_every) {
+  auto masks = std::make_shared<DeskMasks>();
+  masks->masked_every = masked_every;
+  return masks;
+}
+
+TEST(LiveMapper, EqualsTheMapperWhenFramesHaveNoMasks) {
+  compare_with_mapper(sparse_masks(3), 1);
+  compare_with_mapper(sparse_masks(4), 3);
+}
+
+TEST(LiveMapper, FramesWithoutMasksAreCountedAndTheNextIsAsked) {
+  LiveConfig live = live_config(1);
+  live.masks.rule = MaskRule::kNeed;
+  live.masks.min_gap = 1000;  // a frame that gets masks is the last that is asked
+  live.wait_for_masks = true;
+  auto masks = std::make_shared<DeskMasks>();
+  LiveMapper mapper(mapper_config(1), live, masks);
+  masks->masked_every = 5;
+  std::vector<Frame> frames = desk_frames();
+  frames.erase(frames.begin());  // the first five have none: 1 ... 4, then 5 has
+  for (const Frame& frame : frames) mapper.push_and_wait(frame);
+  mapper.drain();
+  const LiveStatistics done = mapper.statistics();
+  EXPECT_EQ(done.masks_absent, 4);
+  EXPECT_EQ(done.mask_frames, 1);
+  EXPECT_EQ(done.masks_failed, 0);
+  EXPECT_EQ(done.frames_fused, done.frames_pushed);
+  EXPECT_EQ(mapper.take().mask_frames(), 1);
+  int labelled = 0;
+  for (const FrameLogEntry& entry : mapper.frames()) labelled += entry.labelled;
+  EXPECT_EQ(labelled, 1);
+}
+
+TEST(LiveMapper, LateAnswersThatThereAreNoMasksChangeNothing) {
+  LiveMapper mapper(mapper_config(1), live_config(1), sparse_masks(1000000));
+  std::vector<Frame> frames = desk_frames();
+  for (Frame& frame : frames) ++frame.index;  // none of them is 0
+  for (const Frame& frame : frames) mapper.push_and_wait(frame);
+  mapper.drain();
+  const LiveStatistics done = mapper.statistics();
+  EXPECT_GE(done.masks_absent, 1);
+  EXPECT_EQ(done.mask_frames + done.masks_late, 0);
+  const Mapper result = mapper.take();
+  EXPECT_EQ(result.mask_frames(), 0);
+  EXPECT_TRUE(result.registry().super_points().empty());
+}
+
 /// Sleeps up to two milliseconds, differently each time.
 class RandomDelay {
  public:
@@ -113,7 +161,8 @@ TEST(LiveMapper, DelaysInAnyStageChangeNothing) {
 /// Masks that take a while, as a network's do.
 class SlowMasks : public DeskMasks {
  public:
-  Entities entities(const Frame& frame, std::span<const MaskPrompt> prompts) override {
+  std::optional<Entities> entities(const Frame& frame,
+                                   std::span<const MaskPrompt> prompts) override {
     std::this_thread::sleep_for(20ms);
     if (frame.index == bad_frame) throw FrameError("mask of frame0 is 1x1, expected 160x120");
     return DeskMasks::entities(frame, prompts);

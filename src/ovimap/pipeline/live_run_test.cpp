@@ -69,7 +69,7 @@ TEST(RunLive, RefusesPosesThatNeverChange) {
 
 class WrongMasks : public DeskMasks {
  public:
-  Entities entities(const Frame&, std::span<const MaskPrompt>) override {
+  std::optional<Entities> entities(const Frame&, std::span<const MaskPrompt>) override {
     throw FrameError("frame0.png: is 1x1, expected 160x120");
   }
 };

@@ -152,6 +152,22 @@ TEST(MapCorrection, TheSamePosesChangeLittle) {
   EXPECT_GT(mean_iou(map, again), 0.97) << "depth is kept to a quarter of a millimetre";
 }
 
+TEST(MapCorrection, FramesWithoutMasksAreFusedAgainWithoutLabels) {
+  const DeskScene desk;
+  auto masks = std::make_shared<DeskMasks>();
+  masks->masked_every = 4;
+  Mapper mapper(keeping_config(), masks);
+  const SequenceResult sequence = run_sequence(desk, positions({}, desk.size()), mapper);
+  MapDocument map = make_document(std::move(mapper), sequence, {"desk"});
+  EXPECT_EQ(map.mask_frames, 3);
+  for (const auto& [position, kept] : map.kept_frames)
+    EXPECT_EQ(kept->labels.empty(), position % 4 != 0) << position;
+  const std::set<InstanceId> ids = ids_of(map);
+  correct_poses(map, poses_of(map.frames), keeping_config());
+  EXPECT_EQ(ids_of(map), ids);
+  EXPECT_EQ(map.mask_frames, 3);
+}
+
 TEST(MapCorrection, KeptFramesSurviveTheFile) {
   const fixture::TemporaryFolder folder;
   MapDocument map = map_desk(0.004);

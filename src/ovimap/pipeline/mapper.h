@@ -20,11 +20,12 @@ namespace ovimap {
 /// What became of one frame.
 struct FrameReport {
   int regions = 0;        ///< geometric regions
-  int entities = 0;       ///< 2D entities; 0 when the frame had no masks
+  int entities = 0;       ///< 2D entities; 0 as well when the frame was not masked
   int segments = 0;       ///< pieces lifted to 3D
   int founded = 0;        ///< new super-points
   int views = 0;          ///< views of objects chosen for embedding
-  bool labelled = false;  ///< the frame voted for labels (else it added geometry and colour alone)
+  bool labelled = false;  ///< the frame voted for labels (else it added geometry and colour alone,
+                          ///< as one that is not masked does)
 };
 
 /// The map of instances as one camera sees it.

@@ -3,11 +3,13 @@
 #include "ovimap/pipeline/mapper.h"
 
 #include <map>
+#include <set>
 
 #include <gtest/gtest.h>
 
 #include "ovimap/base/parallel.h"
 #include "ovimap/pipeline/desk_fixture.h"
+#include "ovimap/pipeline/furnished_fixture.h"
 
 namespace ovimap {
 namespace {
@@ -58,15 +60,19 @@ TEST(Mapper, DepthAloneSeparatesTheBallsFromTheTable) {
 }
 
 TEST(Mapper, GivesTheSameMapOnEveryRunAndThreadCount) {
-  const auto hash = [](int threads) {
-    ThreadLimit limit(threads);
-    Mapper mapper({}, std::make_shared<DeskMasks>());
-    map_desk(mapper);
-    return mapper.map().content_hash();
-  };
-  const std::uint64_t once = hash(2);
-  EXPECT_EQ(once, hash(2));
-  EXPECT_EQ(once, hash(1));
+  for (const std::int64_t masked_every : {1, 3}) {
+    const auto hash = [&](int threads) {
+      ThreadLimit limit(threads);
+      auto masks = std::make_shared<DeskMasks>();
+      masks->masked_every = masked_every;
+      Mapper mapper({}, masks);
+      map_desk(mapper);
+      return mapper.map().content_hash();
+    };
+    const std::uint64_t once = hash(2);
+    EXPECT_EQ(once, hash(2));
+    EXPECT_EQ(once, hash(1));
+  }
 }
 
 TEST(Mapper, AFailingMaskSourceLeavesTheMapAsItWas) {
@@ -90,6 +96,87 @@ TEST(Mapper, AsksForMasksAtTheInterval) {
   for (std::int64_t i = 0; i < 6; ++i)
     EXPECT_EQ(mapper.process(*scene.read(i).frame).labelled, i % 3 == 0);
   EXPECT_EQ(mapper.mask_frames(), 2);
+}
+
+/// Six boxes in a row of places, each with a colour of its own.
+FurnishedRoom room_with_boxes() {
+  FurnishedRoom room;
+  room.frames = 60;
+  for (int i = 0; i < 6; ++i)
+    room.things.push_back(furniture(-1.f + 1.f * static_cast<float>(i % 3), i < 3 ? -0.5f : 0.5f,
+                                    {0.4f, 0.4f, 0.5f},
+                                    {static_cast<std::uint8_t>(40 * i), 200, 30}));
+  return room;
+}
+
+/// Of the boxes, those that are an object of their own.
+std::size_t boxes_found(const FurnishedRoom& room, const Mapper& mapper) {
+  MapRecord found;
+  found.instances = summarize_instances(mapper.map(), mapper.registry(), {});
+  std::set<InstanceId> objects;
+  for (const Furniture& thing : room.things) {
+    const Eigen::Vector3f center = thing.box.center();
+    objects.insert(object_at(found, Pose::Identity(), center.x(), center.y(), center.z()));
+  }
+  return objects.size() - objects.count(0);
+}
+
+Mapper map_boxes(const FurnishedRoom& room, int masked_every, bool blind = false) {
+  auto masks = std::make_shared<FurnishedMasks>(room);
+  masks->masked_every = masked_every;
+  masks->blind = blind;
+  MapperConfig config;
+  config.map.voxel_size_m = 0.02f;
+  Mapper mapper(config, masks);
+  for (std::int64_t i = 0; i < room.size(); ++i) mapper.process(*room.read(i).frame);
+  return mapper;
+}
+
+TEST(Mapper, MasksOnSomeFramesAloneTellAllObjectsApart) {
+  const FurnishedRoom room = room_with_boxes();
+  for (const int masked_every : {1, 5, 11, 20}) {
+    const Mapper mapper = map_boxes(room, masked_every);
+    EXPECT_EQ(boxes_found(room, mapper), room.things.size()) << "every " << masked_every;
+    EXPECT_EQ(mapper.frames(), 60);
+    EXPECT_EQ(mapper.mask_frames(), (60 + masked_every - 1) / masked_every);
+  }
+}
+
+TEST(Mapper, MasksThatShowNothingCountAgainstObjectsAndMissingOnesDoNot) {
+  const FurnishedRoom room = room_with_boxes();
+  const Mapper unmasked = map_boxes(room, 60), masked = map_boxes(room, 1, true);
+  EXPECT_EQ(unmasked.mask_frames(), 1);
+  EXPECT_EQ(masked.mask_frames(), 60);
+  const auto seen = [](const Mapper& mapper) {
+    int most = 0;
+    for (const auto& [label, point] : mapper.registry().super_points())
+      most = std::max(most, point.frames_seen);
+    return most;
+  };
+  EXPECT_EQ(seen(unmasked), 1);
+  EXPECT_GT(seen(masked), 40);
+  const auto objects = [](const Mapper& mapper) {
+    return summarize_instances(mapper.map(), mapper.registry(), {.min_instance_views = 1}).size();
+  };
+  EXPECT_GE(objects(unmasked), 4u) << "what the only masks showed is all that is known";
+  EXPECT_LT(objects(masked), objects(unmasked));
+}
+
+TEST(Mapper, AFrameWithoutMasksAddsGeometryAlone) {
+  auto masks = std::make_shared<DeskMasks>();
+  masks->masked_every = 2;
+  Mapper mapper({}, masks);
+  const DeskScene scene;
+  EXPECT_TRUE(mapper.process(*scene.read(0).frame).labelled);
+  const auto before = mapper.registry().state().super_points.size();
+  const std::size_t blocks = mapper.map().block_count();
+  const FrameReport report = mapper.process(*scene.read(1).frame);
+  EXPECT_FALSE(report.labelled);
+  EXPECT_EQ(report.segments, 0);
+  EXPECT_GT(mapper.map().block_count(), blocks);
+  EXPECT_EQ(mapper.registry().state().super_points.size(), before);
+  EXPECT_EQ(mapper.frames(), 2);
+  EXPECT_EQ(mapper.mask_frames(), 1);
 }
 
 TEST(Mapper, FrameOrderDoesNotMoveTheSurface) {

@@ -36,6 +36,10 @@ void MaskSchedule::chosen(const Frame& frame) {
   last_pose_ = frame.world_from_camera;
 }
 
+void MaskSchedule::went_without() {
+  if (config_.rule == MaskRule::kNeed) last_pose_.reset();
+}
+
 bool MaskSchedule::moved(const Frame& frame) const {
   const Pose motion = last_pose_->inverse() * frame.world_from_camera;
   const double turn = Eigen::AngleAxisd(motion.linear()).angle();

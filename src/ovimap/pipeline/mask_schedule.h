@@ -36,13 +36,15 @@ class MaskSchedule {
   bool wants(const Frame& frame, const VoxelMap& map);
   /// The frame got its masks, or is on its way to.
   void chosen(const Frame& frame);
+  /// It did not get any after all: with kNeed, what it was chosen for is still needed.
+  void went_without();
 
  private:
   bool moved(const Frame& frame) const;
 
   MaskScheduleConfig config_;
   std::int64_t frames_ = 0, last_ = 0;  ///< counted by `wants`
-  std::optional<Pose> last_pose_;
+  std::optional<Pose> last_pose_;  ///< of the last frame with masks; empty: the next one needs them
 };
 
 /// The share of a frame's valid depth that the map has no label for: new surface, or surface fused

@@ -43,6 +43,20 @@ TEST(MaskSchedule, AWishThatWasNotMetStays) {
   EXPECT_TRUE(schedule.wants(frame, map)) << "none was chosen yet";
 }
 
+TEST(MaskSchedule, WhatWentWithoutIsStillNeeded) {
+  const DeskScene scene;
+  const VoxelMap map;
+  const Frame frame = *scene.read(0).frame;
+  MaskSchedule need({.min_gap = 100}), interval({.rule = MaskRule::kInterval, .interval = 3});
+  for (MaskSchedule* schedule : {&need, &interval}) {
+    ASSERT_TRUE(schedule->wants(frame, map));
+    schedule->chosen(frame);
+    schedule->went_without();
+  }
+  EXPECT_TRUE(need.wants(frame, map));
+  EXPECT_FALSE(interval.wants(frame, map)) << "a fixed rhythm stays";
+}
+
 TEST(MaskSchedule, NeedLooksAgainAfterMotionAndNotBefore) {
   const DeskScene scene;
   Frame frame = *scene.read(0).frame;

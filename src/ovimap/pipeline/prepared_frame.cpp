@@ -47,8 +47,8 @@ PreparedFrame prepare_frame(std::shared_ptr<const Frame> frame, const MapperConf
   return {std::move(frame), std::move(registration), std::move(surface), std::move(color)};
 }
 
-FrameSegments cut_segments(const PreparedFrame& prepared, MaskSource* masks,
-                           const MapperConfig& config, StageTimers& timers) {
+std::optional<FrameSegments> cut_segments(const PreparedFrame& prepared, MaskSource* masks,
+                                          const MapperConfig& config, StageTimers& timers) {
   const Frame& frame = *prepared.frame;
   const DepthRegions regions = [&] {
     auto t = timers.measure("regions");
@@ -60,14 +60,15 @@ FrameSegments cut_segments(const PreparedFrame& prepared, MaskSource* masks,
     cut.segments = segments_of_regions(regions);
     return cut;
   }
-  const Entities entities = [&] {
+  const std::optional<Entities> entities = [&] {
     auto t = timers.measure("masks");
     return masks->entities(frame, prompts_of(regions, prepared.registration, frame.color_camera));
   }();
+  if (!entities) return std::nullopt;
   cut.masked = true;
-  cut.entities = static_cast<int>(entities.scores.size());
+  cut.entities = static_cast<int>(entities->scores.size());
   auto t = timers.measure("mask_fusion");
-  cut.segments = fuse_masks(regions, prepared.registration.ids_at_depth(entities.ids), frame.depth,
+  cut.segments = fuse_masks(regions, prepared.registration.ids_at_depth(entities->ids), frame.depth,
                             config.mask_fusion);
   return cut;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "ovimap/base/stage_timers.h"
 #include "ovimap/frames/registration.h"
@@ -30,9 +31,10 @@ struct FrameSegments {
   bool masked = false;  ///< 2D masks had a say
 };
 
-/// Cuts the frame by depth and, unless `masks` is null, by its 2D entities. Does not look at the
-/// map. Throws what the mask source throws.
-FrameSegments cut_segments(const PreparedFrame& prepared, MaskSource* masks,
-                           const MapperConfig& config, StageTimers& timers);
+/// Cuts the frame by depth and, unless `masks` is null, by its 2D entities; nullopt when the source
+/// has no masks of this frame, which then is no evidence of what objects there are. Does not look
+/// at the map. Throws what the mask source throws.
+std::optional<FrameSegments> cut_segments(const PreparedFrame& prepared, MaskSource* masks,
+                                          const MapperConfig& config, StageTimers& timers);
 
 }  // namespace ovimap

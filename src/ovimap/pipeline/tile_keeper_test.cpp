@@ -56,8 +56,8 @@ class DeskRow : public FrameSource {
 class DeskRowMasks : public MaskSource {
  public:
   std::string kind() const override { return "desks"; }
-  Entities entities(const Frame& frame, std::span<const MaskPrompt>) override {
-    return {*row_.truth_ids(frame.index), {1.f, 1.f, 1.f}};
+  std::optional<Entities> entities(const Frame& frame, std::span<const MaskPrompt>) override {
+    return Entities{*row_.truth_ids(frame.index), {1.f, 1.f, 1.f}};
   }
 
  private:
