@@ -53,7 +53,7 @@ struct MappingOptions {
   std::string masks = "none";
   std::string encoder = "auto";
   std::string preset = "default";
-  std::string views = "default";
+  std::string views;  ///< view_preset; empty: as the preset has them
   std::filesystem::path config_file;
   std::vector<std::string> settings;  ///< "a.b=c"
   std::vector<std::filesystem::path> model_dirs;

@@ -25,13 +25,12 @@ void add_mapping_settings(CLI::App& command, MappingOptions& options) {
       ->capture_default_str();
   command
       .add_option("--preset", options.preset,
-                  "default or reference (thresholds as the paper's code ships them)")
+                  "default or reference (as the paper's code does it; docs/reference-preset.md)")
       ->capture_default_str();
   command
       .add_option("--views", options.views,
                   "which views of an object are embedded: default, paper, viewcov, combine, vis, "
-                  "random or all")
-      ->capture_default_str();
+                  "random or all; not given: as the preset has them");
   command.add_option("--config", options.config_file, "YAML file of settings");
   one_value(command.add_option("--set", options.settings, "one setting, a.b=c; may be repeated"));
   add_model_dirs(command, options.model_dirs);
@@ -65,7 +64,7 @@ void list_fields(ProgramConfig& config, ConfigFields& fields) {
 ProgramConfig read_program_config(const MappingOptions& options) {
   ProgramConfig config;
   config.mapper = mapper_preset(options.preset);
-  config.mapper.semantics.views = view_preset(options.views);
+  if (!options.views.empty()) config.mapper.semantics.views = view_preset(options.views);
   ConfigFields fields;
   list_fields(config, fields);
   if (!options.config_file.empty()) load_config(options.config_file, fields);

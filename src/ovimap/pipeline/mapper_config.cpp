@@ -6,6 +6,12 @@
 
 namespace ovimap {
 
+namespace {
+
+constexpr int kNeverSoMany = 100000000;  // pixels; no image has them
+
+}  // namespace
+
 void list_fields(MapperConfig& config, ConfigFields& fields) {
   fields.group("segment", [&](ConfigFields& f) { list_fields(config.segment, f); });
   fields.group("mask_fusion", [&](ConfigFields& f) { list_fields(config.mask_fusion, f); });
@@ -33,6 +39,7 @@ void list_fields(MapperConfig& config, ConfigFields& fields) {
              "how far the map is projected back, metres");
 }
 
+// docs/reference-preset.md holds this against the released code, line by line.
 MapperConfig mapper_preset(const std::string& name) {
   MapperConfig config;
   if (name == "default") return config;
@@ -44,6 +51,14 @@ MapperConfig mapper_preset(const std::string& name) {
   config.instance.merging.merge_max_dissent = 1e6f;  // the paper counts no dissent
   config.map.max_weight = 1e4f;
   config.map.label_band_voxels = static_cast<float>(config.map.truncation_voxels);
+  config.mask_fusion.min_entity_px = kNeverSoMany;
+  config.summary.min_instance_voxels = 1;
+  config.summary.min_instance_views = 1;
+  config.network_mask_interval = 1;
+  config.view_interval = 1;
+  config.semantics.views = view_preset("combine");
+  config.semantics.views.fusion.largest_views = 8;
+  config.semantics.crops.background_level = 0;
   return config;
 }
 

@@ -40,8 +40,8 @@ struct MapperConfig {
 };
 void list_fields(MapperConfig& config, ConfigFields& fields);
 
-/// "default", or "reference": thresholds and rules as the paper's released code has them. Throws
-/// Error for another name.
+/// "default", or "reference": thresholds, rules, views and crops as the paper's released code has
+/// them (docs/reference-preset.md). Throws Error for another name.
 MapperConfig mapper_preset(const std::string& name);
 
 /// The settings that a map was made with, as far as this program knows them

@@ -108,8 +108,9 @@ class Assignment {
 void list_fields(MaskFusionConfig& config, ConfigFields& fields) {
   fields.add("min_region_px", config.min_region_px, 1, 1000000,
              "smaller geometric regions take no part, pixels");
-  fields.add("min_entity_px", config.min_entity_px, 1, 1000000,
-             "least depth pixels of an entity outside all regions");
+  fields.add("min_entity_px", config.min_entity_px, 1, 100000000,
+             "least depth pixels of an entity outside all regions (100000000: none has so many, as "
+             "in the paper's code)");
   fields.add("split_entity_share", config.split_entity_share, 0.f, 1.f,
              "share of an entity inside a region to split it off");
   fields.add("split_region_share", config.split_region_share, 0.f, 1.f,

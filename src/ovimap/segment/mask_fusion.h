@@ -12,6 +12,7 @@ namespace ovimap {
 struct MaskFusionConfig {
   int min_region_px = 100;  ///< smaller geometric regions take no part
   int min_entity_px = 100;  ///< an entity outside all regions needs this many valid depth pixels
+                            ///< (the released code drops all of them)
   float split_entity_share =
       0.9f;  ///< an entity is split off when more than this share of it lies in the region
   float split_region_share = 0.5f;  ///< ... and it covers less than this share of the region

@@ -17,6 +17,20 @@ ViewRefs answered(std::span<const ObjectView> views) {
   return result;
 }
 
+/// In their order.
+void keep_largest(ViewRefs& views, int count) {
+  const auto wanted = static_cast<std::size_t>(count);
+  if (count == 0 || views.size() <= wanted) return;
+  ViewRefs by_size = views;
+  std::stable_sort(by_size.begin(), by_size.end(), [](const auto* a, const auto* b) {
+    return a->visible_px > b->visible_px;
+  });
+  by_size.resize(wanted);
+  std::erase_if(views, [&](const ObjectView* view) {
+    return std::find(by_size.begin(), by_size.end(), view) == by_size.end();
+  });
+}
+
 Eigen::VectorXf weighted_mean(const ViewRefs& views, bool by_pixels) {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(views.front()->embedding.size());
   for (const ObjectView* view : views)
@@ -53,10 +67,11 @@ void unite(ViewCoverage& keep, const ViewCoverage& drop) {
 
 }  // namespace
 
-Eigen::VectorXf fuse_views(std::span<const ObjectView> views, FeatureFusion fusion) {
-  const ViewRefs known = answered(views);
+Eigen::VectorXf fuse_views(std::span<const ObjectView> views, const ViewFusion& fusion) {
+  ViewRefs known = answered(views);
   if (known.empty()) return {};
-  switch (fusion) {
+  keep_largest(known, fusion.largest_views);
+  switch (fusion.rule) {
     case FeatureFusion::kPixelWeighted:
       return weighted_mean(known, true);
     case FeatureFusion::kMean:
@@ -103,7 +118,7 @@ void prune_crops(Appearance& appearance, int kept_views) {
 }
 
 Embeddings fused_embeddings(const Appearances& appearances, std::span<const InstanceId> ids,
-                            FeatureFusion fusion, int dimension) {
+                            const ViewFusion& fusion, int dimension) {
   Embeddings rows = Embeddings::Zero(static_cast<Eigen::Index>(ids.size()), dimension);
   for (std::size_t i = 0; i < ids.size(); ++i) {
     const auto found = appearances.find(ids[i]);

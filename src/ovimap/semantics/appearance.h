@@ -27,6 +27,15 @@ enum class FeatureFusion {
   kMinL1,      ///< the view nearest to the others: smallest mean L1 distance
 };
 
+/// Which of an object's views become one embedding, and how.
+struct ViewFusion {
+  ViewFusion(FeatureFusion how = FeatureFusion::kPixelWeighted, int so_many = 0)
+      : rule(how), largest_views(so_many) {}
+  FeatureFusion rule;
+  int largest_views;  ///< only so many of the largest count (the earlier of equals); 0: all
+  bool operator==(const ViewFusion&) const = default;
+};
+
 /// One view of an object that was chosen to tell what the object looks like.
 struct ObjectView {
   std::int64_t frame = 0;  ///< Frame::index
@@ -55,8 +64,8 @@ struct Appearance {
 /// The looks of all objects, by instance id.
 using Appearances = std::map<InstanceId, Appearance>;
 
-/// One embedding of all views that have one, of length 1; empty when none has.
-Eigen::VectorXf fuse_views(std::span<const ObjectView> views, FeatureFusion fusion);
+/// One embedding of the views that have one, of length 1; empty when none has.
+Eigen::VectorXf fuse_views(std::span<const ObjectView> views, const ViewFusion& fusion);
 
 /// Gives what is known of `drop` to `keep`: views are put together, seen directions united.
 void merge_appearance(Appearances& appearances, InstanceId keep, InstanceId drop);
@@ -70,6 +79,6 @@ void prune_crops(Appearance& appearance, int kept_views);
 
 /// Row i is the fused embedding of ids[i]; zeros for an object without one.
 Embeddings fused_embeddings(const Appearances& appearances, std::span<const InstanceId> ids,
-                            FeatureFusion fusion, int dimension);
+                            const ViewFusion& fusion, int dimension);
 
 }  // namespace ovimap

@@ -76,9 +76,10 @@ std::vector<ObjectView>::iterator smallest(std::vector<ObjectView>& views) {
                           [](const auto& a, const auto& b) { return a.visible_px < b.visible_px; });
 }
 
-bool among_largest(Appearance& appearance, int visible_px, int top_views) {
-  return appearance.views.size() < static_cast<std::size_t>(top_views) ||
-         visible_px > smallest(appearance.views)->visible_px;
+bool among_largest(const Appearance& appearance, int visible_px, int top_views) {
+  const auto larger = std::count_if(appearance.views.begin(), appearance.views.end(),
+                                    [&](const auto& view) { return view.visible_px >= visible_px; });
+  return larger < top_views;
 }
 
 /// Drops the smallest view when there are `limit`.
@@ -135,6 +136,12 @@ int ViewSelector::sample_step(int visible_px) const {
              std::sqrt(static_cast<float>(visible_px) / static_cast<float>(config_.max_samples)))));
 }
 
+SphereGrid ViewSelector::grid_of(const SeenObjects& seen) const {
+  const int px = config_.grid_px_per_bin;
+  if (px == 0) return {config_.grid_rows, config_.grid_columns};
+  return {std::max(1, seen.depth.height() / px), std::max(1, seen.depth.width() / px)};
+}
+
 void ViewSelector::cover(const SeenObjects& seen, const Appearances& appearances,
                          Candidate& object) const {
   gather_points(seen, object.id, sample_step(object.visible_px), object.box_px,
@@ -144,7 +151,7 @@ void ViewSelector::cover(const SeenObjects& seen, const Appearances& appearances
   if (known != appearances.end()) object.coverage = known->second.coverage;
   ViewCoverage& coverage = object.coverage;
   coverage.seen_in_world.extend(box_of(object.x, object.y, object.z));
-  const SphereGrid grid{config_.grid_rows, config_.grid_columns};
+  const SphereGrid grid = grid_of(seen);
   const Eigen::Vector3f center = coverage.seen_in_world.center();
   const float moved = (center - coverage.center_in_world).norm();
   const float limit = config_.recentre_share * coverage.seen_in_world.diagonal().norm();
@@ -232,6 +239,9 @@ void list_fields(ViewSelectionConfig& config, ConfigFields& fields) {
                                   "which views of an object are embedded");
   fields.add("grid_rows", config.grid_rows, 1, 2000, "bins of the polar angle");
   fields.add("grid_columns", config.grid_columns, 1, 4000, "bins of the azimuth");
+  fields.add("grid_px_per_bin", config.grid_px_per_bin, 0, 10000,
+             "rows and columns of the depth image that give a bin of either angle, in place of "
+             "both (8: the paper's code); 0: those");
   fields.add("theta_novel", config.theta_novel, 0.f, 1.f,
              "share of a view's bins that must be new");
   fields.add("better_ratio", config.better_ratio, 0.f, 1e6f,
@@ -252,12 +262,14 @@ void list_fields(ViewSelectionConfig& config, ConfigFields& fields) {
   fields.add("random_seed", config.random_seed, 0, 1 << 30, "what decides the drawing (random)");
   fields.add("max_samples", config.max_samples, 16, 100000000,
              "coverage looks at about so many of a view's pixels");
-  fields.add_choice<FeatureFusion>("fusion", config.fusion,
+  fields.add_choice<FeatureFusion>("fusion", config.fusion.rule,
                                    {{"pixel_weighted", FeatureFusion::kPixelWeighted},
                                     {"mean", FeatureFusion::kMean},
                                     {"max_cosine", FeatureFusion::kMaxCosine},
                                     {"min_l1", FeatureFusion::kMinL1}},
                                    "how an object's views become one embedding");
+  fields.add("fused_views", config.fusion.largest_views, 0, 100000,
+             "how many of an object's views do, the largest (8: the paper's code); 0: all");
 }
 
 ViewSelectionConfig view_preset(const std::string& name) {
@@ -271,8 +283,9 @@ ViewSelectionConfig view_preset(const std::string& name) {
   config.min_depth_px = 100;
   config.min_frames_seen = 0;
   config.max_samples = 100000000;
-  config.grid_rows = 60, config.grid_columns = 80;
+  config.grid_px_per_bin = 8;
   if (name == "paper") {
+    config.grid_px_per_bin = 0;
     config.grid_rows = 180, config.grid_columns = 240;
   } else if (name == "combine") {
     config.strategy = ViewStrategy::kCombine, config.theta_novel = 0.1f;

@@ -28,6 +28,8 @@ struct ViewSelectionConfig {
   ViewStrategy strategy = ViewStrategy::kCoverage;
   int grid_rows = 24;         ///< bins of the polar angle
   int grid_columns = 32;      ///< bins of the azimuth
+  int grid_px_per_bin = 0;    ///< the depth image's rows and columns that give one bin of either
+                              ///< angle, in place of both numbers above; 0: those
   float theta_novel = 0.15f;  ///< share of a view's bins that must be new
   float better_ratio =
       2.f;  ///< a view this many times larger than any before counts as new; 0: none
@@ -41,7 +43,7 @@ struct ViewSelectionConfig {
   int random_views = 8;          ///< how many are drawn (random)
   int random_seed = 0;
   int max_samples = 2000;  ///< coverage looks at about so many of a view's pixels, evenly spread
-  FeatureFusion fusion = FeatureFusion::kPixelWeighted;
+  ViewFusion fusion;
 };
 void list_fields(ViewSelectionConfig& config, ConfigFields& fields);
 
@@ -85,6 +87,7 @@ class ViewSelector {
   std::vector<Candidate> find_candidates(const SeenObjects& seen, const InstanceRegistry& registry,
                                          const Appearances& appearances);
   int sample_step(int visible_px) const;
+  SphereGrid grid_of(const SeenObjects& seen) const;
   /// Fills the candidate's points, bins and coverage so far.
   void cover(const SeenObjects& seen, const Appearances& appearances, Candidate& object) const;
   bool decide(const Candidate& candidate, std::int64_t frame, Appearance& appearance) const;

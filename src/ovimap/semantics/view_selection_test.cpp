@@ -126,6 +126,28 @@ TEST(ViewSelection, CombineWantsLargeAndNew) {
   EXPECT_EQ(ball.look(selector, 180, 1.8f).size(), 1u);
 }
 
+TEST(ViewSelection, CombineComparesWithTheLargestNotWithAllThatAreKept) {
+  BallViews ball;
+  ViewSelectionConfig config = view_preset("combine");
+  config.min_mask_px = config.min_first_depth_px = 100;
+  config.top_views = 2;
+  config.better_ratio = 0.01f;  // every view counts as new
+  ViewSelector selector(config);
+  for (const float distance : {2.f, 1.9f, 1.8f, 1.7f})
+    EXPECT_EQ(ball.look(selector, 0, distance).size(), 1u) << distance;
+  EXPECT_TRUE(ball.look(selector, 0, 1.85f).empty())
+      << "larger than the first, but not among the two largest";
+}
+
+TEST(ViewSelection, TheGridMayFollowTheImage) {
+  BallViews ball;  // 160 x 120 pixels
+  ViewSelectionConfig config;
+  config.grid_px_per_bin = 8;
+  ViewSelector selector(config);
+  ASSERT_EQ(ball.look(selector, 0).size(), 1u);
+  EXPECT_EQ(ball.appearances.at(1).coverage.bins.words().size(), BinSet(15 * 20).words().size());
+}
+
 TEST(ViewSelection, PixelsKeepsTheLargest) {
   BallViews ball;
   ViewSelectionConfig config = view_preset("vis");
@@ -191,7 +213,9 @@ TEST(ViewSelection, DoesNotDependOnThreads) {
 
 TEST(ViewSelection, KnowsItsPresets) {
   EXPECT_EQ(view_preset("paper").grid_columns, 240);
-  EXPECT_EQ(view_preset("viewcov").grid_columns, 80);
+  EXPECT_EQ(view_preset("paper").grid_px_per_bin, 0);
+  for (const char* name : {"viewcov", "combine", "vis"})
+    EXPECT_EQ(view_preset(name).grid_px_per_bin, 8) << name;
   EXPECT_EQ(view_preset("viewcov").min_mask_px, 1000);
   EXPECT_THROW(view_preset("best"), Error);
 }
