@@ -35,6 +35,33 @@ TEST_F(EndToEndTest, TrueMasksRebuildTheFurnishedRoom) {
             agnostic["ap50"].get<double>());
 }
 
+/// True masks on every so manieth frame, as another tool may leave them in a folder.
+TEST_F(EndToEndTest, MasksOnFewFramesStillTellTheObjectsApart) {
+  if (!std::filesystem::is_directory(kFurniture))
+    GTEST_SKIP() << "package sweethome3d-furniture is not installed";
+  ASSERT_EQ(run("synth room --room tiny").code, 0);
+  ASSERT_EQ(run("masks room/room --masks gt -o all").code, 0);
+  struct Expected {
+    int every, mask_frames;
+    double least_ap25;
+  };
+  double before = 1;
+  for (const Expected& e : {Expected{1, 40, 0.85}, Expected{5, 8, 0.85}, Expected{11, 4, 0.6},
+                            Expected{20, 2, 0.3}}) {
+    const std::string folder = concat("every", e.every);
+    std::filesystem::create_directories(path(folder));
+    for (int i = 0; i < 40; i += e.every)
+      std::filesystem::copy_file(path(concat("all/", i, ".png")), path(concat(folder, "/", i, ".png")));
+    ASSERT_EQ(run("run room/room --encoder none -o room.ovimap --masks " + folder).code, 0);
+    EXPECT_EQ(run_json("info room.ovimap --json")["mask_frames"], e.mask_frames);
+    const double ap25 = run_json("eval room.ovimap --gt room/room --json")["standard"]
+                                ["class_agnostic"]["ap25"];
+    EXPECT_GE(ap25, e.least_ap25) << "every " << e.every;
+    EXPECT_LE(ap25, before + 0.03) << "fewer masks, no better a map; every " << e.every;
+    before = ap25;
+  }
+}
+
 TEST_F(EndToEndTest, MapsTheRealKitchen) {
   if (!std::filesystem::is_directory(kKitchen))
     GTEST_SKIP() << "the kitchen recording is not beside the checkout";

@@ -71,6 +71,42 @@ TEST_F(ProgramTest, WritesAndScoresEntities) {
   expect_complaint("masks recording --score --masks truth", {"instance images"});
 }
 
+TEST_F(ProgramTest, SaysHowManyFramesHadMasks) {
+  ASSERT_EQ(run("masks replica/scene --masks gt -o some").code, 0);
+  for (const auto& entry : std::filesystem::directory_iterator(path("some")))
+    if (entry.path().filename() != "0.png") std::filesystem::remove(entry.path());
+  const ProgramResult one = run("run replica/scene --masks some --encoder none -o room.ovimap");
+  EXPECT_EQ(one.code, 0) << one.err;
+  EXPECT_NE(one.out.find("(1 with masks)"), std::string::npos) << one.out;
+  EXPECT_EQ(one.err.find("had masks"), std::string::npos) << one.err;
+  const ProgramResult none =
+      run("run replica/scene --masks some --encoder none --frames 1: -o none.ovimap");
+  EXPECT_EQ(none.code, 0) << none.err;
+  EXPECT_NE(none.err.find(concat("none of the ", sequence_.frames - 1, " frames had masks")),
+            std::string::npos)
+      << none.err;
+  const nlohmann::json found = run_json("masks replica/scene --masks some --score --json");
+  EXPECT_EQ(found["frames"], 1);
+  EXPECT_EQ(found["frames_without_masks"], sequence_.frames - 1);
+  EXPECT_EQ(found["standard"]["miou"], 1.0) << "frames without masks have no score";
+  expect_complaint("masks replica/scene --masks some --frames 1: --score",
+                   {"none of the", "frames has masks", "--masks"});
+  std::filesystem::rename(path("some/0.png"), path("some/77777.png"));
+  expect_complaint("run replica/scene --masks some -o other.ovimap", {"no file for any of the"});
+}
+
+TEST_F(ProgramTest, ReferencePresetChoosesItsOwnViews) {
+  const auto expect_views = [&](const std::string& options, const std::string& strategy) {
+    EXPECT_EQ(run("run replica/scene --preset reference -o room.ovimap " + options).code, 0);
+    const std::string config = run_json("info room.ovimap --json")["config"];
+    EXPECT_NE(config.find("views.strategy: " + strategy + "\n"), std::string::npos) << config;
+    EXPECT_NE(config.find("network_mask_interval: 1\n"), std::string::npos) << config;
+  };
+  expect_views("", "combine");
+  expect_views("--views viewcov", "coverage");
+  expect_views("--set views.strategy=all", "all");
+}
+
 TEST_F(ProgramTest, ExportsMeshObjectsAndPicture) {
   ASSERT_EQ(run("run recording -o room.ovimap --pictures pictures").code, 0);
   for (const char* file : {"a.ply", "a.json", "a.png"}) {

@@ -87,17 +87,18 @@ def test_masks_that_do_not_fit_are_refused(frames, returned, error, words):
 def test_frames_without_masks_are_no_evidence_and_empty_masks_are(room, tmp_path):
     source = ovimap.open_source(room)
 
-    def every(step, otherwise):
-        return lambda frame, prompts: source.truth_ids(frame.index) if frame.index % step == 0 else otherwise(frame)
+    def mapped(name, on_other_frames):
+        def masks(frame, prompts):
+            return source.truth_ids(frame.index) if frame.index % 16 == 0 else on_other_frames(frame)
 
-    def mapped(name, masks):
-        return ovimap.run(room, tmp_path / name, masks=masks, encoder=None, frames="::4", settings={"mask_interval": 1})
+        settings = {"mask_interval": 1, "map.voxel_size_m": 0.03}
+        return ovimap.run(room, tmp_path / name, masks=masks, encoder=None, frames=":40", settings=settings)
 
-    sparse = mapped("sparse.ovimap", every(40, lambda frame: None))
-    assert sparse.frames > 10 * (sparse.mask_frames - 1) and sparse.mask_frames >= 2
-    assert len(sparse.instances) > 0
-    empty = mapped("empty.ovimap", every(40, lambda frame: np.zeros(frame.color.shape[:2], np.uint8)))
-    assert empty.mask_frames == empty.frames and len(empty.instances) < len(sparse.instances)
+    sparse = mapped("sparse.ovimap", lambda frame: None)
+    assert sparse.frames == 40 and sparse.mask_frames == 3
+    empty = mapped("empty.ovimap", lambda frame: np.zeros(frame.color.shape[:2], np.uint8))
+    assert empty.frames == 40 and empty.mask_frames == 40
+    assert 0 < len(empty) < len(sparse)
 
 
 def test_a_run_whose_frames_have_no_masks_says_so(room, tmp_path):
