@@ -73,6 +73,10 @@ void print_live(const LiveRunResult& live, double fps) {
     std::printf("looks at objects left out: %lld\n", static_cast<long long>(done.views_skipped));
 }
 
+bool masks_all_absent(const MappingRun& run) {
+  return run.masks_wanted && run.document.mask_frames == 0;
+}
+
 double frames_per_second(const MappingRun& run) {
   return static_cast<double>(run.sequence.frames.size()) / run.sequence.seconds;
 }
@@ -81,10 +85,10 @@ double frames_per_second(const MappingRun& run) {
 
 void report_faults(const MappingRun& run) {
   report_skipped(run.sequence);
-  if (run.masks_wanted && run.document.mask_frames == 0)
+  if (masks_all_absent(run))
     std::fprintf(stderr,
-                 "ovimap: none of the %zu frames had masks, so the map tells no objects apart; name "
-                 "a mask file after its frame or its number, or map with --masks none\n",
+                 "ovimap: none of the %zu frames had masks, so the map tells no objects apart; "
+                 "name a mask file after its frame or its number, or map with --masks none\n",
                  run.sequence.frames.size());
   if (!run.live) return;
   report_bad_masks(run.live->statistics);
@@ -123,7 +127,7 @@ void print_run(const std::filesystem::path& map, const MappingRun& run, double f
 }
 
 void advise_on_objects(const MappingRun& run) {
-  if (!run.document.instances.empty() || (run.masks_wanted && run.document.mask_frames == 0)) return;
+  if (!run.document.instances.empty() || masks_all_absent(run)) return;
   std::fprintf(stderr,
                "ovimap: no object was seen often enough to be kept; map more frames, or --set %s=1 "
                "where masks are slow\n",

@@ -50,8 +50,10 @@ TEST_F(EndToEndTest, MasksOnFewFramesStillTellTheObjectsApart) {
                             Expected{20, 2, 0.3}}) {
     const std::string folder = concat("every", e.every);
     std::filesystem::create_directories(path(folder));
-    for (int i = 0; i < 40; i += e.every)
-      std::filesystem::copy_file(path(concat("all/", i, ".png")), path(concat(folder, "/", i, ".png")));
+    for (int i = 0; i < 40; i += e.every) {
+      const std::string name = concat("/", i, ".png");
+      std::filesystem::copy_file(path("all" + name), path(folder + name));
+    }
     ASSERT_EQ(run("run room/room --encoder none -o room.ovimap --masks " + folder).code, 0);
     EXPECT_EQ(run_json("info room.ovimap --json")["mask_frames"], e.mask_frames);
     const double ap25 = run_json("eval room.ovimap --gt room/room --json")["standard"]

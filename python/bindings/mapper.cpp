@@ -100,7 +100,8 @@ class MapperHandle final : public OpenHandle {
 void bind_reports(nb::module_& module) {
   nb::class_<FrameReport>(module, "FrameReport", "What became of one frame.")
       .def_ro("regions", &FrameReport::regions, "geometric regions")
-      .def_ro("entities", &FrameReport::entities, "2D entities; 0 as well when the frame was not masked")
+      .def_ro("entities", &FrameReport::entities,
+              "2D entities; 0 as well when the frame was not masked")
       .def_ro("segments", &FrameReport::segments, "pieces lifted to 3D")
       .def_ro("founded", &FrameReport::founded, "new super-points")
       .def_ro("views", &FrameReport::views, "views of objects chosen for embedding")

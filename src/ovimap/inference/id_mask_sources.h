@@ -57,7 +57,8 @@ class KeptMaskSource : public MaskSource {
   KeptMaskSource(std::filesystem::path folder, std::unique_ptr<MaskSource> source);
   std::string kind() const override { return source_->kind(); }
   bool is_slow() const override { return source_->is_slow(); }
-  /// Scores are all 1. Frames that the source has no masks of are asked for again. Throws what the source throws, and Error when a mask cannot be written.
+  /// Scores are all 1. Frames that the source has no masks of are asked for again. Throws what the
+  /// source throws, and Error when a mask cannot be written.
   std::optional<Entities> entities(const Frame& frame,
                                    std::span<const MaskPrompt> prompts) override;
 

@@ -41,8 +41,8 @@ class MaskSource {
   /// The entities of `frame`. Two answers name none: Entities with empty `scores` say that nothing
   /// is to be seen, which counts against what the map holds there; nullopt says that the source has
   /// no masks of this frame (a folder without its file), which says nothing. `prompts` are hints
-  /// that a source may ignore. Throws Error when the source cannot deliver for a reason the user can
-  /// mend (mask file of another size, model failure).
+  /// that a source may ignore. Throws Error when the source cannot deliver for a reason the user
+  /// can mend (mask file of another size, model failure).
   virtual std::optional<Entities> entities(const Frame& frame,
                                            std::span<const MaskPrompt> prompts) = 0;
 };

@@ -77,9 +77,10 @@ std::vector<ObjectView>::iterator smallest(std::vector<ObjectView>& views) {
 }
 
 bool among_largest(const Appearance& appearance, int visible_px, int top_views) {
-  const auto larger = std::count_if(appearance.views.begin(), appearance.views.end(),
-                                    [&](const auto& view) { return view.visible_px >= visible_px; });
-  return larger < top_views;
+  const auto as_large = std::count_if(
+      appearance.views.begin(), appearance.views.end(),
+      [&](const ObjectView& view) { return view.visible_px >= visible_px; });
+  return as_large < top_views;
 }
 
 /// Drops the smallest view when there are `limit`.
