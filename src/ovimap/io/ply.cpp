@@ -132,10 +132,13 @@ struct VertexLayout {
 
 class PlyReader {
  public:
-  explicit PlyReader(std::span<const std::uint8_t> bytes)
-      : header_(parse_ply_header(bytes)), cursor_(bytes, header_.size, header_.format) {}
+  /// `face_value`: the property of the faces that is kept; empty: none.
+  explicit PlyReader(std::span<const std::uint8_t> bytes, std::string face_value = {})
+      : header_(parse_ply_header(bytes)),
+        cursor_(bytes, header_.size, header_.format),
+        face_value_(std::move(face_value)) {}
 
-  Mesh read() {
+  ValuedMesh read() {
     for (const PlyElement& element : header_.elements) {
       const std::size_t item_size = element.min_item_size(header_.format);
       if (item_size == 0) continue;
@@ -151,7 +154,9 @@ class PlyReader {
         skip_items(element);
     }
     check_indices();
-    return std::move(mesh_);
+    if (!face_value_.empty() && values_.size() != mesh_.triangles.size())
+      throw Error(concat("its element 'face' has no property '", face_value_, "'"));
+    return {std::move(mesh_), std::move(values_)};
   }
 
  private:
@@ -213,14 +218,26 @@ class PlyReader {
   void read_faces(const PlyElement& element) {
     mesh_.triangles.reserve(element.count);
     for_items(element, [&] {
+      std::optional<std::int32_t> value;
       for (const PlyProperty& property : element.properties) {
         const bool corners = property.name == "vertex_indices" || property.name == "vertex_index";
         if (corners && property.count_type)
           read_polygon(property);
+        else if (property.name == face_value_ && !property.count_type)
+          value = read_whole_number(property);
         else
           skip(property);
       }
+      if (value) values_.resize(mesh_.triangles.size(), *value);
     });
+  }
+
+  std::int32_t read_whole_number(const PlyProperty& property) {
+    const double value = cursor_.next(property.type);
+    const bool fits = std::abs(value) <= std::numeric_limits<std::int32_t>::max();
+    if (!fits || value != std::floor(value))
+      throw Error(concat("its ", property.name, " ", value, " is no whole number of 32 bits"));
+    return static_cast<std::int32_t>(value);
   }
 
   void read_polygon(const PlyProperty& property) {
@@ -265,7 +282,9 @@ class PlyReader {
 
   PlyHeader header_;
   PlyCursor cursor_;
+  std::string face_value_;
   Mesh mesh_;
+  std::vector<std::int32_t> values_;  ///< of face_value_, one a triangle
 };
 
 template <class Number>
@@ -320,12 +339,25 @@ void write_ply(const std::filesystem::path& path, const Mesh& mesh) {
   write_file(path, encode_ply(mesh));
 }
 
-Mesh decode_ply(std::span<const std::uint8_t> bytes, const std::string& name) {
+namespace {
+
+ValuedMesh decode_with(std::span<const std::uint8_t> bytes, const std::string& name,
+                       const std::string& face_value) {
   try {
-    return PlyReader(bytes).read();
+    return PlyReader(bytes, face_value).read();
   } catch (const Error& fault) {
     throw Error(concat("cannot read the PLY file '", name, "': ", fault.what()));
   }
+}
+
+}  // namespace
+
+Mesh decode_ply(std::span<const std::uint8_t> bytes, const std::string& name) {
+  return decode_with(bytes, name, {}).mesh;
+}
+
+ValuedMesh read_ply_with(const std::filesystem::path& path, const std::string& name) {
+  return decode_with(read_file(path), path.string(), name);
 }
 
 Mesh read_ply(const std::filesystem::path& path) {

@@ -26,4 +26,13 @@ Mesh read_ply(const std::filesystem::path& path);
 /// The same from memory; `name` is what an error calls the file.
 Mesh decode_ply(std::span<const std::uint8_t> bytes, const std::string& name);
 
+/// A mesh and a whole number for each of its triangles.
+struct ValuedMesh {
+  Mesh mesh;
+  std::vector<std::int32_t> values;
+};
+/// Reads PLY as read_ply does, with the faces' property `name`: every triangle has its polygon's.
+/// Throws Error also when the faces lack the property.
+ValuedMesh read_ply_with(const std::filesystem::path& path, const std::string& name);
+
 }  // namespace ovimap

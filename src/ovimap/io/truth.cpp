@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/io/truth.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -13,6 +14,7 @@
 #include "ovimap/base/error.h"
 #include "ovimap/image/codec.h"
 #include "ovimap/io/ply.h"
+#include "ovimap/io/truth_replica.h"
 #include "ovimap/io/truth_scannet.h"
 
 namespace ovimap {
@@ -20,6 +22,8 @@ namespace ovimap {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::int32_t kReplicaUnlabelled = 256;  // of the published labels, besides -1 and -2
 
 /// Whole numbers separated by white space; also those that were written as 1.2e+01.
 std::vector<std::int32_t> read_labels(const fs::path& path) {
@@ -73,23 +77,6 @@ void read_names(const fs::path& path, Truth& truth) {
   }
 }
 
-/// Replica's own description: {"classes": [{"id": 1, "name": "backpack"}], "objects": [{"id": 12,
-/// "class_name": "sofa"}]}.
-void read_replica_names(const fs::path& path, Truth& truth) {
-  const Bytes bytes = read_file(path);
-  try {
-    const nlohmann::json document = nlohmann::json::parse(bytes.begin(), bytes.end());
-    for (const auto& entry : document.at("classes"))
-      truth.class_names[entry.at("id").get<std::int32_t>()] = entry.at("name").get<std::string>();
-    for (const auto& object : document.at("objects"))
-      truth.instance_names[object.at("id").get<std::int32_t>()] =
-          object.at("class_name").get<std::string>();
-  } catch (const nlohmann::json::exception&) {
-    throw Error(concat("'", path.string(), "' is not Replica's info_semantic.json: expected are ",
-                       "classes with id and name, and objects with id and class_name"));
-  }
-}
-
 /// The folder of a recording, "ROOT/SCENE" also when it was given as "ROOT/SCENE/" or ".".
 fs::path scene_folder(const fs::path& source) {
   std::error_code fault;
@@ -110,17 +97,31 @@ fs::path existing(const fs::path& path, const fs::path& source) {
 void find_names(const fs::path& folder, Truth& truth) {
   for (const fs::path& names : {folder / "labels.json", folder.parent_path() / "labels.json"})
     if (fs::exists(names)) return read_names(names, truth);
-  for (const fs::path& names :
-       {folder / "info_semantic.json", folder / "habitat" / "info_semantic.json"})
-    if (fs::exists(names)) return read_replica_names(names, truth);
+  for (const fs::path& place : replica_annotation_folders(folder))
+    if (const fs::path names = place / "info_semantic.json"; fs::exists(names)) {
+      std::replace(truth.classes.begin(), truth.classes.end(), kReplicaUnlabelled, 0);
+      return read_replica_names(names, truth);
+    }
+}
+
+/// The labels of each vertex, in ROOT or in the folder in which they are published for the pack.
+fs::path find_labels(const fs::path& root, const std::string& name, const char* published_in) {
+  const fs::path published = root / published_in / name;
+  return fs::exists(root / name) || !fs::exists(published) ? root / name : published;
 }
 
 Truth load_replica_truth(const fs::path& folder, const fs::path& source) {
   const fs::path root = folder.parent_path();
   const std::string scene = folder.filename().string();
+  const fs::path instance_path =
+      find_labels(root, "instance_labels_" + scene + ".txt", "replica_gt_instances");
+  const fs::path class_path =
+      find_labels(root, "semantic_labels_" + scene + ".txt", "replica_gt_semantics");
+  if (!fs::exists(instance_path))
+    if (const fs::path mesh = find_replica_semantic_mesh(folder); !mesh.empty())
+      return load_replica_semantic_mesh(mesh);
   const fs::path mesh_path = existing(root / (scene + "_mesh.ply"), source);
-  const fs::path instance_path = existing(root / ("instance_labels_" + scene + ".txt"), source);
-  const fs::path class_path = root / ("semantic_labels_" + scene + ".txt");
+  existing(instance_path, source);
   Truth truth;
   truth.mesh = read_ply(mesh_path);
   truth.mesh.labels.clear();

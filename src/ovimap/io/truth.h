@@ -34,8 +34,10 @@ enum class ScanNetClasses {
 ///   semantic_labels_SCENE.txt (one whole number per vertex), and for names either labels.json
 ///   {"instances": {"12": "sofa"}, "classes": {"1": "sofa"}} or the data set's own
 ///   info_semantic.json.
-/// A labels.json in ROOT/SCENE goes before the one in ROOT; info_semantic.json (in ROOT/SCENE or
-/// its folder habitat) comes last. Throws Error naming the file that is missing or broken.
+/// A labels.json in ROOT/SCENE goes before the one in ROOT; info_semantic.json comes last. Labels
+/// may also lie in ROOT/replica_gt_instances and ROOT/replica_gt_semantics. Without those of the
+/// instances the data set's own mesh_semantic.ply is taken (io/truth_replica.h, which says where).
+/// Throws Error naming the file that is missing or broken.
 Truth load_truth(const std::filesystem::path& source,
                  ScanNetClasses scannet_classes = ScanNetClasses::kScanNet200);
 
