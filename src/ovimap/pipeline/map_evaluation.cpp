@@ -147,8 +147,12 @@ LabelSet chosen_set(const std::vector<Draft>& drafts, const std::string& classes
   return label_set_of(truths);
 }
 
-SemanticClasses numbers_of(const LabelSet& set) {
+/// The paper's released code scores instances of all of ScanNet's classes; its benchmark and
+/// Replica's leave out what is stuff.
+SemanticClasses numbers_of(const LabelSet& set, Protocol protocol) {
   SemanticClasses classes{static_cast<int>(set.labels.size()), {}};
+  const bool scannet = set.built_in && set.name.starts_with("scannet");
+  if (protocol == Protocol::kReference && scannet) return classes;
   for (const std::size_t label : stuff_labels(set))
     classes.stuff.push_back(static_cast<std::int32_t>(label) + 1);
   return classes;
@@ -207,7 +211,7 @@ SemanticReport semantic_report(const Evaluation& evaluation, std::size_t first, 
     scenes.back().instances = labelled_scene(scene, protocol);
     queries += scene.embedding_queries, instances += scene.embedded_instances;
   }
-  const SemanticClasses classes = numbers_of(*evaluation.classes);
+  const SemanticClasses classes = numbers_of(*evaluation.classes, protocol);
   SemanticReport report;
   report.classes = protocol == Protocol::kStandard
                        ? standard_class_scores(scenes, classes)
