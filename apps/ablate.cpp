@@ -7,10 +7,10 @@
 #include <set>
 
 #include "ablation.h"
+#include "kept_settings.h"
 #include "mapping_run.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/base/version.h"
-#include "ovimap/image/codec.h"
 #include "ovimap/io/map_file.h"
 #include "ovimap/io/truth.h"
 #include "ovimap/pipeline/geometry_embedding.h"
@@ -131,10 +131,6 @@ AblationResult measure(const AblateOptions& options, const Ablation& ablation,
   return {variant.name, figures_of(evaluation, config, {})};
 }
 
-void write_text(const fs::path& path, const std::string& text) {
-  write_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-}
-
 std::string heading(const AblateOptions& options) {
   std::string scenes;
   for (const std::string& scene : options.scenes)
@@ -142,20 +138,6 @@ std::string heading(const AblateOptions& options) {
   return concat("`ovimap ablate ", options.name, "`, masks ", options.mapping.masks,
                 ", percent, scenes pooled: ", scenes, ". ", version(), " (", commit(),
                 "). Published figures are the paper's, with its own networks on its own data.");
-}
-
-/// Maps are kept by their variant's name alone; what all variants share must not change.
-void require_same_settings(const AblateOptions& options) {
-  std::string text = concat("masks ", options.mapping.masks, "\nencoder ", options.mapping.encoder,
-                            "\nframes ", options.mapping.frames, "\n");
-  for (const std::string& setting : options.mapping.settings) text += "set " + setting + "\n";
-  const fs::path file = options.out / "settings.txt";
-  if (!fs::exists(file)) return write_text(file, text);
-  const Bytes kept = read_file(file);
-  if (!std::equal(kept.begin(), kept.end(), text.begin(), text.end()))
-    throw Error(concat(options.out.string(),
-                       " holds maps made with other options (settings.txt lists them); choose "
-                       "another folder"));
 }
 
 /// A model that is missing or damaged is said now, not when its turn comes.
@@ -194,7 +176,7 @@ int ablate(const AblateOptions& options) {
     if (!timing) load_truth(scene);
   require_models(options, ablation);
   make_folder(options.out);
-  require_same_settings(options);
+  require_same_settings(options.out, settings_text(options.mapping));
   watch_for_interrupt();
   if (timing) return time_stages(options);
   std::vector<AblationResult> results;
