@@ -56,6 +56,8 @@ MappingOptions options_of(const AblateOptions& options, const AblationVariant& v
   if (!variant.encoder.empty()) mapping.encoder = variant.encoder;
   if (!variant.views.empty()) mapping.views = variant.views;
   if (variant.frames != ":") mapping.frames = variant.frames;
+  // What is compared without 2D masks is compared in words as well.
+  if (variant.masks == "none" && mapping.encoder == "auto") mapping.encoder = "default";
   mapping.settings.insert(mapping.settings.end(), variant.settings.begin(), variant.settings.end());
   return mapping;
 }
@@ -128,7 +130,7 @@ AblationResult measure(const AblateOptions& options, const Ablation& ablation,
   evaluation_options.runtime.threads = options.mapping.threads;
   const EvaluationConfig config;
   const Evaluation evaluation = evaluate_maps(pairs, evaluation_options, config);
-  return {variant.name, figures_of(evaluation, config, {})};
+  return {variant, figures_of(evaluation, config, {})};
 }
 
 std::string heading(const AblateOptions& options) {
@@ -145,11 +147,11 @@ void require_models(const AblateOptions& options, const Ablation& ablation) {
   std::set<std::pair<std::string, std::string>> tried;
   for (const AblationVariant& variant : ablation.variants) {
     MappingOptions mapping = options_of(options, variant, options.scenes.front());
-    if (variant.true_objects || mapping.masks == "gt") mapping.masks = "none";
     if (!tried.emplace(mapping.masks, mapping.encoder).second) continue;
     const ProgramConfig config = read_program_config(mapping);
-    make_mask_source(mapping.masks, config.masks, {nullptr, mapping.model_dirs});
     make_encoder(mapping, config);
+    if (variant.true_objects || mapping.masks == "gt") continue;
+    make_mask_source(mapping.masks, config.masks, {nullptr, mapping.model_dirs});
   }
 }
 
@@ -185,7 +187,9 @@ int ablate(const AblateOptions& options) {
   const std::string table = ablation_markdown(ablation, results, heading(options));
   write_text(options.out / (options.name + ".md"), table);
   write_text(options.out / (options.name + ".csv"), ablation_csv(ablation, results));
-  write_text(options.out / (options.name + ".svg"), ablation_svg(ablation, results));
+  write_text(options.out / (options.name + ".svg"), ablation.along_frames
+                                                        ? ablation_curves(ablation, results)
+                                                        : ablation_bars(ablation, results));
   if (options.json)
     print_json({{"table", (options.out / (options.name + ".csv")).string()},
                 {"picture", (options.out / (options.name + ".svg")).string()}});

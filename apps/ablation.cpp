@@ -2,15 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ablation.h"
 
-#include <limits>
-
 #include "ovimap/base/config.h"
 
 namespace ovimap::apps {
 
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kPercent = 100;
 
 const SemanticReport* semantic(const EvalFigures& figures, Protocol protocol) {
@@ -73,12 +70,7 @@ Ablation views() {
                        of_views("true objects, pixels", "vis", true),
                        of_views("true objects, coverage", "viewcov", true),
                        of_views("true objects, default", "default", true)};
-  const std::string replica = "Replica";
-  ablation.published = {{"random", replica, {23.8, 30.4, 31.4, 18.6, 50.3}},
-                        {"pixels", replica, {26.5, 31.8, 33.2, 19.8, 18.7}},
-                        {"coverage", replica, {26.5, 32.2, 34.5, 21.2, 8.6}},
-                        {"true objects, pixels", replica, {38.0, 50.3, 37.6, 37.6, 20.7}},
-                        {"true objects, coverage", replica, {37.6, 48.4, 36.2, 36.2, 10.4}}};
+  ablation.published = published_views();
   return ablation;
 }
 
@@ -86,33 +78,33 @@ AblationVariant of_masks(std::string name, std::string masks) {
   AblationVariant variant;
   variant.name = std::move(name);
   variant.masks = std::move(masks);
-  variant.encoder = "none";
   return variant;
 }
 
 Ablation masks(const std::vector<std::string>& models) {
   Ablation ablation{"masks", "Where the 2D entities come from", {}, {}, {}, false};
-  ablation.columns = {kObjectMiou, kObjectAp75, kObjectAp50, kObjectAp25};
+  ablation.columns = {kObjectMiou, kObjectAp75, kObjectAp50, kObjectAp25,
+                      kMiou,       kMacc,       kAp25,       kAp50};
   ablation.variants = {of_masks("none: depth alone", "none"), of_masks("sam: MobileSAM", "sam")};
   for (const std::string& model : models) ablation.variants.push_back(of_masks(model, model));
   ablation.variants.push_back(of_masks("gt: true 2D masks", "gt"));
-  const std::string replica = "Replica";
-  ablation.published = {{"SAM 2", replica, {36.6, 14.2, 27.8, kNone}},
-                        {"CropFormer", replica, {36.3, 22.0, 50.8, 76.7}},
-                        {"true 2D masks", replica, {53.9, 38.8, 65.7, kNone}}};
+  ablation.variants.push_back(of_masks("true objects", "gt"));
+  ablation.variants.back().true_objects = true;
+  ablation.published = published_masks();
   return ablation;
 }
 
 Ablation fusion() {
   Ablation ablation{"fusion", "How the embeddings of an object's views become one", {}, {}, {},
                     false};
-  ablation.columns = {kMiou, kMacc, kAp25, kAp50};
+  ablation.columns = {kMiou, kMacc, kAp25, kAp50, kAp};
   for (const char* rule : {"pixel_weighted", "mean", "max_cosine", "min_l1"}) {
     AblationVariant variant;
     variant.name = rule;
     variant.settings = {std::string("views.fusion=") + rule};
     ablation.variants.push_back(variant);
   }
+  ablation.published = published_fusion();
   return ablation;
 }
 
@@ -125,18 +117,23 @@ Ablation encoder(const std::vector<std::string>& encoders) {
     variant.name = variant.encoder = name;
     ablation.variants.push_back(variant);
   }
+  ablation.published = published_encoders();
   return ablation;
 }
 
+/// The paper's figure has no table: its curves cannot be printed beside ours.
 Ablation incremental() {
   Ablation ablation{"incremental", "Figures as the recording goes on", {}, {}, {}, true};
-  ablation.columns = {kObjectMiou, kObjectAp50, kMiou, kAp50};
-  for (const int frames : {25, 50, 100, 150, 200}) {
-    AblationVariant variant;
-    variant.name = std::to_string(frames);
-    variant.frames = ":" + std::to_string(frames);
-    ablation.variants.push_back(variant);
-  }
+  ablation.columns = {kObjectMiou, kObjectAp50, kMiou, kMacc, kAp25, kAp50, kQueries};
+  for (const auto& [curve, strategy] :
+       {std::pair{"coverage", "viewcov"}, std::pair{"pixels", "vis"}})
+    for (const int frames : {25, 50, 100, 150, 200}) {
+      AblationVariant variant = of_views(concat(curve, ", ", frames), strategy);
+      variant.frames = concat(":", frames);
+      variant.curve = curve;
+      variant.frame_count = frames;
+      ablation.variants.push_back(std::move(variant));
+    }
   return ablation;
 }
 
@@ -161,6 +158,10 @@ Ablation schedule() {
 }
 
 }  // namespace
+
+std::vector<AblationColumn> comparison_columns() {
+  return {kObjectMiou, kObjectAp75, kObjectAp50, kObjectAp25, kMiou, kMacc, kAp25, kAp50, kAp};
+}
 
 std::vector<std::string> ablation_names() {
   return {"views", "masks", "fusion", "encoder", "incremental", "schedule"};

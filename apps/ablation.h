@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "eval_report.h"
+#include "published.h"
 
 namespace ovimap::apps {
 
@@ -17,12 +18,8 @@ struct AblationVariant {
   std::vector<std::string> settings;  ///< "a.b=c"
   std::string frames = ":";
   bool true_objects = false;  ///< embeds the truth's own objects and maps nothing
-};
-
-/// A row of a table in the literature, percent; NaN where there is none.
-struct PublishedRow {
-  std::string name, where;
-  std::vector<double> figures;
+  std::string curve = {};     ///< of a variant that is one point of a curve: which one
+  int frame_count = 0;        ///< ... and where on it
 };
 
 /// A figure of an evaluation, percent (AQ: a number).
@@ -37,8 +34,12 @@ struct Ablation {
   std::vector<AblationColumn> columns;
   std::vector<AblationVariant> variants;
   std::vector<PublishedRow> published;
-  bool along_frames = false;  ///< variants are lengths of the recording: draw a curve
+  bool along_frames = false;  ///< variants are points of curves along the recording
 };
+
+/// The columns of the paper's two comparisons: instances' mIoU, AP75, AP50, AP25, then classes'
+/// mIoU, mAcc, AP25, AP50, AP.
+std::vector<AblationColumn> comparison_columns();
 
 /// "views", "masks", "fusion", "encoder", "incremental", "schedule"; "timing" is a table apart.
 inline constexpr const char* kTiming = "timing";
@@ -54,7 +55,7 @@ Ablation make_ablation(const std::string& name, const AblationChoice& choice);
 
 /// A variant's figures on all scenes, both protocols.
 struct AblationResult {
-  std::string variant;
+  AblationVariant variant;
   EvalFigures figures;
 };
 
@@ -64,7 +65,9 @@ std::string ablation_markdown(const Ablation& ablation, const std::vector<Ablati
 std::string timing_markdown(const std::vector<std::filesystem::path>& maps,
                             const std::string& heading);
 std::string ablation_csv(const Ablation& ablation, const std::vector<AblationResult>& results);
-/// Bars by variant, or curves along the frames, of the standard protocol: SVG.
-std::string ablation_svg(const Ablation& ablation, const std::vector<AblationResult>& results);
+/// Bars by variant, of the standard protocol: SVG.
+std::string ablation_bars(const Ablation& ablation, const std::vector<AblationResult>& results);
+/// A panel for each column with a curve along the frames for each AblationVariant::curve: SVG.
+std::string ablation_curves(const Ablation& ablation, const std::vector<AblationResult>& results);
 
 }  // namespace ovimap::apps

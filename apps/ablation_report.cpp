@@ -6,27 +6,19 @@
 #include <cstdio>
 
 #include "ablation.h"
+#include "svg.h"
 
 namespace ovimap::apps {
 
 namespace {
 
 constexpr std::array kProtocols = {Protocol::kStandard, Protocol::kReference};
-// Wong, "Points of view: Color blindness", Nature Methods 8, 2011.
-constexpr std::array kColors = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00"};
-
 const char* protocol_name(Protocol protocol) {
   return protocol == Protocol::kStandard ? "standard" : "reference";
 }
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f", value);
-  return std::isfinite(value) ? text : "-";
-}
-
 std::string cell(const std::optional<double>& value) {
-  return value ? number(*value) : "-";
+  return value ? one_decimal(*value) : "-";
 }
 
 /// CSV: quotes around what holds a comma or a quote.
@@ -37,28 +29,12 @@ std::string field(const std::string& text) {
   return quoted + "\"";
 }
 
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text)
-    result += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
-  return result;
-}
-
-struct Point {
-  double x = 0, y = 0;
-};
-
 /// Pictures of 760 x 360 units; the plot itself leaves room for a scale and a legend.
 constexpr double kWidth = 760, kHeight = 360, kLeft = 50, kRight = 20, kTop = 40, kBottom = 60;
 constexpr double kCharacter = 6.2;  ///< mean width of one
 
 double plot_y(double value, double most) {
   return kHeight - kBottom - (kHeight - kBottom - kTop) * value / most;
-}
-
-std::string text_at(Point at, const std::string& text, const char* anchor = "middle") {
-  return concat("<text x=\"", at.x, "\" y=\"", at.y, "\" text-anchor=\"", anchor, "\">",
-                escaped(text), "</text>\n");
 }
 
 std::string scale_lines(double most) {
@@ -68,18 +44,19 @@ std::string scale_lines(double most) {
     const double value = most * i / kLines, y = plot_y(value, most);
     svg += concat("<line x1=\"", kLeft, "\" y1=\"", y, "\" x2=\"", kWidth - kRight, "\" y2=\"", y,
                   "\" stroke=\"#ddd\"/>\n");
-    svg += text_at({kLeft - 8, y + 4}, number(value), "end");
+    svg += svg_text({kLeft - 8, y + 4}, one_decimal(value), "end");
   }
   return svg;
 }
 
 std::string legend(const std::vector<AblationColumn>& columns) {
   std::string svg;
+  const double step = std::min(110.0, (kWidth - kLeft) / static_cast<double>(columns.size()));
   double x = kLeft;
-  for (std::size_t c = 0; c < columns.size(); ++c, x += 110) {
+  for (std::size_t c = 0; c < columns.size(); ++c, x += step) {
     svg += concat("<rect x=\"", x, "\" y=\"14\" width=\"12\" height=\"12\" fill=\"",
-                  kColors[c % kColors.size()], "\"/>\n");
-    svg += text_at({x + 18, 24}, columns[c].name, "start");
+                  kSvgColors[c % kSvgColors.size()], "\"/>\n");
+    svg += svg_text({x + 18, 24}, columns[c].name, "start");
   }
   return svg;
 }
@@ -106,34 +83,15 @@ std::string bars(const std::vector<AblationColumn>& columns,
       const double y = plot_y(value_of(columns[c], results[r]), most);
       svg += concat("<rect x=\"", left + bar * static_cast<double>(c), "\" y=\"", y, "\" width=\"",
                     0.9 * bar, "\" height=\"", kHeight - kBottom - y, "\" fill=\"",
-                    kColors[c % kColors.size()], "\"/>\n");
+                    kSvgColors[c % kSvgColors.size()], "\"/>\n");
     }
     // Long names take two lines by turns, so that neighbours do not meet, and end in the picture.
-    const double half = 0.5 * kCharacter * static_cast<double>(results[r].variant.size());
-    svg += text_at({std::min(left + 0.4 * group, kWidth - half),
+    const double half = 0.5 * kCharacter * static_cast<double>(results[r].variant.name.size());
+    svg += svg_text({std::min(left + 0.4 * group, kWidth - half),
                     kHeight - kBottom + (r % 2 == 0 ? 20.0 : 38.0)},
-                   results[r].variant);
+                   results[r].variant.name);
   }
   return svg;
-}
-
-std::string curves(const std::vector<AblationColumn>& columns,
-                   const std::vector<AblationResult>& results, double most) {
-  std::string svg;
-  const double last = std::stod(results.back().variant);
-  const auto x_of = [&](const AblationResult& result) {
-    return kLeft + (kWidth - kLeft - kRight) * std::stod(result.variant) / last;
-  };
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    std::string points;
-    for (const AblationResult& result : results)
-      points += concat(x_of(result), ",", plot_y(value_of(columns[c], result), most), " ");
-    svg += concat("<polyline points=\"", points, "\" fill=\"none\" stroke-width=\"2.5\" stroke=\"",
-                  kColors[c % kColors.size()], "\"/>\n");
-  }
-  for (const AblationResult& result : results)
-    svg += text_at({x_of(result), kHeight - kBottom + 20}, result.variant);
-  return svg + text_at({kWidth / 2, kHeight - 14}, "frames");
 }
 
 }  // namespace
@@ -148,14 +106,14 @@ std::string ablation_markdown(const Ablation& ablation, const std::vector<Ablati
   text += "\n";
   for (const Protocol protocol : kProtocols)
     for (const AblationResult& result : results) {
-      text += concat("| ", result.variant, " | ", protocol_name(protocol), " |");
+      text += concat("| ", result.variant.name, " | ", protocol_name(protocol), " |");
       for (const AblationColumn& column : ablation.columns)
         text += concat(" ", cell(column.figure(result.figures, protocol)), " |");
       text += "\n";
     }
   for (const PublishedRow& row : ablation.published) {
     text += concat("| ", row.name, " | *published, ", row.where, "* |");
-    for (const double figure : row.figures) text += concat(" *", number(figure), "* |");
+    for (const double figure : row.figures) text += concat(" *", one_decimal(figure), "* |");
     text += "\n";
   }
   return text;
@@ -167,7 +125,7 @@ std::string ablation_csv(const Ablation& ablation, const std::vector<AblationRes
   text += "\n";
   for (const AblationResult& result : results)
     for (const Protocol protocol : kProtocols) {
-      text += concat(field(result.variant), ",", protocol_name(protocol), ",measured");
+      text += concat(field(result.variant.name), ",", protocol_name(protocol), ",measured");
       for (const AblationColumn& column : ablation.columns) {
         const auto figure = column.figure(result.figures, protocol);
         text += figure ? concat(",", *figure) : ",";
@@ -183,7 +141,7 @@ std::string ablation_csv(const Ablation& ablation, const std::vector<AblationRes
   return text;
 }
 
-std::string ablation_svg(const Ablation& ablation, const std::vector<AblationResult>& results) {
+std::string ablation_bars(const Ablation& ablation, const std::vector<AblationResult>& results) {
   const std::vector<AblationColumn> columns = percentages(ablation);
   double most = 0;
   for (const AblationResult& result : results)
@@ -194,9 +152,7 @@ std::string ablation_svg(const Ablation& ablation, const std::vector<AblationRes
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 ", kWidth, " ", kHeight,
       "\" font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"100%\" "
       "height=\"100%\" fill=\"#fff\"/>\n",
-      legend(columns), scale_lines(most),
-      ablation.along_frames ? curves(columns, results, most) : bars(columns, results, most),
-      "</svg>\n");
+      legend(columns), scale_lines(most), bars(columns, results, most), "</svg>\n");
 }
 
 }  // namespace ovimap::apps

@@ -28,25 +28,41 @@ TEST_F(AblateProgramTest, ComparesFusionRules) {
   EXPECT_EQ(result.out, slurp(path("out/fusion.md")));
   EXPECT_EQ(lines_with("out/fusion.md", "| pixel_weighted |"), 2u);  // one a protocol
   EXPECT_EQ(lines_with("out/fusion.csv", ",measured,"), 8u);
-  EXPECT_EQ(lines_with("out/fusion.svg", "<rect"), 1 + 4 + 4 * 4u);
+  EXPECT_EQ(lines_with("out/fusion.csv", "\"published, Replica\",26.9,33.2,36.4,22,8.6"), 1u);
+  EXPECT_EQ(lines_with("out/fusion.svg", "<rect"), 1 + 5 + 4 * 5u);
   EXPECT_EQ(slurp(path("out/fusion.svg")).find("nan"), std::string::npos);
 }
 
 TEST_F(AblateProgramTest, PrintsPublishedRowsApart) {
   ASSERT_EQ(run(command("views")).code, 0);
   EXPECT_EQ(lines_with("out/views.md", "*published, Replica*"), 5u);
+  EXPECT_EQ(lines_with("out/views.md", "*published, ScanNet*"), 5u);
   EXPECT_EQ(lines_with("out/views.md", "| true objects, coverage | standard |"), 1u);
   EXPECT_EQ(lines_with("out/views.csv", "\"published, Replica\",26.5,32.2,34.5,21.2,8.6"), 1u);
 }
 
+TEST_F(AblateProgramTest, MasksAreComparedInWordsToo) {
+  if (run("models verify mobilesam").code != 0) GTEST_SKIP() << "MobileSAM is not installed";
+  const ProgramResult result = run(command("masks"));
+  ASSERT_EQ(result.code, 0) << result.err;
+  // The true objects are the truth, and every row has figures of classes, also that without masks.
+  EXPECT_EQ(lines_with("out/masks.md", "| true objects | standard | 100.0 | 100.0 | 100.0 | 100.0"),
+            1u);
+  EXPECT_EQ(lines_with("out/masks.md", "| none: depth alone | standard |"), 1u);
+  EXPECT_EQ(lines_with("out/masks.csv", ",,"), 5u) << "only published figures lack some";
+  EXPECT_EQ(lines_with("out/masks.md", "| OVO-SLAM | *published, Replica* | *42.7*"), 1u);
+  EXPECT_EQ(lines_with("out/masks.md", "| Mask3D + OpenMask3D, offline | *published"), 1u);
+}
+
 TEST_F(AblateProgramTest, GoesOnWhereItStopped) {
   ASSERT_EQ(run(command("incremental")).code, 0);
-  const auto map = path("out/maps/incremental/scene-25.ovimap");
+  const auto map = path("out/maps/incremental/scene-coverage-25.ovimap");
   ASSERT_TRUE(std::filesystem::exists(map));
   const auto written = std::filesystem::last_write_time(map);
   ASSERT_EQ(run(command("incremental")).code, 0);
   EXPECT_EQ(std::filesystem::last_write_time(map), written);
-  EXPECT_EQ(lines_with("out/incremental.svg", "<polyline"), 4u);
+  EXPECT_EQ(lines_with("out/incremental.svg", "<polyline"), 7 * 2u);  // columns, curves
+  EXPECT_EQ(lines_with("out/incremental.md", "| pixels, 200 | standard |"), 1u);
   expect_complaint(command("incremental") + " --frames ::2", {"settings.txt", "another folder"});
 }
 
