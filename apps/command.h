@@ -44,6 +44,7 @@ Action add_models(CLI::App& command);
 Action add_reembed(CLI::App& command);
 Action add_embed(CLI::App& command);
 Action add_ablate(CLI::App& command);
+Action add_reproduce(CLI::App& command);
 Action add_serve(CLI::App& command);
 Action add_config(CLI::App& command);
 

@@ -33,6 +33,7 @@ constexpr Entry kCommands[] = {
     {"correct", "fuse a map's frames again, from corrected poses", add_correct},
     {"eval", "score maps against the truth", add_eval},
     {"ablate", "vary one choice and score the maps, beside published figures", add_ablate},
+    {"reproduce", "make the paper's tables from your own copy of its data", add_reproduce},
     {"bench", "measure speed and memory on a recording", add_bench},
 #ifdef OVIMAP_SYNTH
     {"synth", "render a furnished room with exact truth", add_synth},
