@@ -57,7 +57,8 @@ PaperScene find_scene(const fs::path& root, const std::string& scene, const std:
 PaperDataset paper_replica() {
   return {"Replica",
           "replica51",
-          {"office0", "office1", "office2", "office3", "office4", "room0", "room1", "room2"}};
+          {"office0", "office1", "office2", "office3", "office4", "room0", "room1", "room2"},
+          {"views.grid_rows=85", "views.grid_columns=150"}};
 }
 
 PaperDataset paper_scannet() {
@@ -66,7 +67,8 @@ PaperDataset paper_scannet() {
           {"scene0011_00", "scene0011_01", "scene0050_00", "scene0050_01", "scene0050_02",
            "scene0084_00", "scene0084_01", "scene0084_02", "scene0168_00", "scene0168_01",
            "scene0168_02", "scene0231_00", "scene0231_01", "scene0231_02", "scene0378_00",
-           "scene0378_01", "scene0378_02", "scene0518_00"}};
+           "scene0378_01", "scene0378_02", "scene0518_00"},
+          {"views.grid_rows=60", "views.grid_columns=80"}};
 }
 
 bool masks_by_scene(const std::string& masks) {

@@ -15,6 +15,7 @@ struct PaperDataset {
   std::string name;     ///< as published rows are marked
   std::string classes;  ///< the set its classes are projected onto
   std::vector<std::string> scenes;
+  std::vector<std::string> settings;  ///< of the released code that depend on the images' size
 };
 PaperDataset paper_replica();
 PaperDataset paper_scannet();

@@ -27,10 +27,20 @@ struct ReproduceOptions {
   bool json = false;
 };
 
-/// What one preset makes of a scene. The paper's main rows look at every frame that they take, and
-/// its Replica row is that of coverage alone (`viewcov`).
-MappingOptions mapping_of(const ReproduceOptions& options, const std::string& preset,
-                          const PaperScene& scene) {
+/// Settings that go before the user's. The paper's main rows look at every frame that they take;
+/// its view coverage has bins of eight by eight pixels.
+std::vector<std::string> paper_settings(const PaperDataset& dataset, const std::string& preset,
+                                        const std::string& views) {
+  std::vector<std::string> settings = {"mask_interval=1", "view_interval=1"};
+  if (preset == "reference" && views == "viewcov")
+    settings.insert(settings.end(), dataset.settings.begin(), dataset.settings.end());
+  return settings;
+}
+
+/// What one preset makes of a scene. The paper's row of Replica is that of coverage alone
+/// (`viewcov`).
+MappingOptions mapping_of(const ReproduceOptions& options, const PaperDataset& dataset,
+                          const std::string& preset, const PaperScene& scene) {
   MappingOptions mapping = options.mapping;
   mapping.source = scene.source.string();
   mapping.masks = scene.masks;
@@ -39,17 +49,13 @@ MappingOptions mapping_of(const ReproduceOptions& options, const std::string& pr
   mapping.views = !options.views.empty()  ? options.views
                   : preset == "reference" ? "viewcov"
                                           : "default";
-  const std::vector<std::string> every_frame = {"mask_interval=1", "view_interval=1"};
-  mapping.settings.insert(mapping.settings.begin(), every_frame.begin(), every_frame.end());
+  const auto before = paper_settings(dataset, preset, mapping.views);
+  mapping.settings.insert(mapping.settings.begin(), before.begin(), before.end());
   return mapping;
 }
 
-void map_scene(const ReproduceOptions& options, const std::string& preset, const PaperScene& scene,
-               const fs::path& map) {
-  const MappingOptions mapping = mapping_of(options, preset, scene);
-  const RunTarget target{map, true};
-  const MappingRun mapped =
-      map_recording(mapping, concat(scene.name, ", preset ", preset), {}, target);
+void map_scene(const MappingOptions& mapping, const std::string& title, const fs::path& map) {
+  const MappingRun mapped = map_recording(mapping, title, {}, RunTarget{map, true});
   if (interrupted())
     throw Error("interrupted; the same command goes on where this one stopped");
   report_faults(mapped);
@@ -58,16 +64,17 @@ void map_scene(const ReproduceOptions& options, const std::string& preset, const
 }
 
 /// Maps the scenes that have no map yet; returns the maps of all.
-std::vector<MapAndTruth> map_scenes(const ReproduceOptions& options, const std::string& preset,
-                                    const std::vector<PaperScene>& scenes) {
+std::vector<MapAndTruth> map_scenes(const ReproduceOptions& options, const Reproduction& made,
+                                    const std::string& preset) {
   const fs::path folder = options.out / "maps" / preset;
   make_folder(folder);
   std::vector<MapAndTruth> pairs;
-  for (const PaperScene& scene : scenes) {
+  for (const PaperScene& scene : made.found.scenes) {
     pairs.push_back({folder / (scene.name + ".ovimap"), scene.source});
     if (fs::exists(pairs.back().map)) continue;
     try {
-      map_scene(options, preset, scene, pairs.back().map);
+      map_scene(mapping_of(options, made.dataset, preset, scene),
+                concat(scene.name, ", preset ", preset), pairs.back().map);
     } catch (const Error& fault) {
       throw Error(interrupted() ? fault.what() : concat(scene.name, ": ", fault.what()));
     }
@@ -92,7 +99,7 @@ EvalFigures measure(const ReproduceOptions& options, const PaperDataset& dataset
 void reproduce_dataset(const ReproduceOptions& options, Reproduction& made) {
   std::string encoder;
   for (const std::string& preset : options.presets) {
-    const auto pairs = map_scenes(options, preset, made.found.scenes);
+    const auto pairs = map_scenes(options, made, preset);
     encoder = read_map_info(pairs.front().map).encoder.name;
     AblationVariant variant;
     variant.name = concat("ovimap, ", preset, " settings");
