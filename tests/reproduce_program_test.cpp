@@ -152,6 +152,7 @@ TEST_F(ReproduceProgramTest, GoesOnWhereItStopped) {
 
 TEST_F(ReproduceProgramTest, SaysWhatEachSceneLacks) {
   fs::copy(path("Replica/office0"), path("Replica/office1"), fs::copy_options::recursive);
+  write_ply(path("Replica/office1_mesh.ply"), mesh_);  // as the pack is, without labels
   fs::copy(path("Replica/office0"), path("Replica/office2"), fs::copy_options::recursive);
   label_pack("office2");  // but no masks
   const ProgramResult result = run(command("--replica Replica"));
