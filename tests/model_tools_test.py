@@ -4,6 +4,7 @@
 import collections
 import io
 import json
+import os
 import pathlib
 import pickle
 import struct
@@ -39,6 +40,16 @@ class Tensor:
 
     def __reduce__(self):
         return sys.modules["torch._utils"]._rebuild_tensor_v2, self.arguments
+
+
+class Command:
+    """Pickled, it runs a command of the shell where it is read."""
+
+    def __init__(self, line):
+        self.line = line
+
+    def __reduce__(self):
+        return os.system, (self.line,)
 
 
 class StatePickler(pickle.Pickler):
@@ -120,6 +131,31 @@ class ReadingTest(unittest.TestCase):
             self.read(torch_file(state, [("1", np.zeros(1, "<f4"))]))
         with self.assertRaisesRegex(weight_files.WeightFileError, "print"):
             self.read(pickle.dumps(print, protocol=2))
+
+    def test_no_part_of_a_file_may_name_code(self):
+        """Of the five pickles in a file, each is read by the same restricted reader."""
+        marker = pathlib.Path(tempfile.gettempdir()) / f"weight_files_{os.getpid()}"
+        code = pickle.dumps(Command(f"touch {marker}"), protocol=2)
+        whole = self.kernel_file()
+        keys = pickle.dumps(["9", "7"], protocol=2)
+        self.assertIn(keys, whole)
+        for data in (code, whole.replace(keys, code)):
+            with self.subTest(size=len(data)), self.assertRaisesRegex(weight_files.WeightFileError, "names (posix|os).system"):
+                self.read(data)
+        self.assertFalse(marker.exists())
+
+    def test_values_of_other_types_are_damage(self):
+        for changes in ({"offset": "1"}, {"shape": (2, "3")}, {"shape": 5}, {"strides": (None, 1)}, {"shape": (-2, -3)},
+                        {"shape": (10**12, 10**6), "strides": (0, 0)}):
+            with self.subTest(changes), self.assertRaises(weight_files.WeightFileError):
+                self.read(self.kernel_file(**changes))
+
+    def test_safetensors_of_other_types_are_damage(self):
+        for entry in ({"dtype": "F8", "shape": [1], "data_offsets": [0, 4]}, {"dtype": "F32", "shape": [2], "data_offsets": [0, 4]},
+                      {"dtype": "F32", "shape": [1], "data_offsets": [4]}, {"dtype": "F32"}, 7):
+            header = json.dumps({"a": entry}).encode()
+            with self.subTest(entry), self.assertRaises(weight_files.WeightFileError):
+                self.read(struct.pack("<Q", len(header)) + header + b"1234", weight_files.read_safetensors)
 
     def test_safetensors(self):
         header = json.dumps({

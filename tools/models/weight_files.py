@@ -4,6 +4,7 @@
 
 import collections
 import json
+import math
 import pathlib
 import pickle
 import struct
@@ -21,12 +22,16 @@ STORAGE_TYPES = {
 SAFETENSORS_TYPES = {"F32": "<f4", "F16": "<f2", "F64": "<f8", "I64": "<i8", "I32": "<i4"}
 
 
+# What a pickle, or values of other types than a plain file has, make of the code that reads it.
+DAMAGES = (pickle.UnpicklingError, EOFError, struct.error, ArithmeticError, AttributeError, LookupError, MemoryError, TypeError, ValueError)
+
+
 class WeightFileError(Exception):
     """The file is not what its reader takes; the message is for the user."""
 
 
 def _rebuild_tensor(storage, offset, shape, strides, *_):
-    return storage, offset, shape, strides
+    return storage, offset, tuple(shape), tuple(strides)
 
 
 class _StateReader(pickle.Unpickler):
@@ -50,12 +55,14 @@ class _StateReader(pickle.Unpickler):
 
 def _read_storages(file, types):
     storages = {}
-    for key in pickle.load(file):
+    for key in _StateReader(file).load():
         (count,) = struct.unpack("<q", file.read(8))
         dtype, expected = types[key]
+        if count != expected or count < 0:
+            raise WeightFileError(f"storage {key} has {count} numbers where {expected} are expected")
         data = file.read(count * dtype.itemsize)
-        if count != expected or len(data) != count * dtype.itemsize:
-            raise WeightFileError(f"storage {key} is cut short or of another size")
+        if len(data) != count * dtype.itemsize:
+            raise WeightFileError(f"storage {key} is cut short")
         storages[key] = np.frombuffer(data, dtype)
     return storages
 
@@ -63,8 +70,10 @@ def _read_storages(file, types):
 def _view(storage, offset, shape, strides):
     """The strided view that a tensor is of its storage, copied into plain row-major order."""
     last = offset + sum((n - 1) * s for n, s in zip(shape, strides)) if 0 not in shape else offset
-    if offset < 0 or any(s < 0 for s in strides) or last >= storage.size:
+    if offset < 0 or any(n < 0 for n in (*shape, *strides)) or last >= storage.size:
         raise WeightFileError("a tensor reaches beyond its storage")
+    if math.prod(shape) > storage.size:  # strides of 0 would repeat a number without end
+        raise WeightFileError("a tensor is larger than its storage")
     bytes_strides = [s * storage.itemsize for s in strides]
     view = np.lib.stride_tricks.as_strided(storage[offset:], shape, bytes_strides)
     return np.array(view, order="C")
@@ -82,9 +91,9 @@ def read_torch_file(path: pathlib.Path) -> dict:
             state = _StateReader(file).load()
             types = {t[0][0]: t[0][1:] for t in state.values()}
             storages = _read_storages(file, types)
-        except (pickle.UnpicklingError, EOFError, struct.error, KeyError) as error:
+            return {name: _view(storages[t[0][0]], *t[1:]) for name, t in state.items()}
+        except DAMAGES as error:
             raise WeightFileError(f"{path} is damaged or no PyTorch file ({error})") from error
-    return {name: _view(storages[t[0][0]], *t[1:]) for name, t in state.items()}
 
 
 def read_safetensors(path: pathlib.Path) -> dict:
@@ -96,12 +105,15 @@ def read_safetensors(path: pathlib.Path) -> dict:
     except (struct.error, ValueError) as error:
         raise WeightFileError(f"{path} is no safetensors file ({error})") from error
     tensors = {}
-    for name, entry in header.items():
-        if name == "__metadata__":
-            continue
-        begin, end = (8 + length + offset for offset in entry["data_offsets"])
-        if end > len(data):
-            raise WeightFileError(f"{path} is cut short: it lacks {name}")
-        array = np.frombuffer(data[begin:end], SAFETENSORS_TYPES[entry["dtype"]])
-        tensors[name] = array.reshape(entry["shape"])
+    try:
+        for name, entry in header.items():
+            if name == "__metadata__":
+                continue
+            begin, end = (8 + length + offset for offset in entry["data_offsets"])
+            if end > len(data):
+                raise WeightFileError(f"{path} is cut short: it lacks {name}")
+            array = np.frombuffer(data[begin:end], SAFETENSORS_TYPES[entry["dtype"]])
+            tensors[name] = array.reshape(entry["shape"])
+    except DAMAGES as error:
+        raise WeightFileError(f"{path} is damaged or no safetensors file ({error})") from error
     return tensors
