@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 
+#include "ovimap/base/error.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/map/integrate.h"
 #include "ovimap/map/pixel_rays.h"
@@ -18,6 +19,18 @@ constexpr std::size_t kRowsPerTask = 32;
 void sort_unique(std::vector<std::uint64_t>& keys) {
   std::sort(keys.begin(), keys.end());
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+}
+
+/// Throws Error where blocks lie so far out that their keys would be those of others (pack_index).
+void check_reach(const VoxelMapConfig& config, const Pose& world_from_camera) {
+  constexpr double kUsed = 0.95;  // the rest is for what the camera sees
+  const double reach_m = kUsed * (1 << 20) * static_cast<double>(config.block_size_m()),
+               away_m = world_from_camera.translation().cwiseAbs().maxCoeff();
+  if (!(away_m < reach_m))
+    throw Error(concat("the camera is ", away_m, " m from the origin, and a map of voxels of ",
+                       config.voxel_size_m, " m reaches ", reach_m,
+                       " m; subtract an offset from all poses, or take larger voxels "
+                       "(map.voxel_size_m)"));
 }
 
 /// Block keys, with most repetitions left out: neighbouring pixels run through the same blocks.
@@ -92,6 +105,7 @@ class BandBlocks {
 std::vector<std::uint32_t> allocate_blocks(VoxelMap& map, const DepthImage& depth,
                                            const PinholeCamera& camera,
                                            const Pose& world_from_camera) {
+  check_reach(map.config(), world_from_camera);
   const BandBlocks band(map.config(), camera, world_from_camera);
   const auto rows = static_cast<std::size_t>(depth.height());
   std::vector<std::vector<std::uint64_t>> keys((rows + kRowsPerTask - 1) / kRowsPerTask);

@@ -146,6 +146,25 @@ TEST(Integrate, IgnoresInvalidDepth) {
   EXPECT_EQ(map.block_count(), 0u);
 }
 
+TEST(AllocateBlocks, RefusesBlocksThatWouldHaveTheKeysOfOthers) {
+  const PinholeCamera camera{8, 6, 8.f, 8.f, 3.5f, 2.5f};
+  const DepthImage depth(8, 6, 1.f);
+  VoxelMapConfig config;
+  config.voxel_size_m = 0.001f;
+  VoxelMap map(config);
+  Pose pose = Pose::Identity();
+  pose.translation().y() = -7900;
+  for (const std::uint32_t slot : allocate_blocks(map, depth, camera, pose))
+    EXPECT_LT(map.block_index(slot).y(), 0);
+  pose.translation().y() = -9000;  // of poses up to 10 km are taken
+  try {
+    allocate_blocks(map, depth, camera, pose);
+    FAIL();
+  } catch (const Error& fault) {
+    EXPECT_NE(std::string(fault.what()).find("9000 m from the origin"), std::string::npos);
+  }
+}
+
 TEST(AllocateBlocks, CoversTheBandOfEveryPixel) {
   const SphereScene scene;
   VoxelMap map;

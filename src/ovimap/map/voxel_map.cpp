@@ -42,8 +42,10 @@ void list_fields(VoxelMapConfig& config, ConfigFields& fields) {
              "distance from the surface within which voxels take labels, voxels");
 }
 
-VoxelMap::VoxelMap(const VoxelMapConfig& config)
-    : config_(config), metres_per_unit_(config.truncation_m() / VoxelBlock::kTsdfScale) {}
+VoxelMap::VoxelMap(const VoxelMapConfig& config, std::size_t most_blocks)
+    : config_(config),
+      most_blocks_(std::min(most_blocks, VoxelRef::kMostBlocks)),
+      metres_per_unit_(config.truncation_m() / VoxelBlock::kTsdfScale) {}
 
 std::size_t VoxelMap::KeyHash::operator()(std::uint64_t key) const {
   key *= 0x9e3779b97f4a7c15ull;
@@ -77,6 +79,11 @@ std::uint32_t& VoxelMap::place_of(const BlockIndex& index) {
 }
 
 std::uint32_t VoxelMap::add_slot(const BlockIndex& index, BlockPlace block) {
+  if (blocks_.size() >= most_blocks_)
+    throw Error(concat("a map has at most ", most_blocks_, " blocks of voxels of ",
+                       config_.voxel_size_m,
+                       " m, and this one needs more; take larger voxels (map.voxel_size_m), or map "
+                       "the place in parts"));
   blocks_.push_back(std::move(block));
   indices_.push_back(index);
   return static_cast<std::uint32_t>(blocks_.size() - 1);

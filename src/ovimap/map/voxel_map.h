@@ -36,6 +36,8 @@ void list_fields(VoxelMapConfig& config, ConfigFields& fields);
 /// lives.
 struct VoxelRef {
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  /// Of a map: a voxel of one more would have the number of another, or be none.
+  static constexpr std::size_t kMostBlocks = kNone / kBlockVoxels;
   std::uint32_t value = kNone;
   explicit operator bool() const { return value != kNone; }
   std::uint32_t block() const { return value / kBlockVoxels; }
@@ -105,7 +107,9 @@ class BlockPlace {
 /// same, so that what is in memory is no part of what the map says, and const allows it to change.
 class VoxelMap {
  public:
-  explicit VoxelMap(const VoxelMapConfig& config = {});
+  /// `most_blocks`: one more is refused (add_slot); at most VoxelRef::kMostBlocks.
+  explicit VoxelMap(const VoxelMapConfig& config = {},
+                    std::size_t most_blocks = VoxelRef::kMostBlocks);
   VoxelMap(VoxelMap&&) = default;
   VoxelMap& operator=(VoxelMap&&) = default;
 
@@ -174,7 +178,8 @@ class VoxelMap {
   /// Frees what `freeze` kept.
   void thaw();
 
-  /// Slot of the block at `index`, created when absent.
+  /// Slot of the block at `index`, created when absent. Throws Error when the map has as many as
+  /// can be referred to.
   std::uint32_t find_or_create(const BlockIndex& index);
 
   /// Slots in the order of their block indices (z, y, x): the same for every way the map was built.
@@ -206,6 +211,7 @@ class VoxelMap {
   [[gnu::noinline]] VoxelBlock* load(std::uint32_t slot) const;
 
   VoxelMapConfig config_;
+  std::size_t most_blocks_;
   float metres_per_unit_;
   mutable std::vector<BlockPlace> blocks_;
   std::vector<BlockIndex> indices_;  ///< of the blocks, by slot

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "ovimap/base/error.h"
+
 namespace ovimap {
 namespace {
 
@@ -30,6 +32,34 @@ TEST(VoxelMap, FindsWhatWasCreated) {
   ASSERT_NE(map.find_region({0, -1, 0}), nullptr);
   EXPECT_EQ(map.find_region({0, -1, 0})->slot({1, -2, 3}), slot);
   EXPECT_EQ(map.find_region({1, -1, 0}), nullptr);
+}
+
+TEST(VoxelRef, EveryVoxelOfEveryBlockHasANumberOfItsOwn) {
+  constexpr auto kLast = static_cast<std::uint32_t>(VoxelRef::kMostBlocks - 1);
+  const VoxelRef last = VoxelRef::of(kLast, kBlockVoxels - 1);
+  EXPECT_TRUE(last);
+  EXPECT_EQ(last.block(), kLast);
+  EXPECT_EQ(last.voxel(), kBlockVoxels - 1);
+  EXPECT_FALSE(VoxelRef::of(kLast + 1, kBlockVoxels - 1)) << "one more block would not fit";
+}
+
+TEST(VoxelMap, RefusesMoreBlocksThanCanBeReferredTo) {
+  VoxelMap map({}, 2);
+  map.find_or_create({0, 0, 0});
+  map.find_or_create({1, 0, 0});
+  EXPECT_EQ(map.find_or_create({1, 0, 0}), 1u) << "what is there can be found";
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    try {
+      map.find_or_create({2, 0, 0});
+      FAIL();
+    } catch (const Error& fault) {
+      EXPECT_NE(std::string(fault.what()).find("at most 2 blocks"), std::string::npos);
+      EXPECT_NE(std::string(fault.what()).find("map.voxel_size_m"), std::string::npos);
+    }
+  }
+  EXPECT_THROW(map.create_away({2, 0, 0}), Error);
+  EXPECT_EQ(map.block_count(), 2u);
+  EXPECT_EQ(map.find({2, 0, 0}), nullptr);
 }
 
 TEST(VoxelMap, ContentHashIgnoresCreationOrderAndSeesEveryVoxel) {
