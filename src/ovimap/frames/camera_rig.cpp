@@ -11,13 +11,13 @@
 
 #include "ovimap/base/config.h"
 #include "ovimap/image/codec.h"
+#include "ovimap/image/size_limits.h"
 
 namespace ovimap {
 
 namespace {
 
 constexpr double kLargest = std::numeric_limits<float>::max();
-constexpr double kLargestSide_px = 32767;
 
 const std::vector<std::string> kDirections = {"world_from_camera", "camera_from_world"};
 const std::vector<std::string> kAxes = {"opencv", "opengl", "ros"};
@@ -120,8 +120,8 @@ class Section {
 
 void read_camera(const Section& section, PinholeCamera& camera) {
   constexpr double kAboveZero = std::numeric_limits<float>::min();
-  section.read("width", camera.width, 1, kLargestSide_px);
-  section.read("height", camera.height, 1, kLargestSide_px);
+  section.read("width", camera.width, 1, double{kLargestSide_px});
+  section.read("height", camera.height, 1, double{kLargestSide_px});
   section.read("fx", camera.fx, kAboveZero, kLargest);
   section.read("fy", camera.fy, kAboveZero, kLargest);
   section.read("cx", camera.cx, -kLargest, kLargest);

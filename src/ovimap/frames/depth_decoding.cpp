@@ -9,12 +9,33 @@
 
 #include "ovimap/base/error.h"
 #include "ovimap/frames/lzfse.h"
+#include "ovimap/image/size_limits.h"
 
 namespace ovimap {
 
 static_assert(std::endian::native == std::endian::little, "depth is stored little-endian");
 
+namespace {
+
+/// Throws when there can be no image of that size.
+std::size_t size_in_bytes(int width, int height, std::size_t pixel_bytes) {
+  // A negative side becomes a huge one.
+  const auto columns = static_cast<std::size_t>(width), rows = static_cast<std::size_t>(height);
+  if (!plausible_size(columns, rows))
+    throw Error(concat("has an impossible size, ", width, "x", height));
+  return columns * rows * pixel_bytes;
+}
+
+[[noreturn]] void throw_wrong_size(std::size_t bytes, std::size_t expected, int width, int height) {
+  throw Error(
+      concat("holds ", bytes, " bytes, expected ", expected, " for ", width, "x", height));
+}
+
+}  // namespace
+
 Image<std::uint16_t> decode_zlib_depth(std::span<const std::uint8_t> bytes, int width, int height) {
+  if (!deflate_can_hold(bytes.size(), size_in_bytes(width, height, sizeof(std::uint16_t))))
+    throw Error(concat("is too short, ", bytes.size(), " bytes, for ", width, "x", height));
   Image<std::uint16_t> units(width, height);
   const auto expected = static_cast<uLongf>(units.size() * sizeof(std::uint16_t));
   uLongf decoded = expected;
@@ -23,9 +44,7 @@ Image<std::uint16_t> decode_zlib_depth(std::span<const std::uint8_t> bytes, int 
   if (status == Z_BUF_ERROR && decoded == expected)
     throw Error(concat("holds more depth than ", width, "x", height));
   if (status != Z_OK) throw Error("is broken zlib data");
-  if (decoded != expected)
-    throw Error(
-        concat("holds ", decoded, " bytes, expected ", expected, " for ", width, "x", height));
+  if (decoded != expected) throw_wrong_size(decoded, expected, width, height);
   return units;
 }
 
@@ -34,19 +53,16 @@ namespace {
 /// An image of pixels as they lie in memory.
 template <class Pixel>
 Image<Pixel> image_of(std::span<const std::uint8_t> bytes, int width, int height) {
+  const std::size_t expected = size_in_bytes(width, height, sizeof(Pixel));
+  if (bytes.size() != expected) throw_wrong_size(bytes.size(), expected, width, height);
   Image<Pixel> image(width, height);
-  const std::size_t expected = image.size() * sizeof(Pixel);
-  if (bytes.size() != expected)
-    throw Error(
-        concat("holds ", bytes.size(), " bytes, expected ", expected, " for ", width, "x", height));
-  if (expected > 0) std::memcpy(image.data(), bytes.data(), expected);
+  std::memcpy(image.data(), bytes.data(), expected);
   return image;
 }
 
 template <class Pixel>
 Image<Pixel> unpacked_image(std::span<const std::uint8_t> bytes, int width, int height) {
-  const std::size_t expected =
-      static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * sizeof(Pixel);
+  const std::size_t expected = size_in_bytes(width, height, sizeof(Pixel));
   if (bytes.size() == expected || !is_lzfse(bytes)) return image_of<Pixel>(bytes, width, height);
   return image_of<Pixel>(decode_lzfse(bytes, expected), width, height);
 }

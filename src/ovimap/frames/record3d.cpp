@@ -7,6 +7,7 @@
 #include "ovimap/frames/number_text.h"
 #include "ovimap/frames/readers.h"
 #include "ovimap/image/codec.h"
+#include "ovimap/image/size_limits.h"
 
 namespace ovimap {
 
@@ -59,6 +60,13 @@ Metadata read_metadata(const fs::path& file) {
   metadata.color_camera.cy = k[7];
   if (!metadata.color_camera.valid() || metadata.depth_width <= 0 || metadata.depth_height <= 0)
     throw Error(concat(file.string(), ": K, w, h, dw or dh is not above 0"));
+  for (const auto& [width, height] :
+       {std::pair(metadata.color_camera.width, metadata.color_camera.height),
+        std::pair(metadata.depth_width, metadata.depth_height)})
+    if (!plausible_size(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height)))
+      throw Error(concat(file.string(), ": images of ", width, "x", height,
+                         " are too large; accepted are sides up to ", kLargestSide_px, " and ",
+                         kLargestArea_px, " pixels"));
   return metadata;
 }
 

@@ -196,6 +196,10 @@ TEST_F(Record3d, BrokenDescriptionsAreNamed) {
       path() / "metadata",
       R"({"K": [1,0,0,0,1,0,1,1,1], "w": 1, "h": 1, "dw": 0, "dh": 1, "poses": []})");
   EXPECT_NE(error().find("is not above 0"), std::string::npos);
+  fixture::write_text(path() / "metadata",
+                      R"({"K": [1,0,0,0,1,0,1,1,1], "w": 1, "h": 1, "dw": 2147483647,
+                          "dh": 2147483647, "poses": []})");
+  EXPECT_NE(error().find("2147483647x2147483647 are too large"), std::string::npos);
   write_metadata("");
   fixture::write_text(path() / "take.r3d", "PK");
   try {

@@ -9,6 +9,7 @@
 #include "ovimap/base/error.h"
 #include "ovimap/frames/folder_parts.h"
 #include "ovimap/frames/readers.h"
+#include "ovimap/image/size_limits.h"
 
 namespace ovimap {
 
@@ -20,7 +21,9 @@ static_assert(std::endian::native == std::endian::little, ".sens files are littl
 
 constexpr std::uint32_t kVersion = 4;
 constexpr std::uint64_t kLongestName = 4096;
-constexpr std::uint32_t kLargestSide_px = 32767;
+constexpr std::uint64_t kMostFrames = std::uint64_t{1} << 22;  ///< 38 hours
+/// Of a stored image: twice its pixels as numbers, which no compression reaches, and some more.
+constexpr std::uint64_t kMostBytesAPixel = 6, kMostBytesBeside = std::uint64_t{1} << 20;
 constexpr double kTicksPerSecond = 1e6;  ///< of the time stamps, which many files leave 0
 
 /// Numbers of the file's header.
@@ -90,9 +93,10 @@ Pose extrinsic_pose(const SensFile& file, const StoredCamera& camera, const char
 
 void read_size(SensFile& file, const char* name, PinholeCamera& camera) {
   const auto width = file.read<std::uint32_t>(), height = file.read<std::uint32_t>();
-  if (width == 0 || height == 0 || width > kLargestSide_px || height > kLargestSide_px)
+  if (!plausible_size(width, height))
     throw Error(concat(file.path().string(), ": ", name, " images are ", width, "x", height,
-                       "; accepted are sides from 1 to ", kLargestSide_px));
+                       "; accepted are sides from 1 to ", kLargestSide_px, " and up to ",
+                       kLargestArea_px, " pixels"));
   camera.width = static_cast<int>(width);
   camera.height = static_cast<int>(height);
 }
@@ -146,8 +150,14 @@ struct FrameHeader {
 };
 static_assert(sizeof(FrameHeader) == 96);
 
+bool plausible_part(std::uint64_t bytes, const PinholeCamera& camera) {
+  const auto pixels =
+      static_cast<std::uint64_t>(camera.width) * static_cast<std::uint64_t>(camera.height);
+  return bytes <= kMostBytesAPixel * pixels + kMostBytesBeside;
+}
+
 /// Notes where the frame's images lie. False when the file ends within the frame.
-bool index_frame(SensFile& file, RecordedFrame& frame) {
+bool index_frame(SensFile& file, const CameraRig& rig, RecordedFrame& frame) {
   frame.fault = concat(file.path().filename().string(), " frame ", frame.name, ": is cut off");
   if (!file.has(sizeof(FrameHeader))) return false;
   const auto header = file.read<FrameHeader>();
@@ -161,6 +171,9 @@ bool index_frame(SensFile& file, RecordedFrame& frame) {
   if (header.depth_ticks > 0)
     frame.timestamp_s = static_cast<double>(header.depth_ticks) / kTicksPerSecond;
   frame.fault.clear();
+  if (!plausible_part(header.color_size, rig.color_camera) ||
+      !plausible_part(header.depth_size, rig.depth_camera))
+    frame.fault = concat(frame.pose_origin, ": its images are larger than they can be");
   return true;
 }
 
@@ -187,12 +200,15 @@ Recording list_frames(const fs::path& source, const FrameSourceConfig&) {
   const auto promised = file.read<std::uint64_t>();
   bool whole = true;
   for (std::uint64_t i = 0; i < promised && whole; ++i) {
+    if (i == kMostFrames)
+      throw Error(concat(file.path().string(), " holds more than ", kMostFrames,
+                         " frames; cut it into several"));
     RecordedFrame frame;
     frame.name = std::to_string(i);
     frame.timestamp_s = static_cast<double>(i) / kAssumedFramesPerSecond;
     frame.color = frame.depth = file.path();
     frame.pose_origin = concat(file.path().filename().string(), " frame ", i);
-    whole = index_frame(file, frame);
+    whole = index_frame(file, recording.rig, frame);
     recording.frames.push_back(std::move(frame));
   }
   return recording;

@@ -128,6 +128,41 @@ TEST_F(Sens, MoreFramesPromisedThanThereAre) {
   EXPECT_EQ(source->read(5).fault, "scene0000_00.sens frame 5: is cut off");
 }
 
+TEST_F(Sens, ClaimedSizesCostNothing) {
+  sequence_.frames = 1;
+  Bytes bytes = fixture::sens_bytes(sequence_, content_);
+  const std::size_t sizes = 4 + 8 + content_.sensor.size() + 4 * 64 + 2 * 4;  // of colour, then depth
+  const auto claim = [&](std::size_t at, std::uint32_t side_px) {
+    for (std::size_t i = 0; i < 8; ++i)
+      bytes[at + i] = static_cast<std::uint8_t>(side_px >> 8 * (i % 4));
+    write_file(file(), bytes);
+  };
+  claim(sizes + 8, 32767);  // two gigabytes a frame
+  EXPECT_NE(error().find("depth images are 32767x32767; accepted are sides from 1 to 32767 and up "
+                         "to 134217728 pixels"),
+            std::string::npos)
+      << error();
+  claim(sizes + 8, 11000);
+  EXPECT_NE(open_frame_source(file())->read(0).fault.find("bytes, for 11000x11000"),
+            std::string::npos)
+      << open_frame_source(file())->read(0).fault;
+  claim(sizes, 32767);
+  EXPECT_NE(error().find("colour images are 32767x32767"), std::string::npos);
+}
+
+TEST_F(Sens, AnImageOfManyGigabytesIsAFaultOfItsFrame) {
+  Bytes bytes = fixture::sens_header(sequence_, content_);
+  const std::size_t frame = bytes.size();
+  fixture::append_frame(bytes, sequence_, content_, 0);
+  constexpr std::uint64_t kColorSize = std::uint64_t{1} << 34;
+  for (std::size_t i = 0; i < 8; ++i)
+    bytes[frame + 64 + 16 + i] = static_cast<std::uint8_t>(kColorSize >> 8 * i);
+  write_file(file(), bytes);
+  fs::resize_file(file(), kColorSize + bytes.size());  // sparse: it takes no room
+  EXPECT_EQ(open_frame_source(file())->read(0).fault,
+            "scene0000_00.sens frame 0: its images are larger than they can be");
+}
+
 TEST_F(Sens, WrongHeadersAreNamed) {
   content_.version = 3;
   write();

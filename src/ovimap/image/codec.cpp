@@ -10,15 +10,16 @@
 #include <turbojpeg.h>
 #include <zlib.h>
 
+#include "ovimap/image/size_limits.h"
+
 namespace ovimap {
 
 namespace {
 
 static_assert(sizeof(Rgb8) == 3, "the codecs write packed RGB");
 
-/// A header that claims more is a broken file, not an image of a camera.
-constexpr std::uint32_t kMaxSide_px = 1u << 15;
-constexpr std::uint64_t kMaxArea_px = 1u << 27;
+/// What a PNG may hold beside its pixels (profiles, texts), unpacked: one such part, and all.
+constexpr std::size_t kLargestPngPart = std::size_t{16} << 20, kAllPngParts = std::size_t{64} << 20;
 
 /// PNG: deflate's fastest level, which looks for runs alone: filtered rows hold little else. Trying
 /// the upper pixel as well pays for depth and ids, not for noisy colour.
@@ -45,8 +46,7 @@ std::string unknown_format(std::span<const std::uint8_t> bytes, std::string_view
 }
 
 void check_size(std::uint64_t width, std::uint64_t height, std::optional<ImageSize> expected) {
-  if (width == 0 || height == 0 || width > kMaxSide_px || height > kMaxSide_px ||
-      width * height > kMaxArea_px)
+  if (!plausible_size(width, height))
     throw Error(concat("has an impossible size, ", width, "x", height));
   if (expected &&
       (static_cast<int>(width) != expected->width || static_cast<int>(height) != expected->height))
@@ -64,13 +64,24 @@ void check_png(int code) {
   if (code != 0) throw_png_fault(code);
 }
 
+/// The pixels as they were before compression, less a byte a row.
+std::uint64_t packed_bytes(const spng_ihdr& header) {
+  const std::uint64_t channels = header.color_type == SPNG_COLOR_TYPE_TRUECOLOR         ? 3
+                                 : header.color_type == SPNG_COLOR_TYPE_TRUECOLOR_ALPHA ? 4
+                                 : header.color_type == SPNG_COLOR_TYPE_GRAYSCALE_ALPHA ? 2
+                                                                                        : 1;
+  return header.height * (header.width * channels * header.bit_depth / 8);
+}
+
 PngContext open_png(std::span<const std::uint8_t> bytes, spng_ihdr& header,
                     std::optional<ImageSize> expected) {
   PngContext context(spng_ctx_new(0), &spng_ctx_free);
   if (!context) throw std::bad_alloc();
+  check_png(spng_set_chunk_limits(context.get(), kLargestPngPart, kAllPngParts));
   check_png(spng_set_png_buffer(context.get(), bytes.data(), bytes.size()));
   check_png(spng_get_ihdr(context.get(), &header));
   check_size(header.width, header.height, expected);
+  if (!deflate_can_hold(bytes.size(), packed_bytes(header))) throw Error("is a truncated PNG");
   return context;
 }
 
@@ -91,10 +102,14 @@ RgbImage decode_jpeg(std::span<const std::uint8_t> bytes, std::optional<ImageSiz
   if (tjDecompressHeader3(handle.get(), bytes.data(), size, &width, &height, &sampling,
                           &colorspace) != 0)
     throw Error(concat("is a damaged JPEG (", tjGetErrorStr2(handle.get()), ")"));
-  check_size(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), expected);
+  const auto columns = static_cast<std::uint64_t>(width), rows = static_cast<std::uint64_t>(height);
+  check_size(columns, rows, expected);
+  // Each 8x8 block takes a bit at least.
+  if (columns * rows / (64 * 8) > bytes.size()) throw Error("is a truncated JPEG");
   RgbImage image(width, height);
   auto* pixels = reinterpret_cast<unsigned char*>(image.data());
-  if (tjDecompress2(handle.get(), bytes.data(), size, pixels, width, 0, height, TJPF_RGB, 0) != 0) {
+  if (tjDecompress2(handle.get(), bytes.data(), size, pixels, width, 0, height, TJPF_RGB,
+                    TJFLAG_LIMITSCANS) != 0) {
     const std::string reason = tjGetErrorStr2(handle.get());
     // Stray bytes between segments lose no pixel; cameras write them.
     const bool harmless = tjGetErrorCode(handle.get()) == TJERR_WARNING &&

@@ -2,10 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/image/codec.h"
 
+#include <algorithm>
 #include <cstdlib>
+#include <fstream>
 #include <random>
 
+#include <sys/resource.h>
 #include <unistd.h>
+#include <zlib.h>
 
 #include <gtest/gtest.h>
 
@@ -155,6 +159,69 @@ TEST(Png, ImpossibleSizeIsRefusedBeforeMemoryIsTaken) {
   put_chunk(png, "IDAT", {});
   EXPECT_THROW(decode_gray(png), Error);
   EXPECT_THROW(decode_rgb(png), Error);
+}
+
+/// What `call` says while the process may take no more than 64 MB beyond what it has.
+template <class Call>
+std::string fault_in_little_memory(Call&& call) {
+  std::ifstream statm("/proc/self/statm");
+  rlim_t pages = 0;
+  statm >> pages;
+  rlimit before{};
+  ::getrlimit(RLIMIT_AS, &before);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they reserve more than that
+  const rlimit little{pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE)) + (rlim_t{64} << 20),
+                      before.rlim_max};
+  ::setrlimit(RLIMIT_AS, &little);
+#endif
+  std::string fault;
+  try {
+    fault = fault_of(call);
+  } catch (const std::bad_alloc&) {
+    fault = "out of memory";
+  }
+  ::setrlimit(RLIMIT_AS, &before);
+  return fault;
+}
+
+TEST(Png, ASizeThatTheBytesCannotHoldTakesNoMemory) {
+  Bytes png = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+  put_chunk(png, "IHDR", {0, 0, 0x2c, 0, 0, 0, 0x2c, 0, 16, 0, 0, 0, 0});  // 11264 x 11264
+  put_chunk(png, "IDAT", Bytes(1000));
+  EXPECT_EQ(fault_in_little_memory([&] { decode_gray(png); }), "is a truncated PNG");
+  EXPECT_EQ(fault_in_little_memory([&] { decode_rgb(png); }), "is a truncated PNG");
+}
+
+TEST(Png, AnEmptyImageAsLargeAsACamerasIsTaken) {
+  const Image<std::uint16_t> nothing(4000, 3000);
+  EXPECT_EQ(decode_gray(encode_png(nothing)).values, nothing);
+  const RgbImage black(4000, 3000);
+  EXPECT_EQ(decode_rgb(encode_png(black)), black);
+  EXPECT_EQ(decode_rgb(encode_jpeg(black, 1)).size(), black.size());
+}
+
+TEST(Png, TextsThatUnpackToGigabytesAreRefused) {
+  const Bytes zeros(100 << 20);
+  uLongf size = compressBound(zeros.size());
+  Bytes text = {'a', 0, 0};  // keyword, method
+  text.resize(3 + size);
+  ASSERT_EQ(compress(text.data() + 3, &size, zeros.data(), zeros.size()), Z_OK);
+  text.resize(3 + size);
+  const Bytes plain = encode_png(random_gray(16, 16));
+  const std::ptrdiff_t after_header = 8 + 25;
+  Bytes png(plain.begin(), plain.begin() + after_header);
+  put_chunk(png, "zTXt", text);
+  png.insert(png.end(), plain.begin() + after_header, plain.end());
+  EXPECT_NE(fault_of([&] { decode_gray(png); }).find("damaged PNG"), std::string::npos);
+}
+
+TEST(Jpeg, ASizeThatTheBytesCannotHoldTakesNoMemory) {
+  Bytes jpeg = encode_jpeg(random_rgb(16, 16), 90);
+  const Bytes frame = {0xff, 0xc0};  // its size stands five bytes further
+  const auto at = std::search(jpeg.begin(), jpeg.end(), frame.begin(), frame.end());
+  ASSERT_NE(at, jpeg.end());
+  for (const int i : {5, 7}) at[i] = 0x2c;
+  EXPECT_EQ(fault_in_little_memory([&] { decode_rgb(jpeg); }), "is a truncated JPEG");
 }
 
 TEST(Jpeg, SmoothImageComesBackNearly) {
