@@ -44,16 +44,21 @@ void list_fields(FrameStoreConfig& config, ConfigFields& fields) {
   fields.add("color_quality", config.color_quality, 1, 100, "of their colour, as JPEG");
 }
 
-KeptImages decode_kept(const KeptFrame& frame) {
+KeptImages decode_kept(const KeptFrame& frame, const PinholeCamera& depth_camera) {
+  const ImageSize size{depth_camera.width, depth_camera.height};
   KeptImages images;
-  const GrayPng depth = decode_gray(frame.depth_png);
+  const GrayPng depth = decode_gray(frame.depth_png, size);
   images.depth = DepthImage(depth.values.width(), depth.values.height());
   std::transform(depth.values.begin(), depth.values.end(), images.depth.begin(),
                  [](std::uint16_t units) { return static_cast<float>(units) / kUnits_per_m; });
-  images.color = decode_rgb(frame.color_jpeg);
+  images.color = decode_rgb(frame.color_jpeg, size);
   for (Rgb8& color : images.color)
     if (color.r + color.g + color.b <= kDarkest) color = {};
-  if (!frame.segments_png.empty()) images.segment_ids = decode_gray(frame.segments_png).values;
+  if (frame.segments_png.empty()) return images;
+  images.segment_ids = decode_gray(frame.segments_png, size).values;
+  for (const std::uint16_t id : images.segment_ids)
+    if (id > frame.labels.size())
+      throw Error(concat("has segment ", id, ", but only ", frame.labels.size(), " labels"));
   return images;
 }
 

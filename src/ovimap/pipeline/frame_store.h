@@ -23,7 +23,8 @@ struct KeptImages {
   RgbImage color;       ///< registered to the depth; black = unknown
   IdImage segment_ids;  ///< empty: the frame did not vote for labels
 };
-KeptImages decode_kept(const KeptFrame& frame);
+/// Throws Error with a phrase when the images are not of that size, or a segment has no label.
+KeptImages decode_kept(const KeptFrame& frame, const PinholeCamera& depth_camera);
 
 /// Keeps fused frames, compressed, so that they can be fused again when their poses turn out to be
 /// wrong. When they grow beyond the budget, every second of them goes, and from there on only

@@ -37,7 +37,7 @@ std::vector<Label> roots_of(const std::vector<Label>& labels, const LabelForest&
 
 void fuse_again(const KeptFrame& kept, const PinholeCamera& camera, const Pose& world_from_camera,
                 const MapperConfig& config, VoxelMap& map) {
-  const KeptImages images = decode_kept(kept);
+  const KeptImages images = decode_kept(kept, camera);
   const DepthSurface surface = fit_depth_surface(images.depth, camera, config.segment.surface);
   const std::vector<Label> labels = roots_of(kept.labels, map.labels());
   integrate(map, {.depth = images.depth,
@@ -59,13 +59,21 @@ PoseCorrection correct_poses(MapDocument& document, const std::vector<Pose>& pos
     throw Error(
         "the map keeps no frames to fuse again; map the recording with --set "
         "frame_store.max_mb=500, or map it anew with the corrected poses");
+  if (!document.depth_camera.valid())
+    throw Error("the map does not say which camera took its frames; map the recording anew with "
+                "the corrected poses");
   PoseCorrection correction = compare(document.frames, poses);
   for (std::size_t i = 0; i < poses.size(); ++i) document.frames[i].world_from_camera = poses[i];
   VoxelMap map(document.map.config());
   map.labels() = document.map.labels();
   document.map = VoxelMap(map.config());
   for (const auto& [position, kept] : document.kept_frames) {
-    fuse_again(*kept, document.depth_camera, poses[position], config, map);
+    try {
+      fuse_again(*kept, document.depth_camera, poses[position], config, map);
+    } catch (const Error& fault) {
+      throw Error(concat("the kept frame ", position, " cannot be fused again (", fault.what(),
+                         "); map the recording anew with the corrected poses"));
+    }
     if (progress) progress(++correction.refused, document.kept_frames.size());
   }
   correction.refused = document.kept_frames.size();

@@ -179,6 +179,39 @@ TEST(MapCorrection, KeptFramesSurviveTheFile) {
   EXPECT_EQ(map.map.content_hash(), loaded.map.content_hash());
 }
 
+TEST(MapCorrection, KeptFramesThatDoNotFitAreRefused) {
+  const MapDocument map = map_desk(0.004);
+  const auto fault_after = [&](auto&& change) -> std::string {
+    MapDocument changed = map_desk(0.004);
+    auto frame = std::make_shared<KeptFrame>(*map.kept_frames.at(3));
+    change(*frame, changed);
+    changed.kept_frames[3] = std::move(frame);
+    try {
+      correct_poses(changed, true_poses(), keeping_config());
+    } catch (const Error& fault) {
+      return fault.what();
+    }
+    return {};
+  };
+  const Bytes small = encode_png(Image<std::uint16_t>(8, 6, 4000));
+  EXPECT_NE(fault_after([&](KeptFrame& frame, auto&) { frame.depth_png = small; })
+                .find("frame 3 cannot be fused again (is 8x6, expected 160x120)"),
+            std::string::npos);
+  EXPECT_NE(fault_after([&](KeptFrame& frame, auto&) { frame.segments_png = small; })
+                .find("is 8x6, expected 160x120"),
+            std::string::npos);
+  EXPECT_NE(fault_after([](KeptFrame& frame, auto&) {
+              frame.color_jpeg = encode_jpeg(RgbImage(8, 6), 90);
+            }).find("is 8x6, expected 160x120"),
+            std::string::npos);
+  EXPECT_NE(fault_after([](KeptFrame& frame, auto&) { frame.labels.resize(1); })
+                .find("but only 1 labels"),
+            std::string::npos);
+  EXPECT_NE(fault_after([](KeptFrame&, MapDocument& changed) { changed.depth_camera.fx = 0; })
+                .find("which camera"),
+            std::string::npos);
+}
+
 TEST(MapCorrection, AMapWithoutKeptFramesIsRefused) {
   MapperConfig config = keeping_config();
   config.frame_store.max_mb = 0;

@@ -30,6 +30,8 @@ void require_one_frame(const MapAndTruth& paths, const Mesh& truth, const Mesh& 
   if (map.vertices.empty())
     throw Error(concat("map ", paths.map.string(), " has no surface to score; map the recording ",
                        "again and look at `ovimap info`"));
+  if (truth.vertices.empty())
+    throw Error(concat("the truth of ", paths.source.string(), " has no surface to score against"));
   const FrameCheck check = check_frames(truth.vertices, map.vertices, config);
   if (!check.fault.empty())
     throw Error(concat("map ", paths.map.string(), " and the truth of ", paths.source.string(),

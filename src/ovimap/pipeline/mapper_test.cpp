@@ -48,6 +48,26 @@ TEST(Mapper, FindsTheObjectsOfTheDesk) {
   EXPECT_EQ(owners.size(), 3u) << "each its own";
 }
 
+TEST(Mapper, MasksOfAnotherSizeAreAFaultOfTheirFrame) {
+  class SmallMasks : public MaskSource {
+   public:
+    std::string kind() const override { return "small"; }
+    Entities entities(const Frame&, std::span<const MaskPrompt>) override {
+      return {IdImage(8, 6, 1), {1.f}};
+    }
+  };
+  Mapper mapper({}, std::make_shared<SmallMasks>());
+  try {
+    mapper.process(*DeskScene().read(0).frame);
+    FAIL();
+  } catch (const FrameError& fault) {
+    EXPECT_NE(std::string(fault.what())
+                  .find("'small' masks of frame 0 are 8x6, but its colour image is 160x120"),
+              std::string::npos)
+        << fault.what();
+  }
+}
+
 TEST(Mapper, DepthAloneSeparatesTheBallsFromTheTable) {
   Mapper mapper({});
   map_desk(mapper);

@@ -65,6 +65,11 @@ std::optional<FrameSegments> cut_segments(const PreparedFrame& prepared, MaskSou
     return masks->entities(frame, prompts_of(regions, prepared.registration, frame.color_camera));
   }();
   if (!entities) return std::nullopt;
+  if (!entities->ids.same_size(frame.color))
+    throw FrameError(concat("the '", masks->kind(), "' masks of frame ", frame.index, " are ",
+                            entities->ids.width(), "x", entities->ids.height(),
+                            ", but its colour image is ", frame.color.width(), "x",
+                            frame.color.height(), "; give masks of the colour image's size"));
   cut.masked = true;
   cut.entities = static_cast<int>(entities->scores.size());
   auto t = timers.measure("mask_fusion");

@@ -52,6 +52,18 @@ TEST_F(QueryEngineTest, FindsWhatIsThereAndSaysWhatIsNot) {
   }
 }
 
+TEST_F(QueryEngineTest, NeedsAsManyWordsAsTheVerdictDoes) {
+  QueryConfig config;
+  config.verdict.min_references = 100000;
+  try {
+    (void)QueryEngine(index_, &encoder_, config).find({"mug", {}});
+    FAIL();
+  } catch (const Error& fault) {
+    EXPECT_NE(std::string(fault.what()).find("verdict.min_references is 100000"),
+              std::string::npos);
+  }
+}
+
 TEST_F(QueryEngineTest, RanksBothObjectsOfAKind) {
   QueryConfig config;
   config.top_k = 2;

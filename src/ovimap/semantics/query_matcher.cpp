@@ -58,6 +58,10 @@ TextMatcher::TextMatcher(const SearchIndex& index, ImageTextEncoder& encoder,
                            "encoder '" + encoder.identity().name + "'");
   if (vocabulary_.rows() == 0) vocabulary_ = encode_vocabulary(encoder, config_);
   require_embedding_length(index, vocabulary_.cols(), "the vocabulary");
+  if (vocabulary_.rows() < config.verdict.min_references)
+    throw Error(concat("verdict.min_references is ", config.verdict.min_references,
+                       ", but the vocabulary has ", vocabulary_.rows(),
+                       " words; give at most so many"));
   calibration_.emplace(index, vocabulary_, config.verdict);
 }
 
