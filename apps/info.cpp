@@ -6,6 +6,7 @@
 #include "ovimap/io/instance_json.h"
 #include "ovimap/io/map_check.h"
 #include "ovimap/io/map_file.h"
+#include "ovimap/io/map_file_access.h"
 #include "ovimap/pipeline/timings_text.h"
 
 namespace ovimap::apps {
@@ -15,6 +16,7 @@ namespace {
 struct InfoOptions {
   std::filesystem::path map;
   bool check = false;
+  bool recover = false;
   bool json = false;
 };
 
@@ -38,7 +40,9 @@ int check_file(const InfoOptions& options) {
 }
 
 int info(const InfoOptions& options) {
-  if (options.check) return check_file(options);
+  if (options.recover && !recover_map(options.map))
+    std::fprintf(stderr, "%s: nothing to recover\n", options.map.c_str());
+  if (options.check || options.recover) return check_file(options);
   const MapInfo map = read_map_info(options.map);
   const TileTraffic tiles = tile_traffic(parse_timings(map.timings));
   if (options.json) {
@@ -80,6 +84,9 @@ Action add_info(CLI::App& command) {
   command.add_flag("--check", options->check,
                    "examine the file: SQLite's own check, the hash of every table and tile; exit "
                    "code 1 and a list where something is damaged");
+  command.add_flag("--recover", options->recover,
+                   "make a map whole beside which a change that was cut short left its log: the "
+                   "change is taken back, or in where it was finished; then examine it");
   command.add_flag("--json", options->json, "print one JSON object");
   return [options] { return info(*options); };
 }

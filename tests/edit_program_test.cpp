@@ -51,6 +51,20 @@ TEST_F(EditProgramTest, EverythingSeesTheCorrectedMap) {
   expect_complaint("edit room.ovimap undo", {"nothing to undo"});
 }
 
+TEST_F(EditProgramTest, SaysHowToMakeAMapWhole) {
+  map_with("none");
+  std::ofstream(path("room.ovimap-wal")) << "";  // what a change that was cut short leaves
+  for (const char* command : {"info room.ovimap", "edit room.ovimap undo", "export room.ovimap a.csv",
+                              "serve room.ovimap --port 0"})
+    expect_complaint(command, {"cut short", "`ovimap info --recover room.ovimap`"});
+  const ProgramResult done = run("info --recover room.ovimap");
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_NE(done.out.find("all as written"), std::string::npos) << done.out;
+  EXPECT_FALSE(std::filesystem::exists(path("room.ovimap-wal")));
+  EXPECT_EQ(run("info room.ovimap").code, 0);
+  EXPECT_NE(run("info --recover room.ovimap").err.find("nothing to recover"), std::string::npos);
+}
+
 TEST_F(EditProgramTest, TellsWhatWasDone) {
   map_with("none");
   const std::string id = std::to_string(ids()[0]);

@@ -20,39 +20,14 @@ namespace {
 
 using namespace map_tables;
 
-constexpr const MapTable* kKnownTables[] = {&kMeta,
-                                            &kInstances,
-                                            &kInstanceSuperPoints,
-                                            &kInstanceNames,
-                                            &kInstanceRecords,
-                                            &kInstanceAliases,
-                                            &kSuperPoints,
-                                            &kVotes,
-                                            &kLabelPairs,
-                                            &kEntitySightings,
-                                            &kLabelForest,
-                                            &kFrames,
-                                            &kAppearances,
-                                            &kViews,
-                                            &kEmbeddings,
-                                            &kSurfaces,
-                                            &kBlocks,
-                                            &kKeptFrames,
-                                            &kEdits,
-                                            &kCorrectedInstances,
-                                            &kCorrectedSuperPoints,
-                                            &kCorrectedNames,
-                                            &kCorrectedSurfaces,
-                                            &kCorrectedEmbeddings,
-                                            &kCorrectedFlags};
-
 class MapExaminer {
  public:
   explicit MapExaminer(SQLite::Database& database) : database_(database) {}
 
   MapCheck examine() {
     note("the file", [&] { ask_sqlite(); });
-    for (const MapTable* table : kKnownTables) examine_table(*table);
+    for (const MapTable* table : kAll)
+      if (table != &kChecks) examine_table(*table);
     note("table checks", [&] { find_missing_tables(); });
     note("voxels", [&] { examine_tiles(); });
     return std::move(check_);

@@ -12,6 +12,7 @@
 #include "ovimap/io/map_edit_log.h"
 #include "ovimap/io/map_file_access.h"
 #include "ovimap/io/map_file_blocks.h"
+#include "ovimap/io/map_file_guard.h"
 #include "ovimap/io/map_file_record.h"
 #include "ovimap/io/map_file_rows.h"
 #include "ovimap/io/map_file_semantics.h"
@@ -36,28 +37,25 @@ std::uint64_t row_hash(std::int64_t key, std::int64_t present, std::int64_t hash
 
 /// Everything but voxels and kept frames is small, and written anew.
 void clear_small_tables(SQLite::Database& database) {
-  std::vector<std::string> names;
-  SQLite::Statement tables(
-      database, "SELECT name FROM sqlite_master WHERE type = 'table' AND name NOT IN (?, ?)");
-  tables.bind(1, kBlocks.name);
-  tables.bind(2, map_tables::kKeptFrames.name);
-  while (tables.executeStep()) names.push_back(tables.getColumn(0).getString());
-  for (const std::string& name : names) database.exec(concat("DELETE FROM ", name));
+  for (const MapTable* table : map_tables::kAll)
+    if (table != &kBlocks && table != &map_tables::kKeptFrames && has_table(database, *table))
+      database.exec(concat("DELETE FROM ", table->name));
 }
 
 }  // namespace
 
 std::filesystem::path checkpoint_path(const std::filesystem::path& map) {
   std::filesystem::path path = map;
-  return path += ".partial";
+  return path += kCheckpointEnding;
 }
 
 bool holds_checkpoint(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path)) return false;
   bool found = false;
   reporting_write_faults(path, nullptr, [&] {
-    SQLite::Database database(path.string(), SQLite::OPEN_READWRITE);
-    found = database.tableExists(map_tables::kMeta.name);
+    check_journal(path);
+    const auto database = open_guarded(path.string(), SQLite::OPEN_READWRITE, kLongestValue);
+    found = database->tableExists(map_tables::kMeta.name);
   });
   return found;
 }
@@ -75,8 +73,12 @@ CheckpointFile::~CheckpointFile() {
 void CheckpointFile::open(Start start) {
   if (start == Start::kAnew) remove_map(path_);
   database_ = open_growing_map(path_);
+  if (start == Start::kGoOn)
+    read_as_map(path_, *database_, [&](SQLite::Database& database) {
+      check_schema(database);
+      note_stored_tiles();
+    });
   create_table(*database_, kBlocks);
-  if (start == Start::kGoOn) note_stored_tiles();
 }
 
 void CheckpointFile::note_stored_tiles() {
@@ -184,14 +186,16 @@ void CheckpointFile::put_all(const std::filesystem::path& map) {
   std::exception_ptr fault;  // to write is no fault of the map that is read
   OpenMap file(map);
   file.read([&](SQLite::Database& database) {
-    SQLite::Statement rows(database, "SELECT tile, present, data FROM blocks");
-    while (!fault && rows.executeStep()) {
-      const SQLite::Column data = rows.getColumn(2);
-      const auto* bytes = static_cast<const std::uint8_t*>(data.getBlob());
+    RowReader rows(database, kBlocks);
+    while (!fault && rows.next()) {
+      const auto key = rows.integer<std::int64_t>(), present = rows.integer<std::int64_t>(),
+                 hash = rows.integer<std::int64_t>();
+      const std::span<const std::uint8_t> data = rows.blob();
+      if (stored_hash(data) != hash)
+        rows.fail(concat("has a tile ", key, " that is not what was written"));
       try {
-        put(static_cast<std::uint64_t>(rows.getColumn(0).getInt64()),
-            {static_cast<std::uint64_t>(rows.getColumn(1).getInt64()),
-             Bytes(bytes, bytes + data.getBytes())});
+        put(static_cast<std::uint64_t>(key),
+            {static_cast<std::uint64_t>(present), Bytes(data.begin(), data.end())});
       } catch (const Error&) {
         fault = std::current_exception();
       }

@@ -136,6 +136,8 @@ MapEdits read_edits(SQLite::Database& database) {
   for (std::size_t i = 0; i < log.size(); ++i) {
     log[i].action = action_of(texts[i].first);
     take_arguments(texts[i].second, log[i]);
+    if (log[i].instances.empty() && log[i].action != EditAction::kUndo)
+      throw Error(concat("table edits holds an edit ", log[i].id, " of no object"));
   }
   return log;
 }

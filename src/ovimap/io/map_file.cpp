@@ -34,9 +34,6 @@ constexpr int kSchemaWithSemantics = 2;
 /// Those before this one keep no frames.
 constexpr int kSchemaWithKeptFrames = 4;
 
-/// VoxelRef counts voxels in 32 bits.
-constexpr std::size_t kMostBlocks = VoxelRef::kNone / kBlockVoxels;
-
 void write_blocks(SQLite::Database& database, const VoxelMap& map) {
   RowWriter rows(database, kBlocks);
   std::vector<Bytes> data;
@@ -79,7 +76,8 @@ class TilePlaces {
  public:
   /// `blocks`: how many were written.
   TilePlaces(std::uint64_t blocks, const VoxelMap& map) : blocks_(blocks), map_(map) {
-    if (blocks > kMostBlocks) throw Error("it has more blocks than fit into memory");
+    if (blocks > VoxelRef::kMostBlocks)
+      throw Error(concat("it has ", blocks, " blocks, more than a map can have"));
   }
 
   void expect(std::int64_t key, std::uint64_t present) {
@@ -190,7 +188,8 @@ MapMeta read_found(SQLite::Database& database, int schema, const LabelForest& fo
             concat("table instance_super_points names label ", label, ", which was never given"));
   read_frames(database, record);
   if (schema >= kSchemaWithSemantics) {
-    record.semantics.appearances = read_appearances(database, record.semantics.encoder);
+    record.semantics.appearances =
+        read_appearances(database, record.semantics, record.depth_camera);
     record.surfaces = read_surfaces(database, map_tables::kSurfaces);
   }
   if (schema >= kSchemaWithKeptFrames)
@@ -261,6 +260,32 @@ MapInfo read_map_info(const std::filesystem::path& path) {
   MapInfo info;
   file.read([&](SQLite::Database& database) { info = read_info(database, file); });
   return info;
+}
+
+MapIdentity read_map_identity(const std::filesystem::path& path) {
+  OpenMap file(path);
+  MapIdentity identity;
+  file.read([&](SQLite::Database& database) {
+    MapRecord record;
+    const MapMeta meta = read_meta(database, record);
+    TableHash revision;
+    SQLite::Statement checks(database,
+                             "SELECT name, rows, hash FROM checks WHERE name <> 'meta'");
+    while (checks.executeStep()) {
+      revision.add(checks.getColumn(0).getString());
+      revision.add(std::int64_t{checks.getColumn(1).getInt64()});
+      revision.add(std::int64_t{checks.getColumn(2).getInt64()});
+      revision.end_row();
+    }
+    const EncoderIdentity& encoder = record.semantics.encoder;
+    for (const std::string& text : {encoder.name, encoder.digest}) revision.add(text);
+    revision.add(std::int64_t{encoder.dimension});
+    revision.add(static_cast<std::int64_t>(meta.content_hash));
+    revision.end_row();
+    identity = {record.source,     meta.frames, meta.unfinished,
+                meta.content_hash, encoder,     static_cast<std::uint64_t>(revision.sum())};
+  });
+  return identity;
 }
 
 SearchableMap read_searchable_map(const std::filesystem::path& path) {

@@ -54,6 +54,19 @@ MapDocument load_map_without_voxels(const std::filesystem::path& path);
 /// here.
 MapInfo read_map_info(const std::filesystem::path& path);
 
+/// What tells a map from others, and from itself before a change.
+struct MapIdentity {
+  std::string source;
+  std::int64_t frames = 0;
+  bool unfinished = false;         ///< a checkpoint of a run
+  std::uint64_t content_hash = 0;  ///< of the voxels
+  EncoderIdentity encoder;         ///< of the embeddings; no name: there are none
+  std::uint64_t revision = 0;      ///< another after any change but that of `meta` alone
+};
+
+/// Reads it from the tables `meta`, verified, and `checks`.
+MapIdentity read_map_identity(const std::filesystem::path& path);
+
 /// What a search in a map needs.
 struct SearchableMap {
   MapInfo info;

@@ -8,7 +8,6 @@
 #include <cctype>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -20,6 +19,7 @@
 
 #include "ovimap/base/error.h"
 #include "ovimap/io/map_file.h"
+#include "ovimap/io/map_file_guard.h"
 
 namespace ovimap {
 
@@ -32,6 +32,8 @@ constexpr int kApplicationId =
     kApplication[0] << 24 | kApplication[1] << 16 | kApplication[2] << 8 | kApplication[3];
 constexpr std::string_view kMagic("SQLite format 3\0", 16);
 constexpr std::size_t kApplicationIdAt = 68;  // bytes from the start of a SQLite file
+constexpr std::size_t kReadVersionAt = 19;
+constexpr char kReadVersionOfLogs = 2;  // a write-ahead log belongs to the file
 constexpr std::array<const char*, 3> kSidecars = {"-journal", "-wal", "-shm"};
 
 fs::path with_suffix(fs::path path, const std::string& suffix) {
@@ -87,8 +89,13 @@ int system_error(const SQLite::Database& database, const SQLite::Exception& faul
 }
 
 /// Whether something beside the map has not found its way into it.
-bool has_log(const fs::path& path) {
-  return fs::exists(with_suffix(path, "-wal")) || fs::exists(with_suffix(path, "-journal"));
+bool has_log(const fs::path& file) {
+  return has_wal(file) || has_journal(file);
+}
+
+/// A run's own checkpoint, which lies in its file and the write-ahead log beside it.
+bool is_checkpoint(const fs::path& file) {
+  return file.extension() == kCheckpointEnding;
 }
 
 void mark_as_map(SQLite::Database& database) {
@@ -120,60 +127,91 @@ bool is_busy(const SQLite::Exception& fault) {
 }
 
 /// Does what the next writer would do with a log that an end cut short: a journal is taken back, a
-/// write-ahead log taken in. A change that is under way is left alone, and so is a file that cannot
-/// be written: reading then says so.
-void settle_log(const fs::path& path) {
-  try {
-    SQLite::Database database(path.string(), SQLite::OPEN_READWRITE);
-    (void)database.execAndGet("SELECT count(*) FROM sqlite_master").getInt();
-  } catch (const SQLite::Exception&) {
-  }
+/// write-ahead log taken in. SQLite's exceptions pass through; throws Error with a phrase when the
+/// journal is not of a map.
+void settle_log(const fs::path& file) {
+  check_journal(file);
+  auto database = open_guarded(file.string(), SQLite::OPEN_READWRITE, kLongestValue);
+  (void)database->execAndGet("SELECT count(*) FROM sqlite_master").getInt();
+  if (database->execAndGet("PRAGMA journal_mode = DELETE").getString() != "delete") return;
+  database.reset();
+  ::unlink(with_suffix(file, "-wal").c_str());  // SQLite leaves one that holds nothing
 }
 
 int pragma(SQLite::Database& database, const char* name) {
   return database.execAndGet(concat("PRAGMA ", name)).getInt();
 }
 
-std::unique_ptr<SQLite::Database> open_through(const fs::path& path, bool immutable) {
+std::unique_ptr<SQLite::Database> open_through(const fs::path& file, bool immutable) {
   constexpr int kPatience_ms = 5000;  // for a change to be written
-  auto database = std::make_unique<SQLite::Database>(
-      read_uri(path, immutable), SQLite::OPEN_READONLY | SQLite::OPEN_URI, kPatience_ms);
-  database->exec("PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON");
+  auto database =
+      open_guarded(read_uri(file, immutable), SQLite::OPEN_READONLY | SQLite::OPEN_URI,
+                   longest_value_in(file), kPatience_ms);
   (void)pragma(*database, "user_version");
   return database;
 }
 
-/// Where locks cannot be had (some network file systems, write-ahead logging in a folder that
-/// cannot be written), a file with no log beside it is read without.
-std::unique_ptr<SQLite::Database> open_for_reading(const fs::path& path) {
-  if (fs::exists(with_suffix(path, "-journal"))) settle_log(path);
+[[noreturn]] void fail_as_cut_short(const fs::path& path, const char* log) {
+  throw Error(concat("map '", path.string(), "' was being changed when that was cut short (a ", log,
+                     " lies beside it); `ovimap info --recover ", path.string(),
+                     "` makes it whole, where you can write to its folder"));
+}
+
+bool is_cut_short(const SQLite::Exception& fault) {
+  return fault.getExtendedErrorCode() == SQLITE_READONLY_ROLLBACK;
+}
+
+/// What lies beside a map is not taken into it by reading: anybody may have put it there. Of a
+/// journal SQLite tells whether the change is under way, and then shows the map as it was before.
+/// Where locks cannot be had (some network file systems), a file with no log beside it is read
+/// without. `logs`: the file says that it has a write-ahead log; with none there, nobody writes.
+std::unique_ptr<SQLite::Database> open_for_reading(const fs::path& path, bool logs) {
+  const fs::path file = fs::canonical(path);
+  if (!is_checkpoint(file)) {
+    if (has_wal(file)) fail_as_cut_short(path, "-wal");
+    if (logs) return open_through(file, true);
+  }
   try {
-    return open_through(path, false);
+    return open_through(file, false);
   } catch (const SQLite::Exception& fault) {
-    if (is_busy(fault) || has_log(path)) throw;
-    return open_through(path, true);
+    if (is_cut_short(fault) && !has_journal(file))
+      return open_through(file, false);  // it was taken back in the meantime
+    if (is_cut_short(fault)) fail_as_cut_short(path, "-journal");
+    if (is_busy(fault) || has_log(file)) throw;
+    return open_through(file, true);
   }
 }
 
-/// Throws unless the path is a readable file that begins as SQLite files do.
-void check_file(const fs::path& path) {
+/// The file's first bytes, zeros where there are none. Read through SQLite: a handle of our own
+/// would, when it is closed, take away the locks that this process has on the file (POSIX).
+std::string head_of(const fs::path& file) {
+  std::string head(kApplicationIdAt + kApplication.size(), '\0');
+  try {
+    const SQLite::Database database(read_uri(file, true), SQLite::OPEN_READONLY | SQLite::OPEN_URI);
+    sqlite3_file* handle = nullptr;
+    sqlite3_file_control(database.getHandle(), "main", SQLITE_FCNTL_FILE_POINTER, &handle);
+    if (handle != nullptr && handle->pMethods != nullptr)
+      (void)handle->pMethods->xRead(handle, head.data(), static_cast<int>(head.size()), 0);
+  } catch (const SQLite::Exception&) {
+  }
+  return head;
+}
+
+/// Throws unless the path is a readable file that begins as SQLite files do. Returns whether it
+/// says that it has a write-ahead log.
+bool check_file(const fs::path& path) {
   const std::string name = concat("map '", path.string(), "'");
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  const int error = errno;
-  if (descriptor < 0)
-    throw Error(concat("cannot open ", name, ": ", std::generic_category().message(error),
+  if (::faccessat(AT_FDCWD, path.c_str(), R_OK, AT_EACCESS) != 0)
+    throw Error(concat("cannot open ", name, ": ", std::generic_category().message(errno),
                        "; give a map file that `ovimap run` wrote"));
-  std::array<char, kMagic.size()> start{};
-  const ssize_t length =
-      fs::is_regular_file(path) ? ::pread(descriptor, start.data(), start.size(), 0) : 0;
-  ::close(descriptor);
   if (!fs::is_regular_file(path))
     throw Error(
         concat("'", path.string(), "' is not a file; give a map file that `ovimap run` wrote"));
-  if (length != static_cast<ssize_t>(start.size()) ||
-      std::string_view(start.data(), start.size()) != kMagic)
+  const std::string head = head_of(path);
+  if (!head.starts_with(kMagic))
     throw Error(concat("'", path.string(),
                        "' is not an ovimap map; give a map file that `ovimap run` wrote"));
+  return head[kReadVersionAt] == kReadVersionOfLogs;
 }
 
 /// `fault` may quote the file's own bytes, so what would break the line becomes a blank.
@@ -188,31 +226,14 @@ void check_file(const fs::path& path) {
   if (is_busy(fault))
     throw Error(concat("map '", path.string(),
                        "' is in use by another program; try again when that is done"));
-  if (fault.getExtendedErrorCode() == SQLITE_READONLY_ROLLBACK)
-    throw Error(concat("map '", path.string(),
-                       "' was being changed when that was cut short; copy it with the -journal "
-                       "beside it into a folder that you can write to"));
+  if (is_cut_short(fault)) fail_as_cut_short(path, "-journal");
   fail_as_damaged(path, fault.what());
-}
-
-/// A map consists of plain tables; anything else could make reading do work of the file's choosing.
-void check_plain_tables(SQLite::Database& database) {
-  const char* sql =
-      "SELECT count(*) FROM sqlite_master WHERE type NOT IN ('table', 'index') OR sql LIKE "
-      "'%virtual%'";
-  if (database.execAndGet(sql).getInt() != 0)
-    throw Error("it holds views, triggers or virtual tables");
 }
 
 /// Whether a file holds something that is not a map, which saving must not take away.
 bool is_something_else(const fs::path& path) {
-  std::array<char, kApplicationIdAt + kApplication.size()> start{};
-  std::ifstream file(path, std::ios::binary);
-  file.read(start.data(), start.size());
-  if (file.gcount() == 0) return false;
-  return file.gcount() != static_cast<std::streamsize>(start.size()) ||
-         !std::string_view(start.data(), start.size()).starts_with(kMagic) ||
-         !std::string_view(start.data(), start.size()).ends_with(kApplication);
+  const std::string head = head_of(path);
+  return fs::file_size(path) != 0 && (!head.starts_with(kMagic) || !head.ends_with(kApplication));
 }
 
 /// The file that saving to `path` replaces: through a link, what it points to. Devices and pipes
@@ -236,8 +257,9 @@ fs::path writable_target(const fs::path& path) {
 }  // namespace
 
 std::unique_ptr<SQLite::Database> open_growing_map(const fs::path& path) {
-  auto database = std::make_unique<SQLite::Database>(path.string(),
-                                                     SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+  check_journal(path);
+  auto database = open_guarded(path.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE,
+                               kLongestValue);
   // A log written ahead: a transaction that is cut off never was.
   database->exec(
       "PRAGMA page_size = 4096; PRAGMA locking_mode = EXCLUSIVE; PRAGMA journal_mode = WAL; "
@@ -297,24 +319,44 @@ void PendingMap::write(const std::function<void(SQLite::Database&)>& fill) {
 void PendingMap::commit() {
   if (!flush(temporary_, O_RDWR)) fail_to_write(target_, errno);
   // A log left beside the old map would be taken for the new one's. It is settled first: should the
-  // machine stop before the renaming, the old map must be whole without it.
-  if (has_log(target_)) settle_log(target_);
+  // machine stop before the renaming, the old map must be whole without it. One that is none of the
+  // old map goes with it.
+  try {
+    if (has_log(target_)) settle_log(target_);
+  } catch (const std::exception&) {
+  }
   remove_sidecars(target_);
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail_to_write(target_, errno);
   // Some file systems cannot flush a folder; the map is whole either way.
   (void)flush(target_.parent_path(), O_RDONLY | O_DIRECTORY);
 }
 
+bool recover_map(const fs::path& path) {
+  (void)check_file(path);
+  const fs::path file = fs::canonical(path);
+  if (!has_log(file)) return false;
+  reporting_write_faults(path, nullptr, [&] {
+    try {
+      settle_log(file);
+    } catch (const Error& fault) {
+      throw Error(concat("cannot recover map '", path.string(), "': ", fault.what()));
+    }
+  });
+  return true;
+}
+
 OpenMap::OpenMap(const fs::path& path) : path_(path) {
-  check_file(path);
+  const bool logs = check_file(path);
   int application = 0;
   try {
     size_bytes_ = fs::file_size(path);
-    database_ = open_for_reading(path);
+    database_ = open_for_reading(path, logs);
     application = pragma(*database_, "application_id");
     schema_ = pragma(*database_, "user_version");
   } catch (const SQLite::Exception& fault) {
     fail_to_read(path, fault);
+  } catch (const Error&) {
+    throw;
   } catch (const std::exception& fault) {
     fail_as_damaged(path, fault.what());
   }
@@ -332,6 +374,7 @@ OpenMap::~OpenMap() = default;
 void OpenMap::read(const std::function<void(SQLite::Database&)>& read) {
   read_as_map(path_, *database_, [&](SQLite::Database& database) {
     SQLite::Transaction transaction(database);  // a change meanwhile must not show half-way
+    check_schema(database);
     read(database);
     transaction.commit();
   });
@@ -340,7 +383,6 @@ void OpenMap::read(const std::function<void(SQLite::Database&)>& read) {
 void read_as_map(const fs::path& path, SQLite::Database& database,
                  const std::function<void(SQLite::Database&)>& read) {
   try {
-    check_plain_tables(database);
     read(database);
   } catch (const SQLite::Exception& fault) {
     fail_to_read(path, fault);

@@ -48,6 +48,14 @@ void read_as_map(const std::filesystem::path& path, SQLite::Database& database,
 /// SQLite's exceptions pass through; throws Error when the file is in use.
 std::unique_ptr<SQLite::Database> open_growing_map(const std::filesystem::path& path);
 
+/// Ends the name of a checkpoint. What lies beside such a file belongs to it and is read with it.
+inline constexpr const char* kCheckpointEnding = ".partial";
+
+/// Makes a map whole beside which a change that was cut short left SQLite's log: an unfinished
+/// change is taken back, a finished one taken in. Returns whether there was a log. Throws Error when
+/// the file is no map, in use, or cannot be written.
+bool recover_map(const std::filesystem::path& path);
+
 /// Deletes a map file and SQLite's files beside it.
 void remove_map(const std::filesystem::path& path);
 
@@ -57,7 +65,8 @@ void reporting_write_faults(const std::filesystem::path& path, const SQLite::Dat
                             const std::function<void()>& write);
 
 /// An existing map, opened for reading only; also from folders and media that cannot be written.
-/// Throws Error when there is none, or it is no ovimap map of a schema this program knows.
+/// Throws Error when there is none, it is no ovimap map of a schema this program knows, or a log
+/// lies beside it that nobody is writing: recover_map makes such a map whole.
 class OpenMap {
  public:
   explicit OpenMap(const std::filesystem::path& path);

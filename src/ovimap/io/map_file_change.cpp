@@ -11,6 +11,7 @@
 
 #include "ovimap/base/error.h"
 #include "ovimap/io/map_file_access.h"
+#include "ovimap/io/map_file_guard.h"
 
 namespace ovimap {
 
@@ -28,7 +29,7 @@ std::filesystem::path changeable(const std::filesystem::path& path) {
   if (::access(target.c_str(), W_OK) != 0 || ::access(target.parent_path().c_str(), W_OK) != 0)
     refuse(path, std::generic_category().message(errno) +
                      "; copy it into a folder that you can write to");
-  if (std::filesystem::exists(std::filesystem::path(target) += "-wal"))
+  if (has_wal(target))
     refuse(path, "it is being mapped; try again when that is done");
   return target;
 }
@@ -40,10 +41,8 @@ MapChange::MapChange(const std::filesystem::path& path)
   const std::filesystem::path target = changeable(path);
   guarded([&] {
     database_ =
-        std::make_unique<SQLite::Database>(target.string(), SQLite::OPEN_READWRITE, kPatience_ms);
-    database_->exec(
-        "PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON; PRAGMA journal_mode = DELETE; "
-        "PRAGMA synchronous = EXTRA");
+        open_guarded(target.string(), SQLite::OPEN_READWRITE, kLongestValue, kPatience_ms);
+    database_->exec("PRAGMA journal_mode = DELETE; PRAGMA synchronous = EXTRA");
     transaction_ =
         std::make_unique<SQLite::Transaction>(*database_, SQLite::TransactionBehavior::IMMEDIATE);
   });
@@ -51,7 +50,10 @@ MapChange::MapChange(const std::filesystem::path& path)
 MapChange::~MapChange() = default;
 
 void MapChange::read(const std::function<void(SQLite::Database&)>& read) {
-  read_as_map(path_, *database_, read);
+  read_as_map(path_, *database_, [&](SQLite::Database& database) {
+    check_schema(database);
+    read(database);
+  });
 }
 
 void MapChange::write(const std::function<void(SQLite::Database&)>& write) {

@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
+#include <bit>
 #include <fstream>
 #include <functional>
+#include <limits>
 #include <random>
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -250,6 +252,51 @@ TEST_F(ForgedMap, LabelsAndRootsMustExist) {
   expect_refused("an object of labels that were never given");
 }
 
+TEST_F(ForgedMap, DirectionsMustFitTheMapsGrid) {
+  const auto with_bins = [&](std::size_t bytes, std::uint8_t fill) {
+    save_map(path_, saved_);
+    forge(map_tables::kAppearances, [&](RowWriter& rows) {
+      const Bytes bins(bytes, fill);
+      for (const int id : {1, 3})
+        rows.insert(id, 0., 0., 0., 0., 0., 0., 1., 1., 1.,
+                    std::span<const std::uint8_t>(id == 1 ? Bytes(96, 1) : bins), 1, 1, 1);
+    });
+    forge(map_tables::kViews, [](RowWriter&) {});
+  };
+  with_bins(96, 2);
+  EXPECT_EQ(load_map(path_).semantics.appearances.size(), 2u);
+  with_bins(8, 1);
+  expect_refused("fewer directions than the grid has");
+  with_bins(9600, 1);
+  expect_refused("more directions than the grid has");
+}
+
+TEST_F(ForgedMap, SurfacesAreFinite) {
+  const auto floats = [](std::initializer_list<float> values) {
+    Bytes bytes;
+    for (const float value : values)
+      for (std::size_t i = 0; i < 4; ++i)
+        bytes.push_back(static_cast<std::uint8_t>(std::bit_cast<std::uint32_t>(value) >> 8 * i));
+    return bytes;
+  };
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (const Bytes& head :
+       {floats({0, 0, nan, 1, 1, 1}), floats({-3e38f, 0, 0, 3e38f, 1, 1}), floats({0, 0, 0})}) {
+    save_map(path_, saved_);
+    forge(map_tables::kSurfaces, [&](RowWriter& rows) {
+      Bytes surface = head;
+      surface.resize(head.size() + 12, 7);
+      rows.insert(1, std::span<const std::uint8_t>(surface));
+    });
+    expect_refused("surfaces nowhere");
+  }
+}
+
+TEST_F(ForgedMap, EmbeddingsNeedAnEncoder) {
+  forge_meta("encoder.name", "");
+  expect_refused("embeddings in nobody's space");
+}
+
 TEST_F(ForgedMap, TheLogOfEditsIsReadWithCare) {
   const auto log = [&](const std::string& action, const std::string& arguments) {
     save_map(path_, saved_);
@@ -261,6 +308,8 @@ TEST_F(ForgedMap, TheLogOfEditsIsReadWithCare) {
   log("rename", "{\"instances\": \"all\"}");
   log("merge", "{\"instances\": [-1, 5000000000]}");
   log("rename", "[1]");
+  log("lock", "{}");
+  log("merge", "{\"instances\": []}");
 }
 
 }  // namespace

@@ -117,11 +117,12 @@ inline MapDocument random_document(int block_count, std::uint32_t seed) {
   document.semantics.encoder = {"colours", 3, std::string(64, 'a')};
   document.semantics.views.theta_novel = 0.21f;
   document.semantics.crops.kept_views = 7;
+  document.depth_camera = {640, 480, 585.1f, 585.2f, 319.5f, 239.25f};
   Appearance& look = document.semantics.appearances[1];
   look.coverage.center_in_world = {1.f / 3, 2, -3};
   look.coverage.seen_in_world = cup.box;
-  look.coverage.bins = BinSet(130);
-  for (const int bin : {0, 77, 129}) look.coverage.bins.set(bin);
+  look.coverage.bins = BinSet(document.semantics.views.grid(document.depth_camera).bins());
+  for (const int bin : {0, 77, 767}) look.coverage.bins.set(bin);
   look.coverage.largest_px = 900;
   look.offered = 12;
   look.queries = 3;
@@ -135,7 +136,6 @@ inline MapDocument random_document(int block_count, std::uint32_t seed) {
                           {0.3f, 0.4f, 0.1f}};  // its box's corners: kept exactly
   document.kept_frames[0] =
       std::make_shared<KeptFrame>(KeptFrame{{9, 0, 255}, {1}, {}, {0, 20, 3}});
-  document.depth_camera = {640, 480, 585.1f, 585.2f, 319.5f, 239.25f};
   document.config_text = "map.voxel_size_m: 0.0213\nrun.name: \"a: b\"\n";
   document.timings = "integrate 12.500 40.000 3\n";
   document.source = "/data/some where";

@@ -121,6 +121,13 @@ inline constexpr MapTable kCorrectedFlags{
 inline constexpr MapTable kChecks{
     "checks", "name, rows, hash",
     "name TEXT PRIMARY KEY, rows INTEGER NOT NULL, hash INTEGER NOT NULL", "WITHOUT ROWID"};
+/// All of them.
+inline constexpr const MapTable* kAll[] = {
+    &kMeta, &kInstances, &kInstanceSuperPoints, &kInstanceNames, &kInstanceRecords,
+    &kInstanceAliases, &kSuperPoints, &kVotes, &kLabelPairs, &kEntitySightings, &kLabelForest,
+    &kFrames, &kAppearances, &kViews, &kEmbeddings, &kSurfaces, &kBlocks, &kKeptFrames, &kEdits,
+    &kCorrectedInstances, &kCorrectedSuperPoints, &kCorrectedNames, &kCorrectedSurfaces,
+    &kCorrectedEmbeddings, &kCorrectedFlags, &kChecks};
 }  // namespace map_tables
 
 /// XXH64 with seed 0, as SQLite can hold it.

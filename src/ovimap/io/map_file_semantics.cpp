@@ -38,6 +38,7 @@ Bytes embedding_bytes(const Eigen::VectorXf& embedding) {
 /// An embedding in the encoder's space, or none.
 Eigen::VectorXf take_embedding(RowReader& rows, const EncoderIdentity& encoder) {
   const auto words = words_of<std::uint32_t>(rows.blob(), rows);
+  if (!words.empty() && encoder.name.empty()) rows.fail("has an embedding of no encoder");
   if (!words.empty() && words.size() != static_cast<std::size_t>(encoder.dimension))
     rows.fail(concat("has an embedding of ", words.size(), " numbers"));
   Eigen::VectorXf embedding(static_cast<Eigen::Index>(words.size()));
@@ -68,13 +69,25 @@ void insert_view(RowWriter& rows, InstanceId id, std::size_t ordinal, const Obje
               crop ? low.y() : 0, crop ? high.x() : 0, crop ? high.y() : 0);
 }
 
-Appearance take_appearance(RowReader& rows) {
+/// Directions that were seen: none, or of the map's own grid.
+BinSet take_bins(RowReader& rows, const SphereGrid& grid) {
+  auto words = words_of<std::uint64_t>(rows.blob(), rows);
+  if (words.empty()) return {};
+  const std::size_t count = words.size();
+  std::optional<BinSet> bins = BinSet::from_words(std::move(words), grid.bins());
+  if (!bins)
+    rows.fail(concat("has bins of ", count, " words that do not fit the grid of ", grid.rows, "x",
+                     grid.columns, " directions"));
+  return std::move(*bins);
+}
+
+Appearance take_appearance(RowReader& rows, const SphereGrid& grid) {
   Appearance appearance;
   ViewCoverage& coverage = appearance.coverage;
   for (Eigen::Vector3f* point :
        {&coverage.center_in_world, &coverage.seen_in_world.min(), &coverage.seen_in_world.max()})
     for (float& coordinate : *point) coordinate = static_cast<float>(rows.real());
-  coverage.bins = BinSet(words_of<std::uint64_t>(rows.blob(), rows));
+  coverage.bins = take_bins(rows, grid);
   coverage.largest_px = rows.integer<int>();
   appearance.offered = rows.integer<int>();
   appearance.queries = rows.integer<int>();
@@ -117,12 +130,14 @@ Bytes surface_bytes(const std::vector<Eigen::Vector3f>& points) {
 std::vector<Eigen::Vector3f> take_surface(RowReader& rows) {
   constexpr std::size_t kHead = 24;
   const std::span<const std::uint8_t> bytes = rows.blob();
-  if (bytes.size() < kHead || (bytes.size() - kHead) % kPointBytes != 0)
+  if (bytes.size() <= kHead || (bytes.size() - kHead) % kPointBytes != 0)
     rows.fail(concat("has a surface of ", bytes.size(), " bytes"));
   Eigen::Vector3f corners[2];
   const auto head = words_of<std::uint32_t>(bytes.first(kHead), rows);
   for (std::size_t i = 0; i < 6; ++i)
     corners[i / 3][static_cast<Eigen::Index>(i % 3)] = std::bit_cast<float>(head[i]);
+  if (!corners[0].allFinite() || !(corners[1] - corners[0]).allFinite())
+    rows.fail("has a surface that is not finite");
   const auto steps = words_of<std::uint16_t>(bytes.subspan(kHead), rows);
   const Eigen::Array3f scale = (corners[1] - corners[0]).array().max(1e-6f) / kSteps;
   std::vector<Eigen::Vector3f> points(steps.size() / 3);
@@ -184,12 +199,14 @@ void write_embeddings(SQLite::Database& database, const MapRecord& record, const
   embeddings.finish();
 }
 
-Appearances read_appearances(SQLite::Database& database, const EncoderIdentity& encoder) {
+Appearances read_appearances(SQLite::Database& database, const SemanticRecord& settings,
+                             const PinholeCamera& depth_camera) {
+  const SphereGrid grid = settings.views.grid(depth_camera);
   Appearances result;
   RowReader appearances(database, kAppearances);
   while (appearances.next()) {
     const auto id = appearances.integer<InstanceId>();
-    result.emplace(id, take_appearance(appearances));
+    result.emplace(id, take_appearance(appearances, grid));
   }
   RowReader views(database, kViews);
   while (views.next()) {
@@ -197,7 +214,7 @@ Appearances read_appearances(SQLite::Database& database, const EncoderIdentity& 
     const auto ordinal = views.integer<std::size_t>();
     if (owner == result.end() || ordinal != owner->second.views.size())
       views.fail("has a view out of place");
-    owner->second.views.push_back(take_view(views, encoder));
+    owner->second.views.push_back(take_view(views, settings.encoder));
   }
   return result;
 }

@@ -18,8 +18,9 @@ namespace ovimap {
 void write_semantics(SQLite::Database& database, const MapRecord& record);
 
 /// The way back, without the fused embeddings. Throws Error with a phrase when the file does not
-/// hold what was written.
-Appearances read_appearances(SQLite::Database& database, const EncoderIdentity& encoder);
+/// hold what was written, or what does not fit the encoder and the grid of `settings`.
+Appearances read_appearances(SQLite::Database& database, const SemanticRecord& settings,
+                             const PinholeCamera& depth_camera);
 
 /// The fused embeddings by instance.
 std::map<InstanceId, Eigen::VectorXf> read_embeddings(SQLite::Database& database,

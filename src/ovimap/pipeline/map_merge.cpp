@@ -68,8 +68,11 @@ void append_registry(InstanceRegistry::State& a, const InstanceRegistry::State& 
   a.last_id = by.instance + highest_b;
 }
 
-void append_looks(SemanticRecord& a, const SemanticRecord& b, const Pose& a_from_b,
+void append_looks(MapRecord& map_a, const MapRecord& map_b, const Pose& a_from_b,
                   const Offsets& by) {
+  SemanticRecord& a = map_a.semantics;
+  const SemanticRecord& b = map_b.semantics;
+  const bool same_grid = a.views.grid(map_a.depth_camera) == b.views.grid(map_b.depth_camera);
   if (a.encoder.name.empty()) a.encoder = b.encoder;
   const Eigen::Isometry3f pose = a_from_b.cast<float>();
   for (const auto& [id, look] : b.appearances) {
@@ -78,8 +81,8 @@ void append_looks(SemanticRecord& a, const SemanticRecord& b, const Pose& a_from
     ViewCoverage& coverage = moved.coverage;
     coverage.center_in_world = pose * coverage.center_in_world;
     if (!coverage.seen_in_world.isEmpty()) coverage.seen_in_world.transform(pose);
-    // Directions are those of the old frame: what was seen counts again from nothing.
-    if (!pose.linear().isIdentity(1e-4f)) coverage.bins = {};
+    // Directions are those of the old frame and grid: what was seen counts again from nothing.
+    if (!pose.linear().isIdentity(1e-4f) || !same_grid) coverage.bins = {};
     a.appearances[id + by.instance] = std::move(moved);
   }
 }
@@ -261,7 +264,7 @@ MapMerge merge_maps(MapDocument a, const MapDocument& b, const Pose& a_from_b,
   Matchmaker(seen_a, seen_b, a_from_b, config, by.instance).match(result.pairs, result.conflicts);
   fuse_map(a.map, b.map, a_from_b, append_labels(a.map, b.map.labels()));
   append_registry(a.registry, b.registry, by, highest_id(b));
-  append_looks(a.semantics, b.semantics, a_from_b, by);
+  append_looks(a, b, a_from_b, by);
   append_kept_frames(a, b, by);
   append_frames(a, b, a_from_b, by);
   append_instances(a, b, by);

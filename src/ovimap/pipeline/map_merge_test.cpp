@@ -84,6 +84,24 @@ class MapMerging : public MapFolder {
   }
 };
 
+TEST(MapMerge, DirectionsOfAnotherGridCountFromNothing) {
+  const auto seen_in_a_grid_of = [](int rows) {
+    MapDocument map;
+    map.semantics.views.grid_rows = rows;
+    map.semantics.appearances[1].coverage.bins = BinSet(map.semantics.views.grid(map.depth_camera).bins());
+    map.semantics.appearances[1].coverage.bins.set(rows);
+    map.registry.last_id = 1;
+    return map;
+  };
+  const auto bins_from = [&](int rows) {
+    const MapMerge merge =
+        merge_maps(seen_in_a_grid_of(24), seen_in_a_grid_of(rows), Pose::Identity(), {});
+    return merge.map.semantics.appearances.at(2).coverage.bins;
+  };
+  EXPECT_EQ(bins_from(24).count(), 1);
+  EXPECT_TRUE(bins_from(12).empty()) << "they could not be united with those of the first map";
+}
+
 TEST_F(MapMerging, TwoSessionsMakeOneMap) {
   const MapDocument a = session(0, 0.55), b = session(0.45, 1, elsewhere());
   const MapMerge merged = merge_maps(session(0, 0.55), b, elsewhere().inverse());

@@ -71,6 +71,15 @@ int bin_of(const SphereGrid& grid, const Eigen::Vector3f& direction) {
   return std::min(row, grid.rows - 1) * grid.columns + std::min(column, grid.columns - 1);
 }
 
+std::optional<BinSet> BinSet::from_words(std::vector<std::uint64_t> words, int bins) {
+  BinSet set(bins);
+  const int rest = bins % 64;
+  if (words.size() != set.words_.size() || (rest != 0 && words.back() >> rest != 0))
+    return std::nullopt;
+  set.words_ = std::move(words);
+  return set;
+}
+
 int BinSet::count() const {
   int bits = 0;
   for (const std::uint64_t word : words_) bits += std::popcount(word);

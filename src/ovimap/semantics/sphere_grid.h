@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,8 +30,8 @@ class BinSet {
  public:
   BinSet() = default;
   explicit BinSet(int bins) : words_((static_cast<std::size_t>(bins) + 63) / 64) {}
-  /// From stored words. The number of bins is a multiple of 64.
-  explicit BinSet(std::vector<std::uint64_t> words) : words_(std::move(words)) {}
+  /// From stored words; nothing where they are not those of a set of so many bins.
+  static std::optional<BinSet> from_words(std::vector<std::uint64_t> words, int bins);
 
   void set(int bin) {
     words_[static_cast<std::size_t>(bin) / 64] |= std::uint64_t{1} << (bin % 64);

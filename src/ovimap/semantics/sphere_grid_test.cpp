@@ -80,7 +80,16 @@ TEST(BinSet, CountsAndUnites) {
   EXPECT_EQ(a.count(), 5);
   EXPECT_TRUE(a.has(100));
   EXPECT_FALSE(a.has(101));
-  EXPECT_EQ(BinSet(a.words()), a);
+  EXPECT_EQ(BinSet::from_words(a.words(), 130), a);
+}
+
+TEST(BinSet, TakesNoWordsOfAnotherGrid) {
+  EXPECT_TRUE(BinSet::from_words({0, 0, 3}, 130).has_value());
+  EXPECT_FALSE(BinSet::from_words({0, 0, 4}, 130).has_value()) << "bin 130";
+  EXPECT_FALSE(BinSet::from_words({0, 0}, 130).has_value());
+  EXPECT_FALSE(BinSet::from_words({0, 0, 0, 0}, 130).has_value());
+  EXPECT_TRUE(BinSet::from_words({~std::uint64_t{0}}, 64).has_value());
+  EXPECT_FALSE(BinSet::from_words({}, 64).has_value());
 }
 
 }  // namespace

@@ -137,10 +137,10 @@ int ViewSelector::sample_step(int visible_px) const {
              std::sqrt(static_cast<float>(visible_px) / static_cast<float>(config_.max_samples)))));
 }
 
-SphereGrid ViewSelector::grid_of(const SeenObjects& seen) const {
-  const int px = config_.grid_px_per_bin;
-  if (px == 0) return {config_.grid_rows, config_.grid_columns};
-  return {std::max(1, seen.depth.height() / px), std::max(1, seen.depth.width() / px)};
+SphereGrid ViewSelectionConfig::grid(const PinholeCamera& depth_camera) const {
+  if (grid_px_per_bin == 0) return {grid_rows, grid_columns};
+  return {std::max(1, depth_camera.height / grid_px_per_bin),
+          std::max(1, depth_camera.width / grid_px_per_bin)};
 }
 
 void ViewSelector::cover(const SeenObjects& seen, const Appearances& appearances,
@@ -152,7 +152,7 @@ void ViewSelector::cover(const SeenObjects& seen, const Appearances& appearances
   if (known != appearances.end()) object.coverage = known->second.coverage;
   ViewCoverage& coverage = object.coverage;
   coverage.seen_in_world.extend(box_of(object.x, object.y, object.z));
-  const SphereGrid grid = grid_of(seen);
+  const SphereGrid grid = config_.grid(seen.camera);
   const Eigen::Vector3f center = coverage.seen_in_world.center();
   const float moved = (center - coverage.center_in_world).norm();
   const float limit = config_.recentre_share * coverage.seen_in_world.diagonal().norm();

@@ -44,6 +44,9 @@ struct ViewSelectionConfig {
   int random_seed = 0;
   int max_samples = 2000;  ///< coverage looks at about so many of a view's pixels, evenly spread
   ViewFusion fusion;
+
+  /// The bins of directions, for views of a depth camera.
+  SphereGrid grid(const PinholeCamera& depth_camera) const;
 };
 void list_fields(ViewSelectionConfig& config, ConfigFields& fields);
 
@@ -87,7 +90,6 @@ class ViewSelector {
   std::vector<Candidate> find_candidates(const SeenObjects& seen, const InstanceRegistry& registry,
                                          const Appearances& appearances);
   int sample_step(int visible_px) const;
-  SphereGrid grid_of(const SeenObjects& seen) const;
   /// Fills the candidate's points, bins and coverage so far.
   void cover(const SeenObjects& seen, const Appearances& appearances, Candidate& object) const;
   bool decide(const Candidate& candidate, std::int64_t frame, Appearance& appearance) const;
