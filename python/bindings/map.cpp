@@ -15,6 +15,7 @@
 #include "ovimap/io/glb.h"
 #include "ovimap/io/instance_csv.h"
 #include "ovimap/io/instance_json.h"
+#include "ovimap/io/map_file_record.h"
 #include "ovimap/io/map_mesh.h"
 #include "ovimap/io/ply.h"
 #include "saved_map.h"
@@ -294,7 +295,23 @@ Mesh SavedMap::mesh() const {
   return mesh;
 }
 
+/// For ovimap.map_facts, which gives them names.
+nb::tuple map_identity(const nb::object& path) {
+  const std::filesystem::path file = to_path(path, "path");
+  MapIdentity map;
+  {
+    const WithoutGil release;
+    map = read_map_identity(file);
+  }
+  return nb::make_tuple(map.source, map.frames, map.unfinished, hash_text(map.content_hash),
+                        nb::make_tuple(map.encoder.name, map.encoder.dimension, map.encoder.digest),
+                        hash_text(map.revision));
+}
+
 void bind_map(nb::module_& module) {
+  module.def("map_identity", &map_identity, nb::arg("path"),
+             nb::sig("def map_identity(path: str | os.PathLike[str]) -> tuple[str, int, bool, str, "
+                     "tuple[str, int, str], str]"));
   bind_instances(module);
   bind_mesh(module);
   nb::class_<SavedMap> map(module, "Map",

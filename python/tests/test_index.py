@@ -4,7 +4,6 @@
 import json
 import os
 import shutil
-import sqlite3
 import subprocess
 import sys
 from types import SimpleNamespace
@@ -14,6 +13,7 @@ import ovimap
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
+from conftest import set_meta
 from ovimap.index import ObjectIndex, export_objects, object_table, search, vectors
 from ovimap.index.objects import object_schema
 from ovimap.index.store import Store
@@ -183,14 +183,13 @@ def test_maps_that_cannot_be_compared_are_left_out(maps, tmp_path, capsys):
     other, bare, broken = (tmp_path / f"{name}.ovimap" for name in ("other", "bare", "broken"))
     for path, name in ((other, "another encoder"), (bare, "")):
         shutil.copyfile(maps[0], path)
-        with sqlite3.connect(path) as file:
-            file.execute("UPDATE meta SET value = ? WHERE key = 'encoder.name'", (name,))
+        set_meta(path, "encoder.name", name)
     broken.write_text("no map")
     words = ["build", *map(str, [maps[0], other, bare, broken, maps[1]]), "-o", str(tmp_path / "index"), "--json"]
     assert main(words) == 2
     said, told = capsys.readouterr()
     assert json.loads(said)["added"] == [str(map) for map in maps]
-    assert all(words in line for words, line in zip(("cannot be compared", "has no embeddings", "is no map"), told.splitlines(), strict=True))
+    assert all(words in line for words, line in zip(("cannot be compared", "has no embeddings", "is not an ovimap map"), told.splitlines(), strict=True))
     with pytest.raises(ovimap.Error, match="cannot be compared"):
         export_objects([maps[0], other], tmp_path / "all.parquet")
     assert not list(tmp_path.glob("*.parquet*"))

@@ -7,7 +7,6 @@ import os
 import pathlib
 import shutil
 import signal
-import sqlite3
 import subprocess
 import sys
 import threading
@@ -15,6 +14,7 @@ import time
 
 import ovimap
 import pytest
+from conftest import set_meta
 from ovimap.cluster import Job, eval_jobs, pool_job, run_jobs, scene_jobs, site_jobs
 from ovimap.cluster.jobs import STORE_BYTES, Board, _read_board, _submit
 from ovimap.cluster.scenes import scene_names
@@ -72,7 +72,7 @@ def checkpoint_frames(map, scratch):
     try:
         for ending in (".partial", ".partial-wal"):
             shutil.copyfile(f"{map}{ending}", f"{scratch}{ending}")
-        return map_facts(f"{scratch}.partial", checkpoint=True).frames
+        return map_facts(f"{scratch}.partial").frames
     except (OSError, ovimap.Error):
         return 0
 
@@ -229,8 +229,7 @@ def test_what_cannot_be_scored_is_refused(maps, rooms, tmp_path):
         eval_jobs([str(path) for path in maps], rooms[:1])
     pushed = tmp_path / "pushed.ovimap"
     pushed.write_bytes(maps[0].read_bytes())
-    with sqlite3.connect(pushed) as file:
-        file.execute("UPDATE meta SET value = 'http' WHERE key = 'source'")
+    set_meta(pushed, "source", "http")
     [job] = run(eval_jobs([str(pushed)], []))
     assert job.state == "failed" and job.fault == f"{pushed} was made of pushed frames; name its truth"
     failed = eval_jobs([str(maps[0])], rooms[:1])

@@ -76,7 +76,7 @@ def scene_names(paths: Sequence[str]) -> list[str]:
 def _begun(map: pathlib.Path) -> MapFacts | None:
     """What a lost worker left; None where there is no checkpoint, or none was ever completed."""
     try:
-        return map_facts(checkpoint_of(map), checkpoint=True)
+        return map_facts(checkpoint_of(map))
     except Error:
         return None
 
