@@ -70,7 +70,7 @@ CorridorWalk walk(const CorridorSource& corridor, ProgramConfig config) {
     walked.rows.push_back({i + 1, summary["frame"], summary["project"], summary["mesh"],
                            static_cast<double>(mapper.map().bytes()) / 1e6,
                            checkpoints ? 0. : surface_m2(mapper.map()), mapper.map().block_count(),
-                           mapper.registry().records().size()});
+                           mapper.registry().instances().size()});
     part = {};
   }
   if (checkpoints) checkpoints->report(walked.tiles);

@@ -111,7 +111,7 @@ std::shared_ptr<ImageTextEncoder> make_encoder(const MappingOptions& options,
 int embedding_queries(const SemanticRecord& semantics) {
   int queries = 0;
   if (semantics.encoder.name.empty()) return 0;
-  for (const auto& [id, appearance] : semantics.appearances) queries += appearance.queries;
+  for (const auto& [label, look] : semantics.looks) queries += look.queries;
   return queries;
 }
 

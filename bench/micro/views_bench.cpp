@@ -25,7 +25,8 @@ Image<InstanceId> grid_of_objects(int width, int height, int objects) {
 
 InstanceRegistry registry_of(int objects) {
   InstanceRegistry::State state;
-  for (int id = 1; id <= objects; ++id) state.records[static_cast<InstanceId>(id)].views = 100;
+  for (InstanceId id = 1; id <= static_cast<InstanceId>(objects); ++id)
+    state.super_points[id] = {100, {{id, 100}}, FrameRuns({{0, 100}})};  // labels are ids here
   state.last_id = static_cast<InstanceId>(objects);
   InstanceRegistry registry;
   registry.restore(std::move(state));
@@ -77,11 +78,15 @@ void select_views(benchmark::State& state) {
   const Image<InstanceId> ids = grid_of_objects(scene.depth.width(), scene.depth.height(), objects);
   const InstanceRegistry registry = registry_of(objects);
   ViewSelector selector(view_preset(state.range(1) != 0 ? "paper" : "default"));
-  Appearances appearances;
+  const Image<std::int32_t> color(ids.width(), ids.height());  // all of it is seen
+  SuperPointLooks looks;
   std::int64_t frame = 0;
-  for (auto _ : state)
-    benchmark::DoNotOptimize(selector.select(
-        {scene.depth, ids, scene.depth, scene.camera, scene.pose, frame++}, registry, appearances));
+  for (auto _ : state) {
+    std::vector<ChosenView> chosen = selector.select(
+        {scene.depth, ids, ids, scene.depth, color, scene.camera, scene.pose, frame++}, registry,
+        looks);
+    for (ChosenView& view : chosen) ViewSelector::commit(std::move(view), {}, looks);
+  }
 }
 BENCHMARK(select_views)
     ->ArgNames({"objects", "paper"})

@@ -42,8 +42,9 @@ std::int32_t nearest_pixel(float coordinate, float size) {
 /// known.
 class DepthProjection {
  public:
-  explicit DepthProjection(const Frame& frame)
+  DepthProjection(const Frame& frame, const DepthImage& depth_m)
       : frame_(frame),
+        depth_m_(depth_m),
         rotation_(frame.color_from_depth.linear().cast<float>()),
         translation_(frame.color_from_depth.translation().cast<float>()),
         columns_(3 * static_cast<std::size_t>(frame.depth.width())) {
@@ -65,8 +66,8 @@ class DepthProjection {
     const float row_x = row.x(), row_y = row.y(), row_z = row.z();
     const float tx = translation_.x(), ty = translation_.y(), tz = translation_.z();
     const float width = static_cast<float>(color.width), height = static_cast<float>(color.height);
-    const float* depth = frame_.depth.row(v);
-    const int count = frame_.depth.width();
+    const float* depth = depth_m_.row(v);
+    const int count = depth_m_.width();
     const float* column_x = columns_.data();
     const float* column_y = column_x + count;
     const float* column_z = column_y + count;
@@ -85,15 +86,16 @@ class DepthProjection {
 
  private:
   const Frame& frame_;
+  const DepthImage& depth_m_;
   Eigen::Matrix3f rotation_;
   Eigen::Vector3f translation_;
   std::vector<float> columns_;  ///< x of all columns, then y, then z
 };
 
-Projected project(const Frame& frame) {
-  const int width = frame.depth.width(), height = frame.depth.height();
+Projected project(const Frame& frame, const DepthImage& depth) {
+  const int width = depth.width(), height = depth.height();
   Projected seen{Image<std::int32_t>(width, height), Image<float>(width, height)};
-  const DepthProjection projection(frame);
+  const DepthProjection projection(frame, depth);
   parallel_for(static_cast<std::size_t>(height), kRowsPerTask, [&](std::size_t row) {
     const int v = static_cast<int>(row);
     projection.project_row(v, seen.pixel.row(v), seen.z_m.row(v));
@@ -148,18 +150,19 @@ Image<Pixel> look_up(const Image<Pixel>& image, const Image<std::int32_t>& index
 
 }  // namespace
 
-Registration::Registration(const Frame& frame, float occlusion_margin_m)
+Registration::Registration(const Frame& frame, const DepthImage& depth, float occlusion_margin_m)
     : color_width_(frame.color_camera.width),
       color_height_(frame.color_camera.height),
-      color_index_(frame.depth.width(), frame.depth.height(), kNoColor) {
-  const std::size_t grain = kRowsPerTask * static_cast<std::size_t>(frame.depth.width());
+      color_index_(depth.width(), depth.height(), kNoColor) {
+  OVIMAP_ASSERT(depth.same_size(frame.depth));
+  const std::size_t grain = kRowsPerTask * static_cast<std::size_t>(depth.width());
   if (frame.registered()) {
     parallel_for(color_index_.size(), grain, [&](std::size_t i) {
-      color_index_[i] = frame.depth[i] > 0 ? static_cast<std::int32_t>(i) : kNoColor;
+      color_index_[i] = depth[i] > 0 ? static_cast<std::int32_t>(i) : kNoColor;
     });
     return;
   }
-  const Projected seen = project(frame);
+  const Projected seen = project(frame, depth);
   const NearestSurface surface(frame, seen);
   const int color_width = frame.color_camera.width;
   parallel_for(color_index_.size(), grain, [&](std::size_t i) {

@@ -16,7 +16,10 @@ class Registration {
 
   /// `occlusion_margin_m`: how much nearer another surface must be, in the colour camera, to hide a
   /// point.
-  explicit Registration(const Frame& frame, float occlusion_margin_m = 0.05f);
+  explicit Registration(const Frame& frame, float occlusion_margin_m = 0.05f)
+      : Registration(frame, frame.depth, occlusion_margin_m) {}
+  /// The same for another depth image of the frame's depth camera, such as the map's.
+  Registration(const Frame& frame, const DepthImage& depth, float occlusion_margin_m);
 
   /// Colour at each depth pixel (nearest pixel), black where there is none. Like `ids_at_depth`,
   /// takes an image of the colour camera's size.

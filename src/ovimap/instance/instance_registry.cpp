@@ -24,6 +24,23 @@ std::vector<std::size_t> by_area(const Segments& segments) {
 
 }  // namespace
 
+InstanceRecord record_of(const std::map<Label, SuperPoint>& known,
+                         std::span<const Label> super_points) {
+  FrameRuns seen;
+  InstanceRecord record;
+  for (const Label label : super_points) {
+    const auto found = known.find(label);
+    if (found == known.end() || found->second.seen.runs().empty()) continue;
+    const SuperPoint& point = found->second;
+    const bool first = seen.runs().empty();
+    record.first_frame = first ? point.first_frame : std::min(record.first_frame, point.first_frame);
+    record.last_frame = first ? point.last_frame : std::max(record.last_frame, point.last_frame);
+    seen |= point.seen;
+  }
+  record.views = seen.count();
+  return record;
+}
+
 void list_fields(InstanceConfig& config, ConfigFields& fields) {
   fields.add_choice<InstanceReading>("instances", config.instances,
                                      {{"superpoints", InstanceReading::kSuperPoints},
@@ -44,10 +61,11 @@ void InstanceRegistry::observe(const Segments& segments,
   if (by_votes) vote(segments, associations, forest);
   if (by_consensus) see_entities(segments, associations, forest);
   for (const auto& [keep, drop] : merging_.observe(associations, forest))
-    by_consensus ? merge_consensus(keep, drop) : merge(keep, drop);
+    config_.instances == InstanceReading::kConsensus ? merge_consensus(keep, drop)
+                                                     : merge(keep, drop);
   if (by_consensus) find_objects();
   if (!by_votes && !by_consensus) see_super_points(associations, forest);
-  count_views(associations, frame_index, forest);
+  count_sightings(associations, frame_index, forest);
 }
 
 void InstanceRegistry::vote(const Segments& segments,
@@ -122,16 +140,18 @@ void InstanceRegistry::find_objects() {
     const auto [found, first] = oldest.try_emplace(object(root), own);
     if (!first) found->second = std::min(found->second, own);
   }
+  std::vector<Label> moved;
   for (const auto& [root, point] : super_points_) {
     if (point.votes.empty()) continue;
     const InstanceId own = point.votes.begin()->first, id = oldest.at(object(root));
-    if (own == id) {
+    const auto before = member_of_.find(root);
+    if (before == member_of_.end() || before->second != id) moved.push_back(root);
+    if (own == id)
       aliases_.erase(own);
-      continue;
-    }
-    aliases_[own] = id;
-    unify_records(id, own);
+    else
+      aliases_[own] = id;
   }
+  for (const Label root : moved) regroup(root);
 }
 
 /// Every super-point an instance of its own: the frame had no 2D masks, or the paper's reading is
@@ -143,8 +163,11 @@ void InstanceRegistry::see_super_points(std::span<const SegmentAssociation> asso
   for (Label root : roots) {
     SuperPoint& point = super_points_[root];
     ++point.frames_seen;
-    const InstanceId own = point.votes.empty() ? ++last_id_ : instance_of(root);
-    ++point.votes[own];
+    if (point.votes.empty()) point.votes[++last_id_] = 0;
+    const InstanceId now = instance_of(root);
+    // By consensus it may leave the object that it is part of now: what it votes for is its own.
+    const bool own = now == 0 || config_.instances == InstanceReading::kConsensus;
+    ++point.votes[own ? point.votes.begin()->first : now];
   }
 }
 
@@ -169,7 +192,15 @@ const SuperPoint& InstanceRegistry::absorb(Label keep, Label drop) {
   const SuperPoint& from = super_points_[drop];
   into.frames_seen += from.frames_seen;  // as the votes, so that their ratio keeps its meaning
   for (const auto& [id, votes] : from.votes) into.votes[id] += votes;
+  if (!from.seen.runs().empty()) {
+    const bool first = into.seen.runs().empty();
+    into.first_frame = first ? from.first_frame : std::min(into.first_frame, from.first_frame);
+    into.last_frame = first ? from.last_frame : std::max(into.last_frame, from.last_frame);
+    into.seen |= from.seen;
+  }
+  leave(drop);
   super_points_.erase(drop);
+  regroup(keep);
   return into;
 }
 
@@ -184,39 +215,56 @@ void InstanceRegistry::unify(InstanceId a, InstanceId b) {
   aliases_[drop] = keep;
   for (auto& [id, target] : aliases_)
     if (target == drop) target = keep;
+  std::vector<Label> changed = super_points_of(drop);
   for (auto& [label, point] : super_points_) {
     const auto found = point.votes.find(drop);
     if (found == point.votes.end()) continue;
     point.votes[keep] += found->second;
     point.votes.erase(drop);
+    changed.push_back(label);
   }
-  unify_records(keep, drop);
+  for (const Label root : changed) regroup(root);
 }
 
-void InstanceRegistry::unify_records(InstanceId keep, InstanceId drop) {
-  const auto dropped = records_.find(drop);
-  if (dropped == records_.end()) return;
-  const auto [kept, created] = records_.try_emplace(keep, dropped->second);
-  if (!created) {
-    kept->second.views = std::max(kept->second.views, dropped->second.views);
-    kept->second.first_frame = std::min(kept->second.first_frame, dropped->second.first_frame);
-    kept->second.last_frame = std::max(kept->second.last_frame, dropped->second.last_frame);
+void InstanceRegistry::count_sightings(std::span<const SegmentAssociation> associations,
+                                       std::int64_t frame_index, const LabelForest& forest) {
+  std::set<Label> roots;
+  for (const SegmentAssociation& segment : associations) roots.insert(forest.root(segment.label));
+  for (const Label root : roots) {
+    SuperPoint& point = super_points_[root];
+    if (point.seen.runs().empty()) point.first_frame = frame_index;
+    point.last_frame = frame_index;
+    point.seen.add(frames_);
+    regroup(root);
   }
-  records_.erase(drop);
+  ++frames_;
 }
 
-void InstanceRegistry::count_views(std::span<const SegmentAssociation> associations,
-                                   std::int64_t frame_index, const LabelForest& forest) {
-  std::set<InstanceId> seen;
-  for (const SegmentAssociation& segment : associations)
-    seen.insert(instance_of(forest.root(segment.label)));
-  seen.erase(0);
-  for (InstanceId id : seen) {
-    const auto [found, created] =
-        records_.try_emplace(id, InstanceRecord{0, frame_index, frame_index});
-    ++found->second.views;
-    found->second.last_frame = frame_index;
-  }
+/// Brings the list of instances up to date with what a super-point is now.
+void InstanceRegistry::regroup(Label root) {
+  const InstanceId id = instance_of(root);
+  const auto known = member_of_.find(root);
+  if ((known == member_of_.end() ? 0 : known->second) == id) return;
+  leave(root);
+  if (id == 0) return;
+  member_of_[root] = id;
+  std::vector<Label>& members = members_[id];
+  members.insert(std::lower_bound(members.begin(), members.end(), root), root);
+}
+
+void InstanceRegistry::leave(Label root) {
+  const auto known = member_of_.find(root);
+  if (known == member_of_.end()) return;
+  const auto members = members_.find(known->second);
+  std::erase(members->second, root);
+  if (members->second.empty()) members_.erase(members);
+  member_of_.erase(known);
+}
+
+const std::vector<Label>& InstanceRegistry::super_points_of(InstanceId id) const {
+  static const std::vector<Label> kNone;
+  const auto found = members_.find(id);
+  return found == members_.end() ? kNone : found->second;
 }
 
 InstanceId InstanceRegistry::instance_of(Label root) const {
@@ -252,12 +300,15 @@ InstanceId InstanceRegistry::resolve(InstanceId id) const {
 
 void InstanceRegistry::restore(State state) {
   super_points_ = std::move(state.super_points);
-  records_ = std::move(state.records);
   aliases_ = std::move(state.aliases);
   merging_.restore(std::move(state.pair_counts));
   consensus_.restore(std::move(state.entity_sightings),
                      static_cast<std::uint32_t>(state.entity_frames));
+  frames_ = static_cast<std::uint32_t>(state.frames);
   last_id_ = state.last_id;
+  members_.clear();
+  member_of_.clear();
+  for (const auto& [root, point] : super_points_) regroup(root);
 }
 
 }  // namespace ovimap

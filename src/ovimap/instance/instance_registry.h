@@ -9,6 +9,7 @@
 
 #include "ovimap/instance/association.h"
 #include "ovimap/instance/entity_consensus.h"
+#include "ovimap/instance/frame_runs.h"
 #include "ovimap/instance/super_point_merging.h"
 
 namespace ovimap {
@@ -36,6 +37,9 @@ struct SuperPoint {
   int frames_seen = 0;              ///< frames with 2D entities in which it was seen
   std::map<InstanceId, int> votes;  ///< kConsensus: one, for an id of its own, counts the frames in
                                     ///< which it was in an entity
+  FrameRuns seen;                   ///< every frame that showed it, as counted by the registry
+  std::int64_t first_frame = 0;     ///< of these, as Frame::index
+  std::int64_t last_frame = 0;
 };
 
 /// What is known of an instance besides its geometry.
@@ -45,8 +49,17 @@ struct InstanceRecord {
   std::int64_t last_frame = 0;
 };
 
+/// The record of an instance that consists of these super-points (roots); those that are not known
+/// add nothing.
+InstanceRecord record_of(const std::map<Label, SuperPoint>& known,
+                         std::span<const Label> super_points);
+
 /// Which super-points are which object, over time (method sections 6 and 7). Ids, once given, stay:
 /// when two instances turn out to be one, the older id survives and the other becomes its alias.
+///
+/// A union may be taken back by later frames. So nothing is gathered by instance: what is known is
+/// known of super-points, whose merges are for good, and an instance's record is put together from
+/// those that it has now.
 class InstanceRegistry {
  public:
   explicit InstanceRegistry(const InstanceConfig& config = {})
@@ -68,8 +81,15 @@ class InstanceRegistry {
   /// The id that an id once given goes by now.
   InstanceId resolve(InstanceId id) const;
 
+  /// The roots of which an instance consists now, ascending; none when it is none.
+  const std::vector<Label>& super_points_of(InstanceId id) const;
+  InstanceRecord record(InstanceId id) const {
+    return record_of(super_points_, super_points_of(id));
+  }
+
   const std::map<Label, SuperPoint>& super_points() const { return super_points_; }
-  const std::map<InstanceId, InstanceRecord>& records() const { return records_; }
+  /// Super-points by the instance they are now.
+  const std::map<InstanceId, std::vector<Label>>& instances() const { return members_; }
   const std::map<InstanceId, InstanceId>& aliases() const { return aliases_; }
   const SuperPointMerging& merging() const { return merging_; }
   const InstanceConfig& config() const { return config_; }
@@ -77,20 +97,20 @@ class InstanceRegistry {
   /// Everything needed to go on where another registry stopped.
   struct State {
     std::map<Label, SuperPoint> super_points;
-    std::map<InstanceId, InstanceRecord> records;
     std::map<InstanceId, InstanceId> aliases;
     SuperPointMerging::PairCounts pair_counts;
     EntitySightings entity_sightings;
     int entity_frames = 0;  ///< frames with entities; older maps do not tell
+    int frames = 0;         ///< all that were observed
     InstanceId last_id = 0;
   };
   State state() const {
     return {super_points_,
-            records_,
             aliases_,
             merging_.counts(),
             consensus_.sightings(),
             static_cast<int>(consensus_.frames()),
+            static_cast<int>(frames_),
             last_id_};
   }
   void restore(State state);
@@ -109,17 +129,20 @@ class InstanceRegistry {
                         const LabelForest& forest);
   void merge(Label keep, Label drop);
   void unify(InstanceId a, InstanceId b);
-  void unify_records(InstanceId keep, InstanceId drop);
   bool owns_super_point(InstanceId id) const;
-  void count_views(std::span<const SegmentAssociation> associations, std::int64_t frame_index,
-                   const LabelForest& forest);
+  void count_sightings(std::span<const SegmentAssociation> associations, std::int64_t frame_index,
+                       const LabelForest& forest);
+  void regroup(Label root);
+  void leave(Label root);
 
   InstanceConfig config_;
   SuperPointMerging merging_;
   EntityConsensus consensus_;
   std::map<Label, SuperPoint> super_points_;  ///< by root
-  std::map<InstanceId, InstanceRecord> records_;
   std::map<InstanceId, InstanceId> aliases_;
+  std::map<InstanceId, std::vector<Label>> members_;
+  std::map<Label, InstanceId> member_of_;  ///< the inverse of members_
+  std::uint32_t frames_ = 0;
   InstanceId last_id_ = 0;
 };
 

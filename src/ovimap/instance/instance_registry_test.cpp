@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/instance/instance_registry.h"
 
+#include <random>
+
 #include <gtest/gtest.h>
 
 namespace ovimap {
@@ -41,7 +43,7 @@ TEST_F(RegistryTest, PiecesOfOneEntityBecomeOneInstance) {
   EXPECT_EQ(registry.instance_of(1), registry.instance_of(2));
   EXPECT_NE(registry.instance_of(3), registry.instance_of(1));
   EXPECT_EQ(registry.instance_of(4), 0u) << "background";
-  EXPECT_EQ(registry.records().at(registry.instance_of(1)).views, 3);
+  EXPECT_EQ(registry.record(registry.instance_of(1)).views, 3);
 }
 
 TEST_F(RegistryTest, TheSameInstanceIsRecognisedWhateverTheEntityIsCalled) {
@@ -85,11 +87,67 @@ TEST_F(RegistryTest, AnObjectGoesByItsOldestIdAndItsPartsAreAliasesWhileTheyBelo
   see(registry, {{1, 5, 500}, {2, 5, 400}});
   EXPECT_EQ(registry.instance_of(2), older);
   EXPECT_EQ(registry.resolve(younger), older);
-  EXPECT_EQ(registry.records().size(), 1u);
-  EXPECT_EQ(registry.records().at(older).last_frame, 1);
+  EXPECT_EQ(registry.instances().size(), 1u);
+  EXPECT_EQ(registry.record(older).last_frame, 1);
   for (int i = 0; i < 2; ++i) see(registry, {{1, 5, 500}, {2, 6, 400}});
   EXPECT_EQ(registry.instance_of(2), younger) << "most frames keep it apart: its own id is back";
   EXPECT_EQ(registry.resolve(younger), younger);
+}
+
+TEST_F(RegistryTest, APartThatLeavesTakesItsOwnRecordAlong) {
+  InstanceRegistry registry;
+  see(registry, {{1, 5, 500}});
+  see(registry, {{1, 5, 500}, {2, 5, 400}});  // in one entity: one object
+  see(registry, {{2, 5, 400}});
+  const InstanceId older = registry.instance_of(1);
+  ASSERT_EQ(registry.instance_of(2), older);
+  EXPECT_EQ(registry.super_points_of(older), (std::vector<Label>{1, 2}));
+  EXPECT_EQ(registry.record(older).views, 3);
+  EXPECT_EQ(registry.record(older).last_frame, 2);
+  for (int i = 0; i < 3; ++i) see(registry, {{2, 6, 400}, {1, 5, 500}});  // apart after all
+  const InstanceId younger = registry.instance_of(2);
+  ASSERT_NE(younger, older);
+  EXPECT_EQ(registry.super_points_of(older), (std::vector<Label>{1}));
+  EXPECT_EQ(registry.record(older).views, 5) << "not those of the part that left";
+  EXPECT_EQ(registry.record(younger).views, 5);
+  EXPECT_EQ(registry.record(younger).first_frame, 1) << "seen as a part of the other";
+  EXPECT_EQ(registry.record(older).first_frame, 0);
+}
+
+TEST_F(RegistryTest, AFrameWithoutMasksDoesNotTieAPartToItsObject) {
+  InstanceRegistry registry;
+  see(registry, {{1, 5, 500}, {2, 5, 400}});
+  for (int i = 0; i < 3; ++i) see(registry, {{1, 0, 500}, {2, 0, 400}}, false);
+  for (int i = 0; i < 3; ++i) see(registry, {{1, 5, 500}, {2, 6, 400}});
+  EXPECT_NE(registry.instance_of(1), registry.instance_of(2));
+}
+
+TEST_F(RegistryTest, KnowsTheMembersOfEveryInstance) {
+  for (const auto reading : {InstanceReading::kConsensus, InstanceReading::kEntityVotes,
+                             InstanceReading::kSuperPoints}) {
+    InstanceConfig config;
+    config.instances = reading;
+    config.merging.merge_min_count = 3;
+    InstanceRegistry registry(config);
+    LabelForest forest;
+    for (int i = 0; i < 12; ++i) forest.create();
+    std::mt19937 random(5);
+    for (std::int64_t frame = 0; frame < 120; ++frame) {
+      Segments segments;
+      std::vector<SegmentAssociation> associations;
+      for (int i = 0; i < 5; ++i) {
+        const Label a = forest.root(1 + random() % 12), b = forest.root(1 + random() % 12);
+        segments.segments.push_back({static_cast<std::uint16_t>(random() % 4), 100});
+        associations.push_back({a, false, {}});
+        if (a != b && random() % 8 == 0) associations.back().overlapped = {std::min(a, b), std::max(a, b)};
+      }
+      registry.observe(segments, associations, frame, frame % 5 != 0, forest);
+      std::map<InstanceId, std::vector<Label>> members;
+      for (const auto& [root, point] : registry.super_points())
+        if (const InstanceId id = registry.instance_of(root); id != 0) members[id].push_back(root);
+      ASSERT_EQ(registry.instances(), members) << "frame " << frame;
+    }
+  }
 }
 
 TEST_F(RegistryTest, MergedSuperPointsKeepTheOlderIdForGood) {
@@ -103,7 +161,7 @@ TEST_F(RegistryTest, MergedSuperPointsKeepTheOlderIdForGood) {
   for (int i = 0; i < 2; ++i) see(registry, {{1, 5, 2000, {1, 2}}});
   EXPECT_EQ(registry.instance_of(1), older);
   EXPECT_EQ(registry.resolve(younger), older);
-  EXPECT_EQ(registry.records().size(), 1u);
+  EXPECT_EQ(registry.instances().size(), 1u);
 }
 
 TEST_F(RegistryTest, SuperPointReadingKeepsTheOlderIdAfterAMerge) {
@@ -118,7 +176,7 @@ TEST_F(RegistryTest, SuperPointReadingKeepsTheOlderIdAfterAMerge) {
   EXPECT_EQ(registry.instance_of(1), older);
   EXPECT_EQ(registry.resolve(younger), older);
   EXPECT_EQ(registry.instance_table(forest_)[2], older);
-  EXPECT_EQ(registry.records().size(), 1u);
+  EXPECT_EQ(registry.instances().size(), 1u);
 }
 
 TEST_F(RegistryTest, WithoutMasksEverySuperPointIsAnInstance) {
@@ -150,6 +208,8 @@ TEST_F(RegistryTest, RestoresItsState) {
   see(copy, {{1, 7, 500}, {3, 9, 100}});
   EXPECT_EQ(copy.instance_table(forest_), registry.instance_table(forest_));
   EXPECT_EQ(copy.aliases(), registry.aliases());
+  EXPECT_EQ(copy.instances(), registry.instances());
+  EXPECT_EQ(copy.record(1).views, registry.record(1).views);
 }
 
 }  // namespace

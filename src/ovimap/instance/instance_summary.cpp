@@ -85,12 +85,11 @@ std::vector<InstanceSummary> summarize_instances(const VoxelMap& map,
     summary.points += extent.points;
     summary.box.extend(extent.box);
     sums.try_emplace(id, Eigen::Vector3d::Zero()).first->second += extent.sum;
-    summary.super_points.push_back(label);
   }
   std::vector<InstanceSummary> result;
   for (auto& [id, summary] : summaries) {
-    const auto record = registry.records().find(id);
-    summary.views = record == registry.records().end() ? 0 : record->second.views;
+    summary.views = registry.record(id).views;
+    summary.super_points = registry.super_points_of(id);
     if (summary.points < static_cast<std::size_t>(config.min_instance_voxels) ||
         summary.views < config.min_instance_views)
       continue;

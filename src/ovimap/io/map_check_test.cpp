@@ -46,7 +46,8 @@ TEST_F(MapChecking, AWholeMapHasNoFault) {
 }
 
 TEST_F(MapChecking, OldMapsAreWhole) {
-  for (const char* name : {"schema1.ovimap", "schema2.ovimap", "schema3.ovimap"})
+  for (const char* name : {"schema1.ovimap", "schema2.ovimap", "schema3.ovimap", "schema4.ovimap",
+                           "schema4_embed.ovimap"})
     EXPECT_TRUE(check_map(fs::path(OVIMAP_SOURCE_DIR) / "tests/maps" / name).faults.empty())
         << name;
 }

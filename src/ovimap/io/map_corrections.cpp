@@ -196,7 +196,9 @@ class Assembly {
       InstanceSummary& part = parts.emplace_back();
       part.id = id;
       part.super_points = object.super_points;
-      for (const InstanceId source : object.sources)
+      part.views = record_of(found_.registry.super_points, part.super_points).views;
+      if (part.views > 0) continue;
+      for (const InstanceId source : object.sources)  // an older map does not tell
         part.views = std::max(part.views, by_id_.at(source)->views);
     }
     if (parts.empty()) return;
@@ -236,25 +238,6 @@ class Assembly {
   InstanceSurfaces surfaces_;
 };
 
-/// Looks go where the whole of an object went; of one taken apart, they stay with what keeps its
-/// id. Nobody knows which part a picture showed.
-void move_looks(const std::map<InstanceId, Composition>& objects, MapRecord& record) {
-  std::map<InstanceId, InstanceId> went_to;
-  for (const auto& [id, object] : objects)
-    for (const InstanceId source : object.whole) went_to[source] = id;
-  Appearances& looks = record.semantics.appearances;
-  for (const InstanceSummary& instance : record.instances) {
-    const auto target = went_to.find(instance.id);
-    if (target != went_to.end())
-      merge_appearance(looks, target->second, instance.id);
-    else if (!objects.contains(instance.id))
-      looks.erase(instance.id);
-  }
-  for (const auto& [id, object] : objects)
-    if (const auto look = looks.find(id); look != looks.end() && object.whole.size() > 1)
-      prune_crops(look->second, record.semantics.crops.kept_views);
-}
-
 }  // namespace
 
 InstanceAliases apply_edits(MapRecord& record, const LabelForest& forest,
@@ -273,7 +256,6 @@ InstanceAliases apply_edits(MapRecord& record, const LabelForest& forest,
     if (auto points = assembly.surface(id, object); !points.empty())
       surfaces.emplace(id, std::move(points));
   }
-  move_looks(objects, record);
   record.instances = std::move(visible);
   record.hidden = std::move(hidden);
   record.surfaces = std::move(surfaces);

@@ -61,11 +61,13 @@ class MapCorrections : public ::testing::Test {
       instance.super_points = labels;
       instance.views = static_cast<int>(id);
       record_.surfaces[id] = {{static_cast<float>(id), 0, 0}};
-      Appearance& look = record_.semantics.appearances[id];
-      look.views.resize(1);
-      look.views[0].frame = id;
-      for (const Label label : labels)
-        record_.registry.super_points[label] = {3, {{label + 10, 3}}};
+      for (const Label label : labels) {
+        record_.registry.super_points[label] = {3, {{label + 10, 3}}, FrameRuns({{0, label}})};
+        SuperPointLook& look = record_.semantics.looks[label];
+        look.views.resize(1);
+        look.views[0].frame = id;
+        look.views[0].super_point = label;
+      }
     }
     measure_instances(map_, record_.instances);
     record_.names = {{3, "cup"}};
@@ -131,8 +133,7 @@ TEST_F(MapCorrections, MergedObjectsAreOneWithEverythingTheyHad) {
   EXPECT_EQ(merged.views, 7);
   EXPECT_EQ(one.names.at(7), "cup");
   EXPECT_EQ(one.surfaces.at(7).size(), 3u);
-  EXPECT_EQ(one.semantics.appearances.at(7).views.size(), 3u);
-  EXPECT_EQ(one.semantics.appearances.size(), 1u);
+  EXPECT_EQ(appearance_of(one, 7).views.size(), 5u);
   EXPECT_EQ(aliases_.at(1), 7u);
   EXPECT_EQ(asked_, 0);  // none of it needs the voxels
 }
@@ -148,10 +149,21 @@ TEST_F(MapCorrections, APartBecomesAnObject) {
   measure_instances(map_, lid);
   EXPECT_EQ(two.instances[3].points, lid[0].points);
   EXPECT_TRUE(two.instances[3].box.isApprox(lid[0].box));
-  EXPECT_EQ(two.instances[3].views, 7);
+  EXPECT_EQ(two.instances[2].views, 5);  // those of the super-points that each has
+  EXPECT_EQ(two.instances[3].views, 6);
   EXPECT_EQ(asked_, 1);
-  EXPECT_TRUE(two.semantics.appearances.contains(7));
-  EXPECT_FALSE(two.semantics.appearances.contains(17));  // nobody knows what it looks like
+}
+
+TEST_F(MapCorrections, APartTakesItsViewsAlong) {
+  log(split(7, {6}, 17));
+  const MapRecord two = corrected();
+  for (const auto& [id, label] : std::map<InstanceId, Label>{{7, 5}, {17, 6}}) {
+    const Appearance look = appearance_of(two, id);
+    ASSERT_EQ(look.views.size(), 1u);
+    EXPECT_EQ(look.views[0]->super_point, label);
+  }
+  log(undo(1));
+  EXPECT_EQ(appearance_of(corrected(), 7).views.size(), 2u);
 }
 
 TEST_F(MapCorrections, ASplitOfEverythingIsNone) {
@@ -186,7 +198,8 @@ TEST_F(MapCorrections, DeletedIsGoneAndHiddenIsKeptApart) {
   const MapRecord rest = corrected();
   EXPECT_EQ(parts(rest.instances), (Parts{{7, {5, 6}}}));
   EXPECT_EQ(parts(rest.hidden), (Parts{{3, {4}}}));
-  EXPECT_FALSE(rest.semantics.appearances.contains(1));
+  EXPECT_TRUE(appearance_of(rest, 1).views.empty());
+  EXPECT_EQ(appearance_of(rest, 3).views.size(), 1u) << "hidden, but known";
 }
 
 TEST_F(MapCorrections, UndoingAnUndoBringsBack) {
@@ -214,7 +227,7 @@ TEST_F(MapCorrections, WhatIsJoinedThroughALostObjectIsJoined) {
   const MapRecord one = corrected();
   EXPECT_EQ(parts(one.instances), (Parts{{1, {1, 2, 4}}, {7, {5, 6}}}));
   EXPECT_EQ(one.names.at(1), "cup");
-  EXPECT_EQ(one.semantics.appearances.at(1).views.size(), 2u);
+  EXPECT_EQ(appearance_of(one, 1).views.size(), 3u);
 }
 
 TEST_F(MapCorrections, ObjectsWithoutSuperPointsCanBeCorrected) {

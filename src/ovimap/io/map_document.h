@@ -35,7 +35,7 @@ struct SemanticRecord {
   EncoderIdentity encoder;  ///< whose space the embeddings are in; no name: there are none
   ViewSelectionConfig views;
   CropConfig crops;
-  Appearances appearances;
+  SuperPointLooks looks;
 };
 
 /// What a map says that no frame changes: where it comes from, and what people told it.
@@ -77,6 +77,9 @@ struct MapRecord : MapHeader {
   std::string version;      ///< of the program that wrote the map
   std::uint64_t content_hash = 0;  ///< VoxelMap::content_hash; set by load_map, ignored by save_map
 };
+
+/// What one of the objects or hidden objects of a record looks like; nothing for any other id.
+Appearance appearance_of(const MapRecord& record, InstanceId id);
 
 /// A whole saved map.
 struct MapDocument : MapRecord {

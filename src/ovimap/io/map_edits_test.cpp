@@ -57,11 +57,8 @@ class MapEditing : public MapFolder {
     EXPECT_TRUE(same_instances(search.info.instances, document.instances));
     for (std::size_t i = 0; i < document.instances.size(); ++i) {
       const auto row = search.embeddings.row(static_cast<Eigen::Index>(i));
-      const auto look = document.semantics.appearances.find(document.instances[i].id);
-      const Eigen::VectorXf fused =
-          look == document.semantics.appearances.end()
-              ? Eigen::VectorXf{}
-              : fuse_views(look->second.views, document.semantics.views.fusion);
+      const Appearance look = appearance_of(document, document.instances[i].id);
+      const Eigen::VectorXf fused = fuse_views(look.views, document.semantics.views.fusion);
       EXPECT_TRUE(fused.size() == 0 ? row.isZero() : row.transpose() == fused);
     }
   }
@@ -192,7 +189,8 @@ TEST_F(MapEditing, ALockIsOneAgainstPeopleToo) {
 }
 
 TEST_F(MapEditing, OldMapsCanBeCorrected) {
-  for (const char* name : {"schema1.ovimap", "schema2.ovimap", "schema3.ovimap"}) {
+  for (const char* name : {"schema1.ovimap", "schema2.ovimap", "schema3.ovimap", "schema4.ovimap",
+                           "schema4_embed.ovimap"}) {
     fs::copy_file(fs::path(OVIMAP_SOURCE_DIR) / "tests/maps" / name, path_,
                   fs::copy_options::overwrite_existing);
     fs::permissions(path_, fs::perms::owner_all);

@@ -12,6 +12,7 @@
 #include "ovimap/io/map_edit_log.h"
 #include "ovimap/io/map_file_access.h"
 #include "ovimap/io/map_file_blocks.h"
+#include "ovimap/io/map_file_by_instance.h"
 #include "ovimap/io/map_file_corrections.h"
 #include "ovimap/io/map_file_frames.h"
 #include "ovimap/io/map_file_parts.h"
@@ -29,8 +30,6 @@ using map_tables::kBlocks;
 constexpr std::size_t kTilesPerBatch = 256;
 constexpr std::size_t kTilesPerTask = 4;
 
-/// Maps of the first schema know nothing of looks.
-constexpr int kSchemaWithSemantics = 2;
 /// Those before this one keep no frames.
 constexpr int kSchemaWithKeptFrames = 4;
 
@@ -176,8 +175,7 @@ VoxelMap read_voxels(SQLite::Database& database, const MapMeta& meta, const Labe
   return map;
 }
 
-MapMeta read_found(SQLite::Database& database, int schema, const LabelForest& forest,
-                   MapRecord& record) {
+MapMeta read_found(SQLite::Database& database, int schema, LabelForest& forest, MapRecord& record) {
   const MapMeta meta = read_meta(database, record);
   read_registry(database, schema, forest, record);
   read_instances(database, record, kFoundInstanceTables);
@@ -187,11 +185,12 @@ MapMeta read_found(SQLite::Database& database, int schema, const LabelForest& fo
         throw Error(
             concat("table instance_super_points names label ", label, ", which was never given"));
   read_frames(database, record);
-  if (schema >= kSchemaWithSemantics) {
-    record.semantics.appearances =
-        read_appearances(database, record.semantics, record.depth_camera);
+  if (schema >= kSchemaWithSuperPoints)
+    record.semantics.looks = read_looks(database, forest, record.semantics, record.depth_camera);
+  else
+    read_by_instance(database, schema, forest, record);
+  if (schema >= kSchemaWithSemantics)
     record.surfaces = read_surfaces(database, map_tables::kSurfaces);
-  }
   if (schema >= kSchemaWithKeptFrames)
     record.kept_frames = read_kept_frames(database, forest, record.frames.size());
   if (static_cast<std::int64_t>(record.frames.size()) != meta.frames)
@@ -235,7 +234,7 @@ MapDocument load_map(const std::filesystem::path& path) {
   MapDocument document;
   OpenMap file(path);
   file.read([&](SQLite::Database& database) {
-    const LabelForest forest = read_forest(database);
+    LabelForest forest = read_forest(database);
     const MapMeta meta = read_found(database, file.schema(), forest, document);
     document.map = read_voxels(database, meta, forest);
   });
@@ -246,7 +245,7 @@ MapDocument load_map_without_voxels(const std::filesystem::path& path) {
   MapDocument document;
   OpenMap file(path);
   file.read([&](SQLite::Database& database) {
-    const LabelForest forest = read_forest(database);
+    LabelForest forest = read_forest(database);
     const MapMeta meta = read_found(database, file.schema(), forest, document);
     document.map = VoxelMap(meta.map_config);
     document.map.labels() = forest;

@@ -105,7 +105,7 @@ TEST_F(MapFileDamage, EveryTableIsGuarded) {
                           "UPDATE instances SET min_x = 'left'",
                           "DELETE FROM instance_super_points WHERE label = 1",
                           "UPDATE instance_names SET name = 'cup'",
-                          "UPDATE instance_records SET views = 4 WHERE id = 1",
+                          "UPDATE super_point_frames SET last_frame = 4 WHERE label = 1",
                           "UPDATE instance_aliases SET target = 3",
                           "UPDATE super_points SET frames_seen = 99999999999999",
                           "UPDATE votes SET votes = 6 WHERE votes = 5",
@@ -146,7 +146,7 @@ TEST_F(MapFileDamage, SaysWhenItIsTooNew) {
   const std::string fault = fault_after("PRAGMA user_version = 7");
   EXPECT_NE(
       fault.find(
-          "was written by a newer ovimap (schema 7, this program reads up to 4); update ovimap"),
+          "was written by a newer ovimap (schema 7, this program reads up to 5); update ovimap"),
       std::string::npos)
       << fault;
 }
@@ -255,16 +255,18 @@ TEST_F(ForgedMap, LabelsAndRootsMustExist) {
 TEST_F(ForgedMap, DirectionsMustFitTheMapsGrid) {
   const auto with_bins = [&](std::size_t bytes, std::uint8_t fill) {
     save_map(path_, saved_);
-    forge(map_tables::kAppearances, [&](RowWriter& rows) {
+    forge(map_tables::kSuperPointViews, [&](RowWriter& rows) {
+      const Bytes none, first(96, 1);
       const Bytes bins(bytes, fill);
-      for (const int id : {1, 3})
-        rows.insert(id, 0., 0., 0., 0., 0., 0., 1., 1., 1.,
-                    std::span<const std::uint8_t>(id == 1 ? Bytes(96, 1) : bins), 1, 1, 1);
+      for (const int frame : {1, 2})
+        rows.insert(1, frame, 10, 0., 0., 0.,
+                    std::span<const std::uint8_t>(frame == 1 ? first : bins),
+                    std::span<const std::uint8_t>(none), std::span<const std::uint8_t>(none),
+                    std::span<const std::uint8_t>(none), 0, 0, 0, 0);
     });
-    forge(map_tables::kViews, [](RowWriter&) {});
   };
   with_bins(96, 2);
-  EXPECT_EQ(load_map(path_).semantics.appearances.size(), 2u);
+  EXPECT_EQ(load_map(path_).semantics.looks.at(1).views.size(), 2u);
   with_bins(8, 1);
   expect_refused("fewer directions than the grid has");
   with_bins(9600, 1);

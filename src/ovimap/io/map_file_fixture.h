@@ -96,8 +96,10 @@ inline MapDocument random_document(int block_count, std::uint32_t seed) {
   document.instance_config.instances = InstanceReading::kSuperPoints;
   document.instance_config.merging.merge_min_count = 23;
   document.registry.super_points = {
-      {1, {7, {{1, 3}, {2, 5}}}}, {4, {1, {}}}, {20, {900, {{3, 800}}}}};
-  document.registry.records = {{1, {3, 0, 70}}, {3, {800, -5, std::int64_t{1} << 40}}};
+      {1, {7, {{1, 3}, {2, 5}}, FrameRuns({{0, 2}, {5, 6}}), 0, 70}},
+      {4, {1, {}}},
+      {20, {900, {{3, 800}}, FrameRuns({{3, 803}}), -5, std::int64_t{1} << 40}}};
+  document.registry.frames = 900;
   document.registry.aliases = {{2, 1}};
   document.registry.entity_sightings = {{4, {{0, 8}, {3, 65535}}}, {20, {{3, 1}}}};
   document.registry.pair_counts = {{{1, 4}, {11, 2}}, {{4, 20}, {0, 1}}};
@@ -118,19 +120,21 @@ inline MapDocument random_document(int block_count, std::uint32_t seed) {
   document.semantics.views.theta_novel = 0.21f;
   document.semantics.crops.kept_views = 7;
   document.depth_camera = {640, 480, 585.1f, 585.2f, 319.5f, 239.25f};
-  Appearance& look = document.semantics.appearances[1];
-  look.coverage.center_in_world = {1.f / 3, 2, -3};
-  look.coverage.seen_in_world = cup.box;
-  look.coverage.bins = BinSet(document.semantics.views.grid(document.depth_camera).bins());
-  for (const int bin : {0, 77, 767}) look.coverage.bins.set(bin);
-  look.coverage.largest_px = 900;
+  SuperPointLook& look = document.semantics.looks[1];
+  look.seen_in_world = cup.box;
   look.offered = 12;
   look.queries = 3;
   look.views.resize(2);
-  look.views[0] = {5, 900, Eigen::Vector3f(0, 0.6f, -0.8f), {{1, 2}, {3}, {}}, 0};
+  look.views[0] = {5, 900, Eigen::Vector3f(0, 0.6f, -0.8f), {{1, 2}, {3}, {}}, 1, {}};
   look.views[0].crop.object_px = {Eigen::Vector2i(0, 1), Eigen::Vector2i(2, 3)};
+  ViewDirections& directions = look.views[0].directions;
+  directions.center_in_world = {1.f / 3, 2, -3};
+  directions.bins = BinSet(document.semantics.views.grid(document.depth_camera).bins());
+  for (const int bin : {0, 77, 767}) directions.bins.set(bin);
   look.views[1].frame = std::int64_t{1} << 40;
-  document.semantics.appearances[9].queries = 1;  // of an object too small to be listed
+  look.views[1].super_point = 1;
+  // Of an object too small to be listed.
+  document.semantics.looks[document.map.labels().root(20)].queries = 1;
   document.up = {0.f, -1.f, 0.f};
   document.surfaces[1] = {{-0.1f, 0.2f, 0.f},
                           {0.3f, 0.4f, 0.1f}};  // its box's corners: kept exactly
@@ -188,44 +192,40 @@ inline bool same_frame(const FrameLogEntry& a, const FrameLogEntry& b) {
 inline bool same_registry(const InstanceRegistry::State& a, const InstanceRegistry::State& b) {
   const auto same_point = [](const auto& x, const auto& y) {
     return x.first == y.first && x.second.frames_seen == y.second.frames_seen &&
-           x.second.votes == y.second.votes;
-  };
-  const auto same_record = [](const auto& x, const auto& y) {
-    return x.first == y.first && x.second.views == y.second.views &&
+           x.second.votes == y.second.votes && x.second.seen == y.second.seen &&
            x.second.first_frame == y.second.first_frame &&
            x.second.last_frame == y.second.last_frame;
   };
   return std::equal(a.super_points.begin(), a.super_points.end(), b.super_points.begin(),
                     b.super_points.end(), same_point) &&
-         std::equal(a.records.begin(), a.records.end(), b.records.begin(), b.records.end(),
-                    same_record) &&
+         a.frames == b.frames &&
          a.aliases == b.aliases && a.pair_counts == b.pair_counts &&
          a.entity_sightings == b.entity_sightings && a.last_id == b.last_id;
 }
 
 inline bool same_view(const ObjectView& a, const ObjectView& b) {
   return a.frame == b.frame && a.visible_px == b.visible_px && a.embedding == b.embedding &&
+         a.super_point == b.super_point && a.directions.bins == b.directions.bins &&
+         a.directions.center_in_world == b.directions.center_in_world &&
          a.crop.image_jpeg == b.crop.image_jpeg && a.crop.mask_png == b.crop.mask_png &&
          (a.crop.empty() || (a.crop.object_px.min() == b.crop.object_px.min() &&
                              a.crop.object_px.max() == b.crop.object_px.max()));
 }
 
-inline bool same_appearance(const Appearance& a, const Appearance& b) {
-  const ViewCoverage &x = a.coverage, &y = b.coverage;
-  return x.center_in_world == y.center_in_world && x.seen_in_world.min() == y.seen_in_world.min() &&
-         x.seen_in_world.max() == y.seen_in_world.max() && x.bins == y.bins &&
-         x.largest_px == y.largest_px && a.offered == b.offered && a.queries == b.queries &&
+inline bool same_look(const SuperPointLook& a, const SuperPointLook& b) {
+  return a.seen_in_world.min() == b.seen_in_world.min() &&
+         a.seen_in_world.max() == b.seen_in_world.max() && a.offered == b.offered &&
+         a.queries == b.queries &&
          std::equal(a.views.begin(), a.views.end(), b.views.begin(), b.views.end(), same_view);
 }
 
 inline bool same_semantics(const SemanticRecord& a, const SemanticRecord& b) {
   const auto same_entry = [](const auto& x, const auto& y) {
-    return x.first == y.first && same_appearance(x.second, y.second);
+    return x.first == y.first && same_look(x.second, y.second);
   };
   return a.encoder == b.encoder && a.views.theta_novel == b.views.theta_novel &&
          a.crops.kept_views == b.crops.kept_views &&
-         std::equal(a.appearances.begin(), a.appearances.end(), b.appearances.begin(),
-                    b.appearances.end(), same_entry);
+         std::equal(a.looks.begin(), a.looks.end(), b.looks.begin(), b.looks.end(), same_entry);
 }
 
 inline bool same_kept_frame(const KeptFrames::value_type& a, const KeptFrames::value_type& b) {

@@ -8,8 +8,8 @@ namespace ovimap {
 
 /// Everything that mapping found but the voxels, and the log of corrections. Throws Error with a
 /// phrase when the file does not hold what was written.
-MapMeta read_found(SQLite::Database& database, int schema, const LabelForest& forest,
-                   MapRecord& record);
+/// `forest`: the map's; objects of old maps that have no super-point get one with a new label.
+MapMeta read_found(SQLite::Database& database, int schema, LabelForest& forest, MapRecord& record);
 
 /// The voxels, verified.
 VoxelMap read_voxels(SQLite::Database& database, const MapMeta& meta, const LabelForest& forest);

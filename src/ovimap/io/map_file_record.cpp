@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/io/map_file_record.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <charconv>
+#include <functional>
 #include <limits>
 
 #include "ovimap/base/config.h"
@@ -29,6 +31,8 @@ void list_meta(MapRecord& record, VoxelMapConfig& map_config, ConfigFields& fiel
              "frames with 2D masks");
   fields.add("entity_frames", record.registry.entity_frames, 0, std::numeric_limits<int>::max(),
              "frames that entity_sightings counts");
+  fields.add("registry_frames", record.registry.frames, 0, std::numeric_limits<int>::max(),
+             "frames that super_point_frames counts");
   fields.add("unfinished", record.unfinished, "the map is a checkpoint of a run");
   fields.group("up", [&](ConfigFields& up) {
     up.add("x", record.up.x(), -1.f, 1.f, "away from the ground, in the world");
@@ -77,6 +81,7 @@ void write_meta(SQLite::Database& database, const MapRecord& record, const MapMe
   plain.timings = record.timings;
   plain.mask_frames = record.mask_frames;
   plain.registry.entity_frames = record.registry.entity_frames;
+  plain.registry.frames = record.registry.frames;
   plain.unfinished = record.unfinished;
   plain.up = record.up;
   plain.depth_camera = record.depth_camera;
@@ -134,6 +139,28 @@ void write_frames(SQLite::Database& database, const MapRecord& record) {
   rows.finish();
 }
 
+/// Two 32-bit numbers a run.
+Bytes run_bytes(const FrameRuns& frames) {
+  Bytes bytes;
+  for (const FrameRuns::Run& run : frames.runs())
+    for (const std::uint32_t bound : {run.begin, run.end})
+      for (int i = 0; i < 4; ++i) bytes.push_back(static_cast<std::uint8_t>(bound >> 8 * i));
+  return bytes;
+}
+
+FrameRuns runs_from(RowReader& rows) {
+  const std::span<const std::uint8_t> bytes = rows.blob();
+  std::vector<std::uint32_t> bounds(bytes.size() / 4);
+  for (std::size_t i = 0; i < bounds.size() * 4; ++i)
+    bounds[i / 4] |= std::uint32_t{bytes[i]} << 8 * (i % 4);
+  const auto disordered = std::adjacent_find(bounds.begin(), bounds.end(), std::greater_equal<>());
+  if (bytes.size() % 8 != 0 || disordered != bounds.end())
+    rows.fail("has runs of frames out of order");
+  std::vector<FrameRuns::Run> runs;
+  for (std::size_t i = 0; i < bounds.size(); i += 2) runs.push_back({bounds[i], bounds[i + 1]});
+  return FrameRuns(std::move(runs));
+}
+
 void write_registry(SQLite::Database& database, const InstanceRegistry::State& state) {
   RowWriter points(database, kSuperPoints);
   for (const auto& [label, point] : state.super_points) points.insert(label, point.frames_seen);
@@ -150,16 +177,20 @@ void write_registry(SQLite::Database& database, const InstanceRegistry::State& s
   for (const auto& [label, seen] : state.entity_sightings)
     for (const auto& [frame, entity] : seen) sightings.insert(label, frame, entity);
   sightings.finish();
-  RowWriter records(database, kInstanceRecords);
-  for (const auto& [id, known] : state.records)
-    records.insert(id, known.views, known.first_frame, known.last_frame);
-  records.finish();
+  RowWriter frames(database, kSuperPointFrames);
+  for (const auto& [label, point] : state.super_points) {
+    if (point.seen.runs().empty()) continue;
+    const Bytes runs = run_bytes(point.seen);
+    frames.insert(label, point.first_frame, point.last_frame, std::span<const std::uint8_t>(runs));
+  }
+  frames.finish();
   RowWriter aliases(database, kInstanceAliases);
   for (const auto& [id, target] : state.aliases) aliases.insert(id, target);
   aliases.finish();
 }
 
-/// A label that exists.
+}  // namespace
+
 Label take_label(RowReader& rows, const LabelForest& forest) {
   const auto label = rows.integer<Label>();
   if (label == kNoLabel || label > forest.last_label())
@@ -167,14 +198,11 @@ Label take_label(RowReader& rows, const LabelForest& forest) {
   return label;
 }
 
-/// An instance that was once given out.
 InstanceId take_instance(RowReader& rows, InstanceId last_id) {
   const auto id = rows.integer<InstanceId>();
   if (id == 0 || id > last_id) rows.fail(concat("names instance ", id, ", which was never given"));
   return id;
 }
-
-}  // namespace
 
 std::string hash_text(std::uint64_t hash) {
   std::string text(16, '0');
@@ -314,6 +342,18 @@ EntitySightings read_sightings(SQLite::Database& database, const LabelForest& fo
   return sightings;
 }
 
+/// Which frames showed each super-point.
+void read_super_point_frames(SQLite::Database& database, const LabelForest& forest,
+                             std::map<Label, SuperPoint>& super_points) {
+  RowReader rows(database, kSuperPointFrames);
+  while (rows.next()) {
+    SuperPoint& point = super_points[take_label(rows, forest)];
+    point.first_frame = rows.integer<std::int64_t>();
+    point.last_frame = rows.integer<std::int64_t>();
+    point.seen = runs_from(rows);
+  }
+}
+
 void read_registry(SQLite::Database& database, int schema, const LabelForest& forest,
                    MapRecord& record) {
   InstanceRegistry::State& state = record.registry;
@@ -337,13 +377,8 @@ void read_registry(SQLite::Database& database, int schema, const LabelForest& fo
     count.apart = pairs.integer<int>();
   }
   if (schema >= kSchemaWithConsensus) state.entity_sightings = read_sightings(database, forest);
-  RowReader records(database, kInstanceRecords);
-  while (records.next()) {
-    InstanceRecord& known = state.records[take_instance(records, state.last_id)];
-    known.views = records.integer<int>();
-    known.first_frame = records.integer<std::int64_t>();
-    known.last_frame = records.integer<std::int64_t>();
-  }
+  if (schema >= kSchemaWithSuperPoints)
+    read_super_point_frames(database, forest, state.super_points);
   RowReader aliases(database, kInstanceAliases);
   while (aliases.next()) {
     const InstanceId id = take_instance(aliases, state.last_id);

@@ -33,6 +33,11 @@ inline constexpr InstanceTables kCorrectedInstanceTables{map_tables::kCorrectedI
                                                          map_tables::kCorrectedSuperPoints,
                                                          map_tables::kCorrectedNames};
 
+/// Maps of the first schema know nothing of looks.
+inline constexpr int kSchemaWithSemantics = 2;
+/// Those before this one tell looks and records by instance, not by super-point.
+inline constexpr int kSchemaWithSuperPoints = 5;
+
 /// Writes everything of a map but its blocks and its forest of labels.
 void write_record(SQLite::Database& database, const MapRecord& record, const MapMeta& meta);
 
@@ -50,6 +55,10 @@ void read_frames(SQLite::Database& database, MapRecord& record);
 /// `forest`: the labels that the state may speak of.
 void read_registry(SQLite::Database& database, int schema, const LabelForest& forest,
                    MapRecord& record);
+
+/// A label that exists, and an instance that was once given out.
+Label take_label(RowReader& rows, const LabelForest& forest);
+InstanceId take_instance(RowReader& rows, InstanceId last_id);
 
 /// 16 hexadecimal digits.
 std::string hash_text(std::uint64_t hash);

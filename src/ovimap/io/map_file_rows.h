@@ -43,14 +43,14 @@ inline constexpr MapTable kInstanceSuperPoints{
     "WITHOUT ROWID"};
 inline constexpr MapTable kInstanceNames{"instance_names", "id, name",
                                          "id INTEGER PRIMARY KEY, name TEXT NOT NULL"};
-inline constexpr MapTable kInstanceRecords{
-    "instance_records", "id, views, first_frame, last_frame",
-    "id INTEGER PRIMARY KEY, views INTEGER NOT NULL, first_frame INTEGER NOT NULL, last_frame "
-    "INTEGER NOT NULL"};
 inline constexpr MapTable kInstanceAliases{"instance_aliases", "id, target",
                                            "id INTEGER PRIMARY KEY, target INTEGER NOT NULL"};
 inline constexpr MapTable kSuperPoints{"super_points", "label, frames_seen",
                                        "label INTEGER PRIMARY KEY, frames_seen INTEGER NOT NULL"};
+inline constexpr MapTable kSuperPointFrames{
+    "super_point_frames", "label, first_frame, last_frame, runs",
+    "label INTEGER PRIMARY KEY, first_frame INTEGER NOT NULL, last_frame INTEGER NOT NULL, runs "
+    "BLOB NOT NULL"};
 inline constexpr MapTable kVotes{"votes", "label, instance, votes",
                                  "label INTEGER NOT NULL, instance INTEGER NOT NULL, votes INTEGER "
                                  "NOT NULL, PRIMARY KEY (label, instance)",
@@ -72,6 +72,36 @@ inline constexpr MapTable kFrames{
     "position INTEGER PRIMARY KEY, source_index INTEGER NOT NULL, timestamp_s REAL, name TEXT NOT "
     "NULL, "
     "world_from_camera BLOB NOT NULL, labelled INTEGER NOT NULL"};
+inline constexpr MapTable kSuperPointLooks{
+    "super_point_looks",
+    "label, seen_min_x, seen_min_y, seen_min_z, seen_max_x, seen_max_y, seen_max_z, offered, "
+    "queries",
+    "label INTEGER PRIMARY KEY, seen_min_x REAL, seen_min_y REAL, seen_min_z REAL, seen_max_x "
+    "REAL, seen_max_y REAL, seen_max_z REAL, offered INTEGER NOT NULL, queries INTEGER NOT NULL"};
+inline constexpr MapTable kSuperPointViews{
+    "super_point_views",
+    "label, frame, visible_px, center_x, center_y, center_z, bins, embedding, crop_jpeg, "
+    "crop_mask_png, min_x, min_y, max_x, max_y",
+    "label INTEGER NOT NULL, frame INTEGER NOT NULL, visible_px INTEGER NOT NULL, center_x REAL, "
+    "center_y REAL, center_z REAL, bins BLOB NOT NULL, embedding BLOB NOT NULL, crop_jpeg BLOB NOT "
+    "NULL, crop_mask_png BLOB NOT NULL, min_x INTEGER NOT NULL, min_y INTEGER NOT NULL, max_x "
+    "INTEGER NOT NULL, max_y INTEGER NOT NULL, PRIMARY KEY (label, frame)"};
+inline constexpr MapTable kEmbeddings{"embeddings", "instance, embedding",
+                                      "instance INTEGER PRIMARY KEY, embedding BLOB NOT NULL"};
+inline constexpr MapTable kSurfaces{"surfaces", "instance, points",
+                                    "instance INTEGER PRIMARY KEY, points BLOB NOT NULL"};
+inline constexpr MapTable kBlocks{"blocks", "tile, present, hash, data",
+                                  "tile INTEGER PRIMARY KEY, present INTEGER NOT NULL, hash "
+                                  "INTEGER NOT NULL, data BLOB NOT NULL"};
+inline constexpr MapTable kKeptFrames{
+    "kept_frames", "position, depth, color, segments, labels",
+    "position INTEGER PRIMARY KEY, depth BLOB NOT NULL, color BLOB NOT NULL, segments BLOB NOT "
+    "NULL, labels BLOB NOT NULL"};
+/// What maps before schema 5 have: records and looks by instance.
+inline constexpr MapTable kInstanceRecords{
+    "instance_records", "id, views, first_frame, last_frame",
+    "id INTEGER PRIMARY KEY, views INTEGER NOT NULL, first_frame INTEGER NOT NULL, last_frame "
+    "INTEGER NOT NULL"};
 inline constexpr MapTable kAppearances{
     "appearances",
     "instance, center_x, center_y, center_z, seen_min_x, seen_min_y, seen_min_z, seen_max_x, "
@@ -88,17 +118,6 @@ inline constexpr MapTable kViews{
     "INTEGER NOT NULL, embedding BLOB NOT NULL, crop_jpeg BLOB NOT NULL, crop_mask_png BLOB NOT "
     "NULL, min_x INTEGER NOT NULL, min_y INTEGER NOT NULL, max_x INTEGER NOT NULL, max_y INTEGER "
     "NOT NULL, PRIMARY KEY (instance, ordinal)"};
-inline constexpr MapTable kEmbeddings{"embeddings", "instance, embedding",
-                                      "instance INTEGER PRIMARY KEY, embedding BLOB NOT NULL"};
-inline constexpr MapTable kSurfaces{"surfaces", "instance, points",
-                                    "instance INTEGER PRIMARY KEY, points BLOB NOT NULL"};
-inline constexpr MapTable kBlocks{"blocks", "tile, present, hash, data",
-                                  "tile INTEGER PRIMARY KEY, present INTEGER NOT NULL, hash "
-                                  "INTEGER NOT NULL, data BLOB NOT NULL"};
-inline constexpr MapTable kKeptFrames{
-    "kept_frames", "position, depth, color, segments, labels",
-    "position INTEGER PRIMARY KEY, depth BLOB NOT NULL, color BLOB NOT NULL, segments BLOB NOT "
-    "NULL, labels BLOB NOT NULL"};
 /// The log of corrections, and what it makes of the tables above.
 inline constexpr MapTable kEdits{"edits", "id, time_s, action, arguments, undone_by",
                                  "id INTEGER PRIMARY KEY, time_s REAL, action TEXT NOT NULL, "
@@ -123,11 +142,12 @@ inline constexpr MapTable kChecks{
     "name TEXT PRIMARY KEY, rows INTEGER NOT NULL, hash INTEGER NOT NULL", "WITHOUT ROWID"};
 /// All of them.
 inline constexpr const MapTable* kAll[] = {
-    &kMeta, &kInstances, &kInstanceSuperPoints, &kInstanceNames, &kInstanceRecords,
-    &kInstanceAliases, &kSuperPoints, &kVotes, &kLabelPairs, &kEntitySightings, &kLabelForest,
-    &kFrames, &kAppearances, &kViews, &kEmbeddings, &kSurfaces, &kBlocks, &kKeptFrames, &kEdits,
-    &kCorrectedInstances, &kCorrectedSuperPoints, &kCorrectedNames, &kCorrectedSurfaces,
-    &kCorrectedEmbeddings, &kCorrectedFlags, &kChecks};
+    &kMeta, &kInstances, &kInstanceSuperPoints, &kInstanceNames, &kInstanceAliases, &kSuperPoints,
+    &kSuperPointFrames, &kVotes, &kLabelPairs, &kEntitySightings, &kLabelForest, &kFrames,
+    &kSuperPointLooks, &kSuperPointViews, &kEmbeddings, &kSurfaces, &kBlocks, &kKeptFrames,
+    &kInstanceRecords, &kAppearances, &kViews, &kEdits, &kCorrectedInstances,
+    &kCorrectedSuperPoints, &kCorrectedNames, &kCorrectedSurfaces, &kCorrectedEmbeddings,
+    &kCorrectedFlags, &kChecks};
 }  // namespace map_tables
 
 /// XXH64 with seed 0, as SQLite can hold it.

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 
+#include "ovimap/io/map_file_record.h"
 #include "ovimap/io/map_file_rows.h"
 
 namespace ovimap {
@@ -48,66 +49,24 @@ Eigen::VectorXf take_embedding(RowReader& rows, const EncoderIdentity& encoder) 
   return embedding;
 }
 
-void insert_appearance(RowWriter& rows, InstanceId id, const Appearance& appearance) {
-  const ViewCoverage& coverage = appearance.coverage;
-  const auto &center = coverage.center_in_world, &low = coverage.seen_in_world.min(),
-             &high = coverage.seen_in_world.max();
-  Bytes bins;
-  for (const std::uint64_t word : coverage.bins.words()) append_word(bins, word);
-  rows.insert(id, center.x(), center.y(), center.z(), low.x(), low.y(), low.z(), high.x(), high.y(),
-              high.z(), std::span<const std::uint8_t>(bins), coverage.largest_px,
-              appearance.offered, appearance.queries);
+void insert_look(RowWriter& rows, Label label, const SuperPointLook& look) {
+  const auto &low = look.seen_in_world.min(), &high = look.seen_in_world.max();
+  rows.insert(label, low.x(), low.y(), low.z(), high.x(), high.y(), high.z(), look.offered,
+              look.queries);
 }
 
-void insert_view(RowWriter& rows, InstanceId id, std::size_t ordinal, const ObjectView& view) {
+void insert_view(RowWriter& rows, const ObjectView& view) {
+  Bytes bins;
+  for (const std::uint64_t word : view.directions.bins.words()) append_word(bins, word);
   const Bytes embedding = embedding_bytes(view.embedding);
+  const Eigen::Vector3f& center = view.directions.center_in_world;
   const auto &low = view.crop.object_px.min(), &high = view.crop.object_px.max();
   const bool crop = !view.crop.empty();
-  rows.insert(id, ordinal, view.frame, view.visible_px, std::span<const std::uint8_t>(embedding),
+  rows.insert(view.super_point, view.frame, view.visible_px, center.x(), center.y(), center.z(),
+              std::span<const std::uint8_t>(bins), std::span<const std::uint8_t>(embedding),
               std::span<const std::uint8_t>(view.crop.image_jpeg),
               std::span<const std::uint8_t>(view.crop.mask_png), crop ? low.x() : 0,
               crop ? low.y() : 0, crop ? high.x() : 0, crop ? high.y() : 0);
-}
-
-/// Directions that were seen: none, or of the map's own grid.
-BinSet take_bins(RowReader& rows, const SphereGrid& grid) {
-  auto words = words_of<std::uint64_t>(rows.blob(), rows);
-  if (words.empty()) return {};
-  const std::size_t count = words.size();
-  std::optional<BinSet> bins = BinSet::from_words(std::move(words), grid.bins());
-  if (!bins)
-    rows.fail(concat("has bins of ", count, " words that do not fit the grid of ", grid.rows, "x",
-                     grid.columns, " directions"));
-  return std::move(*bins);
-}
-
-Appearance take_appearance(RowReader& rows, const SphereGrid& grid) {
-  Appearance appearance;
-  ViewCoverage& coverage = appearance.coverage;
-  for (Eigen::Vector3f* point :
-       {&coverage.center_in_world, &coverage.seen_in_world.min(), &coverage.seen_in_world.max()})
-    for (float& coordinate : *point) coordinate = static_cast<float>(rows.real());
-  coverage.bins = take_bins(rows, grid);
-  coverage.largest_px = rows.integer<int>();
-  appearance.offered = rows.integer<int>();
-  appearance.queries = rows.integer<int>();
-  return appearance;
-}
-
-ObjectView take_view(RowReader& rows, const EncoderIdentity& encoder) {
-  ObjectView view;
-  view.frame = rows.integer<std::int64_t>();
-  view.visible_px = rows.integer<int>();
-  view.embedding = take_embedding(rows, encoder);
-  const std::span<const std::uint8_t> image = rows.blob();
-  view.crop.image_jpeg.assign(image.begin(), image.end());
-  const std::span<const std::uint8_t> mask = rows.blob();
-  view.crop.mask_png.assign(mask.begin(), mask.end());
-  Eigen::Vector2i corners[2];
-  for (Eigen::Vector2i& corner : corners)
-    for (int& coordinate : corner) coordinate = rows.integer<int>();
-  if (!view.crop.empty()) view.crop.object_px = {corners[0], corners[1]};
-  return view;
 }
 
 constexpr float kSteps = 65535.f;
@@ -172,15 +131,12 @@ InstanceSurfaces read_surfaces(SQLite::Database& database, const MapTable& table
 }
 
 void write_semantics(SQLite::Database& database, const MapRecord& record) {
-  const SemanticRecord& semantics = record.semantics;
-  RowWriter appearances(database, kAppearances);
-  for (const auto& [id, appearance] : semantics.appearances)
-    insert_appearance(appearances, id, appearance);
-  appearances.finish();
-  RowWriter views(database, kViews);
-  for (const auto& [id, appearance] : semantics.appearances)
-    for (std::size_t i = 0; i < appearance.views.size(); ++i)
-      insert_view(views, id, i, appearance.views[i]);
+  RowWriter looks(database, kSuperPointLooks);
+  for (const auto& [label, look] : record.semantics.looks) insert_look(looks, label, look);
+  looks.finish();
+  RowWriter views(database, kSuperPointViews);
+  for (const auto& [label, look] : record.semantics.looks)
+    for (const ObjectView& view : look.views) insert_view(views, view);
   views.finish();
   write_embeddings(database, record, kEmbeddings);
 }
@@ -189,9 +145,8 @@ void write_embeddings(SQLite::Database& database, const MapRecord& record, const
   const SemanticRecord& semantics = record.semantics;
   RowWriter embeddings(database, table);
   for (const InstanceSummary& instance : record.instances) {
-    const auto known = semantics.appearances.find(instance.id);
-    if (known == semantics.appearances.end()) continue;
-    const Eigen::VectorXf fused = fuse_views(known->second.views, semantics.views.fusion);
+    const Appearance look = appearance_of(semantics.looks, instance.super_points);
+    const Eigen::VectorXf fused = fuse_views(look.views, semantics.views.fusion);
     if (fused.size() == 0) continue;
     const Bytes bytes = embedding_bytes(fused);
     embeddings.insert(instance.id, std::span<const std::uint8_t>(bytes));
@@ -199,22 +154,54 @@ void write_embeddings(SQLite::Database& database, const MapRecord& record, const
   embeddings.finish();
 }
 
-Appearances read_appearances(SQLite::Database& database, const SemanticRecord& settings,
-                             const PinholeCamera& depth_camera) {
+BinSet take_bins(RowReader& rows, const SphereGrid& grid) {
+  auto words = words_of<std::uint64_t>(rows.blob(), rows);
+  if (words.empty()) return {};
+  const std::size_t count = words.size();
+  std::optional<BinSet> bins = BinSet::from_words(std::move(words), grid.bins());
+  if (!bins)
+    rows.fail(concat("has bins of ", count, " words that do not fit the grid of ", grid.rows, "x",
+                     grid.columns, " directions"));
+  return std::move(*bins);
+}
+
+void take_picture(RowReader& rows, const EncoderIdentity& encoder, ObjectView& view) {
+  view.embedding = take_embedding(rows, encoder);
+  const std::span<const std::uint8_t> image = rows.blob();
+  view.crop.image_jpeg.assign(image.begin(), image.end());
+  const std::span<const std::uint8_t> mask = rows.blob();
+  view.crop.mask_png.assign(mask.begin(), mask.end());
+  Eigen::Vector2i corners[2];
+  for (Eigen::Vector2i& corner : corners)
+    for (int& coordinate : corner) coordinate = rows.integer<int>();
+  if (!view.crop.empty()) view.crop.object_px = {corners[0], corners[1]};
+}
+
+SuperPointLooks read_looks(SQLite::Database& database, const LabelForest& forest,
+                           const SemanticRecord& settings, const PinholeCamera& depth_camera) {
   const SphereGrid grid = settings.views.grid(depth_camera);
-  Appearances result;
-  RowReader appearances(database, kAppearances);
-  while (appearances.next()) {
-    const auto id = appearances.integer<InstanceId>();
-    result.emplace(id, take_appearance(appearances, grid));
+  SuperPointLooks result;
+  RowReader looks(database, kSuperPointLooks);
+  while (looks.next()) {
+    SuperPointLook& look = result[take_label(looks, forest)];
+    for (Eigen::Vector3f* point : {&look.seen_in_world.min(), &look.seen_in_world.max()})
+      for (float& coordinate : *point) coordinate = static_cast<float>(looks.real());
+    look.offered = looks.integer<int>();
+    look.queries = looks.integer<int>();
   }
-  RowReader views(database, kViews);
+  RowReader views(database, kSuperPointViews);
   while (views.next()) {
-    const auto owner = result.find(views.integer<InstanceId>());
-    const auto ordinal = views.integer<std::size_t>();
-    if (owner == result.end() || ordinal != owner->second.views.size())
-      views.fail("has a view out of place");
-    owner->second.views.push_back(take_view(views, settings.encoder));
+    ObjectView view;
+    view.super_point = take_label(views, forest);
+    view.frame = views.integer<std::int64_t>();
+    view.visible_px = views.integer<int>();
+    for (float& coordinate : view.directions.center_in_world)
+      coordinate = static_cast<float>(views.real());
+    view.directions.bins = take_bins(views, grid);
+    take_picture(views, settings.encoder, view);
+    const auto look = result.find(forest.root(view.super_point));
+    if (look == result.end()) views.fail("has a view of a super-point without look");
+    insert_view(look->second, std::move(view));
   }
   return result;
 }

@@ -13,14 +13,19 @@ class Database;
 
 namespace ovimap {
 
-/// Writes the looks of the objects: their views, crops and coverage, and for each instance that has
-/// one its fused embedding, so that a search reads nothing else.
+/// Writes the looks of super-points: their views and crops, and for each instance that has one its
+/// fused embedding, so that a search reads nothing else.
 void write_semantics(SQLite::Database& database, const MapRecord& record);
 
 /// The way back, without the fused embeddings. Throws Error with a phrase when the file does not
 /// hold what was written, or what does not fit the encoder and the grid of `settings`.
-Appearances read_appearances(SQLite::Database& database, const SemanticRecord& settings,
-                             const PinholeCamera& depth_camera);
+SuperPointLooks read_looks(SQLite::Database& database, const LabelForest& forest,
+                           const SemanticRecord& settings, const PinholeCamera& depth_camera);
+
+/// The last columns of a row of views.
+void take_picture(RowReader& rows, const EncoderIdentity& encoder, ObjectView& view);
+/// Directions that were seen: none, or of the map's own grid.
+BinSet take_bins(RowReader& rows, const SphereGrid& grid);
 
 /// The fused embeddings by instance.
 std::map<InstanceId, Eigen::VectorXf> read_embeddings(SQLite::Database& database,

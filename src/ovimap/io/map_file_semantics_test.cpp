@@ -34,7 +34,7 @@ TEST_F(MapFileSemantics, ASearchNeedsNoVoxels) {
 
 TEST_F(MapFileSemantics, FusesByTheMapsOwnRule) {
   MapDocument saved = random_document(5, 1);
-  auto& views = saved.semantics.appearances[1].views;
+  auto& views = saved.semantics.looks[1].views;
   views.resize(2);
   views[0].embedding = Eigen::Vector3f(1, 0, 0);
   views[0].visible_px = 300;
@@ -49,10 +49,48 @@ TEST_F(MapFileSemantics, FusesByTheMapsOwnRule) {
 
 TEST_F(MapFileSemantics, RefusesEmbeddingsThatCannotBe) {
   MapDocument saved = random_document(5, 1);
-  saved.semantics.appearances[1].views[0].embedding = Eigen::Vector2f(1, 0);
+  saved.semantics.looks[1].views[0].embedding = Eigen::Vector2f(1, 0);
   save_map(root_ / "a.ovimap", saved);
   EXPECT_THROW(load_map(root_ / "a.ovimap"), Error);
   EXPECT_THROW(read_searchable_map(root_ / "a.ovimap"), Error);
+}
+
+TEST_F(MapFileSemantics, ReadsMapsOfTheFourthSchemaWhoseLooksAreByInstance) {
+  const fs::path path = fs::path(OVIMAP_SOURCE_DIR) / "tests/maps/schema4.ovimap";
+  const MapDocument map = load_map(path);
+  EXPECT_EQ(read_map_info(path).schema, 4);
+  // What a search found before it finds now: the stored embeddings are those of the views.
+  const SearchableMap stored = read_searchable_map(path);
+  EXPECT_GT(stored.embeddings.norm(), 0);
+  EXPECT_TRUE(fused_embeddings(map.semantics.looks, map.instances, map.semantics.views.fusion,
+                               map.semantics.encoder.dimension)
+                  .isApprox(stored.embeddings, 1e-6f));
+  InstanceRegistry registry(map.instance_config);
+  registry.restore(InstanceRegistry::State(map.registry));
+  int with_bins = 0;
+  for (const InstanceSummary& instance : map.instances) {
+    EXPECT_EQ(registry.record(instance.id).views, instance.views);
+    for (const ObjectView* view : appearance_of(map, instance.id).views)
+      with_bins += !view->directions.bins.empty();
+  }
+  EXPECT_GT(with_bins, 0);
+  save_map(root_ / "new.ovimap", map);
+  EXPECT_EQ(difference(map, load_map(root_ / "new.ovimap")), "");
+}
+
+TEST_F(MapFileSemantics, ObjectsOfOldMapsWithoutSuperPointsGetOne) {
+  const fs::path path = fs::path(OVIMAP_SOURCE_DIR) / "tests/maps/schema4_embed.ovimap";
+  const MapDocument map = load_map(path);
+  const SearchableMap stored = read_searchable_map(path);
+  ASSERT_FALSE(map.instances.empty());
+  for (const InstanceSummary& instance : map.instances)
+    ASSERT_EQ(instance.super_points.size(), 1u);
+  EXPECT_GT(stored.embeddings.norm(), 0);
+  EXPECT_TRUE(fused_embeddings(map.semantics.looks, map.instances, map.semantics.views.fusion,
+                               map.semantics.encoder.dimension)
+                  .isApprox(stored.embeddings, 1e-6f));
+  save_map(root_ / "new.ovimap", map);
+  EXPECT_EQ(difference(map, load_map(root_ / "new.ovimap")), "");
 }
 
 TEST_F(MapFileSemantics, ReadsMapsOfTheThirdSchema) {
@@ -71,7 +109,7 @@ TEST_F(MapFileSemantics, ReadsMapsOfTheSecondSchema) {
   const MapDocument map = load_map(path);
   EXPECT_EQ(read_map_info(path).schema, 2);
   EXPECT_FALSE(map.instances.empty());
-  EXPECT_FALSE(map.semantics.appearances.empty());
+  EXPECT_FALSE(map.semantics.looks.empty());
   EXPECT_TRUE(map.registry.entity_sightings.empty());
   EXPECT_EQ(map.instance_config.instances, InstanceReading::kEntityVotes)
       << "a map goes on as it was begun";
@@ -84,7 +122,7 @@ TEST_F(MapFileSemantics, ReadsMapsOfTheFirstSchema) {
   const fs::path path = fs::path(OVIMAP_SOURCE_DIR) / "tests/maps/schema1.ovimap";
   const MapDocument map = load_map(path);
   EXPECT_EQ(map.instances.size(), 3u);
-  EXPECT_TRUE(map.semantics.appearances.empty());
+  EXPECT_TRUE(map.semantics.looks.empty());
   EXPECT_EQ(map.semantics.encoder.name, "");
   EXPECT_EQ(read_map_info(path).schema, 1);
   EXPECT_EQ(read_searchable_map(path).embeddings.rows(), 3);

@@ -52,8 +52,8 @@ Bytes visible_mask(const StoredCrop& crop) {
 
 Json write_crops(const fs::path& folder, const Appearance& look) {
   std::vector<const ObjectView*> views;
-  for (const ObjectView& view : look.views)
-    if (!view.crop.empty()) views.push_back(&view);
+  for (const ObjectView* view : look.views)
+    if (!view->crop.empty()) views.push_back(view);
   std::stable_sort(views.begin(), views.end(), [](const ObjectView* a, const ObjectView* b) {
     return a->visible_px > b->visible_px;
   });
@@ -130,9 +130,8 @@ void write_object_folder(const fs::path& folder, const MapRecord& map, const Mes
       write_ply(place / "mesh.ply", piece->second);
     Json entry = instance_json_value(instance, map.names);
     entry["relations"] = relations_of(instance.id, relations);
-    const auto look = map.semantics.appearances.find(instance.id);
     entry["crops"] =
-        look == map.semantics.appearances.end() ? Json::array() : write_crops(place, look->second);
+        write_crops(place, appearance_of(map.semantics.looks, instance.super_points));
     write_text(place / "object.json",
                entry.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   }

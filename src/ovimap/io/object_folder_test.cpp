@@ -20,6 +20,7 @@ class ObjectFolder : public MapFolder {
     map_.instances.resize(2);
     map_.instances[0].id = 4;
     map_.instances[1].id = 9;
+    map_.instances[0].super_points = {1};
     map_.names[4] = "Tea pot/../..\xc3\xa4 ";
     ObjectView view;
     view.visible_px = 7;
@@ -27,7 +28,7 @@ class ObjectFolder : public MapFolder {
     view.crop.image_jpeg = encode_jpeg(RgbImage(2, 2), 90);
     view.crop.mask_png = encode_png(Image<std::uint16_t>(2, 2, 1));
     view.crop.object_px = {Eigen::Vector2i(0, 0), Eigen::Vector2i(1, 1)};
-    map_.semantics.appearances[4].views = {ObjectView{}, view};
+    map_.semantics.looks[1].views = {ObjectView{}, view};
     mesh_.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     mesh_.labels = {4, 4, 4};
     mesh_.triangles = {{0, 1, 2}};

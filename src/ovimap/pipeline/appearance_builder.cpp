@@ -19,39 +19,27 @@ namespace {
 
 /// Gives a view what the encoder answered. Views drawn at random may yet be thrown out: which crops
 /// stay is settled in the end.
-void fill_view(ObjectView& view, EmbeddingAnswer answer, const SemanticsConfig& config,
-               Appearance& appearance) {
-  view.embedding = std::move(answer.embedding);
-  view.crop = std::move(answer.crop);
-  if (config.views.strategy != ViewStrategy::kRandom)
-    prune_crops(appearance, config.crops.kept_views);
-}
-
-ObjectView* find_view(Appearance& appearance, std::uint64_t ticket) {
-  const auto found = std::find_if(appearance.views.begin(), appearance.views.end(),
-                                  [&](const ObjectView& view) { return view.ticket == ticket; });
-  return found == appearance.views.end() ? nullptr : &*found;
+void fill_view(EmbeddingAnswer answer, const SemanticsConfig& config, SuperPointLook& look) {
+  ObjectView* view = find_view(look, answer.view);
+  if (!view) return;  // a better one took its place meanwhile
+  view->embedding = std::move(answer.embedding);
+  view->crop = std::move(answer.crop);
+  if (config.views.strategy != ViewStrategy::kRandom) prune_crops(look, config.crops.kept_views);
 }
 
 }  // namespace
 
-PendingAppearances::PendingAppearances(
-    Appearances appearances, const std::unordered_map<std::uint64_t, InstanceId>& asked_for,
-    const SemanticsConfig& config)
-    : config_(config), appearances_(std::move(appearances)) {
-  for (const auto& [ticket, id] : asked_for) open_.insert(ticket);
-  for (const auto& [id, appearance] : appearances_)
-    for (const ObjectView& view : appearance.views)
-      if (asked_for.contains(view.ticket)) owners_[view.ticket] = id;
+PendingLooks::PendingLooks(SuperPointLooks looks, const LabelForest& forest,
+                           const std::set<ViewKey>& asked_for, const SemanticsConfig& config)
+    : config_(config), looks_(std::move(looks)) {
+  for (const ViewKey& key : asked_for) open_[key] = forest.root(key.super_point);
 }
 
-void PendingAppearances::apply(const EmbeddingAnswer& answer) {
-  if (open_.erase(answer.ticket) == 0) return;  // asked later
-  const auto owner = owners_.find(answer.ticket);
-  if (owner == owners_.end()) return;  // a better view had taken its place
-  Appearance& appearance = appearances_.at(owner->second);
-  if (ObjectView* view = find_view(appearance, answer.ticket))
-    fill_view(*view, answer, config_, appearance);
+void PendingLooks::apply(const EmbeddingAnswer& answer) {
+  const auto asked = open_.extract(answer.view);
+  if (asked.empty()) return;  // asked later
+  if (const auto look = looks_.find(asked.mapped()); look != looks_.end())
+    fill_view(answer, config_, look->second);
 }
 
 AppearanceBuilder::AppearanceBuilder(const SemanticsConfig& config,
@@ -62,14 +50,16 @@ AppearanceBuilder::AppearanceBuilder(const SemanticsConfig& config,
       queue_(config.queue, config.crops, encoder_) {}
 
 int AppearanceBuilder::choose(const Frame& frame, const SeenObjects& seen,
-                              const InstanceRegistry& registry) {
-  apply(queue_.take(), registry);
-  for (const ChosenView& view : selector_.select(seen, registry, appearances_)) {
-    auto crop =
-        cut_object(frame, {seen.depth, seen.instances, view.id, view.box_px}, config_.crops);
-    if (!crop) continue;  // outside the colour image: the view stays without embedding
-    asked_for_[view.ticket] = view.id;
-    chosen_.push_back({view.ticket, std::move(*crop)});
+                              const InstanceRegistry& registry, const LabelForest& forest) {
+  apply(queue_.take(), forest);
+  for (ChosenView& chosen : selector_.select(seen, registry, looks_)) {
+    auto crop = cut_object(frame, {seen.color_index, seen.instances, chosen.id, chosen.box_px},
+                           config_.crops);
+    if (!crop) continue;  // what has no picture has not been looked at
+    const ViewKey key = chosen.view.key();
+    selector_.commit(std::move(chosen), forest, looks_);
+    asked_for_.insert(key);
+    chosen_.push_back({key, std::move(*crop)});
   }
   return static_cast<int>(chosen_.size());
 }
@@ -78,31 +68,34 @@ void AppearanceBuilder::submit(bool wait) {
   queue_.submit(std::exchange(chosen_, {}), wait);
 }
 
-void AppearanceBuilder::catch_up(const InstanceRegistry& registry) {
-  apply(queue_.finish(), registry);
+void AppearanceBuilder::catch_up(const LabelForest& forest) {
+  apply(queue_.finish(), forest);
 }
 
-void AppearanceBuilder::finish(const InstanceRegistry& registry) {
-  catch_up(registry);
-  for (auto& [id, appearance] : appearances_) prune_crops(appearance, config_.crops.kept_views);
+void AppearanceBuilder::finish(const LabelForest& forest) {
+  catch_up(forest);
+  for (auto& [label, look] : looks_) prune_crops(look, config_.crops.kept_views);
 }
 
-std::shared_ptr<PendingAppearances> AppearanceBuilder::remember() {
-  return remembered_ = std::make_shared<PendingAppearances>(appearances_, asked_for_, config_);
+std::shared_ptr<PendingLooks> AppearanceBuilder::remember(const LabelForest& forest) {
+  follow(forest);
+  return remembered_ = std::make_shared<PendingLooks>(looks_, forest, asked_for_, config_);
 }
 
-void AppearanceBuilder::apply(std::vector<EmbeddingAnswer> answers,
-                              const InstanceRegistry& registry) {
-  follow_merges(appearances_, registry);
+void AppearanceBuilder::follow(const LabelForest& forest) {
+  if (followed_ == forest.epoch()) return;
+  follow_merges(looks_, forest);
+  followed_ = forest.epoch();
+}
+
+void AppearanceBuilder::apply(std::vector<EmbeddingAnswer> answers, const LabelForest& forest) {
+  follow(forest);
   for (EmbeddingAnswer& answer : answers) {
     if (encoder_) durations_ms_.push_back(answer.milliseconds);
     if (remembered_) remembered_->apply(answer);
-    const InstanceId asked = asked_for_.extract(answer.ticket).mapped();
-    const auto owner = appearances_.find(registry.resolve(asked));
-    if (owner == appearances_.end()) continue;
-    ObjectView* view = find_view(owner->second, answer.ticket);
-    if (!view) continue;  // a better one took its place meanwhile
-    fill_view(*view, std::move(answer), config_, owner->second);
+    asked_for_.erase(answer.view);
+    const auto look = looks_.find(forest.root(answer.view.super_point));
+    if (look != looks_.end()) fill_view(std::move(answer), config_, look->second);
   }
 }
 

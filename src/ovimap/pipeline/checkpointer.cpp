@@ -66,7 +66,7 @@ void Checkpointer::begin(Mapper& mapper, const std::vector<FrameLogEntry>& frame
   next_->labels = mapper.map().labels();
   next_->blocks = mapper.map().block_count();
   freeze_changes(mapper.map());
-  looks_ = mapper.remember_appearances();
+  looks_ = mapper.remember_looks();
   last_ = std::chrono::steady_clock::now();
   last_frames_ = frames.size();
 }
@@ -92,7 +92,7 @@ void Checkpointer::go_on_writing(Mapper& mapper) {
     next_.reset();
     writing_.get();
   } else if (looks_->complete()) {
-    next_->record.semantics.appearances = looks_->take();
+    next_->record.semantics.looks = looks_->take();
     looks_.reset();
     writing_ = std::async(std::launch::async, [this] {
       lower_thread_priority();

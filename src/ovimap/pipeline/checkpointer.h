@@ -67,7 +67,7 @@ class Checkpointer {
 
   // The checkpoint under way.
   std::optional<MapCheckpoint> next_;
-  std::shared_ptr<PendingAppearances> looks_;  ///< of next_, until the encoder has answered
+  std::shared_ptr<PendingLooks> looks_;  ///< of next_, until the encoder has answered
   std::future<void> writing_;                  ///< valid while next_ is being written
 };
 

@@ -146,7 +146,7 @@ std::vector<EmbeddingAnswer> EmbeddingQueue::answer(const std::vector<EmbeddingR
   const double each_ms = encoder ? taken.count() / static_cast<double>(batch.size()) : 0;
   std::vector<EmbeddingAnswer> answers;
   for (std::size_t i = 0; i < batch.size(); ++i)
-    answers.push_back({batch[i].ticket, std::move(embeddings[i]),
+    answers.push_back({batch[i].view, std::move(embeddings[i]),
                        crops_.kept_views > 0 ? store_crop(batch[i].crop, crops_) : StoredCrop{},
                        each_ms});
   return answers;

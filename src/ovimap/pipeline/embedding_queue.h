@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "ovimap/inference/image_text_encoder.h"
-#include "ovimap/semantics/object_crop.h"
+#include "ovimap/semantics/appearance.h"
 
 namespace ovimap {
 
@@ -27,12 +27,12 @@ void list_fields(EmbeddingQueueConfig& config, ConfigFields& fields);
 /// A view to be embedded. It owns its pixels: however late the encoder comes to it, no other frame
 /// can be seen.
 struct EmbeddingRequest {
-  std::uint64_t ticket = 0;
+  ViewKey view;
   ObjectCrop crop;
 };
 
 struct EmbeddingAnswer {
-  std::uint64_t ticket = 0;
+  ViewKey view;
   Eigen::VectorXf embedding;  ///< empty without an encoder, or when it gave nothing finite
   StoredCrop crop;            ///< empty when CropConfig::kept_views is 0
   double milliseconds = 0;    ///< its share of the batch's time; 0 without an encoder

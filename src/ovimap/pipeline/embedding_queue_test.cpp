@@ -44,9 +44,9 @@ ObjectCrop crop_of(const RgbImage& image) {
           {Eigen::Vector2i(0, 0), Eigen::Vector2i(image.width() - 1, image.height() - 1)}};
 }
 
-std::vector<EmbeddingRequest> one(std::uint64_t ticket, const RgbImage& image) {
+std::vector<EmbeddingRequest> one(std::int64_t frame, const RgbImage& image) {
   std::vector<EmbeddingRequest> requests;
-  requests.push_back({ticket, crop_of(image)});
+  requests.push_back({{frame, 1}, crop_of(image)});
   return requests;
 }
 
@@ -62,7 +62,7 @@ TEST(EmbeddingQueue, SlowEncodersSeeTheFrameTheyWereAskedAbout) {
   encoder->open();
   const std::vector<EmbeddingAnswer> answers = queue.finish();
   ASSERT_EQ(answers.size(), 2u);
-  EXPECT_EQ(answers[0].ticket, 1u);
+  EXPECT_EQ(answers[0].view, (ViewKey{1, 1}));
   EXPECT_TRUE(answers[0].embedding.isApprox(Eigen::Vector3f(1, 0, 0)));
   EXPECT_TRUE(answers[1].embedding.isApprox(Eigen::Vector3f(0, 1, 0)));
   EXPECT_GT(restore_crop(answers[0].crop).image.at(4, 4).r, 200);

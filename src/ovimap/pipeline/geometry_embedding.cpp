@@ -7,6 +7,7 @@
 
 #include "ovimap/base/parallel.h"
 #include "ovimap/base/version.h"
+#include "ovimap/frames/registration.h"
 #include "ovimap/instance/instance_mesh.h"
 #include "ovimap/io/pictures_raster.h"
 #include "ovimap/io/scene_axes.h"
@@ -32,33 +33,53 @@ void require_labels(const Mesh& mesh) {
                        ", and 0 marks what is no object: number the instances anew"));
 }
 
-/// A registry in which every object is known: nothing of given geometry is ever merged.
-InstanceRegistry registry_of(const std::vector<InstanceSummary>& objects) {
+/// Makes each object one super-point. Nothing of given geometry is ever merged.
+void give_labels(std::vector<InstanceSummary>& objects, LabelForest& forest) {
+  for (InstanceSummary& object : objects) object.super_points = {forest.create()};
+}
+
+/// Knows every object.
+InstanceRegistry::State registry_of(const std::vector<InstanceSummary>& objects) {
   constexpr int kSeenOften = 1 << 20;
   InstanceRegistry::State state;
+  state.frames = kSeenOften;
   for (const InstanceSummary& object : objects) {
-    state.records[object.id].views = kSeenOften;
+    SuperPoint& point = state.super_points[object.super_points.front()];
+    point.frames_seen = kSeenOften;
+    point.votes[object.id] = kSeenOften;
+    point.seen = FrameRuns({{0, kSeenOften}});
     state.last_id = object.id;
   }
-  InstanceRegistry registry;
-  registry.restore(std::move(state));
-  return registry;
+  return state;
+}
+
+/// The label of each instance id.
+std::vector<Label> label_table(const std::vector<InstanceSummary>& objects) {
+  std::vector<Label> table(1, kNoLabel);
+  for (const InstanceSummary& object : objects) {
+    table.resize(object.id + 1, kNoLabel);  // ids ascend
+    table[object.id] = object.super_points.front();
+  }
+  return table;
 }
 
 struct MeshView {
   DepthImage depth;
   Image<InstanceId> instances;
+  Image<Label> labels;
 };
 
 /// The mesh as the frame's depth camera sees it, without what the measured depth hides.
-MeshView look_at_mesh(const Mesh& mesh, const Frame& frame, const GeometryEmbeddingConfig& config) {
+MeshView look_at_mesh(const Mesh& mesh, const std::vector<Label>& label_of, const Frame& frame,
+                      const GeometryEmbeddingConfig& config) {
   RasterView view;
   view.camera = frame.depth_camera;
   view.world_from_camera = frame.world_from_camera;
   view.near_m = config.near_m;
   RasterResult drawn = rasterize(mesh, view);
-  MeshView seen{std::move(drawn.depth_m),
-                Image<InstanceId>(frame.depth.width(), frame.depth.height())};
+  const int width = frame.depth.width(), height = frame.depth.height();
+  MeshView seen{std::move(drawn.depth_m), Image<InstanceId>(width, height),
+                Image<Label>(width, height)};
   constexpr std::size_t kPixelsPerTask = 1 << 14;
   parallel_for(seen.depth.size(), kPixelsPerTask, [&](std::size_t i) {
     if (drawn.triangle[i] == RasterResult::kNoTriangle) return;
@@ -69,6 +90,7 @@ MeshView look_at_mesh(const Mesh& mesh, const Frame& frame, const GeometryEmbedd
     }
     const auto& corners = mesh.triangles[drawn.triangle[i]];
     seen.instances[i] = mesh.labels[corners[0]];
+    seen.labels[i] = label_of[seen.instances[i]];
   });
   return seen;
 }
@@ -76,22 +98,29 @@ MeshView look_at_mesh(const Mesh& mesh, const Frame& frame, const GeometryEmbedd
 /// Feeds every usable frame to the builder.
 void look_at_frames(const Mesh& mesh, const FrameSource& source,
                     const std::vector<std::int64_t>& positions,
-                    const GeometryEmbeddingConfig& config, const InstanceRegistry& registry,
+                    const GeometryEmbeddingConfig& config, const MapDocument& document,
                     AppearanceBuilder& builder, SequenceResult& sequence,
                     const SequenceProgress& progress) {
+  const LabelForest& forest = document.map.labels();
+  const std::vector<Label> label_of = label_table(document.instances);
+  InstanceRegistry registry(document.instance_config);
+  registry.restore(InstanceRegistry::State(document.registry));
   for (std::size_t i = 0; i < positions.size(); ++i) {
     FrameRead read = source.read(positions[i]);
     if (read.frame) {
       const Frame& frame = *read.frame;
-      const MeshView seen = look_at_mesh(mesh, frame, config);
+      const MeshView seen = look_at_mesh(mesh, label_of, frame, config);
+      const Registration registration(frame, seen.depth, config.occlusion_margin_m);
       builder.choose(frame,
                      {.depth = seen.depth,
                       .instances = seen.instances,
+                      .labels = seen.labels,
                       .sensor_depth = frame.depth,
+                      .color_index = registration.color_index(),
                       .camera = frame.depth_camera,
                       .world_from_camera = frame.world_from_camera,
                       .frame = frame.index},
-                     registry);
+                     registry, forest);
       builder.submit();
       if (sequence.frames.empty()) sequence.depth_camera = frame.depth_camera;
       sequence.frames.push_back(
@@ -104,7 +133,7 @@ void look_at_frames(const Mesh& mesh, const FrameSource& source,
   if (sequence.frames.empty())
     throw Error(concat("none of the ", sequence.skipped.size(), " frames is usable",
                        sequence.skipped.empty() ? "" : ": " + sequence.skipped.front().fault));
-  builder.finish(registry);
+  builder.finish(forest);
 }
 
 }  // namespace
@@ -137,16 +166,14 @@ MapDocument embed_geometry(const Mesh& mesh, const FrameSource& source,
   require_labels(mesh);
   MapDocument document;
   document.instances = summarize_mesh(mesh);
-  const InstanceRegistry registry = registry_of(document.instances);
+  give_labels(document.instances, document.map.labels());
+  document.registry = registry_of(document.instances);
   AppearanceBuilder builder(config.semantics, std::move(encoder));
-  look_at_frames(mesh, source, positions, config, registry, builder, sequence, progress);
+  look_at_frames(mesh, source, positions, config, document, builder, sequence, progress);
   document.semantics = {builder.encoder() ? builder.encoder()->identity() : EncoderIdentity{},
                         config.semantics.views, config.semantics.crops, builder.take()};
   for (InstanceSummary& object : document.instances)
-    if (const auto look = document.semantics.appearances.find(object.id);
-        look != document.semantics.appearances.end())
-      object.views = look->second.offered;
-  document.registry = registry.state();
+    object.views = appearance_of(document.semantics.looks, object.super_points).offered;
   document.surfaces = sample_surfaces(mesh, config.surface_spacing_m);
   document.up = guess_up(mesh, poses_of(sequence.frames));
   document.frames = sequence.frames;

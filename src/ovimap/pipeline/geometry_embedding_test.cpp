@@ -39,10 +39,8 @@ TEST(EmbedGeometry, FindsTheObjectsOfAGivenMesh) {
   EXPECT_EQ(document.semantics.encoder.name, "colours");
   EXPECT_EQ(document.frames.size(), static_cast<std::size_t>(DeskScene::kFrames));
   EXPECT_GT(document.up.z(), 0.99f);
-  std::vector<InstanceId> ids;
-  for (const InstanceSummary& object : document.instances) ids.push_back(object.id);
   const Embeddings rows =
-      fused_embeddings(document.semantics.appearances, ids, FeatureFusion::kPixelWeighted, 3);
+      fused_embeddings(document.semantics.looks, document.instances, FeatureFusion::kPixelWeighted, 3);
   Eigen::Index red = 0, blue = 0;
   rows.col(0).maxCoeff(&red);
   rows.col(2).maxCoeff(&blue);
@@ -60,7 +58,7 @@ TEST(EmbedGeometry, DoesNotSeeThroughWhatIsMeasuredInFront) {
   SequenceResult sequence;
   const MapDocument document =
       embed_geometry(mesh, scene, positions({}, scene.size()), small_views(), nullptr, sequence);
-  EXPECT_TRUE(document.semantics.appearances.empty());
+  EXPECT_TRUE(document.semantics.looks.empty());
 }
 
 TEST(EmbedGeometry, SaysWhatTheGeometryLacks) {

@@ -49,13 +49,17 @@ void expect_equal(Mapper& live, Mapper& synchronous) {
   EXPECT_EQ(live.registry().aliases(), synchronous.registry().aliases());
   EXPECT_EQ(live.frames(), synchronous.frames());
   EXPECT_EQ(live.mask_frames(), synchronous.mask_frames());
-  const Appearances a = live.take_appearances(), b = synchronous.take_appearances();
+  const SuperPointLooks a = live.take_looks(), b = synchronous.take_looks();
   ASSERT_EQ(a.size(), b.size());
   EXPECT_GT(a.size(), 0u);
-  for (const auto& [id, appearance] : a) {
-    ASSERT_TRUE(b.contains(id));
-    EXPECT_EQ(fuse_views(appearance.views, FeatureFusion::kPixelWeighted),
-              fuse_views(b.at(id).views, FeatureFusion::kPixelWeighted));
+  for (const auto& [label, look] : a) {
+    ASSERT_TRUE(b.contains(label));
+    const std::vector<ObjectView>& others = b.at(label).views;
+    ASSERT_EQ(look.views.size(), others.size());
+    for (std::size_t i = 0; i < others.size(); ++i) {
+      EXPECT_EQ(look.views[i].key(), others[i].key());
+      EXPECT_EQ(look.views[i].embedding, others[i].embedding);
+    }
   }
 }
 
@@ -262,10 +266,10 @@ class FailingColors : public ColorEncoder {
   int failures_;  // the encoder is asked by one thread
 };
 
-std::int64_t embedded_views(const Appearances& appearances) {
+std::int64_t embedded_views(const SuperPointLooks& looks) {
   std::int64_t count = 0;
-  for (const auto& [id, appearance] : appearances)
-    for (const ObjectView& view : appearance.views) count += view.embedding.size() > 0;
+  for (const auto& [label, look] : looks)
+    for (const ObjectView& view : look.views) count += view.embedding.size() > 0;
   return count;
 }
 
@@ -280,7 +284,7 @@ TEST(LiveMapper, AnEncoderThatFailsIsCountedAndCostsItsViewsAlone) {
     EXPECT_EQ(done.frames_fused, done.frames_pushed);
     EXPECT_GT(done.views_failed, 0);
     EXPECT_EQ(done.encoder_fault, "out of memory");
-    const Appearances found = mapper.take().take_appearances();
+    const SuperPointLooks found = mapper.take().take_looks();
     EXPECT_GT(found.size(), 0u);
     EXPECT_EQ(embedded_views(found) == 0, failures == kAlways);
   }

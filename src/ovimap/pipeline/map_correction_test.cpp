@@ -135,10 +135,10 @@ TEST(MapCorrection, TruePosesMakeADriftedMapTrue) {
   EXPECT_NEAR(surface_error_m(truth, corrected), surface_error_m(truth, truth), 0.0005);
   EXPECT_EQ(ids_of(corrected), ids_of(drifted));
   EXPECT_EQ(corrected.names.at(1), "table");
-  ASSERT_FALSE(corrected.semantics.appearances.empty());
-  for (const auto& [id, look] : drifted.semantics.appearances)
+  ASSERT_FALSE(corrected.semantics.looks.empty());
+  for (const auto& [id, look] : drifted.semantics.looks)
     for (std::size_t i = 0; i < look.views.size(); ++i)
-      EXPECT_EQ(corrected.semantics.appearances.at(id).views[i].embedding, look.views[i].embedding);
+      EXPECT_EQ(corrected.semantics.looks.at(id).views[i].embedding, look.views[i].embedding);
   for (std::size_t i = 0; i < truth.frames.size(); ++i)
     EXPECT_EQ(corrected.frames[i].world_from_camera.matrix(),
               truth.frames[i].world_from_camera.matrix());

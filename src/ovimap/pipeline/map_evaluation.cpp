@@ -54,18 +54,19 @@ Mesh true_objects(const Truth& truth, const MapDocument& map, const MapAndTruth&
 }
 
 void count_views(const MapDocument& map, int min_views, EvaluatedScene& scene) {
-  const Appearances& looks = map.semantics.appearances;
-  for (const auto& [id, look] : looks) {
+  InstanceRegistry registry(map.instance_config);  // knows objects too small for the list as well
+  registry.restore(map.registry);
+  std::set<InstanceId> embedded_ids;
+  for (const auto& [label, look] : map.semantics.looks) {
     scene.embedding_queries += look.queries;
-    scene.embedded_instances += look.queries > 0;
+    if (look.queries > 0) embedded_ids.insert(registry.instance_of(label));
   }
+  scene.embedded_instances += static_cast<int>(embedded_ids.size());
   for (const InstanceSummary& instance : map.instances) {
-    const auto look = looks.find(instance.id);
+    const Appearance look = appearance_of(map.semantics.looks, instance.super_points);
     const auto embedded =
-        look == looks.end()
-            ? 0
-            : std::count_if(look->second.views.begin(), look->second.views.end(),
-                            [](const ObjectView& view) { return view.embedding.size() > 0; });
+        std::count_if(look.views.begin(), look.views.end(),
+                      [](const ObjectView* view) { return view->embedding.size() > 0; });
     if (embedded < min_views) scene.few_views.push_back(instance.id);
   }
 }

@@ -22,13 +22,13 @@ struct Offsets {
   InstanceId instance = 0;
   std::int64_t frame = 0;
   std::uint32_t mask_frame = 0;
+  std::uint32_t labelled_frame = 0;
   std::int64_t edit = 0;
 };
 
 InstanceId highest_id(const MapRecord& map) {
   InstanceId highest = map.registry.last_id;
   for (const InstanceSummary& instance : map.instances) highest = std::max(highest, instance.id);
-  for (const auto& [id, look] : map.semantics.appearances) highest = std::max(highest, id);
   for (const auto& [id, name] : map.names) highest = std::max(highest, id);
   return highest;
 }
@@ -39,8 +39,9 @@ Offsets offsets_after(const MapRecord& a, Label labels) {
   offsets.instance = highest_id(a);
   for (const FrameLogEntry& frame : a.frames)
     offsets.frame = std::max(offsets.frame, frame.index + 1);
-  for (const auto& [id, record] : a.registry.records)
-    offsets.frame = std::max(offsets.frame, record.last_frame + 1);
+  for (const auto& [label, point] : a.registry.super_points)
+    offsets.frame = std::max(offsets.frame, point.last_frame + 1);
+  offsets.labelled_frame = static_cast<std::uint32_t>(a.registry.frames);
   for (const auto& [label, seen] : a.registry.entity_sightings)
     for (const EntitySighting& sighting : seen)
       offsets.mask_frame = std::max(offsets.mask_frame, sighting.frame + 1);
@@ -54,10 +55,13 @@ void append_registry(InstanceRegistry::State& a, const InstanceRegistry::State& 
     SuperPoint& moved = a.super_points[label + by.label];
     moved.frames_seen = point.frames_seen;
     for (const auto& [id, votes] : point.votes) moved.votes[id + by.instance] = votes;
+    std::vector<FrameRuns::Run> seen = point.seen.runs();
+    for (FrameRuns::Run& run : seen)
+      run = {run.begin + by.labelled_frame, run.end + by.labelled_frame};
+    moved.seen = FrameRuns(std::move(seen));
+    moved.first_frame = point.first_frame + by.frame;
+    moved.last_frame = point.last_frame + by.frame;
   }
-  for (const auto& [id, record] : b.records)
-    a.records[id + by.instance] = {record.views, record.first_frame + by.frame,
-                                   record.last_frame + by.frame};
   for (const auto& [id, target] : b.aliases) a.aliases[id + by.instance] = target + by.instance;
   for (const auto& [pair, count] : b.pair_counts)
     a.pair_counts[{pair.first + by.label, pair.second + by.label}] = count;
@@ -65,6 +69,7 @@ void append_registry(InstanceRegistry::State& a, const InstanceRegistry::State& 
     for (const EntitySighting& sighting : seen)
       a.entity_sightings[label + by.label].push_back(
           {sighting.frame + by.mask_frame, sighting.entity});
+  a.frames += b.frames;
   a.last_id = by.instance + highest_b;
 }
 
@@ -72,18 +77,21 @@ void append_looks(MapRecord& map_a, const MapRecord& map_b, const Pose& a_from_b
                   const Offsets& by) {
   SemanticRecord& a = map_a.semantics;
   const SemanticRecord& b = map_b.semantics;
-  const bool same_grid = a.views.grid(map_a.depth_camera) == b.views.grid(map_b.depth_camera);
   if (a.encoder.name.empty()) a.encoder = b.encoder;
   const Eigen::Isometry3f pose = a_from_b.cast<float>();
-  for (const auto& [id, look] : b.appearances) {
-    Appearance moved = look;
-    for (ObjectView& view : moved.views) view.frame += by.frame;
-    ViewCoverage& coverage = moved.coverage;
-    coverage.center_in_world = pose * coverage.center_in_world;
-    if (!coverage.seen_in_world.isEmpty()) coverage.seen_in_world.transform(pose);
-    // Directions are those of the old frame and grid: what was seen counts again from nothing.
-    if (!pose.linear().isIdentity(1e-4f) || !same_grid) coverage.bins = {};
-    a.appearances[id + by.instance] = std::move(moved);
+  // Directions are those of the old frame and grid: what was seen counts again from nothing.
+  const bool others = !pose.linear().isIdentity(1e-4f) ||
+                      a.views.grid(map_a.depth_camera) != b.views.grid(map_b.depth_camera);
+  for (const auto& [label, look] : b.looks) {
+    SuperPointLook moved = look;
+    if (!moved.seen_in_world.isEmpty()) moved.seen_in_world.transform(pose);
+    for (ObjectView& view : moved.views) {
+      view.frame += by.frame;
+      view.super_point += by.label;
+      view.directions.center_in_world = pose * view.directions.center_in_world;
+      if (others) view.directions.bins = {};
+    }
+    a.looks[label + by.label] = std::move(moved);
   }
 }
 

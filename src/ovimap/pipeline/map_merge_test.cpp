@@ -88,15 +88,18 @@ TEST(MapMerge, DirectionsOfAnotherGridCountFromNothing) {
   const auto seen_in_a_grid_of = [](int rows) {
     MapDocument map;
     map.semantics.views.grid_rows = rows;
-    map.semantics.appearances[1].coverage.bins = BinSet(map.semantics.views.grid(map.depth_camera).bins());
-    map.semantics.appearances[1].coverage.bins.set(rows);
+    const Label label = map.map.labels().create();
+    ObjectView& view = map.semantics.looks[label].views.emplace_back();
+    view.super_point = label;
+    view.directions.bins = BinSet(map.semantics.views.grid(map.depth_camera).bins());
+    view.directions.bins.set(rows);
     map.registry.last_id = 1;
     return map;
   };
   const auto bins_from = [&](int rows) {
     const MapMerge merge =
         merge_maps(seen_in_a_grid_of(24), seen_in_a_grid_of(rows), Pose::Identity(), {});
-    return merge.map.semantics.appearances.at(2).coverage.bins;
+    return merge.map.semantics.looks.at(2).views.front().directions.bins;
   };
   EXPECT_EQ(bins_from(24).count(), 1);
   EXPECT_TRUE(bins_from(12).empty()) << "they could not be united with those of the first map";
@@ -123,8 +126,7 @@ TEST_F(MapMerging, TwoSessionsMakeOneMap) {
     if (before != 0) {
       EXPECT_EQ(id, before);
     }
-    EXPECT_FALSE(fuse_views(seen.semantics.appearances.at(id).views, FeatureFusion::kMean).size() ==
-                 0);
+    EXPECT_GT(fuse_views(appearance_of(seen, id).views, FeatureFusion::kMean).size(), 0);
   }
 }
 

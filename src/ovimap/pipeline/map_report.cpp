@@ -81,7 +81,7 @@ std::string overview(const MapRecord& map, const MapReport& report) {
 }
 
 bool has_crops(const MapRecord& map) {
-  const Appearances& looks = map.semantics.appearances;
+  const SuperPointLooks& looks = map.semantics.looks;
   return std::any_of(looks.begin(), looks.end(), [](const auto& look) {
     return std::any_of(look.second.views.begin(), look.second.views.end(),
                        [](const ObjectView& view) { return !view.crop.empty(); });
@@ -105,17 +105,10 @@ std::string names_note(const MapRecord& map, const MapReport& report) {
          "gives it some.";
 }
 
-const Appearance* find_appearance(const MapRecord& map, InstanceId id) {
-  const auto found = map.semantics.appearances.find(id);
-  return found == map.semantics.appearances.end() ? nullptr : &found->second;
-}
-
 std::vector<const ObjectView*> best_crops(const MapRecord& map, InstanceId id, int count) {
   std::vector<const ObjectView*> views;
-  const Appearance* look = find_appearance(map, id);
-  if (!look) return views;
-  for (const ObjectView& view : look->views)
-    if (!view.crop.empty()) views.push_back(&view);
+  for (const ObjectView* view : appearance_of(map, id).views)
+    if (!view->crop.empty()) views.push_back(view);
   std::stable_sort(views.begin(), views.end(), [](const ObjectView* a, const ObjectView* b) {
     return a->visible_px > b->visible_px;
   });
@@ -155,13 +148,13 @@ std::string triple(const Eigen::Vector3f& v, const std::string& separator) {
 std::string facts(const MapRecord& map, const InstanceSummary& instance) {
   const Eigen::Vector3f sizes = instance.box.isEmpty() ? Eigen::Vector3f::Constant(std::nanf(""))
                                                        : Eigen::Vector3f(instance.box.sizes());
-  const Appearance* look = find_appearance(map, instance.id);
+  const Appearance look = appearance_of(map.semantics.looks, instance.super_points);
   return concat(
       "<dl class=\"facts\">\n", fact("Position", triple(instance.centroid, ", ") + " m"),
       fact("Size", triple(sizes, " &times; ") + " m"),
       fact("Points", grouped_number(instance.points)),
       fact("Views", grouped_number(static_cast<std::size_t>(instance.views))),
-      fact("Encoder queries", grouped_number(static_cast<std::size_t>(look ? look->queries : 0))),
+      fact("Encoder queries", grouped_number(static_cast<std::size_t>(look.queries))),
       "</dl>\n");
 }
 

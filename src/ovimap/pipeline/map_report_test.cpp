@@ -14,6 +14,7 @@ namespace {
 InstanceSummary instance(InstanceId id, std::size_t points) {
   InstanceSummary summary;
   summary.id = id;
+  summary.super_points = {id};
   summary.points = points;
   summary.views = 3;
   summary.centroid = {1.f, -2.5f, 0.25f};
@@ -36,7 +37,7 @@ MapRecord small_map() {
   map.instances = {instance(2, 4000), instance(5, 700), instance(9, 700)};
   map.names[5] = "<b>tea & pot</b>";
   map.semantics.encoder = {"enc<1>", 2, ""};
-  Appearance& look = map.semantics.appearances[2];
+  SuperPointLook& look = map.semantics.looks[2];
   look.queries = 6;
   look.views = {view(10, 50, {0xFF, 1}), view(20, 90, {0xFF, 2}), view(30, 70, {0xFF, 3}),
                 view(40, 99, {})};
@@ -139,7 +140,7 @@ TEST(MapReport, SaysWhyThereAreNoNames) {
   MapRecord map = small_map();
   MapReport report = small_report();
   EXPECT_EQ(count(map_report_html(map, report), "they were not asked for"), 1u);
-  for (ObjectView& known : map.semantics.appearances[2].views) known.embedding.resize(0);
+  for (ObjectView& known : map.semantics.looks[2].views) known.embedding.resize(0);
   EXPECT_EQ(count(map_report_html(map, report), "no embeddings. <code>ovimap reembed"), 1u);
   map.semantics = {};
   const std::string html = map_report_html(map, report);

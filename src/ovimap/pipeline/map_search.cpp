@@ -51,20 +51,6 @@ MapSearch search_in(SearchableMap&& map, const ObjectShapeConfig& config) {
   return search;
 }
 
-/// One row an instance; zeros for those that were never seen well enough.
-Embeddings fused_embeddings(const MapRecord& record) {
-  const SemanticRecord& semantics = record.semantics;
-  Embeddings rows = Embeddings::Zero(static_cast<Eigen::Index>(record.instances.size()),
-                                     semantics.encoder.dimension);
-  for (std::size_t i = 0; i < record.instances.size(); ++i) {
-    const auto look = semantics.appearances.find(record.instances[i].id);
-    if (look == semantics.appearances.end()) continue;
-    const Eigen::VectorXf fused = fuse_views(look->second.views, semantics.views.fusion);
-    if (fused.size() > 0) rows.row(static_cast<Eigen::Index>(i)) = fused;
-  }
-  return rows;
-}
-
 /// The folder of the model on the search path that is the map's encoder, or at least bears its
 /// name. A map without embeddings takes the default.
 std::string model_of_map(const EncoderIdentity& wanted,
@@ -102,7 +88,9 @@ MapSearch make_map_search(const MapRecord& corrected, MapInfo info,
   info.frames = static_cast<std::int64_t>(corrected.frames.size());
   info.mask_frames = corrected.mask_frames;
   info.depth_camera = corrected.depth_camera;
-  map.embeddings = fused_embeddings(corrected);
+  map.embeddings = fused_embeddings(corrected.semantics.looks, corrected.instances,
+                                    corrected.semantics.views.fusion,
+                                    corrected.semantics.encoder.dimension);
   map.surfaces = corrected.surfaces;
   map.frames = corrected.frames;
   map.info = std::move(info);

@@ -117,14 +117,17 @@ int Mapper::look_at_objects(const Frame& frame, Encoder encoder) {
   int chosen = 0;
   {
     auto t = timers_.measure("views");
+    const Registration registration(frame, view.depth, config_.occlusion_margin_m);
     chosen = builder_->choose(frame,
                               {.depth = view.depth,
                                .instances = view.instances,
+                               .labels = view.labels,
                                .sensor_depth = frame.depth,
+                               .color_index = registration.color_index(),
                                .camera = frame.depth_camera,
                                .world_from_camera = frame.world_from_camera,
                                .frame = frame.index},
-                              registry_);
+                              registry_, map_.labels());
   }
   auto t = timers_.measure("await_encoder");
   builder_->submit(encoder == Encoder::kCatchUp);
@@ -151,7 +154,7 @@ void Mapper::restore(MapDocument&& document) {
   OVIMAP_ASSERT(frames_ == 0);
   map_ = std::move(document.map);
   registry_.restore(std::move(document.registry));
-  builder_->restore(std::move(document.semantics.appearances));
+  builder_->restore(std::move(document.semantics.looks));
   frame_store_.restore(std::move(document.kept_frames), document.frames.size());
   frames_ = static_cast<int>(document.frames.size());
   mask_frames_ = document.mask_frames;
@@ -159,19 +162,19 @@ void Mapper::restore(MapDocument&& document) {
 
 void Mapper::await_encoder() {
   auto t = timers_.measure("await_encoder");
-  builder_->catch_up(registry_);
+  builder_->catch_up(map_.labels());
 }
 
 void Mapper::finish() {
   {
     auto t = timers_.measure("await_encoder");
-    builder_->finish(registry_);
+    builder_->finish(map_.labels());
   }
   for (const double milliseconds : builder_->take_durations_ms())
     timers_.add("embed", milliseconds);
 }
 
-Appearances Mapper::take_appearances() {
+SuperPointLooks Mapper::take_looks() {
   finish();
   return builder_->take();
 }
@@ -182,7 +185,8 @@ InstanceView Mapper::project(const Frame& frame) {
       surface_voxels(map_, frame.depth, frame.depth_camera, frame.world_from_camera);
   Projection seen = cast_rays_with_depth(map_, frame.depth, voxels, frame.depth_camera,
                                          frame.world_from_camera, config_.max_range_m);
-  return {std::move(seen.depth), instances_of(seen.labels)};
+  Image<InstanceId> instances = instances_of(seen.labels);
+  return {std::move(seen.depth), std::move(instances), std::move(seen.labels)};
 }
 
 /// Asks the registry once per label in sight: a frame shows a few of the map's labels.

@@ -32,6 +32,7 @@ struct FrameReport {
 struct InstanceView {
   DepthImage depth;             ///< metres, 0 = no surface
   Image<InstanceId> instances;  ///< 0 = none
+  Image<Label> labels;          ///< roots of super-points, 0 = none
 };
 
 /// The class-agnostic instance map, built frame by frame in the paper's order (sections 3.1 and
@@ -67,10 +68,11 @@ class Mapper {
   /// The map seen from a frame's depth camera, guided by its depth (method section 8).
   InstanceView project(const Frame& frame);
 
-  /// What objects look like now; views that the encoder has not answered have no embedding yet.
-  const Appearances& appearances() const { return builder_->appearances(); }
-  /// What objects look like now, to be stored (AppearanceBuilder::remember).
-  std::shared_ptr<PendingAppearances> remember_appearances() { return builder_->remember(); }
+  /// What super-points look like now; views that the encoder has not answered have no embedding
+  /// yet.
+  const SuperPointLooks& looks() const { return builder_->looks(); }
+  /// The same, to be stored (AppearanceBuilder::remember).
+  std::shared_ptr<PendingLooks> remember_looks() { return builder_->remember(map_.labels()); }
   /// What is to be stored beside the voxels, but for what the objects look like and what is found
   /// at the end: `frames` were fused, seen by `depth_camera`.
   MapRecord record(MapHeader header, std::vector<FrameLogEntry> frames,
@@ -88,8 +90,8 @@ class Mapper {
   /// The same after the last frame. Called again after it threw, it finishes without the views that
   /// the encoder failed on.
   void finish();
-  /// What the objects look like; waits likewise. Call once, after the last frame.
-  Appearances take_appearances();
+  /// What the super-points look like; waits likewise. Call once, after the last frame.
+  SuperPointLooks take_looks();
 
   const MapperConfig& config() const { return config_; }
   /// Null when there is none.

@@ -12,26 +12,22 @@ namespace {
 
 SearchIndex index_of(const MapRecord& map) {
   std::vector<SearchObject> objects;
-  std::vector<InstanceId> ids;
   for (const InstanceSummary& instance : map.instances) {
     objects.push_back({instance.id, instance.box, instance.centroid, instance.points, ""});
-    ids.push_back(instance.id);
   }
   const SemanticRecord& semantics = map.semantics;
   return SearchIndex(std::move(objects),
-                     fused_embeddings(semantics.appearances, ids, semantics.views.fusion,
+                     fused_embeddings(semantics.looks, map.instances, semantics.views.fusion,
                                       semantics.encoder.dimension));
 }
 
 }  // namespace
 
 bool has_embeddings(const MapRecord& map) {
-  const Appearances& looks = map.semantics.appearances;
   return std::any_of(map.instances.begin(), map.instances.end(), [&](const auto& instance) {
-    const auto look = looks.find(instance.id);
-    return look != looks.end() &&
-           std::any_of(look->second.views.begin(), look->second.views.end(),
-                       [](const ObjectView& view) { return view.embedding.size() > 0; });
+    const Appearance look = appearance_of(map.semantics.looks, instance.super_points);
+    return std::any_of(look.views.begin(), look.views.end(),
+                       [](const ObjectView* view) { return view->embedding.size() > 0; });
   });
 }
 

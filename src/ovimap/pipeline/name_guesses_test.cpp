@@ -19,13 +19,14 @@ MapRecord red_map() {
   for (const InstanceId id : {4u, 7u}) {
     InstanceSummary instance;
     instance.id = id;
+    instance.super_points = {id};
     map.instances.push_back(instance);
   }
   ObjectView view;
   view.visible_px = 10;
   view.embedding = Eigen::Vector3f(0.8f, 0.f, 0.6f);
-  map.semantics.appearances[4].views = {view};
-  map.semantics.appearances[7].views = {ObjectView()};
+  map.semantics.looks[4].views = {view};
+  map.semantics.looks[7].views = {ObjectView()};
   return map;
 }
 

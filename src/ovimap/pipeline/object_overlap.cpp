@@ -83,12 +83,8 @@ ObjectOverlaps overlaps(const MapRecord& a, const MapRecord& b, const Pose& a_fr
 std::optional<float> look_similarity(const MapRecord& a, InstanceId id_a, const MapRecord& b,
                                      InstanceId id_b) {
   if (a.semantics.encoder != b.semantics.encoder) return std::nullopt;
-  const auto look_a = a.semantics.appearances.find(id_a),
-             look_b = b.semantics.appearances.find(id_b);
-  if (look_a == a.semantics.appearances.end() || look_b == b.semantics.appearances.end())
-    return std::nullopt;
-  const Eigen::VectorXf x = fuse_views(look_a->second.views, a.semantics.views.fusion),
-                        y = fuse_views(look_b->second.views, b.semantics.views.fusion);
+  const Eigen::VectorXf x = fuse_views(appearance_of(a, id_a).views, a.semantics.views.fusion),
+                        y = fuse_views(appearance_of(b, id_b).views, b.semantics.views.fusion);
   if (x.size() == 0 || x.size() != y.size()) return std::nullopt;
   return x.dot(y);
 }

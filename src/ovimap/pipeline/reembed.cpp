@@ -11,17 +11,17 @@ namespace ovimap {
 namespace {
 
 bool keeps_crops(const SemanticRecord& record) {
-  for (const auto& [id, appearance] : record.appearances)
-    for (const ObjectView& view : appearance.views)
+  for (const auto& [label, look] : record.looks)
+    for (const ObjectView& view : look.views)
       if (!view.crop.empty()) return true;
   return false;
 }
 
-void reembed_object(Appearance& appearance, const CropConfig& config, ImageTextEncoder& encoder,
+void reembed_views(SuperPointLook& look, const CropConfig& config, ImageTextEncoder& encoder,
                     ReembedSummary& summary) {
   std::vector<ObjectCrop> crops;
   std::vector<ObjectView*> views;
-  for (ObjectView& view : appearance.views) {
+  for (ObjectView& view : look.views) {
     view.embedding = {};
     if (view.crop.empty()) {
       ++summary.dropped;
@@ -49,9 +49,9 @@ ReembedSummary reembed(SemanticRecord& record, ImageTextEncoder& encoder,
   SemanticRecord changed = record;
   ReembedSummary summary;
   std::size_t done = 0;
-  for (auto& [id, appearance] : changed.appearances) {
-    reembed_object(appearance, changed.crops, encoder, summary);
-    if (progress) progress(++done, changed.appearances.size());
+  for (auto& [label, look] : changed.looks) {
+    reembed_views(look, changed.crops, encoder, summary);
+    if (progress) progress(++done, changed.looks.size());
   }
   changed.encoder = encoder.identity();
   record = std::move(changed);

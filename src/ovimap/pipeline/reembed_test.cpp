@@ -31,12 +31,14 @@ TEST(Reembed, GivesWhatTheEncoderWouldHaveGivenWhileMapping) {
   std::size_t told = 0;
   const ReembedSummary summary =
       reembed(later, encoder, [&](std::size_t done, std::size_t) { told = done; });
-  EXPECT_EQ(told, later.appearances.size());
-  EXPECT_EQ(summary.objects, direct.appearances.size());
+  EXPECT_EQ(told, later.looks.size());
+  const auto has_views = [](const auto& look) { return !look.second.views.empty(); };
+  EXPECT_EQ(static_cast<std::ptrdiff_t>(summary.objects),
+            std::count_if(direct.looks.begin(), direct.looks.end(), has_views));
   EXPECT_EQ(summary.dropped, 0u);
   EXPECT_EQ(later.encoder, encoder.identity());
-  for (const auto& [id, look] : direct.appearances) {
-    const auto& views = later.appearances.at(id).views;
+  for (const auto& [id, look] : direct.looks) {
+    const auto& views = later.looks.at(id).views;
     ASSERT_EQ(views.size(), look.views.size());
     for (std::size_t i = 0; i < views.size(); ++i)  // crops went through a JPEG
       EXPECT_GT(views[i].embedding.dot(look.views[i].embedding), 0.995f);
@@ -47,9 +49,11 @@ TEST(Reembed, DropsEmbeddingsOfAnotherSpaceWhereNoCropWasKept) {
   SemanticRecord record = map_desk(std::make_shared<ColorEncoder>(), 1);
   ColorEncoder encoder;
   const ReembedSummary summary = reembed(record, encoder);
-  EXPECT_EQ(summary.views, record.appearances.size());
+  const auto has_views = [](const auto& look) { return !look.second.views.empty(); };
+  EXPECT_EQ(static_cast<std::ptrdiff_t>(summary.views),
+            std::count_if(record.looks.begin(), record.looks.end(), has_views));
   EXPECT_GT(summary.dropped, 0u);
-  for (const auto& [id, look] : record.appearances)
+  for (const auto& [id, look] : record.looks)
     for (const ObjectView& view : look.views)
       EXPECT_EQ(view.embedding.size() > 0, !view.crop.empty());
 }
@@ -59,9 +63,10 @@ TEST(Reembed, SaysWhenThereIsNothingToEmbedAndKeepsWhatWasThere) {
   ColorEncoder encoder;
   EXPECT_THROW(reembed(record, encoder), Error);
   record = map_desk(std::make_shared<ColorEncoder>(), 4);
-  record.appearances.rbegin()->second.views.front().crop = {{1, 2, 3}, {4}, {}};
+  std::erase_if(record.looks, [](const auto& look) { return look.second.views.empty(); });
+  record.looks.rbegin()->second.views.front().crop = {{1, 2, 3}, {4}, {}};
   EXPECT_THROW(reembed(record, encoder), Error);
-  EXPECT_GT(record.appearances.begin()->second.views.front().embedding.size(), 0);
+  EXPECT_GT(record.looks.begin()->second.views.front().embedding.size(), 0);
 }
 
 }  // namespace

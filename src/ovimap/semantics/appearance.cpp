@@ -10,10 +10,10 @@ namespace {
 
 using ViewRefs = std::vector<const ObjectView*>;
 
-ViewRefs answered(std::span<const ObjectView> views) {
+ViewRefs answered(std::span<const ObjectView* const> views) {
   ViewRefs result;
-  for (const ObjectView& view : views)
-    if (view.embedding.size() > 0) result.push_back(&view);
+  for (const ObjectView* view : views)
+    if (view->embedding.size() > 0) result.push_back(view);
   return result;
 }
 
@@ -54,20 +54,38 @@ Eigen::VectorXf medoid(const ViewRefs& views, const Distance& distance) {
   return best->embedding.normalized();
 }
 
-void unite(ViewCoverage& keep, const ViewCoverage& drop) {
+bool by_key(const ObjectView& a, const ObjectView& b) {
+  return a.key() < b.key();
+}
+
+void unite(SuperPointLook& keep, SuperPointLook drop) {
   keep.seen_in_world.extend(drop.seen_in_world);
-  keep.largest_px = std::max(keep.largest_px, drop.largest_px);
-  if (keep.bins.empty()) {
-    keep.center_in_world = drop.center_in_world;
-    keep.bins = drop.bins;
-  } else if (!drop.bins.empty()) {
-    keep.bins |= drop.bins;
-  }
+  keep.offered += drop.offered;
+  keep.queries += drop.queries;
+  const auto middle = static_cast<std::ptrdiff_t>(keep.views.size());
+  std::move(drop.views.begin(), drop.views.end(), std::back_inserter(keep.views));
+  std::inplace_merge(keep.views.begin(), keep.views.begin() + middle, keep.views.end(), by_key);
 }
 
 }  // namespace
 
-Eigen::VectorXf fuse_views(std::span<const ObjectView> views, const ViewFusion& fusion) {
+Appearance appearance_of(const SuperPointLooks& looks, std::span<const Label> super_points) {
+  Appearance object;
+  for (const Label label : super_points) {
+    const auto found = looks.find(label);
+    if (found == looks.end()) continue;
+    const SuperPointLook& look = found->second;
+    object.seen_in_world.extend(look.seen_in_world);
+    object.offered += look.offered;
+    object.queries += look.queries;
+    for (const ObjectView& view : look.views) object.views.push_back(&view);
+  }
+  std::sort(object.views.begin(), object.views.end(),
+            [](const ObjectView* a, const ObjectView* b) { return by_key(*a, *b); });
+  return object;
+}
+
+Eigen::VectorXf fuse_views(std::span<const ObjectView* const> views, const ViewFusion& fusion) {
   ViewRefs known = answered(views);
   if (known.empty()) return {};
   keep_largest(known, fusion.largest_views);
@@ -85,31 +103,33 @@ Eigen::VectorXf fuse_views(std::span<const ObjectView> views, const ViewFusion& 
   return {};
 }
 
-void merge_appearance(Appearances& appearances, InstanceId keep, InstanceId drop) {
-  if (keep == drop) return;
-  auto node = appearances.extract(drop);
-  if (node.empty()) return;
-  Appearance& dropped = node.mapped();
-  Appearance& kept = appearances[keep];
-  unite(kept.coverage, dropped.coverage);
-  kept.offered += dropped.offered;
-  kept.queries += dropped.queries;
-  const auto middle = static_cast<std::ptrdiff_t>(kept.views.size());
-  std::move(dropped.views.begin(), dropped.views.end(), std::back_inserter(kept.views));
-  std::inplace_merge(kept.views.begin(), kept.views.begin() + middle, kept.views.end(),
-                     [](const ObjectView& a, const ObjectView& b) { return a.frame < b.frame; });
+void follow_merges(SuperPointLooks& looks, const LabelForest& forest) {
+  for (auto look = looks.begin(); look != looks.end();) {
+    const Label root = forest.root(look->first);
+    if (root == look->first) {
+      ++look;
+      continue;
+    }
+    auto node = looks.extract(look++);
+    unite(looks[root], std::move(node.mapped()));
+  }
 }
 
-void follow_merges(Appearances& appearances, const InstanceRegistry& registry) {
-  std::vector<std::pair<InstanceId, InstanceId>> moves;
-  for (const auto& [id, appearance] : appearances)
-    if (const InstanceId now = registry.resolve(id); now != id) moves.emplace_back(now, id);
-  for (const auto& [keep, drop] : moves) merge_appearance(appearances, keep, drop);
+void insert_view(SuperPointLook& look, ObjectView view) {
+  look.views.insert(std::upper_bound(look.views.begin(), look.views.end(), view, by_key),
+                    std::move(view));
 }
 
-void prune_crops(Appearance& appearance, int kept_views) {
+ObjectView* find_view(SuperPointLook& look, const ViewKey& key) {
+  const auto found =
+      std::lower_bound(look.views.begin(), look.views.end(), key,
+                       [](const ObjectView& view, const ViewKey& k) { return view.key() < k; });
+  return found == look.views.end() || found->key() != key ? nullptr : &*found;
+}
+
+void prune_crops(SuperPointLook& look, int kept_views) {
   std::vector<ObjectView*> with_crop;
-  for (ObjectView& view : appearance.views)
+  for (ObjectView& view : look.views)
     if (!view.crop.empty()) with_crop.push_back(&view);
   std::stable_sort(with_crop.begin(), with_crop.end(),
                    [](const auto* a, const auto* b) { return a->visible_px > b->visible_px; });
@@ -117,14 +137,14 @@ void prune_crops(Appearance& appearance, int kept_views) {
     with_crop[i]->crop = {};
 }
 
-Embeddings fused_embeddings(const Appearances& appearances, std::span<const InstanceId> ids,
+Embeddings fused_embeddings(const SuperPointLooks& looks, std::span<const InstanceSummary> objects,
                             const ViewFusion& fusion, int dimension) {
-  Embeddings rows = Embeddings::Zero(static_cast<Eigen::Index>(ids.size()), dimension);
-  for (std::size_t i = 0; i < ids.size(); ++i) {
-    const auto found = appearances.find(ids[i]);
-    if (found == appearances.end()) continue;
-    const Eigen::VectorXf fused = fuse_views(found->second.views, fusion);
-    if (fused.size() == dimension) rows.row(static_cast<Eigen::Index>(i)) = fused;
+  Embeddings rows = Embeddings::Zero(static_cast<Eigen::Index>(objects.size()), dimension);
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const Appearance object = appearance_of(looks, objects[i].super_points);
+    const Eigen::VectorXf fused = fuse_views(object.views, fusion);
+    if (fused.size() > 0 && fused.size() == dimension)
+      rows.row(static_cast<Eigen::Index>(i)) = fused;
   }
   return rows;
 }

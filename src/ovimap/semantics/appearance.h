@@ -10,7 +10,7 @@
 #include <Eigen/Core>
 
 #include "ovimap/inference/image_text_encoder.h"
-#include "ovimap/instance/instance_registry.h"
+#include "ovimap/instance/instance_summary.h"
 #include "ovimap/semantics/object_crop.h"
 #include "ovimap/semantics/sphere_grid.h"
 
@@ -36,49 +36,70 @@ struct ViewFusion {
   bool operator==(const ViewFusion&) const = default;
 };
 
-/// One view of an object that was chosen to tell what the object looks like.
+/// From where a view showed its object.
+struct ViewDirections {
+  Eigen::Vector3f center_in_world = Eigen::Vector3f::Zero();  ///< the directions' origin
+  BinSet bins;  ///< directions from the centre to surface in sight; empty: not known
+};
+
+/// Says which view is meant, whatever is merged or taken apart meanwhile.
+struct ViewKey {
+  std::int64_t frame = 0;        ///< Frame::index
+  Label super_point = kNoLabel;  ///< that most of the view showed, by its label in that frame
+  auto operator<=>(const ViewKey&) const = default;
+};
+
+/// One view of an object that was chosen to tell what the object looks like. It belongs to the
+/// super-point that covers most of it.
 struct ObjectView {
   std::int64_t frame = 0;  ///< Frame::index
-  int visible_px = 0;
+  int visible_px = 0;      ///< of the object, pixels of the depth image that the colour image shows
   Eigen::VectorXf embedding;  ///< unit length; empty until the encoder has answered
-  StoredCrop crop;            ///< empty unless among the object's largest
-  std::uint64_t ticket = 0;   ///< of the request that is under way; meaningless in a saved map
+  StoredCrop crop;            ///< empty unless among the super-point's largest
+  Label super_point = kNoLabel;
+  ViewDirections directions;
+
+  ViewKey key() const { return {frame, super_point}; }
 };
 
-/// From where an object was seen.
-struct ViewCoverage {
-  Eigen::Vector3f center_in_world = Eigen::Vector3f::Zero();  ///< the directions' origin
-  Eigen::AlignedBox3f seen_in_world;                          ///< of all surface points seen
-  BinSet bins;         ///< directions from the centre to seen surface; empty: none chosen yet
-  int largest_px = 0;  ///< of the chosen views
+/// What is known of a super-point's look.
+struct SuperPointLook {
+  Eigen::AlignedBox3f seen_in_world;  ///< of its surface in all views that were offered
+  std::vector<ObjectView> views;      ///< by key, ascending
+  int offered = 0;  ///< views large enough to choose from of which it covered the most
+  int queries = 0;  ///< of these, chosen, those replaced later included
 };
+using SuperPointLooks = std::map<Label, SuperPointLook>;  ///< by root
 
-/// What the map knows of an object's look.
+/// What an object looks like: what its super-points do together. Refers to their views.
 struct Appearance {
-  ViewCoverage coverage;
-  std::vector<ObjectView> views;  ///< by frame, ascending
-  int offered = 0;                ///< views that were large enough to choose from
-  int queries = 0;                ///< views chosen, those replaced later included
+  Eigen::AlignedBox3f seen_in_world;
+  std::vector<const ObjectView*> views;  ///< by key, ascending
+  int offered = 0;
+  int queries = 0;
 };
 
-/// The looks of all objects, by instance id.
-using Appearances = std::map<InstanceId, Appearance>;
+/// The look of an object that consists of these super-points (roots).
+Appearance appearance_of(const SuperPointLooks& looks, std::span<const Label> super_points);
 
 /// One embedding of the views that have one, of length 1; empty when none has.
-Eigen::VectorXf fuse_views(std::span<const ObjectView> views, const ViewFusion& fusion);
+Eigen::VectorXf fuse_views(std::span<const ObjectView* const> views, const ViewFusion& fusion);
 
-/// Gives what is known of `drop` to `keep`: views are put together, seen directions united.
-void merge_appearance(Appearances& appearances, InstanceId keep, InstanceId drop);
+/// Brings the looks under the labels that the forest resolves them to. Super-points merge for good.
+void follow_merges(SuperPointLooks& looks, const LabelForest& forest);
 
-/// Follows the registry's merges: afterwards every id is one that the registry still uses.
-void follow_merges(Appearances& appearances, const InstanceRegistry& registry);
+/// Puts a view in its place.
+void insert_view(SuperPointLook& look, ObjectView view);
 
-/// Keeps the crops of the `kept_views` largest views of each object (the earlier one of two
+/// Null when there is none.
+ObjectView* find_view(SuperPointLook& look, const ViewKey& key);
+
+/// Keeps the crops of the `kept_views` largest views of a super-point (the earlier one of two
 /// equals).
-void prune_crops(Appearance& appearance, int kept_views);
+void prune_crops(SuperPointLook& look, int kept_views);
 
-/// Row i is the fused embedding of ids[i]; zeros for an object without one.
-Embeddings fused_embeddings(const Appearances& appearances, std::span<const InstanceId> ids,
+/// Row i is the fused embedding of objects[i]; zeros for an object without one.
+Embeddings fused_embeddings(const SuperPointLooks& looks, std::span<const InstanceSummary> objects,
                             const ViewFusion& fusion, int dimension);
 
 }  // namespace ovimap

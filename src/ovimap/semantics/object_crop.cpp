@@ -15,26 +15,13 @@ namespace {
 /// Calls `visit(pixel)` with the place in the colour image of every pixel of the object.
 template <class Visit>
 void for_each_color_pixel(const Frame& frame, const ObjectPixels& object, const Visit& visit) {
-  const bool registered = frame.registered();
-  const Eigen::Isometry3f color_from_depth = frame.color_from_depth.cast<float>();
+  const int color_width = frame.color.width();
   for (int y = object.box_px.min().y(); y <= object.box_px.max().y(); ++y) {
-    for (int x = object.box_px.min().x(); x <= object.box_px.max().x(); ++x) {
-      if (object.instances.at(x, y) != object.id) continue;
-      if (registered) {
-        visit(Eigen::Vector2i(x, y));
-        continue;
-      }
-      const Eigen::Vector3f in_color =
-          color_from_depth * frame.depth_camera.unproject(static_cast<float>(x),
-                                                          static_cast<float>(y),
-                                                          object.depth.at(x, y));
-      if (!(in_color.z() > 0.f)) continue;
-      const Eigen::Vector2f pixel = frame.color_camera.project(in_color);
-      if (pixel.x() > -0.5f && pixel.y() > -0.5f &&
-          pixel.x() < static_cast<float>(frame.color.width()) - 0.5f &&
-          pixel.y() < static_cast<float>(frame.color.height()) - 0.5f)
-        visit(Eigen::Vector2i(pixel.array().round().cast<int>()));
-    }
+    const InstanceId* ids = object.instances.row(y);
+    const std::int32_t* index = object.color_index.row(y);
+    for (int x = object.box_px.min().x(); x <= object.box_px.max().x(); ++x)
+      if (ids[x] == object.id && index[x] >= 0)
+        visit(Eigen::Vector2i(index[x] % color_width, index[x] / color_width));
   }
 }
 

@@ -40,14 +40,14 @@ struct ObjectCrop {
 
 /// Where one object appears in the map as seen from a frame's depth camera.
 struct ObjectPixels {
-  const DepthImage& depth;             ///< of the map, metres
-  const Image<InstanceId>& instances;  ///< same size
+  const Image<std::int32_t>& color_index;  ///< of the map's depth (Registration::color_index)
+  const Image<InstanceId>& instances;      ///< same size
   InstanceId id = 0;
   Eigen::AlignedBox2i box_px;  ///< its pixels lie in it, both corners included
 };
 
-/// Cuts an object out of the frame's own colour image: its pixels are taken to the colour camera
-/// through their depth. Empty when none of them falls into the colour image.
+/// Cuts an object out of the frame's own colour image, which its pixels are registered to. Empty
+/// when the colour image shows none of them.
 std::optional<ObjectCrop> cut_object(const Frame& frame, const ObjectPixels& object,
                                      const CropConfig& config);
 

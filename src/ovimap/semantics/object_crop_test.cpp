@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/semantics/object_crop.h"
 
+#include <optional>
+
 #include <gtest/gtest.h>
+
+#include "ovimap/frames/registration.h"
 
 namespace ovimap {
 namespace {
@@ -23,13 +27,17 @@ class CutObject : public ::testing::Test {
       }
   }
 
-  ObjectPixels square() const {
-    return {depth_, instances_, 7, {Eigen::Vector2i(30, 20), Eigen::Vector2i(49, 39)}};
+  /// As the colour camera sees it now.
+  ObjectPixels square() {
+    registration_.emplace(frame_, depth_, 0.05f);
+    return {registration_->color_index(), instances_, 7,
+            {Eigen::Vector2i(30, 20), Eigen::Vector2i(49, 39)}};
   }
 
   Frame frame_;
   DepthImage depth_;
   Image<InstanceId> instances_;
+  std::optional<Registration> registration_;
 };
 
 TEST_F(CutObject, TakesTheObjectWithItsSurroundings) {
@@ -46,8 +54,9 @@ TEST_F(CutObject, TakesTheObjectWithItsSurroundings) {
 
 TEST_F(CutObject, StaysInsideTheImage) {
   instances_.fill(7);
-  const auto crop = cut_object(
-      frame_, {depth_, instances_, 7, {Eigen::Vector2i(0, 0), Eigen::Vector2i(79, 59)}}, {});
+  ObjectPixels everything = square();
+  everything.box_px = {Eigen::Vector2i(0, 0), Eigen::Vector2i(79, 59)};
+  const auto crop = cut_object(frame_, everything, {});
   ASSERT_TRUE(crop);
   EXPECT_EQ(crop->image, frame_.color);
 }

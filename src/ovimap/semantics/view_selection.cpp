@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 
 #include "ovimap/base/config.h"
 #include "ovimap/base/parallel.h"
@@ -12,23 +14,34 @@ namespace ovimap {
 
 /// One object of the frame.
 struct ViewSelector::Candidate {
+  /// What the view shows of one of its super-points.
+  struct Part {
+    int points = 0;
+    Eigen::AlignedBox3f box_in_world;
+  };
   InstanceId id = 0;
-  int visible_px = 0;
-  int depth_px = 0;  ///< of these, with measured depth
+  int visible_px = 0;  ///< with colour
+  int depth_px = 0;    ///< of these, with measured depth
   Eigen::AlignedBox2i box_px;
-  std::vector<float> x, y, z;  ///< sampled surface points in the world
-  ViewCoverage coverage;       ///< of the object, with this view's extent
-  BinSet bins;                 ///< of this view
+  Appearance known;                ///< what its super-points looked like so far
+  std::vector<float> x, y, z;      ///< sampled surface points in the world
+  std::vector<Label> super_point;  ///< of each point
+  std::map<Label, Part> parts;     ///< the super-points in sight
+  Label most = kNoLabel;           ///< the one that covers most; the older of two equals
+  ViewDirections directions;       ///< of this view
+  BinSet covered;                  ///< directions that chosen views showed, from the same centre
+  int largest_px = 0;              ///< of those views
 };
 
 namespace {
 
-/// Coordinates of surface points in the world.
+/// Coordinates of surface points in the world, and the super-point of each.
 struct PointLists {
   std::vector<float>&x, &y, &z;
+  std::vector<Label>& super_point;
 };
 
-/// The object's pixels on every `step`-th column and row of its box, in the world.
+/// The object's pixels with colour on every `step`-th column and row of its box, in the world.
 void gather_points(const SeenObjects& seen, InstanceId id, int step,
                    const Eigen::AlignedBox2i& box_px, const PointLists& points) {
   const Eigen::Matrix3f rotation = seen.world_from_camera.linear().cast<float>();
@@ -39,28 +52,26 @@ void gather_points(const SeenObjects& seen, InstanceId id, int step,
   for (int v = box_px.min().y(); v <= box_px.max().y(); v += step) {
     const InstanceId* ids = seen.instances.row(v);
     const float* depth = seen.depth.row(v);
+    const Label* labels = seen.labels.row(v);
+    const std::int32_t* color = seen.color_index.row(v);
     const Eigen::Vector3f at_column_0 =
         rotation * seen.camera.unproject(0.f, static_cast<float>(v), 1.f);
     // Every sample is written, but only the object's own move on: no branch to mispredict.
     for (std::vector<float>* list : {&points.x, &points.y, &points.z})
       if (list->size() < count + samples) list->resize(2 * (count + samples));
+    points.super_point.resize(points.x.size());
     float *x = points.x.data(), *y = points.y.data(), *z = points.z.data();
     for (int u = box_px.min().x(); u <= box_px.max().x(); u += step) {
       const Eigen::Vector3f ray = at_column_0 + static_cast<float>(u) * per_column;
       x[count] = depth[u] * ray.x() + position.x();
       y[count] = depth[u] * ray.y() + position.y();
       z[count] = depth[u] * ray.z() + position.z();
-      count += ids[u] == id;
+      points.super_point[count] = labels[u];
+      count += (ids[u] == id) & (color[u] >= 0);
     }
   }
   for (std::vector<float>* list : {&points.x, &points.y, &points.z}) list->resize(count);
-}
-
-Eigen::AlignedBox3f box_of(const std::vector<float>& x, const std::vector<float>& y,
-                           const std::vector<float>& z) {
-  Eigen::AlignedBox3f box;
-  for (std::size_t i = 0; i < x.size(); ++i) box.extend(Eigen::Vector3f(x[i], y[i], z[i]));
-  return box;
+  points.super_point.resize(count);
 }
 
 /// A well-mixed number from three (the finaliser of SplitMix64 over their combination).
@@ -71,40 +82,39 @@ std::uint64_t mixed(std::uint64_t seed, std::uint64_t id, std::uint64_t count) {
   return z ^ (z >> 31);
 }
 
-std::vector<ObjectView>::iterator smallest(std::vector<ObjectView>& views) {
-  return std::min_element(views.begin(), views.end(),
-                          [](const auto& a, const auto& b) { return a.visible_px < b.visible_px; });
+const ObjectView& smallest(const Appearance& object) {
+  return **std::min_element(
+      object.views.begin(), object.views.end(),
+      [](const auto* a, const auto* b) { return a->visible_px < b->visible_px; });
 }
 
-bool among_largest(const Appearance& appearance, int visible_px, int top_views) {
-  const auto as_large = std::count_if(
-      appearance.views.begin(), appearance.views.end(),
-      [&](const ObjectView& view) { return view.visible_px >= visible_px; });
+bool among_largest(const Appearance& object, int visible_px, int top_views) {
+  const auto as_large =
+      std::count_if(object.views.begin(), object.views.end(),
+                    [&](const ObjectView* view) { return view->visible_px >= visible_px; });
   return as_large < top_views;
-}
-
-/// Drops the smallest view when there are `limit`.
-void make_room(Appearance& appearance, int limit) {
-  if (appearance.views.size() >= static_cast<std::size_t>(limit))
-    appearance.views.erase(smallest(appearance.views));
 }
 
 }  // namespace
 
 std::vector<ViewSelector::Candidate> ViewSelector::find_candidates(const SeenObjects& seen,
                                                                    const InstanceRegistry& registry,
-                                                                   const Appearances& appearances) {
+                                                                   const SuperPointLooks& looks) {
   std::vector<Candidate> objects;
   for (int v = 0; v < seen.instances.height(); ++v) {
     const InstanceId* ids = seen.instances.row(v);
     const float* sensor = seen.sensor_depth.row(v);
+    const std::int32_t* color = seen.color_index.row(v);
     for (int u = 0; u < seen.instances.width();) {
       // Neighbouring pixels mostly show one object: count them as a run.
       const InstanceId id = ids[u];
       const int begin = u;
-      int measured = 0;
-      for (; u < seen.instances.width() && ids[u] == id; ++u) measured += sensor[u] > 0.f;
-      if (id == 0) continue;
+      int colored = 0, measured = 0;
+      for (; u < seen.instances.width() && ids[u] == id; ++u) {
+        colored += color[u] >= 0;
+        measured += (color[u] >= 0) & (sensor[u] > 0.f);
+      }
+      if (id == 0 || colored == 0) continue;
       if (id >= slot_of_id_.size()) slot_of_id_.resize(id + 1, -1);
       std::int32_t& slot = slot_of_id_[id];
       if (slot < 0) {
@@ -112,19 +122,20 @@ std::vector<ViewSelector::Candidate> ViewSelector::find_candidates(const SeenObj
         objects.emplace_back().id = id;
       }
       Candidate& object = objects[static_cast<std::size_t>(slot)];
-      object.visible_px += u - begin;
+      object.visible_px += colored;
       object.depth_px += measured;
       object.box_px.extend(Eigen::Vector2i(begin, v));
       object.box_px.extend(Eigen::Vector2i(u - 1, v));
     }
   }
   for (const Candidate& object : objects) slot_of_id_[object.id] = -1;
-  std::erase_if(objects, [&](const Candidate& object) {
-    const auto record = registry.records().find(object.id);
-    const bool known = appearances.contains(object.id);
-    return object.visible_px < config_.min_mask_px ||
-           object.depth_px < (known ? config_.min_depth_px : config_.min_first_depth_px) ||
-           record == registry.records().end() || record->second.views < config_.min_frames_seen;
+  std::erase_if(objects, [&](Candidate& object) {
+    if (object.visible_px < config_.min_mask_px) return true;
+    const std::vector<Label>& super_points = registry.super_points_of(object.id);
+    object.known = appearance_of(looks, super_points);
+    return object.depth_px <
+               (object.known.offered > 0 ? config_.min_depth_px : config_.min_first_depth_px) ||
+           super_points.empty() || registry.record(object.id).views < config_.min_frames_seen;
   });
   std::sort(objects.begin(), objects.end(),
             [](const Candidate& a, const Candidate& b) { return a.id < b.id; });
@@ -143,88 +154,121 @@ SphereGrid ViewSelectionConfig::grid(const PinholeCamera& depth_camera) const {
           std::max(1, depth_camera.width / grid_px_per_bin)};
 }
 
-void ViewSelector::cover(const SeenObjects& seen, const Appearances& appearances,
-                         Candidate& object) const {
+void ViewSelector::cover(const SeenObjects& seen, Candidate& object) const {
   gather_points(seen, object.id, sample_step(object.visible_px), object.box_px,
-                {object.x, object.y, object.z});
+                {object.x, object.y, object.z, object.super_point});
   if (object.x.empty()) return;
-  const auto known = appearances.find(object.id);
-  if (known != appearances.end()) object.coverage = known->second.coverage;
-  ViewCoverage& coverage = object.coverage;
-  coverage.seen_in_world.extend(box_of(object.x, object.y, object.z));
+  Eigen::AlignedBox3f box = object.known.seen_in_world;
+  for (std::size_t i = 0; i < object.x.size(); ++i) {
+    const Eigen::Vector3f point(object.x[i], object.y[i], object.z[i]);
+    Candidate::Part& part = object.parts[object.super_point[i]];
+    ++part.points;
+    part.box_in_world.extend(point);
+    box.extend(point);
+  }
+  for (const auto& [label, part] : object.parts)
+    if (object.most == kNoLabel || part.points > object.parts.at(object.most).points)
+      object.most = label;
+  // Views whose centre is where the object's is now, or nearly so, say what has been covered. The
+  // latest of them gives the origin, so that an object keeps it until its centre has moved.
+  const float limit = config_.recentre_share > 0.f
+                          ? config_.recentre_share * box.diagonal().norm()
+                          : std::numeric_limits<float>::infinity();
+  Eigen::Vector3f& center = object.directions.center_in_world;
+  const auto is_near = [&](const ObjectView* view) {
+    return (view->directions.center_in_world - center).norm() <= limit;
+  };
+  center = box.center();
+  const auto& views = object.known.views;
+  if (const auto latest = std::find_if(views.rbegin(), views.rend(), is_near);
+      latest != views.rend())
+    center = (*latest)->directions.center_in_world;
   const SphereGrid grid = config_.grid(seen.camera);
-  const Eigen::Vector3f center = coverage.seen_in_world.center();
-  const float moved = (center - coverage.center_in_world).norm();
-  const float limit = config_.recentre_share * coverage.seen_in_world.diagonal().norm();
-  if (coverage.bins.empty() || (config_.recentre_share > 0.f && moved > limit)) {
-    coverage.center_in_world = center;
-    coverage.bins = BinSet(grid.bins());
+  object.covered = BinSet(grid.bins());
+  for (const ObjectView* view : views) {
+    if (!is_near(view)) continue;
+    object.largest_px = std::max(object.largest_px, view->visible_px);
+    if (!view->directions.bins.empty()) object.covered |= view->directions.bins;
   }
   for (std::size_t i = 0; i < object.x.size(); ++i) {
-    object.x[i] -= coverage.center_in_world.x();
-    object.y[i] -= coverage.center_in_world.y();
-    object.z[i] -= coverage.center_in_world.z();
+    object.x[i] -= center.x();
+    object.y[i] -= center.y();
+    object.z[i] -= center.z();
   }
-  object.bins = BinSet(grid.bins());
-  mark_directions(grid, {object.x, object.y, object.z}, object.bins);
+  object.directions.bins = BinSet(grid.bins());
+  mark_directions(grid, {object.x, object.y, object.z}, object.directions.bins);
 }
 
 std::vector<ChosenView> ViewSelector::select(const SeenObjects& seen,
                                              const InstanceRegistry& registry,
-                                             Appearances& appearances) {
+                                             SuperPointLooks& looks) {
   OVIMAP_ASSERT(seen.depth.same_size(seen.instances) && seen.depth.same_size(seen.sensor_depth));
-  std::vector<Candidate> candidates = find_candidates(seen, registry, appearances);
-  parallel_for(candidates.size(), 1,
-               [&](std::size_t i) { cover(seen, appearances, candidates[i]); });
+  OVIMAP_ASSERT(seen.depth.same_size(seen.labels) && seen.depth.same_size(seen.color_index));
+  std::vector<Candidate> candidates = find_candidates(seen, registry, looks);
+  parallel_for(candidates.size(), 1, [&](std::size_t i) { cover(seen, candidates[i]); });
   std::vector<ChosenView> chosen;
   for (Candidate& object : candidates) {
     if (object.x.empty()) continue;
-    Appearance& appearance = appearances[object.id];
-    ++appearance.offered;
-    appearance.coverage = std::move(object.coverage);
-    if (!decide(object, seen.frame, appearance)) continue;
-    // Only views that are really used count as seen (method section 9).
-    appearance.coverage.bins |= object.bins;
-    appearance.coverage.largest_px = std::max(appearance.coverage.largest_px, object.visible_px);
-    ++appearance.queries;
-    appearance.views.push_back({seen.frame, object.visible_px, {}, {}, ++last_ticket_});
-    chosen.push_back({object.id, object.box_px, object.visible_px, last_ticket_});
+    for (const auto& [label, part] : object.parts)
+      looks[label].seen_in_world.extend(part.box_in_world);
+    ++looks[object.most].offered;
+    ++object.known.offered;
+    std::optional<ViewKey> replaced;
+    if (!decide(object, seen.frame, replaced)) continue;
+    ObjectView view;
+    view.frame = seen.frame;
+    view.visible_px = object.visible_px;
+    view.super_point = object.most;
+    view.directions = std::move(object.directions);
+    chosen.push_back({object.id, object.box_px, std::move(view), replaced});
   }
   return chosen;
 }
 
+void ViewSelector::commit(ChosenView chosen, const LabelForest& forest, SuperPointLooks& looks) {
+  if (chosen.replaced)
+    std::erase_if(looks[forest.root(chosen.replaced->super_point)].views,
+                  [&](const ObjectView& view) { return view.key() == *chosen.replaced; });
+  SuperPointLook& look = looks[chosen.view.super_point];
+  ++look.queries;
+  insert_view(look, std::move(chosen.view));
+}
+
+/// Whether the view shows enough surface that no chosen one has shown, or shows it far better.
+bool ViewSelector::adds_something(const Candidate& candidate) const {
+  const BinSet& bins = candidate.directions.bins;
+  const float occupied = static_cast<float>(bins.count());
+  const float found = static_cast<float>(bins.count_outside(candidate.covered));
+  return found > config_.theta_novel * occupied ||
+         (config_.better_ratio > 0.f &&
+          static_cast<float>(candidate.visible_px) >
+              config_.better_ratio * static_cast<float>(candidate.largest_px));
+}
+
 bool ViewSelector::decide(const Candidate& candidate, std::int64_t frame,
-                          Appearance& appearance) const {
-  const ViewCoverage& coverage = appearance.coverage;
-  const auto is_new = [&] {
-    const float occupied = static_cast<float>(candidate.bins.count());
-    const float found = static_cast<float>(candidate.bins.count_outside(coverage.bins));
-    return found > config_.theta_novel * occupied ||
-           (config_.better_ratio > 0.f &&
-            static_cast<float>(candidate.visible_px) >
-                config_.better_ratio * static_cast<float>(coverage.largest_px));
-  };
+                          std::optional<ViewKey>& replaced) const {
+  const Appearance& known = candidate.known;
+  const bool is_large = among_largest(known, candidate.visible_px, config_.top_views);
   switch (config_.strategy) {
     case ViewStrategy::kAll:
       return true;
     case ViewStrategy::kCoverage:
-      return is_new();
+      return adds_something(candidate);
     case ViewStrategy::kCombine:
-      return is_new() && among_largest(appearance, candidate.visible_px, config_.top_views);
+      return is_large && adds_something(candidate);
     case ViewStrategy::kPixels:
-      if (!among_largest(appearance, candidate.visible_px, config_.top_views)) return false;
-      make_room(appearance, config_.top_views);
-      return true;
+      if (is_large && known.views.size() >= static_cast<std::size_t>(config_.top_views))
+        replaced = smallest(known).key();
+      return is_large;
     case ViewStrategy::kRandom: {
       // Reservoir sampling: after n views each is kept with the same chance.
       const auto wanted = static_cast<std::size_t>(config_.random_views);
-      if (appearance.views.size() < wanted) return true;
+      if (known.views.size() < wanted) return true;
       const std::uint64_t drawn = mixed(static_cast<std::uint64_t>(config_.random_seed),
                                         candidate.id, static_cast<std::uint64_t>(frame)) %
-                                  static_cast<std::uint64_t>(appearance.offered);
-      if (drawn >= wanted) return false;
-      appearance.views.erase(appearance.views.begin() + static_cast<std::ptrdiff_t>(drawn));
-      return true;
+                                  static_cast<std::uint64_t>(known.offered);
+      if (drawn < wanted) replaced = known.views[drawn]->key();
+      return drawn < wanted;
     }
   }
   return false;

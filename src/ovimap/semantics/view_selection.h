@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,7 +36,7 @@ struct ViewSelectionConfig {
       2.f;  ///< a view this many times larger than any before counts as new; 0: none
   float recentre_share = 0.2f;  ///< coverage starts anew when the centre of what was seen has moved
                                 ///< by this share of its diagonal; 0: never
-  int min_mask_px = 250;        ///< smaller views show too little
+  int min_mask_px = 250;         ///< smaller views show too little, in pixels that have colour
   int min_first_depth_px = 150;  ///< measured depth pixels an object's first view needs
   int min_depth_px = 50;         ///< ... and every later one
   int min_frames_seen = 2;       ///< an object seen in fewer frames may yet be merged away
@@ -58,18 +59,22 @@ ViewSelectionConfig view_preset(const std::string& name);
 struct SeenObjects {
   const DepthImage& depth;             ///< of the map, metres, 0 = no surface
   const Image<InstanceId>& instances;  ///< same size, 0 = none
+  const Image<Label>& labels;          ///< same size, roots of their super-points
   const DepthImage& sensor_depth;      ///< same size, as measured
+  /// Same size: where the colour image shows that surface (Registration::color_index of `depth`);
+  /// negative where it does not.
+  const Image<std::int32_t>& color_index;
   PinholeCamera camera;
   Pose world_from_camera = Pose::Identity();
   std::int64_t frame = 0;  ///< Frame::index
 };
 
-/// A view that was chosen. Its ObjectView, without embedding, already stands in the appearance.
+/// A view that was chosen.
 struct ChosenView {
   InstanceId id = 0;
   Eigen::AlignedBox2i box_px;  ///< of the object in the depth camera's image, corners included
-  int visible_px = 0;
-  std::uint64_t ticket = 0;
+  ObjectView view;             ///< without embedding and crop
+  std::optional<ViewKey> replaced;  ///< a view of the object whose place it takes
 };
 
 /// Chooses views frame by frame. The same frames give the same choice on every run and thread
@@ -78,24 +83,29 @@ class ViewSelector {
  public:
   explicit ViewSelector(const ViewSelectionConfig& config) : config_(config) {}
 
-  /// The objects of this frame whose view should be embedded, by id; their coverage is brought up
-  /// to date. Objects that the registry has seen in too few frames are passed over.
+  /// The objects of this frame whose view should be embedded, by id. What is seen of all is noted
+  /// in `looks`, which are by the labels' roots; the views themselves only by `commit`. Objects
+  /// that the registry has seen in too few frames are passed over.
   std::vector<ChosenView> select(const SeenObjects& seen, const InstanceRegistry& registry,
-                                 Appearances& appearances);
+                                 SuperPointLooks& looks);
+
+  /// From now on the view counts as one of its object's.
+  static void commit(ChosenView chosen, const LabelForest& forest, SuperPointLooks& looks);
 
   const ViewSelectionConfig& config() const { return config_; }
 
  private:
   struct Candidate;
   std::vector<Candidate> find_candidates(const SeenObjects& seen, const InstanceRegistry& registry,
-                                         const Appearances& appearances);
+                                         const SuperPointLooks& looks);
   int sample_step(int visible_px) const;
-  /// Fills the candidate's points, bins and coverage so far.
-  void cover(const SeenObjects& seen, const Appearances& appearances, Candidate& object) const;
-  bool decide(const Candidate& candidate, std::int64_t frame, Appearance& appearance) const;
+  /// Fills the candidate's points, directions and what its chosen views have covered.
+  void cover(const SeenObjects& seen, Candidate& object) const;
+  bool adds_something(const Candidate& candidate) const;
+  bool decide(const Candidate& candidate, std::int64_t frame,
+              std::optional<ViewKey>& replaced) const;
 
   ViewSelectionConfig config_;
-  std::uint64_t last_ticket_ = 0;
   std::vector<std::int32_t> slot_of_id_;  ///< scratch of find_candidates; all -1 between calls
 };
 

@@ -18,7 +18,8 @@ class BallViews {
  public:
   BallViews() {
     InstanceRegistry::State state;
-    state.records = {{1, {10, 0, 9}}, {2, {1, 0, 0}}};
+    state.super_points = {{1, {10, {{1, 10}}, FrameRuns({{0, 10}})}},
+                          {2, {1, {{2, 1}}, FrameRuns({{0, 1}})}}};
     state.last_id = 2;
     registry.restore(state);
   }
@@ -44,16 +45,26 @@ class BallViews {
     Pose pose = Pose::Identity();
     pose.linear() = rotation.cast<double>();
     pose.translation() = eye.cast<double>();
-    return selector.select(
-        {depth, instances, blind ? DepthImage(160, 120) : depth, kCamera, pose, frame++}, registry,
-        appearances);
+    Image<std::int32_t> color(kCamera.width, kCamera.height);
+    for (int y = 0; y < kCamera.height; ++y)
+      for (int x = 0; x < colorless_columns; ++x) color.at(x, y) = -1;
+    // Super-points are called as their instances here.
+    std::vector<ChosenView> chosen = selector.select(
+        {depth, instances, instances, blind ? DepthImage(160, 120) : depth, color, kCamera, pose,
+         frame++},
+        registry, looks);
+    if (pictured)
+      for (const ChosenView& view : chosen) ViewSelector::commit(view, {}, looks);
+    return chosen;
   }
 
   InstanceId id = 1;
   bool blind = false;
+  int colorless_columns = 0;  ///< at the left, where the colour image does not reach
+  bool pictured = true;       ///< chosen views are kept
   std::int64_t frame = 0;
   InstanceRegistry registry;
-  Appearances appearances;
+  SuperPointLooks looks;
 
  private:
   static constexpr PinholeCamera kCamera{160, 120, 150, 150, 79.5f, 59.5f};
@@ -67,7 +78,7 @@ TEST(ViewSelection, TakesViewsThatShowNewSurface) {
   EXPECT_TRUE(ball.look(selector, 2).empty());  // hardly anything new
   EXPECT_EQ(ball.look(selector, 90).size(), 1u);
   EXPECT_EQ(ball.look(selector, 180).size(), 1u);
-  const Appearance& appearance = ball.appearances.at(1);
+  const SuperPointLook& appearance = ball.looks.at(1);
   EXPECT_EQ(appearance.offered, 5);
   EXPECT_EQ(appearance.queries, 3);
   ASSERT_EQ(appearance.views.size(), 3u);
@@ -80,8 +91,8 @@ TEST(ViewSelection, NeedsFewViewsForAWholeCircle) {
   ViewSelector selector(view_preset("default"));
   for (int azimuth = 0; azimuth < 720; azimuth += 5)
     ball.look(selector, static_cast<float>(azimuth));
-  EXPECT_GE(ball.appearances.at(1).queries, 4);
-  EXPECT_LE(ball.appearances.at(1).queries, 12);
+  EXPECT_GE(ball.looks.at(1).queries, 4);
+  EXPECT_LE(ball.looks.at(1).queries, 12);
 }
 
 TEST(ViewSelection, ComesCloser) {
@@ -110,7 +121,7 @@ TEST(ViewSelection, PassesOverSmallUnmeasuredAndUnsureObjects) {
   EXPECT_TRUE(ball.look(selector, 0).empty());  // seen in one frame so far
   ball.id = 3;
   EXPECT_TRUE(ball.look(selector, 0).empty());  // unknown to the registry
-  EXPECT_TRUE(ball.appearances.empty());
+  EXPECT_TRUE(ball.looks.empty());
 }
 
 TEST(ViewSelection, CombineWantsLargeAndNew) {
@@ -145,7 +156,8 @@ TEST(ViewSelection, TheGridMayFollowTheImage) {
   config.grid_px_per_bin = 8;
   ViewSelector selector(config);
   ASSERT_EQ(ball.look(selector, 0).size(), 1u);
-  EXPECT_EQ(ball.appearances.at(1).coverage.bins.words().size(), BinSet(15 * 20).words().size());
+  EXPECT_EQ(ball.looks.at(1).views.front().directions.bins.words().size(),
+            BinSet(15 * 20).words().size());
 }
 
 TEST(ViewSelection, PixelsKeepsTheLargest) {
@@ -156,7 +168,7 @@ TEST(ViewSelection, PixelsKeepsTheLargest) {
   config.top_views = 2;
   ViewSelector selector(config);
   for (const float distance : {3.f, 2.5f, 2.f, 4.f}) ball.look(selector, 0, distance);
-  const Appearance& appearance = ball.appearances.at(1);
+  const SuperPointLook& appearance = ball.looks.at(1);
   EXPECT_EQ(appearance.queries, 3);
   ASSERT_EQ(appearance.views.size(), 2u);
   EXPECT_EQ(appearance.views[0].frame, 1);
@@ -172,8 +184,8 @@ TEST(ViewSelection, RandomDrawsEveryViewAlike) {
     config.random_seed = seed;
     ViewSelector selector(config);
     for (int i = 0; i < 30; ++i) ball.look(selector, static_cast<float>(i), 1.5f);
-    ASSERT_EQ(ball.appearances.at(1).views.size(), 8u);
-    for (const ObjectView& view : ball.appearances.at(1).views)
+    ASSERT_EQ(ball.looks.at(1).views.size(), 8u);
+    for (const ObjectView& view : ball.looks.at(1).views)
       ++kept[static_cast<std::size_t>(view.frame)];
   }
   // Each of 30 views stays with probability 8 / 30: 53 of 200, with deviation 6.3.
@@ -190,11 +202,97 @@ TEST(ViewSelection, StartsAnewWhenAnObjectTurnsOutLarger) {
   BallViews ball;
   ViewSelector selector(view_preset("default"));
   ball.look(selector, 0);
-  Appearance& appearance = ball.appearances.at(1);
-  const Eigen::Vector3f center = appearance.coverage.center_in_world;
-  appearance.coverage.seen_in_world.extend(Eigen::Vector3f(5, 5, 5));  // as another view found
+  SuperPointLook& look = ball.looks.at(1);
+  look.seen_in_world.extend(Eigen::Vector3f(5, 5, 5));  // as another view found
   EXPECT_EQ(ball.look(selector, 0).size(), 1u);
-  EXPECT_GT((appearance.coverage.center_in_world - center).norm(), 1.f);
+  EXPECT_GT((look.views[1].directions.center_in_world - look.views[0].directions.center_in_world)
+                .norm(),
+            1.f);
+}
+
+TEST(ViewSelection, WhatOnlyColourDoesNotShowIsNeitherWeighedNorCovered) {
+  BallViews whole, half;
+  ViewSelector selector(view_preset("default"));
+  half.colorless_columns = 80;  // half of the ball
+  const auto all = whole.look(selector, 0), part = half.look(selector, 0);
+  ASSERT_EQ(part.size(), 1u);
+  EXPECT_NEAR(part[0].view.visible_px, all[0].view.visible_px / 2, 100);
+  const int seen = all[0].view.directions.bins.count();
+  EXPECT_LT(part[0].view.directions.bins.count(), 0.7 * seen);
+  half.colorless_columns = 0;
+  EXPECT_EQ(half.look(selector, 0).size(), 1u) << "the other half is still to be shown";
+  BallViews none;
+  none.colorless_columns = 160;
+  EXPECT_TRUE(none.look(selector, 0).empty());
+  EXPECT_TRUE(none.looks.empty());
+}
+
+TEST(ViewSelection, AViewWithoutPictureCoversNothing) {
+  BallViews ball;
+  ViewSelector selector(view_preset("default"));
+  ball.pictured = false;
+  EXPECT_EQ(ball.look(selector, 0).size(), 1u);
+  EXPECT_EQ(ball.look(selector, 0).size(), 1u) << "it is still to be shown";
+  EXPECT_EQ(ball.looks.at(1).queries, 0);
+  ball.pictured = true;
+  ball.look(selector, 0);
+  EXPECT_TRUE(ball.look(selector, 0).empty());
+}
+
+/// A wall two metres ahead: super-point 1 on the left, 2 on the right of column 40 of 120.
+class WallView {
+ public:
+  WallView() : depth_(120, 90, 2.f), labels_(120, 90, 2u), color_(120, 90) {
+    for (int y = 0; y < 90; ++y)
+      for (int x = 0; x < 40; ++x) labels_.at(x, y) = 1;
+  }
+
+  /// How many views are chosen when the wall is one object, or each part one.
+  std::size_t look(bool one_object) {
+    InstanceRegistry::State state;
+    state.super_points = {{1, {9, {{1, 9}}, FrameRuns({{0, 9}})}},
+                          {2, {9, {{2, 9}}, FrameRuns({{0, 9}})}}};
+    if (one_object) state.aliases = {{2, 1}};
+    InstanceRegistry registry;
+    registry.restore(state);
+    Image<InstanceId> ids(120, 90);
+    for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = registry.instance_of(labels_[i]);
+    auto chosen = selector_.select({depth_, ids, labels_, depth_, color_,
+                                    {120, 90, 100, 100, 59.5f, 44.5f}, Pose::Identity(), frame_++},
+                                   registry, looks);
+    for (const ChosenView& view : chosen) ViewSelector::commit(view, {}, looks);
+    return chosen.size();
+  }
+
+  SuperPointLooks looks;
+
+ private:
+  ViewSelector selector_{view_preset("default")};
+  DepthImage depth_;
+  Image<Label> labels_;
+  Image<std::int32_t> color_;
+  std::int64_t frame_ = 0;
+};
+
+TEST(ViewSelection, AViewBelongsToTheSuperPointThatCoversMostOfIt) {
+  WallView wall;
+  EXPECT_EQ(wall.look(true), 1u);
+  EXPECT_EQ(wall.looks.at(2).views.size(), 1u);
+  EXPECT_EQ(wall.looks.at(2).queries, 1);
+  EXPECT_TRUE(wall.looks.at(1).views.empty());
+  EXPECT_FALSE(wall.looks.at(1).seen_in_world.isEmpty()) << "its surface was seen all the same";
+  EXPECT_LT(wall.looks.at(1).seen_in_world.max().x(), wall.looks.at(2).seen_in_world.min().x());
+}
+
+TEST(ViewSelection, PartsOfAnObjectThatFellApartAreLookedAtAndThenKnown) {
+  WallView wall;
+  EXPECT_EQ(wall.look(true), 1u);
+  EXPECT_EQ(wall.look(true), 0u);
+  EXPECT_EQ(wall.look(false), 1u) << "most of the view of the whole was the other part";
+  EXPECT_EQ(wall.looks.at(1).views.size(), 1u);
+  EXPECT_EQ(wall.looks.at(2).views.size(), 1u);
+  EXPECT_EQ(wall.look(false), 0u);
+  EXPECT_EQ(wall.look(true), 0u) << "the whole has been shown before";
 }
 
 TEST(ViewSelection, DoesNotDependOnThreads) {
@@ -206,7 +304,7 @@ TEST(ViewSelection, DoesNotDependOnThreads) {
     for (int azimuth = 0; azimuth < 360; azimuth += 7)
       ball.look(selector, static_cast<float>(azimuth));
     auto& list = frames.emplace_back();
-    for (const ObjectView& view : ball.appearances.at(1).views) list.push_back(view.frame);
+    for (const ObjectView& view : ball.looks.at(1).views) list.push_back(view.frame);
   }
   EXPECT_EQ(frames[0], frames[1]);
 }

@@ -35,8 +35,7 @@ void name_objects(const MeshStore& store, const InstanceSummaryConfig& config, F
   const Mesh mesh = joined_surface(store);
   InstanceRegistry registry(found.record.instance_config);
   registry.restore(found.record.registry);
-  found.record.instances = find_instances(mesh, found.forest, registry.instance_table(found.forest),
-                                          registry.records(), config);
+  found.record.instances = find_instances(mesh, found.forest, registry, config);
   std::vector<Pose> poses;
   for (const FrameLogEntry& frame : found.record.frames) poses.push_back(frame.world_from_camera);
   found.record.up = guess_up(mesh, poses);
@@ -164,7 +163,7 @@ void LiveFeed::hand_over_objects(Mapper& mapper, const std::vector<FrameLogEntry
   found.record.semantics.views = mapper.config().semantics.views;
   found.record.semantics.crops = mapper.config().semantics.crops;
   if (mapper.encoder()) found.record.semantics.encoder = mapper.encoder()->identity();
-  found.record.semantics.appearances = mapper.appearances();
+  found.record.semantics.looks = mapper.looks();
   found.record.frames = frames;
   found.record.depth_camera = depth_camera;
   found.record.mask_frames = mapper.mask_frames();

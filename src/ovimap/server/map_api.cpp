@@ -57,13 +57,11 @@ HttpReply show_crop(const ServedMap& map, const HttpRequest& request) {
   const InstanceId id = instance_of(request);
   const auto ordinal = whole_number<std::size_t>(request.segments[1], "a crop's number", 404);
   const auto now = map.snapshot();
-  const auto& looks = now->record->semantics.appearances;
-  const auto look = looks.find(id);
-  if (look == looks.end() || ordinal >= look->second.views.size() ||
-      look->second.views[ordinal].crop.empty())
+  const Appearance look = appearance_of(*now->record, id);
+  if (ordinal >= look.views.size() || look.views[ordinal]->crop.empty())
     return fault(404, concat("object ", id, " has no crop ", ordinal,
                              "; 'crops' of the object lists those it has"));
-  const Bytes& jpeg = look->second.views[ordinal].crop.image_jpeg;
+  const Bytes& jpeg = look.views[ordinal]->crop.image_jpeg;
   HttpReply reply = text_reply(200, "image/jpeg", std::string(jpeg.begin(), jpeg.end()));
   reply.headers["Cache-Control"] = "private, no-cache";
   return reply;

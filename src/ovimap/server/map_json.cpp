@@ -78,13 +78,11 @@ json class_of(const MapSnapshot& now, InstanceId id) {
 }
 
 /// Positions of an object's views that keep a crop, as ordinals of /crops/.
-json crops_of(const MapSnapshot& now, InstanceId id) {
+json crops_of(const MapSnapshot& now, const InstanceSummary& instance) {
   json ordinals = json::array();
-  const auto& looks = now.record->semantics.appearances;
-  const auto look = looks.find(id);
-  if (look == looks.end()) return ordinals;
-  for (std::size_t i = 0; i < look->second.views.size(); ++i)
-    if (!look->second.views[i].crop.empty()) ordinals.push_back(i);
+  const Appearance look = appearance_of(now.record->semantics.looks, instance.super_points);
+  for (std::size_t i = 0; i < look.views.size(); ++i)
+    if (!look.views[i]->crop.empty()) ordinals.push_back(i);
   return ordinals;
 }
 
@@ -100,7 +98,7 @@ json instance_json(const MapSnapshot& now, std::size_t position) {
           {"points", instance.points},
           {"views", instance.views},
           {"locked", now.record->locked.contains(instance.id)},
-          {"crops", crops_of(now, instance.id)}};
+          {"crops", crops_of(now, instance)}};
 }
 
 std::size_t position_of(const MapSnapshot& now, InstanceId id) {

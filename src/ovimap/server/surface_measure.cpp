@@ -90,26 +90,21 @@ Mesh labelled_surface(const MeshStore& store, const LabelTable& table,
 }
 
 std::vector<InstanceSummary> find_instances(const Mesh& mesh, const LabelForest& forest,
-                                            const LabelTable& instance_of_root,
-                                            const std::map<InstanceId, InstanceRecord>& records,
+                                            const InstanceRegistry& registry,
                                             const InstanceSummaryConfig& config) {
   std::map<Label, Extent> by_root;
   const std::vector<Extent> by_label = extents_by_label(mesh);
   for (Label label = 1; label < by_label.size(); ++label)
     if (by_label[label].points > 0) by_root[forest.root(label)].add(by_label[label]);
-  std::map<InstanceId, std::pair<InstanceSummary, Extent>> found;
-  for (const auto& [root, extent] : by_root) {
-    const InstanceId id = root < instance_of_root.size() ? instance_of_root[root] : 0;
-    if (id == 0) continue;
-    found[id].first.super_points.push_back(root);
-    found[id].second.add(extent);
-  }
+  std::map<InstanceId, Extent> found;
+  for (const auto& [root, extent] : by_root)
+    if (const InstanceId id = registry.instance_of(root); id != 0) found[id].add(extent);
   std::vector<InstanceSummary> result;
-  for (auto& [id, object] : found) {
-    auto& [summary, extent] = object;
-    const auto record = records.find(id);
+  for (const auto& [id, extent] : found) {
+    InstanceSummary summary;
     summary.id = id;
-    summary.views = record == records.end() ? 0 : record->second.views;
+    summary.views = registry.record(id).views;
+    summary.super_points = registry.super_points_of(id);
     extent.fill(summary);
     if (summary.points >= static_cast<std::size_t>(config.min_instance_voxels) &&
         summary.views >= config.min_instance_views)

@@ -29,8 +29,7 @@ void relabel(Mesh& mesh, const LabelTable& table);
 /// Which objects a map has while it is being made, as summarize_instances finds them in voxels,
 /// here from the surface: `points` counts its vertices. `mesh`: joined_surface.
 std::vector<InstanceSummary> find_instances(const Mesh& mesh, const LabelForest& forest,
-                                            const LabelTable& instance_of_root,
-                                            const std::map<InstanceId, InstanceRecord>& records,
+                                            const InstanceRegistry& registry,
                                             const InstanceSummaryConfig& config);
 
 /// Boxes, centroids, counts and surfaces of all objects of the record. `mesh`: with ids as labels.
