@@ -28,7 +28,8 @@ TEST(FrameRuns, UnitesAsSetsDo) {
   std::mt19937 random(7);
   for (int trial = 0; trial < 200; ++trial) {
     std::set<std::uint32_t> a, b;
-    for (int i = 0; i < 12; ++i) a.insert(random() % 30), b.insert(random() % 30);
+    for (int i = 0; i < 12; ++i)
+      for (auto* set : {&a, &b}) set->insert(static_cast<std::uint32_t>(random() % 30));
     FrameRuns both = runs_of(a);
     both |= runs_of(b);
     a.insert(b.begin(), b.end());

@@ -33,7 +33,8 @@ InstanceRecord record_of(const std::map<Label, SuperPoint>& known,
     if (found == known.end() || found->second.seen.runs().empty()) continue;
     const SuperPoint& point = found->second;
     const bool first = seen.runs().empty();
-    record.first_frame = first ? point.first_frame : std::min(record.first_frame, point.first_frame);
+    record.first_frame =
+        first ? point.first_frame : std::min(record.first_frame, point.first_frame);
     record.last_frame = first ? point.last_frame : std::max(record.last_frame, point.last_frame);
     seen |= point.seen;
   }

@@ -136,10 +136,12 @@ TEST_F(RegistryTest, KnowsTheMembersOfEveryInstance) {
       Segments segments;
       std::vector<SegmentAssociation> associations;
       for (int i = 0; i < 5; ++i) {
-        const Label a = forest.root(1 + random() % 12), b = forest.root(1 + random() % 12);
+        const Label a = forest.root(1 + static_cast<Label>(random() % 12)),
+                    b = forest.root(1 + static_cast<Label>(random() % 12));
         segments.segments.push_back({static_cast<std::uint16_t>(random() % 4), 100});
         associations.push_back({a, false, {}});
-        if (a != b && random() % 8 == 0) associations.back().overlapped = {std::min(a, b), std::max(a, b)};
+        if (a != b && random() % 8 == 0)
+          associations.back().overlapped = {std::min(a, b), std::max(a, b)};
       }
       registry.observe(segments, associations, frame, frame % 5 != 0, forest);
       std::map<InstanceId, std::vector<Label>> members;

@@ -16,7 +16,8 @@ using InstanceAliases = std::map<InstanceId, InstanceId>;
 
 /// Turns what mapping found into what people made of it: instances, `hidden`, names, surfaces and
 /// `locked` follow the record's log. `forest`: which labels are merged by now. The log, the
-/// registry and the looks of super-points stay as they are. Returns the aliases that then hold, those of mapping included.
+/// registry and the looks of super-points stay as they are. Returns the aliases that then hold,
+/// those of mapping included.
 InstanceAliases apply_edits(MapRecord& record, const LabelForest& forest,
                             const VoxelSource& voxels);
 

@@ -16,7 +16,8 @@ using namespace map_tables;
 /// Finds the super-point that stands for an instance.
 class Heirs {
  public:
-  Heirs(LabelForest& forest, MapRecord& record) : record_(record), registry_(record.instance_config) {
+  Heirs(LabelForest& forest, MapRecord& record)
+      : record_(record), registry_(record.instance_config) {
     for (InstanceSummary& instance : record.instances)
       if (instance.super_points.empty()) give_label(instance, forest);
     registry_.restore(InstanceRegistry::State(record.registry));

@@ -25,7 +25,8 @@ MapperConfig small_views() {
 }
 
 /// What the desk's super-points look like to an encoder of colours.
-SuperPointLooks look_at_desk(const MapperConfig& config, std::shared_ptr<ImageTextEncoder> encoder) {
+SuperPointLooks look_at_desk(const MapperConfig& config,
+                             std::shared_ptr<ImageTextEncoder> encoder) {
   Mapper mapper(config, std::make_shared<DeskMasks>(), std::move(encoder));
   const DeskScene scene;
   for (std::int64_t i = 0; i < scene.size(); ++i) mapper.process(*scene.read(i).frame);

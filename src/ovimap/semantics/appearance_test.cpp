@@ -45,7 +45,8 @@ TEST(FuseViews, TakesTheViewMostLikeTheOthers) {
   const std::vector<ObjectView> views = {view(1, 9, at(0)), view(2, 9, at(20)), view(3, 9, at(30)),
                                          view(4, 9000, at(170))};
   // Mean cosines at 20 and 30 degrees: 0.353 and 0.362; mean L1 distances: 0.91 and 1.01.
-  EXPECT_TRUE(fuse_views(refs(views), FeatureFusion::kMaxCosine).isApprox(views[2].embedding, 1e-5f));
+  EXPECT_TRUE(
+      fuse_views(refs(views), FeatureFusion::kMaxCosine).isApprox(views[2].embedding, 1e-5f));
   EXPECT_TRUE(fuse_views(refs(views), FeatureFusion::kMinL1).isApprox(views[1].embedding, 1e-5f));
 }
 
@@ -65,7 +66,8 @@ TEST(FuseViews, MayTakeTheLargestAlone) {
 TEST(FuseViews, PassesOverViewsWithoutAnswer) {
   std::vector<ObjectView> views = {view(1, 100, {0, 1}), view(2, 1000)};
   views[1].embedding = {};
-  EXPECT_TRUE(fuse_views(refs(views), FeatureFusion::kPixelWeighted).isApprox(Eigen::Vector2f(0, 1)));
+  EXPECT_TRUE(
+      fuse_views(refs(views), FeatureFusion::kPixelWeighted).isApprox(Eigen::Vector2f(0, 1)));
   views[0].embedding = {};
   EXPECT_EQ(fuse_views(refs(views), FeatureFusion::kPixelWeighted).size(), 0);
   EXPECT_EQ(fuse_views({}, FeatureFusion::kMaxCosine).size(), 0);
