@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
+#include <cstdlib>
+#include <fstream>
 #include <thread>
 
 #include "ovimap/base/parallel.h"
@@ -20,6 +22,7 @@ struct ServeOptions {
   ServerConfig server;
   ServedMapConfig served;
   std::string viewer = "auto";
+  std::filesystem::path token_file;
   double fps = 30;
   bool live = false, resume = false, no_limits = false, json = false;
 
@@ -31,6 +34,15 @@ struct ServeOptions {
 std::filesystem::path viewer_folder(const std::string& option) {
   if (option != "auto") return option == "none" ? "" : option;
   return find_viewer(std::filesystem::read_symlink("/proc/self/exe"));
+}
+
+std::string first_line(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::string line;
+  if (!std::getline(stream, line))
+    throw Error(concat("'", file.string(), "' holds no token; write one line into it"));
+  if (line.ends_with('\r')) line.pop_back();
+  return line;
 }
 
 /// Connections and sizes stay limited.
@@ -99,10 +111,24 @@ void serve_map(const ServeOptions& options) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
 }
 
+/// What --token, --token-file or OVIMAP_TOKEN say, in this order; a random one where other machines
+/// are let in and none is given; empty: none.
+std::string token_of(const ServeOptions& options) {
+  const auto checked = [](std::string token) {
+    check_token(token);
+    return token;
+  };
+  const char* variable = std::getenv("OVIMAP_TOKEN");
+  if (!options.server.token.empty()) return checked(options.server.token);
+  if (!options.token_file.empty()) return checked(first_line(options.token_file));
+  if (variable != nullptr && *variable != '\0') return checked(variable);
+  return is_loopback(options.server.host) ? "" : random_token();
+}
+
 int serve(ServeOptions options) {
   const ThreadLimit limit(options.mapping.threads);
   ServerConfig& config = options.server;
-  if (config.token.empty() && !is_loopback(config.host)) config.token = random_token();
+  config.token = token_of(options);
   config.viewer = viewer_folder(options.viewer);
   if (options.no_limits) lift_limits(config);
   options.mapping.source = options.subject;
@@ -117,6 +143,27 @@ int serve(ServeOptions options) {
   else
     serve_map(options);
   return kDone;
+}
+
+/// Who may ask, and how they reach the server.
+void add_access_options(CLI::App& command, ServeOptions& options) {
+  auto* token = command.add_option(
+      "--token", options.server.token,
+      "what clients must show; without any a random one where other machines are let in, none "
+      "otherwise. Other users of this machine see it in the list of programs: prefer --token-file, "
+      "or the variable OVIMAP_TOKEN");
+  command.add_option("--token-file", options.token_file, "file whose first line is the token")
+      ->check(CLI::ExistingFile)
+      ->excludes(token);
+  command.add_option("--host-name", options.server.host_names,
+                     "name by which clients call this machine, without port; localhost and "
+                     "loopback addresses are always taken, with a token any name is. Repeatable");
+  auto* certificate =
+      command.add_option("--tls-cert", options.server.tls_certificate,
+                         "certificate with its chain, PEM: the server speaks HTTPS alone");
+  auto* key = command.add_option("--tls-key", options.server.tls_key, "its private key, PEM");
+  certificate->needs(key);
+  key->needs(certificate);
 }
 
 /// What makes sense while a map is made alone.
@@ -157,9 +204,7 @@ Action add_serve(CLI::App& command) {
       .add_option("--host", options->server.host,
                   "address to listen at; 0.0.0.0: other machines too, who then need the token")
       ->capture_default_str();
-  command.add_option("--token", options->server.token,
-                     "what clients must show; without it a random one where other machines are let "
-                     "in, none otherwise");
+  add_access_options(command, *options);
   command.add_option("--viewer", options->viewer, "folder of the web page; auto, or none")
       ->capture_default_str();
   command

@@ -48,13 +48,13 @@ TEST_F(ServeProgramTest, ServesUntilItIsInterrupted) {
   const json said = json::parse(program.line(), nullptr, false);
   ASSERT_TRUE(said.contains("address"));
   EXPECT_EQ(said["viewer"], false);
-  httplib::Client client("127.0.0.1", said["port"].get<int>());
-  const auto page = client.Get("/");
+  const fixture::HttpClient client(said["port"].get<int>());
+  const auto page = client.get("/");
   ASSERT_TRUE(page);
   EXPECT_NE(page->body.find("make build"), std::string::npos);
-  const json info = json::parse(client.Get("/api/map")->body);
+  const json info = json::parse(client.get("/api/map")->body);
   EXPECT_EQ(info["title"], "bare");
-  const auto refused = client.Post("/api/query", R"({"text":"mug"})", "application/json");
+  const auto refused = client.post("/api/query", R"({"text":"mug"})", "application/json");
   EXPECT_EQ(refused->status, 409);
   EXPECT_NE(refused->body.find("reembed"), std::string::npos);
 
@@ -80,21 +80,21 @@ TEST_F(ServeProgramTest, MapsWhileItServes) {
                          path("pid"));
   const json said = json::parse(program.line(), nullptr, false);
   ASSERT_TRUE(said.contains("address"));
-  httplib::Client client("127.0.0.1", said["port"].get<int>());
-  EXPECT_EQ(client.Get("/api/map")->status, 200);
+  const fixture::HttpClient client(said["port"].get<int>());
+  EXPECT_EQ(client.get("/api/map")->status, 200);
   const json saved = json::parse(program.line(), nullptr, false)["saved"];
   EXPECT_GT(saved["frames"], 0);
   EXPECT_GT(saved["live"]["frames_fused"], 0);
   json info = json::object();
   for (int i = 0; i < 400 && info.value("live", true); ++i) {  // as often as the server allows
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    info = json::parse(client.Get("/api/map")->body);
+    info = json::parse(client.get("/api/map")->body);
   }
   EXPECT_EQ(info["frames"], saved["frames"]);
   ASSERT_GT(info["instances"], 0);
-  const json first = json::parse(client.Get("/api/instances")->body)["instances"][0]["id"];
+  const json first = json::parse(client.get("/api/instances")->body)["instances"][0]["id"];
   const json named = {{"kind", "rename"}, {"instance", first}, {"name", "pot"}};
-  EXPECT_EQ(client.Post("/api/corrections", named.dump(), "application/json")->status, 200);
+  EXPECT_EQ(client.post("/api/corrections", named.dump(), "application/json")->status, 200);
   EXPECT_EQ(program.end(), 0);
   EXPECT_EQ(load_corrected_map(path("live.ovimap")).names.at(first.get<InstanceId>()), "pot");
 }
@@ -105,8 +105,8 @@ TEST_F(ServeProgramTest, InterruptedWhileMappingItSaves) {
                          path("pid"));
   const json said = json::parse(program.line(), nullptr, false);
   ASSERT_TRUE(said.contains("address"));
-  httplib::Client client("127.0.0.1", said["port"].get<int>());
-  while (json::parse(client.Get("/api/map")->body)["frames"] < 2)
+  const fixture::HttpClient client(said["port"].get<int>());
+  while (json::parse(client.get("/api/map")->body)["frames"] < 2)
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   EXPECT_EQ(program.end(), 0);
   EXPECT_GE(load_map(path("live.ovimap")).frames.size(), 2u);
@@ -120,12 +120,12 @@ TEST_F(ServeProgramTest, AnswersInWords) {
   const fixture::RunningServer server(path("room.ovimap"), {}, served);
   auto client = server.client();
   const auto ask = [&](const json& question, int status) {
-    const auto reply = client.Post("/api/query", question.dump(), "application/json");
+    const auto reply = client.post("/api/query", question.dump(), "application/json");
     EXPECT_TRUE(reply);
     EXPECT_EQ(reply->status, status) << reply->body;
     return json::parse(reply->body);
   };
-  const json objects = json::parse(client.Get("/api/instances")->body)["instances"];
+  const json objects = json::parse(client.get("/api/instances")->body)["instances"];
   ASSERT_GE(objects.size(), 2u);
   const json answer = ask({{"text", "table"}, {"heat", true}}, 200);
   EXPECT_TRUE(answer["verdict"] == "found" || answer["verdict"] == "not_in_map");

@@ -9,6 +9,7 @@ import http.client
 import io
 import json
 import selectors
+import ssl
 import time
 import urllib.parse
 import uuid
@@ -19,7 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 RETRY_S = 0.02  # between tries of a frame that the mapper had no room for
-REST_S = 0.5  # the server lets connections go that rest for a second
+REST_S = 2.0  # the server lets connections go that rest for 5 seconds
 DEFAULT_PORT = 8080  # of `ovimap serve`
 CAMERAS = ("camera", "depth_camera", "color_camera")
 FIGURES = ("width", "height", "fx", "fy", "cx", "cy")
@@ -42,17 +43,24 @@ class FrameSender:
         alike, as a dict or a PinholeCamera; or what camera.yaml may hold: {"camera": {...}}, or "depth_camera", "color_camera",
         "color_from_depth", "poses".
     jpeg_quality: of colour that comes as an array.
+    cafile: PEM file of the certificates to trust, for a server with one of its own ("https://..."); else the system's.
 
     Raises ValueError for an address or camera that is not whole, SendError when the server refuses the camera, OSError when it
     cannot be reached.
     """
 
-    def __init__(self, url: str, camera: Mapping[str, Any] | object, *, jpeg_quality: int = 92, timeout_s: float = 20) -> None:
+    def __init__(self, url: str, camera: Mapping[str, Any] | object, *, jpeg_quality: int = 92, timeout_s: float = 20,
+                 cafile: str | None = None) -> None:  # fmt: skip
         parts = _address(url)
         tokens = urllib.parse.parse_qs(parts.query).get("token")
         self._headers = {"Authorization": f"Bearer {tokens[0]}"} if tokens else {}
-        kind = http.client.HTTPSConnection if parts.scheme == "https" else http.client.HTTPConnection
-        self._connection = kind(parts.hostname or "", parts.port, timeout=timeout_s)
+        host = parts.hostname or "localhost"
+        self._connection: http.client.HTTPConnection
+        if parts.scheme == "https":
+            trust = ssl.create_default_context(cafile=cafile)
+            self._connection = http.client.HTTPSConnection(host, parts.port, timeout=timeout_s, context=trust)
+        else:
+            self._connection = http.client.HTTPConnection(host, parts.port, timeout=timeout_s)
         rig = _rig(camera)
         both: dict[str, Any] = rig.get("camera", {})
         self._units_per_m = float({**both, **rig.get("depth_camera", {})}.get("depth_scale", 1000))

@@ -10,8 +10,6 @@ namespace ovimap {
 
 namespace {
 
-constexpr std::chrono::seconds kHeartbeat{5};
-
 std::uint64_t first_event(const EventHub& hub, const HttpRequest& request) {
   const std::string text = request.header("last-event-id");
   std::uint64_t number = 0;
@@ -20,23 +18,39 @@ std::uint64_t first_event(const EventHub& hub, const HttpRequest& request) {
   return known ? number : hub.last();
 }
 
+class EventStream : public ReplyStream {
+ public:
+  EventStream(const EventHub& hub, std::uint64_t last) : hub_(hub), last_(last) {}
+
+  std::string next() override {
+    if (!greeted_) {
+      greeted_ = true;
+      return concat("retry: 2000\nid: ", last_, "\nevent: hello\ndata: {}\n\n");
+    }
+    const auto event = hub_.next(last_);
+    if (!event) return {};
+    last_ = event->number;
+    return concat("id: ", event->number, "\nevent: ", event->type, "\ndata: ", event->data,
+                  "\n\n");
+  }
+  std::string sign_of_life() const override { return ": quiet\n\n"; }
+  bool ended() const override { return hub_.closed(); }
+  void watch(std::function<void()> wake) override { watch_ = hub_.watch(std::move(wake)); }
+
+ private:
+  const EventHub& hub_;
+  std::uint64_t last_;
+  bool greeted_ = false;
+  std::shared_ptr<void> watch_;
+};
+
 }  // namespace
 
 HttpReply event_stream(const EventHub& hub, const HttpRequest& request) {
   HttpReply reply;
   reply.type = "text/event-stream";
   reply.headers["Cache-Control"] = "no-store";
-  reply.stream = [&hub, last = first_event(hub, request), greeted = false](bool& ended) mutable {
-    if (!greeted) {
-      greeted = true;
-      return concat("retry: 2000\nid: ", last, "\nevent: hello\ndata: {}\n\n");
-    }
-    const auto event = hub.next(last, kHeartbeat);
-    ended = hub.closed();
-    if (!event) return std::string(": quiet\n\n");
-    last = event->number;
-    return concat("id: ", event->number, "\nevent: ", event->type, "\ndata: ", event->data, "\n\n");
-  };
+  reply.stream = std::make_shared<EventStream>(hub, first_event(hub, request));
   return reply;
 }
 

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "ovimap/server/multipart.h"
 #include "ovimap/server/request_body.h"
 
 namespace ovimap {
@@ -17,15 +18,17 @@ constexpr const char* kOtherCamera =
     "the map's frames are of another camera; send that one's, or finish and start a new map";
 constexpr std::size_t kLongestName = 200;  // bytes; it names files of masks
 
-const std::string& part_of(const HttpRequest& request, const char* name) {
-  const auto found = request.parts.find(name);
-  if (found == request.parts.end())
+using Parts = std::map<std::string, std::string_view>;
+
+std::string_view part_of(const Parts& parts, const char* name) {
+  const auto found = parts.find(name);
+  if (found == parts.end())
     throw BadRequest(
         400, concat("the part '", name, "' is missing; a frame has color, depth and frame"));
   return found->second;
 }
 
-std::span<const std::uint8_t> bytes_of(const std::string& text) {
+std::span<const std::uint8_t> bytes_of(std::string_view text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
@@ -37,6 +40,10 @@ void require_whole_cameras(const json& rig) {
     for (const char* key : {"width", "height", "fx", "fy", "cx", "cy"})
       if (!rig[name].contains(key)) throw BadRequest(400, concat("'", name, "' lacks '", key, "'"));
   }
+}
+
+FrameIntake::Offer offer_of(const HttpRequest& request) {
+  return request.header(kRetry).empty() ? FrameIntake::Offer::kFirst : FrameIntake::Offer::kAgain;
 }
 
 Eigen::Matrix4d pose_of(const json& about) {
@@ -83,6 +90,13 @@ HttpReply FrameApi::counts(int status) const {
   return text_reply(status, "application/json", body.dump());
 }
 
+std::optional<HttpReply> FrameApi::early_refusal(const HttpRequest& head) const {
+  if (intake_ == nullptr) return std::nullopt;
+  const auto room = intake_->room(offer_of(head));
+  if (room == FrameIntake::Answer::kTaken) return std::nullopt;
+  return reply_to(room);
+}
+
 HttpReply FrameApi::camera(const HttpRequest& request) {
   const json body = body_of(request);
   intake();
@@ -101,22 +115,20 @@ HttpReply FrameApi::camera(const HttpRequest& request) {
 }
 
 HttpReply FrameApi::frame(const HttpRequest& request) {
-  if (!request.header("content-type").starts_with("multipart/form-data"))
-    throw BadRequest(415, "send a frame as Content-Type: multipart/form-data");
-  for (const auto& [name, content] : request.parts)
+  const Parts parts = parse_multipart(request.header("content-type"), request.body);
+  for (const auto& [name, content] : parts)
     if (name != "color" && name != "depth" && name != "frame")
       throw BadRequest(400, concat("'", name, "' is no part of a frame; see /api/openapi.json"));
-  const json about = json::parse(part_of(request, "frame"), nullptr, false);
+  const json about = json::parse(part_of(parts, "frame"), nullptr, false);
   if (!about.is_object()) throw BadRequest(400, "the part 'frame' must be a JSON object");
   check_keys(about, {"pose", "timestamp_s", "name"});
   const Eigen::Matrix4d pose = pose_of(about);
   const double timestamp_s = time_of(about);
   const std::string name = name_of(about);
-  const auto color = bytes_of(part_of(request, "color")),
-             depth = bytes_of(part_of(request, "depth"));
+  const auto color = bytes_of(part_of(parts, "color")),
+             depth = bytes_of(part_of(parts, "depth"));
   intake();
-  const auto offer =
-      request.header(kRetry).empty() ? FrameIntake::Offer::kFirst : FrameIntake::Offer::kAgain;
+  const auto offer = offer_of(request);
   // One frame at a time: they stay in order, the camera stays the same, and large images are
   // decoded one by one, and not at all where there is no room.
   const std::lock_guard lock(mutex_);

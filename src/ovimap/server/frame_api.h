@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "ovimap/frames/frame_decoder.h"
@@ -16,13 +17,15 @@ namespace ovimap {
 /// decoded at a time.
 class FrameApi {
  public:
-  static constexpr const char* kFrames = "/api/frames";  ///< the one route of large bodies
-
   /// `intake` may be null: then every request is refused and told how frames are taken.
   FrameApi(FrameIntake* intake, const FrameSourceConfig& config)
       : intake_(intake), config_(config) {}
 
   bool takes_frames() const { return intake_ != nullptr; }
+
+  /// What a frame is answered of which only the head is there, so that nobody sends images in vain:
+  /// there is no room for it. Such a frame counts as skipped. Nothing where it is to be read.
+  std::optional<HttpReply> early_refusal(const HttpRequest& head) const;
 
   // Handlers of POST. They throw BadRequest, and Error for what a frame or a camera has wrong.
   HttpReply camera(const HttpRequest& request);

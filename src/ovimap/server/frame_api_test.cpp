@@ -30,7 +30,7 @@ class FrameApiTest : public MapFolder {
     return *running_;
   }
 
-  json parsed(const httplib::Result& reply, int status) const {
+  json parsed(const std::optional<fixture::HttpAnswer>& reply, int status) const {
     EXPECT_TRUE(reply);
     if (!reply) return {};
     EXPECT_EQ(reply->status, status) << reply->body;
@@ -41,7 +41,7 @@ class FrameApiTest : public MapFolder {
     return body;
   }
   json set_camera(const json& camera, int status) const {
-    return parsed(running_->client().Post("/api/camera", camera.dump(), "application/json"),
+    return parsed(running_->client().post("/api/camera", camera.dump(), "application/json"),
                   status);
   }
   json camera() const {
@@ -60,13 +60,13 @@ class FrameApiTest : public MapFolder {
     for (int i = 0; i < 16; ++i) pose.push_back(sequence_.pose(index)(i / 4, i % 4));
     return {{"pose", pose}, {"timestamp_s", 0.1 * index}};
   }
-  httplib::MultipartFormDataItems frame(int index) const {
-    return {{"color", text_of(encode_png(sequence_.color(index))), "a.png", "image/png"},
-            {"depth", text_of(encode_png(sequence_.stored_depth(index))), "b.png", "image/png"},
-            {"frame", about(index).dump(), "", "application/json"}};
+  std::vector<fixture::FormPart> frame(int index) const {
+    return {{"color", text_of(encode_png(sequence_.color(index))), "image/png"},
+            {"depth", text_of(encode_png(sequence_.stored_depth(index))), "image/png"},
+            {"frame", about(index).dump(), "application/json"}};
   }
-  json push(const httplib::MultipartFormDataItems& items, int status) const {
-    return parsed(running_->client().Post("/api/frames", items), status);
+  json push(const std::vector<fixture::FormPart>& items, int status) const {
+    return parsed(running_->client().post("/api/frames", items), status);
   }
 
   const fixture::Sequence sequence_;
@@ -95,7 +95,7 @@ TEST_F(FrameApiTest, TakesFramesUntilTheQueueIsFull) {
   EXPECT_EQ(first.name, "frame000000");
   EXPECT_EQ(intake.next(std::chrono::milliseconds(0))->name, "kitchen 4");
 
-  EXPECT_EQ(parsed(running_->client().Post("/api/finish"), 202)["taken"], 2);
+  EXPECT_EQ(parsed(running_->client().post("/api/finish"), 202)["taken"], 2);
   push(frame(6), 409);
   EXPECT_TRUE(intake.ended());
 }
@@ -145,9 +145,9 @@ TEST_F(FrameApiTest, SaysWhatIsWrongWithARequest) {
     push(items, 400);
   }
   auto extra = frame(0);
-  extra.push_back({"mask", "1", "", ""});
+  extra.push_back({"mask", "1", "text/plain"});
   push(extra, 400);
-  parsed(running_->client().Post("/api/frames", "{}", "application/json"), 415);
+  parsed(running_->client().post("/api/frames", "{}", "application/json"), 415);
   EXPECT_EQ(intake.counts().taken, 0);
 
   push(frame(0), 200);
@@ -162,7 +162,7 @@ TEST_F(FrameApiTest, WithoutAnIntakeItSaysHowToGetOne) {
   EXPECT_NE(set_camera(camera(), 409)["error"].get<std::string>().find("--live http"),
             std::string::npos);
   push(frame(0), 409);
-  parsed(running_->client().Post("/api/finish"), 409);
+  parsed(running_->client().post("/api/finish"), 409);
 }
 
 TEST_F(FrameApiTest, LargeBodiesAreForFramesOfThoseWhoMaySendThem) {
@@ -172,10 +172,10 @@ TEST_F(FrameApiTest, LargeBodiesAreForFramesOfThoseWhoMaySendThem) {
   config.max_frame_bytes = 1 << 18;
   serve(&intake, config);
   const auto post = [&](const std::string& path, std::size_t bytes, bool with_token) {
-    auto client = running_->client();
-    httplib::Headers headers;
-    if (with_token) headers.emplace("Authorization", "Bearer secret");
-    const auto reply = client.Post(path, headers, std::string(bytes, 'a'), "application/json");
+    fixture::HttpFields fields;
+    if (with_token) fields["Authorization"] = "Bearer secret";
+    const auto reply =
+        running_->client().post(path, std::string(bytes, 'a'), "application/json", fields);
     return reply ? reply->status : 0;
   };
   EXPECT_EQ(post("/api/frames", 1 << 17, true), 415);
@@ -224,8 +224,8 @@ TEST_F(FrameApiTest, FramesAreNotHeldBackAsQueriesAre) {
   serve(&intake, config);
   set_camera(camera(), 200);
   for (int i = 0; i < 6; ++i) push(frame(i), 200);
-  parsed(running_->client().Post("/api/finish"), 202);
-  parsed(running_->client().Post("/api/finish"), 429);
+  parsed(running_->client().post("/api/finish"), 202);
+  parsed(running_->client().post("/api/finish"), 429);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ class HttpClientsTest : public MapFolder {
   }
 
   void expect_alive() {
-    const auto reply = running_->client().Get("/api/map");
+    const auto reply = running_->client().get("/api/map");
     ASSERT_TRUE(reply);
     EXPECT_EQ(reply->status, 200);
   }

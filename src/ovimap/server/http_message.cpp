@@ -53,31 +53,31 @@ HttpReply fault(int status, const std::string& sentence) {
                     body.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
-void Router::add(const std::string& method, const std::string& pattern, HttpHandler handler) {
-  routes_.push_back({method, split(pattern), std::move(handler)});
+void Router::add(Route route) {
+  std::vector<std::string> parts = split(route.pattern);
+  routes_.push_back({std::move(route), std::move(parts)});
 }
 
-HttpReply Router::answer(HttpRequest request) const {
+Router::Match Router::find(const HttpRequest& request) const {
   const std::string method = request.method == "HEAD" ? "GET" : request.method;
   const std::vector<std::string> path = split(request.path);
   std::string allowed;
-  for (const Route& route : routes_) {
-    auto segments = match(route.parts, path);
+  for (const auto& [route, parts] : routes_) {
+    auto segments = match(parts, path);
     if (!segments) continue;
-    if (route.method == method) {
-      request.segments = std::move(*segments);
-      return route.handler(request);
-    }
+    if (route.method == method) return {&route, std::move(*segments), {}};
     allowed += (allowed.empty() ? "" : ", ") + route.method;
     if (route.method == "GET") allowed += ", HEAD";
   }
   if (allowed.empty())
-    return fault(404, "there is nothing at '" + request.path +
-                          "'; GET /api/openapi.json says what there is");
+    return {nullptr,
+            {},
+            fault(404, "there is nothing at '" + request.path +
+                           "'; GET /api/openapi.json says what there is")};
   HttpReply reply = fault(
       405, "'" + request.path + "' does not take " + request.method + "; it takes " + allowed);
   reply.headers["Allow"] = allowed;
-  return reply;
+  return {nullptr, {}, std::move(reply)};
 }
 
 }  // namespace ovimap

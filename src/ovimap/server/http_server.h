@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "ovimap/frames/frame_source.h"
 #include "ovimap/pipeline/frame_intake.h"
@@ -16,25 +17,33 @@ struct ServerConfig {
   std::string host = "127.0.0.1";  ///< address to bind
   int port = 8080;                 ///< 0: any free one
   std::string token;               ///< who does not show it is refused; empty: nobody is asked
+  std::vector<std::string> host_names;  ///< by which this machine is called beside its own ones
+  std::filesystem::path tls_certificate, tls_key;  ///< PEM; empty: nothing is encrypted
   std::filesystem::path viewer;    ///< folder of the web page; empty: none
 
-  int max_connections = 256;   ///< served at once; more wait
-  int max_event_streams = 64;  ///< of these connections
+  int max_connections = 512;         ///< open at once; the one that rests longest goes for a new one
+  int max_connections_of_one = 128;  ///< of these, from one address
+  std::size_t max_event_streams = 64;  ///< of these connections
+  std::size_t max_event_streams_of_one = 32;
   std::size_t max_body_bytes = 1 << 16;
   std::size_t max_frame_bytes = 32 << 20;  ///< of a body that carries a frame's images
   double requests_per_second = 400;        ///< of one address, on average
   double request_burst = 2000;             ///< ... and at once: a large map's chunks
-  double work_per_second = 10;             ///< queries and corrections, which cost the most
+  double work_per_second = 10;             ///< queries, corrections, exports, which cost the most
   double work_burst = 40;
   FrameSourceConfig frames;  ///< limits of the depth in pushed frames
-  int patience_s = 5;        ///< for a client that stops reading or writing in the middle
+  int patience_s = 5;        ///< for a whole head, and for each piece of a body, read or written
+  int idle_s = 5;            ///< that a connection rests between two requests
+
+  bool encrypted() const { return !tls_certificate.empty(); }
 };
 
 /// Serves one map to browsers and programs (docs/http-api.md).
 class HttpServer {
  public:
   /// Binds the port. `map` must outlive the server. Throws Error when the port is taken, the host
-  /// is none of this machine's, or other machines could reach it and no token is set.
+  /// is none of this machine's, other machines could reach it and no token is set, or the
+  /// certificate cannot be used.
   /// `intake`: where frames go that clients push; null: they may not.
   HttpServer(ServedMap& map, const ServerConfig& config, FrameIntake* intake = nullptr);
   ~HttpServer();
@@ -51,8 +60,8 @@ class HttpServer {
   void stop();
 
  private:
-  struct Sockets;
-  std::unique_ptr<Sockets> sockets_;
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
 };
 
 }  // namespace ovimap

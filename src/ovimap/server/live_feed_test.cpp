@@ -96,7 +96,7 @@ TEST_F(LiveFeedTest, ShowsSurfaceObjectsAndCamera) {
   }
   std::set<std::string> heard;
   for (std::uint64_t i = 0; i < map_->events().last(); ++i)
-    if (const auto event = map_->events().next(i, {})) heard.insert(event->type);
+    if (const auto event = map_->events().next(i)) heard.insert(event->type);
   EXPECT_TRUE(heard.contains("frame") && heard.contains("mesh") && heard.contains("map"));
 }
 

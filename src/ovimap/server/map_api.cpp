@@ -3,6 +3,7 @@
 #include "ovimap/server/map_api.h"
 
 #include <charconv>
+#include <mutex>
 
 #include <nlohmann/json.hpp>
 
@@ -128,11 +129,29 @@ HttpReply correct(ServedMap& map, const HttpRequest& request) {
   }
 }
 
-HttpReply export_glb(const ServedMap& map) {
+/// The last export, so that the same map is written once however often it is asked for.
+struct KeptGlb {
+  std::mutex mutex;
+  std::uint64_t version = 0, mesh_version = 0;
+  std::shared_ptr<const std::string> file;  ///< null: none yet
+};
+
+HttpReply export_glb(const ServedMap& map, KeptGlb& kept) {
+  const std::lock_guard lock(kept.mutex);
+  const std::uint64_t mesh_version = map.mesh().version();
   const auto now = map.snapshot();
-  const Bytes glb = encode_glb(labelled_surface(map.mesh(), now->instance_of_label, now->hidden()),
-                               now->record->instances, now->record->names, now->record->up);
-  return text_reply(200, "model/gltf-binary", std::string(glb.begin(), glb.end()));
+  if (!kept.file || kept.version != now->version || kept.mesh_version != mesh_version) {
+    kept.file.reset();  // two never exist at once
+    const Bytes glb = encode_glb(labelled_surface(map.mesh(), now->instance_of_label, now->hidden()),
+                                 now->record->instances, now->record->names, now->record->up);
+    kept.file = std::make_shared<std::string>(glb.begin(), glb.end());
+    kept.version = now->version;
+    kept.mesh_version = mesh_version;
+  }
+  HttpReply reply;
+  reply.type = "model/gltf-binary";
+  reply.body = kept.file;
+  return reply;
 }
 
 /// Turns what a handler throws into replies.
@@ -154,11 +173,15 @@ HttpHandler guarded(HttpHandler handler) {
 
 Router map_api(ServedMap& map, FrameApi& frames) {
   Router router;
-  const auto get = [&](const char* pattern, HttpHandler handler) {
-    router.add("GET", pattern, guarded(std::move(handler)));
+  const auto add = [&](const char* method, const char* pattern, BodyType body, RouteCost cost,
+                       HttpHandler handler) {
+    router.add({method, pattern, body, cost, guarded(std::move(handler))});
   };
-  const auto post = [&](const char* pattern, HttpHandler handler) {
-    router.add("POST", pattern, guarded(std::move(handler)));
+  const auto get = [&](const char* pattern, HttpHandler handler) {
+    add("GET", pattern, BodyType::kNone, RouteCost::kLittle, std::move(handler));
+  };
+  const auto work = [&](const char* pattern, HttpHandler handler) {
+    add("POST", pattern, BodyType::kJson, RouteCost::kWork, std::move(handler));
   };
   using Request = const HttpRequest&;
   get("/api/openapi.json",
@@ -171,14 +194,17 @@ Router map_api(ServedMap& map, FrameApi& frames) {
   get("/api/mesh/{level}/{x}/{y}/{z}", [&map](Request r) { return show_chunk(map, r); });
   get("/api/cameras", [&map](Request) { return json_reply(cameras_json(map)); });
   get("/api/events", [&map](Request r) { return event_stream(map.events(), r); });
-  get("/api/export.glb", [&map](Request) { return export_glb(map); });
   get("/api/labels", [&map](Request) { return json_reply(labels_json(map)); });
   get("/api/corrections", [&map](Request) { return json_reply(corrections_json(map)); });
-  post("/api/query", [&map](Request r) { return answer_query(map, r); });
-  post("/api/corrections", [&map](Request r) { return correct(map, r); });
-  post("/api/camera", [&frames](Request r) { return frames.camera(r); });
-  post(FrameApi::kFrames, [&frames](Request r) { return frames.frame(r); });
-  post("/api/finish", [&frames](Request) { return frames.finish(); });
+  add("GET", "/api/export.glb", BodyType::kNone, RouteCost::kWork,
+      [&map, kept = std::make_shared<KeptGlb>()](Request) { return export_glb(map, *kept); });
+  work("/api/query", [&map](Request r) { return answer_query(map, r); });
+  work("/api/corrections", [&map](Request r) { return correct(map, r); });
+  work("/api/camera", [&frames](Request r) { return frames.camera(r); });
+  add("POST", "/api/frames", BodyType::kFrame, RouteCost::kFrame,
+      [&frames](Request r) { return frames.frame(r); });
+  add("POST", "/api/finish", BodyType::kNone, RouteCost::kWork,
+      [&frames](Request) { return frames.finish(); });
   return router;
 }
 

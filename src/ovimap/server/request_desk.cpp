@@ -4,7 +4,6 @@
 
 #include <xxhash.h>
 
-#include <charconv>
 #include <cstdio>
 
 #include "ovimap/server/compression.h"
@@ -16,6 +15,8 @@ namespace {
 
 constexpr std::size_t kLongestPath = 1024;     // bytes, decoded
 constexpr std::size_t kSmallestPacked = 1024;  // bytes; below, compression saves no packet
+// Bodies of full length that are read at once, from all and from one client.
+constexpr std::size_t kBodiesAtOnce = 64, kBodiesOfOne = 16;
 
 HttpReply too_many(const char* what) {
   HttpReply reply =
@@ -24,8 +25,10 @@ HttpReply too_many(const char* what) {
   return reply;
 }
 
-HttpReply too_large() {
-  return fault(413, "the request's body is too large");
+HttpReply busy(const char* sentence) {
+  HttpReply reply = fault(503, sentence);
+  reply.headers.emplace("Retry-After", "1");
+  return reply;
 }
 
 std::string entity_tag(const std::string& body) {
@@ -70,38 +73,74 @@ void protect(HttpReply& reply) {
 
 RequestDesk::RequestDesk(ServedMap& map, const ServerConfig& config, FrameIntake* intake)
     : config_(config),
-      access_(config.token),
+      access_({config.token, config.host_names, config.encrypted()}),
       files_(config.viewer),
       frames_(intake, config.frames),
       api_(map_api(map, frames_)),
       requests_(config.requests_per_second, config.request_burst),
-      work_(config.work_per_second, config.work_burst) {}
+      work_(config.work_per_second, config.work_burst),
+      streams_(config.max_event_streams, config.max_event_streams_of_one),
+      body_bytes_(kBodiesAtOnce * config.max_body_bytes, kBodiesOfOne * config.max_body_bytes),
+      frame_bytes_(2 * config.max_frame_bytes, config.max_frame_bytes) {}
 
-std::size_t RequestDesk::most_bytes(const HttpRequest& request) const {
-  const bool large = frames_.takes_frames() && request.path == FrameApi::kFrames;
-  return large ? config_.max_frame_bytes : config_.max_body_bytes;
+RequestDesk::Decision RequestDesk::early(const HttpRequest& head) {
+  Decision decision = find_decision(head);
+  if (decision.refusal) decision.refusal = refused(std::move(*decision.refusal));
+  return decision;
 }
 
-std::optional<HttpReply> RequestDesk::early_refusal(const HttpRequest& head) const {
-  const std::string given = head.header("content-length");
-  if (given.empty()) return std::nullopt;
-  std::size_t bytes = 0;
-  const char* end = given.data() + given.size();
-  const auto [last, error] = std::from_chars(given.data(), end, bytes);
-  std::optional<HttpReply> refused;
-  if (error == std::errc::result_out_of_range)
-    refused = too_large();
-  else if (error != std::errc() || last != end)
-    refused = fault(400, "Content-Length must be a whole number");
-  else if (bytes <= config_.max_body_bytes)
-    return std::nullopt;
-  else
-    refused = access_.refusal(head);
-  if (!refused && bytes > most_bytes(head)) refused = too_large();
-  if (!refused) return std::nullopt;
-  refused->ends_connection = true;  // the body is still on its way
-  protect(*refused);
-  return refused;
+HttpReply RequestDesk::refused(HttpReply reply) {
+  protect(reply);
+  return reply;
+}
+
+RequestDesk::Decision RequestDesk::find_decision(const HttpRequest& head) {
+  if (!requests_.admits(client_of(head.remote_address))) return {too_many("requests"), true};
+  if (head.path.size() > kLongestPath)
+    return {fault(414, "the address is too long; /api/openapi.json says what there is")};
+  if (auto refusal = access_.refusal(head)) return {std::move(refusal)};
+  const std::string coding = head.header("content-encoding");
+  if (!coding.empty() && coding != "identity")
+    return {fault(415, "bodies are taken as they are, not as Content-Encoding: " + coding)};
+  if ((head.method == "GET" || head.method == "HEAD") && files_.find(head.path)) return {};
+  const Router::Match match = api_.find(head);
+  if (!match.route) return {match.refusal};
+  if (auto refusal = misfit(head, match.route->body)) return {std::move(refusal)};
+  Decision decision;
+  decision.refusal = shortage(head, *match.route, decision.place);
+  decision.reads_on = true;
+  decision.cost = match.route->cost;
+  return decision;
+}
+
+/// Why a body of that length and type is not taken, whenever it is sent.
+std::optional<HttpReply> RequestDesk::misfit(const HttpRequest& head, BodyType body) const {
+  if (!head.content_length && body != BodyType::kNone)
+    return fault(411, "say how long the body is: Content-Length");
+  const std::uint64_t bytes = head.content_length.value_or(0);
+  const bool frame = body == BodyType::kFrame && frames_.takes_frames();
+  if (bytes > (frame ? config_.max_frame_bytes : config_.max_body_bytes))
+    return fault(413, "the request's body is too large");
+  const std::string type = head.header("content-type");
+  if (body == BodyType::kFrame && !type.starts_with("multipart/form-data"))
+    return fault(415, "send a frame as Content-Type: multipart/form-data");
+  const bool json = body == BodyType::kJson || (body == BodyType::kNone && bytes > 0);
+  if (json && !type.starts_with("application/json"))
+    return fault(415, "send the body as Content-Type: application/json");
+  return std::nullopt;
+}
+
+/// Why a sound request must come again later.
+std::optional<HttpReply> RequestDesk::shortage(const HttpRequest& head, const Route& route,
+                                               std::shared_ptr<void>& place) {
+  const std::string client = client_of(head.remote_address);
+  // A camera's frames are held back by the queue that they go into.
+  const bool frame = route.cost == RouteCost::kFrame && frames_.takes_frames();
+  if (!frame && route.cost != RouteCost::kLittle && !work_.admits(client))
+    return too_many("queries or corrections");
+  place = (frame ? frame_bytes_ : body_bytes_).take(client, head.content_length.value_or(0));
+  if (!place) return busy("too many bodies are on their way; send this one again");
+  return frame ? frames_.early_refusal(head) : std::nullopt;
 }
 
 HttpReply RequestDesk::answer(const HttpRequest& request) {
@@ -113,33 +152,25 @@ HttpReply RequestDesk::answer(const HttpRequest& request) {
 }
 
 HttpReply RequestDesk::find_reply(const HttpRequest& request) {
-  if (!requests_.admits(request.remote_address)) return too_many("requests");
-  if (request.path.size() > kLongestPath)
-    return fault(414, "the address is too long; /api/openapi.json says what there is");
-  if (auto refusal = access_.refusal(request)) return *refusal;
   if (request.method == "GET" || request.method == "HEAD")
     if (auto file = files_.find(request.path)) return *file;
-  std::size_t bytes = request.body.size();
-  for (const auto& [name, content] : request.parts) bytes += content.size();
-  if (bytes > most_bytes(request)) return too_large();
-  // A camera's frames are held back by the queue that they go into.
-  const bool is_frame = frames_.takes_frames() && request.path == FrameApi::kFrames;
-  if (request.method == "POST" && !is_frame && !work_.admits(request.remote_address))
-    return too_many("queries or corrections");
-  HttpReply reply = api_.answer(request);
-  return reply.stream ? counted_stream(std::move(reply)) : reply;
+  Router::Match match = api_.find(request);
+  if (!match.route) return match.refusal;
+  HttpReply reply;
+  if (match.segments.empty()) {
+    reply = match.route->handler(request);
+  } else {
+    HttpRequest filled = request;
+    filled.segments = std::move(match.segments);
+    reply = match.route->handler(filled);
+  }
+  return reply.stream ? counted_stream(request, std::move(reply)) : reply;
 }
 
-HttpReply RequestDesk::counted_stream(HttpReply reply) {
-  struct Place {  // given back when the last copy of the stream goes
-    std::shared_ptr<std::atomic<int>> streams;
-    explicit Place(std::shared_ptr<std::atomic<int>> all) : streams(std::move(all)) { ++*streams; }
-    ~Place() { --*streams; }
-  };
-  auto place = std::make_shared<Place>(streams_);
-  if (*streams_ > config_.max_event_streams)
+HttpReply RequestDesk::counted_stream(const HttpRequest& request, HttpReply reply) {
+  reply.place = streams_.take(client_of(request.remote_address), 1);
+  if (!reply.place)
     return fault(503, "too many clients listen for events; close some of the map's pages");
-  reply.stream = [place, inner = std::move(reply.stream)](bool& ended) { return inner(ended); };
   return reply;
 }
 

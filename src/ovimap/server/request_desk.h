@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <atomic>
 #include <memory>
+#include <optional>
 
 #include "ovimap/server/access.h"
 #include "ovimap/server/frame_api.h"
 #include "ovimap/server/http_message.h"
 #include "ovimap/server/http_server.h"
+#include "ovimap/server/shares.h"
 #include "ovimap/server/viewer_files.h"
 
 namespace ovimap {
@@ -19,15 +20,30 @@ class RequestDesk {
  public:
   RequestDesk(ServedMap& map, const ServerConfig& config, FrameIntake* intake);
 
-  /// The refusal of a request of which only the head was read: a body may be large, so who may not
-  /// send it is told before. Nothing where the body is to be read.
-  std::optional<HttpReply> early_refusal(const HttpRequest& head) const;
+  /// What the head of a request is enough to decide.
+  struct Decision {
+    std::optional<HttpReply> refusal;  ///< nothing: the body is to be read, then answer() is asked
+    /// Of a refusal: the client did nothing wrong, so the body is read, if only to drop it, and the
+    /// next request may follow.
+    bool reads_on = false;
+    RouteCost cost = RouteCost::kLittle;
+    std::shared_ptr<void> place = nullptr;  ///< the body's, to be kept until the request is answered
+  };
+  Decision early(const HttpRequest& head);
+
+  /// Of a request that early() let pass.
   HttpReply answer(const HttpRequest& request);
 
+  /// A refusal as it is sent.
+  static HttpReply refused(HttpReply reply);
+
  private:
-  std::size_t most_bytes(const HttpRequest& request) const;
+  Decision find_decision(const HttpRequest& head);
+  std::optional<HttpReply> misfit(const HttpRequest& head, BodyType body) const;
+  std::optional<HttpReply> shortage(const HttpRequest& head, const Route& route,
+                                    std::shared_ptr<void>& place);
   HttpReply find_reply(const HttpRequest& request);
-  HttpReply counted_stream(HttpReply reply);
+  HttpReply counted_stream(const HttpRequest& request, HttpReply reply);
 
   const ServerConfig config_;
   const AccessRule access_;
@@ -35,7 +51,7 @@ class RequestDesk {
   FrameApi frames_;
   const Router api_;
   RateLimit requests_, work_;
-  std::shared_ptr<std::atomic<int>> streams_ = std::make_shared<std::atomic<int>>(0);
+  Shares streams_, body_bytes_, frame_bytes_;
 };
 
 }  // namespace ovimap
