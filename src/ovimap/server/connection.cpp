@@ -220,16 +220,17 @@ void Connection::stream() {
   enter(State::kStreaming);
   // Nothing may follow: whatever comes, also the client's end, ends the stream.
   wire_->read_some(buffer_, then(&Connection::close));
-  reply_.stream->watch([weak = weak_from_this(), &host = host_] {
-    const auto self = weak.lock();
-    if (!self || self->woken_.exchange(true)) return;
-    host.post([self] { self->wake(); });
+  reply_.stream->watch([weak = weak_from_this(), &host = host_, woken = woken_] {
+    if (woken->exchange(true)) return;
+    host.post([weak] {
+      if (const auto self = weak.lock()) self->wake();
+    });
   });
   pump();
 }
 
 void Connection::wake() {
-  woken_ = false;
+  *woken_ = false;
   if (state_ == State::kStreaming && !writing_) pump();
 }
 

@@ -9,11 +9,13 @@ namespace ovimap {
 
 bool ConnectionTable::add(std::shared_ptr<Connection> connection) {
   const std::string& client = connection->client();
-  if (count_of(client) >= of_one_ && !give_up_one(&client)) return false;
+  const auto own = of_client_.find(client);
+  if (own != of_client_.end() && own->second >= of_one_ && !give_up_one(&client)) return false;
   if (connections_.size() >= all_ && !give_up_one(nullptr)) return false;
-  ++of_client_[client];
+  std::size_t& count = of_client_[client];
+  ++count;
   const Connection* key = connection.get();
-  connections_.emplace(key, std::move(connection));
+  connections_.emplace(key, Entry{std::move(connection), &count});
   return true;
 }
 
@@ -24,27 +26,24 @@ void ConnectionTable::remove(const Connection& connection) {
 
 void ConnectionTable::end_all() {
   std::vector<std::shared_ptr<Connection>> all;
-  for (const auto& [key, connection] : connections_) all.push_back(connection);
+  for (const auto& [key, entry] : connections_) all.push_back(entry.connection);
   for (const auto& connection : all) connection->end();
-}
-
-std::size_t ConnectionTable::count_of(const std::string& client) const {
-  const auto found = of_client_.find(client);
-  return found == of_client_.end() ? 0 : found->second;
 }
 
 bool ConnectionTable::give_up_one(const std::string* client) {
   // The one that does the least; of these one of the client that has the most; of these the oldest.
-  const auto order = [this](const Connection& c) {
-    return std::tuple(c.state(), all_ - count_of(c.client()), c.since());
+  const auto order = [this](const Entry& entry) {
+    const Connection& connection = *entry.connection;
+    return std::tuple(connection.state(), all_ - *entry.of_its_client, connection.since());
   };
-  std::shared_ptr<Connection> least;
-  for (const auto& [key, connection] : connections_) {
-    if (client && connection->client() != *client) continue;
-    if (!least || order(*connection) < order(*least)) least = connection;
+  const Entry* least = nullptr;
+  for (const auto& [key, entry] : connections_) {
+    if (client && entry.connection->client() != *client) continue;
+    if (!least || order(entry) < order(*least)) least = &entry;
   }
-  if (!least || least->state() >= Connection::State::kWorking) return false;
-  least->close();
+  if (!least || least->connection->state() >= Connection::State::kWorking) return false;
+  const auto given_up = least->connection;  // close() takes the entry away
+  given_up->close();
   return true;
 }
 

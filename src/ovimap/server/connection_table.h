@@ -22,12 +22,15 @@ class ConnectionTable {
   void end_all();
 
  private:
-  std::size_t count_of(const std::string& client) const;
   /// Closes one, of that client or of any; false when all are at work.
   bool give_up_one(const std::string* client);
 
   const std::size_t all_, of_one_;
-  std::unordered_map<const Connection*, std::shared_ptr<Connection>> connections_;
+  struct Entry {
+    std::shared_ptr<Connection> connection;
+    std::size_t* of_its_client;  ///< in of_client_
+  };
+  std::unordered_map<const Connection*, Entry> connections_;
   std::unordered_map<std::string, std::size_t> of_client_;
 };
 

@@ -208,12 +208,40 @@ TEST_F(FrameApiTest, RefusalsByTheHeadCloseTheConnection) {
   EXPECT_EQ(answer("/api/frames", "Content-Length: 200000"), "HTTP/1.1 401");
   EXPECT_EQ(answer("/api/query", token + "Content-Length: 200000"), "HTTP/1.1 413");
   EXPECT_EQ(answer("/api/frames", token + "Content-Length: 600000"), "HTTP/1.1 413");
+  EXPECT_EQ(answer("/api/frames", token + "Content-Length: 9999999999999999999"), "HTTP/1.1 413");
   EXPECT_EQ(answer("/api/frames", token + "Content-Length: 99999999999999999999999"),
-            "HTTP/1.1 413");
+            "HTTP/1.1 400");
   EXPECT_EQ(answer("/api/frames", token + "Content-Length: +70000"), "HTTP/1.1 400");
   EXPECT_EQ(answer("/api/frames", token + "Transfer-Encoding: chunked"), "HTTP/1.1 411");
   EXPECT_EQ(answer("/api/query", "Origin: http://evil.example\r\nContent-Length: 70000"),
             "HTTP/1.1 403");
+}
+
+TEST_F(FrameApiTest, ImagesAreAskedForOnlyWhereThereIsRoom) {
+  FrameIntake intake(1);
+  ServerConfig config;
+  config.max_frame_bytes = 1 << 18;
+  serve(&intake, config);
+  set_camera(camera(), 200);
+  std::vector<std::unique_ptr<fixture::RawConnection>> open;
+  const auto announce = [&](const char* from) {
+    open.push_back(std::make_unique<fixture::RawConnection>(running_->port(), from));
+    open.back()->send(
+        "POST /api/frames HTTP/1.1\r\nHost: localhost\r\nContent-Length: 200000\r\n"
+        "Content-Type: multipart/form-data; boundary=a\r\nExpect: 100-continue\r\n\r\n");
+    return open.back()->receive().substr(9, 3);
+  };
+  EXPECT_EQ(announce("127.0.0.1"), "100");
+  EXPECT_EQ(announce("127.0.0.1"), "503");  // one body of that size from each address
+  EXPECT_EQ(announce("127.0.0.2"), "100");
+  EXPECT_EQ(announce("127.0.0.3"), "503");  // two in all
+  EXPECT_EQ(intake.counts().skipped, 0);
+  open.clear();
+  while (announce("127.0.0.1") == "503") std::this_thread::yield();  // given back
+  open.clear();
+  push(frame(0), 200);
+  EXPECT_EQ(announce("127.0.0.1"), "503");  // the queue is full: nothing is read in vain
+  EXPECT_EQ(intake.counts().skipped, 1);
 }
 
 TEST_F(FrameApiTest, FramesAreNotHeldBackAsQueriesAre) {

@@ -124,8 +124,10 @@ struct IoLoop::Sockets {
   void listen(const IoConfig& config) {
     Fault fault;
     tcp::resolver resolver(io);
+    const bool bracketed = config.host.starts_with('[') && config.host.ends_with(']');
     const auto found =
-        resolver.resolve(config.host, std::to_string(config.port),
+        resolver.resolve(bracketed ? config.host.substr(1, config.host.size() - 2) : config.host,
+                         std::to_string(config.port),
                          tcp::resolver::passive | tcp::resolver::numeric_service, fault);
     for (const auto& entry : found)
       if (try_to_listen(entry.endpoint())) return;
@@ -150,7 +152,7 @@ struct IoLoop::Sockets {
     acceptor.async_accept([this](Fault fault, tcp::socket socket) {
       if (!acceptor.is_open()) return;
       if (!fault) hand_over(std::move(socket));
-      if (fault != asio::error::no_descriptors) return accept();
+      if (!fault || fault == asio::error::connection_aborted) return accept();
       pause.expires_after(kPauseWithoutFiles);  // until others are closed
       pause.async_wait([this](Fault) {
         if (acceptor.is_open()) accept();

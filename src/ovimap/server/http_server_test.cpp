@@ -7,6 +7,7 @@
 
 #include "ovimap/io/map_edits.h"
 #include "ovimap/io/map_file_fixture.h"
+#include "ovimap/server/map_api.h"
 #include "ovimap/server/server_fixture.h"
 
 namespace ovimap {
@@ -269,6 +270,30 @@ TEST_F(HttpServerTest, HandsOutTheSurfaceAsGlb) {
   EXPECT_LT(running_->client().get("/api/export.glb")->body.size(), whole->body.size());
 }
 
+TEST_F(HttpServerTest, WritesAnExportOnceAndCountsItAsWork) {
+  ServerConfig config;
+  config.work_burst = 2;
+  config.work_per_second = 0.001;
+  serve(config);
+  get("/api/export.glb");
+  get("/api/export.glb");
+  get("/api/export.glb", 429);
+
+  FrameApi no_frames(nullptr, {});
+  const Router routes = map_api(running_->map(), no_frames);
+  HttpRequest request;
+  request.method = "GET";
+  request.path = "/api/export.glb";
+  const HttpHandler& write = routes.find(request).route->handler;
+  const auto first = write(request).body;
+  EXPECT_EQ(write(request).body, first);
+  MapEdit hide;
+  hide.action = EditAction::kHide;
+  hide.instances = {3};
+  running_->map().correct(hide);
+  EXPECT_NE(*write(request).body, *first);
+}
+
 TEST_F(HttpServerTest, RefusesBadCorrections) {
   serve();
   post("/api/corrections", R"({"kind":"rename","instance":2,"name":"x"})", 404);
@@ -340,6 +365,12 @@ TEST_F(HttpServerTest, DemandsTheToken) {
   EXPECT_EQ(client.get("/api/map", {{"Cookie", "ovimap_token=secret"}})->status, 200);
   EXPECT_EQ(client.get("/api/map", {{"Authorization", "Bearer secret"}})->status, 200);
   EXPECT_NE(running_->server().address().find("?token=secret"), std::string::npos);
+  config.token = "a b&c=%41;d";
+  serve(config);
+  const std::string address = running_->server().address();
+  const auto cookie = running_->client().get(address.substr(address.find("/?")))->field("set-cookie");
+  const std::string pair = cookie.substr(0, cookie.find(';'));
+  EXPECT_EQ(running_->client().get("/api/map", {{"Cookie", pair}})->status, 200);
 }
 
 TEST_F(HttpServerTest, DoesNotOpenUpWithoutToken) {

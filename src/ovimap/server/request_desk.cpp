@@ -50,15 +50,6 @@ void tag(const HttpRequest& request, HttpReply& reply) {
   reply.body = std::make_shared<std::string>();
 }
 
-void compress(const HttpRequest& request, HttpReply& reply) {
-  if (reply.stream || reply.type.starts_with("image/")) return;
-  reply.headers["Vary"] = "Accept-Encoding";
-  const std::string encoding = choose_encoding(request.header("accept-encoding"));
-  if (encoding.empty() || reply.body->size() < kSmallestPacked) return;
-  reply.body = std::make_shared<std::string>(compressed(*reply.body, encoding));
-  reply.headers["Content-Encoding"] = encoding;
-}
-
 /// No page but our own may use what we send, and our page uses nothing from elsewhere.
 void protect(HttpReply& reply) {
   reply.headers["X-Content-Type-Options"] = "nosniff";
@@ -149,6 +140,23 @@ HttpReply RequestDesk::answer(const HttpRequest& request) {
   compress(request, reply);
   protect(reply);
   return reply;
+}
+
+void RequestDesk::compress(const HttpRequest& request, HttpReply& reply) {
+  if (reply.stream) return;
+  std::string encoding;
+  if (!reply.type.starts_with("image/")) {
+    reply.headers["Vary"] = "Accept-Encoding";
+    encoding = choose_encoding(request.header("accept-encoding"));
+  }
+  if (reply.body->size() < kSmallestPacked) return;
+  if (!encoding.empty()) reply.headers["Content-Encoding"] = encoding;
+  const auto make = [&] {
+    return encoding.empty() ? reply.body
+                            : std::make_shared<const std::string>(compressed(*reply.body, encoding));
+  };
+  const auto etag = reply.headers.find("ETag");
+  reply.body = etag == reply.headers.end() ? make() : sent_.share(etag->second + encoding, make);
 }
 
 HttpReply RequestDesk::find_reply(const HttpRequest& request) {

@@ -9,6 +9,7 @@
 #include "ovimap/server/frame_api.h"
 #include "ovimap/server/http_message.h"
 #include "ovimap/server/http_server.h"
+#include "ovimap/server/sent_bodies.h"
 #include "ovimap/server/shares.h"
 #include "ovimap/server/viewer_files.h"
 
@@ -43,6 +44,7 @@ class RequestDesk {
   std::optional<HttpReply> shortage(const HttpRequest& head, const Route& route,
                                     std::shared_ptr<void>& place);
   HttpReply find_reply(const HttpRequest& request);
+  void compress(const HttpRequest& request, HttpReply& reply);
   HttpReply counted_stream(const HttpRequest& request, HttpReply reply);
 
   const ServerConfig config_;
@@ -51,6 +53,7 @@ class RequestDesk {
   FrameApi frames_;
   const Router api_;
   RateLimit requests_, work_;
+  SentBodies sent_;
   Shares streams_, body_bytes_, frame_bytes_;
 };
 

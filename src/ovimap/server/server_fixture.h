@@ -13,14 +13,13 @@
 
 namespace ovimap::fixture {
 
-/// A server on a free port of this machine, in a thread of its own.
+/// A server on a free port of this machine, in a thread of its own. It listens from the beginning.
 class RunningServer {
  public:
   RunningServer(const std::filesystem::path& map, ServerConfig config,
                 const ServedMapConfig& served, FrameIntake* intake = nullptr)
       : map_(map, served), server_(map_, with_free_port(std::move(config)), intake) {
     thread_ = std::thread([this] { server_.run(); });
-    while (!answers()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   ~RunningServer() {
     server_.stop();
@@ -37,8 +36,6 @@ class RunningServer {
     config.port = 0;
     return config;
   }
-  bool answers() const { return client().get("/api/map").has_value(); }
-
   ServedMap map_;
   HttpServer server_;
   std::thread thread_;
