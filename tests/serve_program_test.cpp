@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 // `ovimap serve` as a user meets it, and queries over HTTP with a real encoder.
+#include <cstdlib>
+#include <fstream>
+
 #include "ovimap/io/map_edits.h"
 #include "ovimap/server/server_fixture.h"
 #include "program_fixture.h"
@@ -72,6 +75,25 @@ TEST_F(ServeProgramTest, SaysWhatIsWrong) {
   expect_complaint("serve recording --live", {"--output"});
   expect_complaint("serve bare.ovimap --masks sam", {"--live"});
   expect_complaint("serve recording --live -o nowhere/x.ovimap", {"nowhere"});
+}
+
+TEST_F(ServeProgramTest, TakesItsTokenFromAFileOrTheEnvironment) {
+  ASSERT_EQ(run("run recording -o bare.ovimap").code, 0);
+  std::ofstream(path("token")) << "from a file&\n";
+  const std::string serve =
+      "serve '" + path("bare.ovimap").string() + "' --port 0 --json --viewer none";
+  const auto address_with = [&](const std::string& options) {
+    const RunningProgram program(serve + options, path("pid"));
+    return json::parse(program.line(), nullptr, false).value("address", "");
+  };
+  const std::string file = " --token-file '" + path("token").string() + "'";
+  EXPECT_NE(address_with(file).find("/?token=from%20a%20file%26"), std::string::npos);
+  ::setenv("OVIMAP_TOKEN", "from-the-environment", 1);
+  EXPECT_NE(address_with("").find("/?token=from-the-environment"), std::string::npos);
+  EXPECT_NE(address_with(file).find("/?token=from%20a"), std::string::npos);
+  ::unsetenv("OVIMAP_TOKEN");
+  expect_complaint("serve bare.ovimap --token 'a '", {"token", "ASCII"});
+  expect_complaint("serve bare.ovimap --tls-cert token --tls-key token", {"token", "PEM"});
 }
 
 TEST_F(ServeProgramTest, MapsWhileItServes) {

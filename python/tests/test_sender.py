@@ -10,6 +10,7 @@ import pathlib
 import shutil
 import signal
 import socket
+import ssl
 import subprocess
 import sys
 import threading
@@ -152,6 +153,23 @@ def test_what_a_camera_lacks_is_told_in_one_line(given, lacking):
     with pytest.raises(ValueError, match=lacking) as told:
         FrameSender("localhost:1", given)
     assert "in pixels, and depth_scale" in str(told.value) and "\n" not in str(told.value)
+
+
+@needs_program
+@pytest.mark.skipif(shutil.which("openssl") is None, reason="openssl is not installed, which makes the certificate")
+def test_frames_are_sent_encrypted(shots, tmp_path):
+    cert, key, token = tmp_path / "cert.pem", tmp_path / "key.pem", tmp_path / "token.txt"
+    subprocess.run(["openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes", "-days", "2", "-subj", "/CN=map",
+                    "-addext", "subjectAltName=IP:127.0.0.1", "-keyout", key, "-out", cert], check=True, capture_output=True)  # fmt: skip
+    token.write_text("a token&with=signs%\n")
+    with Serving(tmp_path / "sent.ovimap", "--tls-cert", cert, "--tls-key", key, "--token-file", token) as server:
+        assert server.address.startswith("https://")
+        with pytest.raises(ssl.SSLCertVerificationError):
+            FrameSender(server.address, shots.camera)
+        sender = FrameSender(server.address, shots.camera, cafile=str(cert))
+        shots.send(sender, range(2))
+        sender.finish()
+        assert server.saved()["frames"] == 2
 
 
 class Scripted:

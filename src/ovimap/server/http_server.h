@@ -22,7 +22,7 @@ struct ServerConfig {
   std::filesystem::path viewer;    ///< folder of the web page; empty: none
 
   int max_connections = 512;         ///< open at once; the one that rests longest goes for a new one
-  int max_connections_of_one = 128;  ///< of these, from one address
+  int max_connections_of_one = 256;  ///< of these, from one address
   std::size_t max_event_streams = 64;  ///< of these connections
   std::size_t max_event_streams_of_one = 32;
   std::size_t max_body_bytes = 1 << 16;
