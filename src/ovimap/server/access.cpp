@@ -131,7 +131,8 @@ std::optional<HttpReply> AccessRule::refusal(const HttpRequest& request) const {
   }
   if (knows_token(request)) return std::nullopt;
   const auto offered = request.query.find("token");
-  if (request.path == "/" && offered != request.query.end() && same(offered->second, config_.token)) {
+  if (request.path == "/" && offered != request.query.end() &&
+      same(offered->second, config_.token)) {
     HttpReply reply = text_reply(303, "text/plain", "");
     reply.headers["Location"] = "/";
     reply.headers["Set-Cookie"] = kCookie + percent_encoded(config_.token) +

@@ -28,9 +28,9 @@ std::string client_of(const std::string& address);
 std::string random_token();
 
 /// Who may ask. With a token: whoever shows it, as "Authorization: Bearer", as the cookie that the
-/// address with ?token= sets, or in that address. Without: only those who call this server by a name
-/// of this machine, or by one of `host_names`. Other web pages in the user's browser are kept out in
-/// both cases, also when their name was made to point to this machine.
+/// address with ?token= sets, or in that address. Without: only those who call this server by a
+/// name of this machine, or by one of `host_names`. Other web pages in the user's browser are kept
+/// out in both cases, also when their name was made to point to this machine.
 class AccessRule {
  public:
   struct Config {

@@ -110,8 +110,9 @@ TEST(AccessRuleTest, TokensAreLongAndNew) {
 TEST(AccessRuleTest, KnowsLoopback) {
   for (const char* host : {"127.0.0.1", "localhost", "LOCALHOST", "::1", "[::1]", "127.1.2.3"})
     EXPECT_TRUE(is_loopback(host)) << host;
-  for (const char* host : {"0.0.0.0", "::", "192.168.0.1", "", "localhost.example", "127.evil.example", "127.", "127.1",
-        "[::1", "[127.0.0.1]", "::1.evil"})
+  for (const char* host :
+       {"0.0.0.0", "::", "192.168.0.1", "", "localhost.example", "127.evil.example", "127.",
+        "127.1", "[::1", "[127.0.0.1]", "::1.evil"})
     EXPECT_FALSE(is_loopback(host)) << host;
 }
 

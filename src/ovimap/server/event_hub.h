@@ -20,8 +20,8 @@ struct ServerEvent {
 };
 
 /// Hands events from the map to every client that listens. Thread-safe. Nobody
-/// waits: a reader is woken, and one that falls far behind gets a "reset", after which it should ask
-/// for everything anew.
+/// waits: a reader is woken, and one that falls far behind gets a "reset", after which it should
+/// ask for everything anew.
 class EventHub {
  public:
   static constexpr std::size_t kKept = 256;
@@ -29,8 +29,8 @@ class EventHub {
   void publish(const std::string& type, const std::string& data);
   /// The event after number `last`. Nothing: there is none yet, or the hub is closed.
   std::optional<ServerEvent> next(std::uint64_t last) const;
-  /// Calls `wake` for each event and at the end, from the thread that publishes and until the result
-  /// goes, which must be before this hub. `wake` must not wait, nor use the hub.
+  /// Calls `wake` for each event and at the end, from the thread that publishes and until the
+  /// result goes, which must be before this hub. `wake` must not wait, nor use the hub.
   std::shared_ptr<void> watch(std::function<void()> wake) const;
   std::uint64_t last() const;
   /// No more events are given.

@@ -111,7 +111,9 @@ class HttpClient {
   std::optional<HttpAnswer> get(const std::string& path, const HttpFields& fields = {}) const {
     return ask("GET", path, fields, "");
   }
-  std::optional<HttpAnswer> head(const std::string& path) const { return ask("HEAD", path, {}, ""); }
+  std::optional<HttpAnswer> head(const std::string& path) const {
+    return ask("HEAD", path, {}, "");
+  }
   std::optional<HttpAnswer> post(const std::string& path, const std::string& body = "",
                                  const std::string& type = "", HttpFields fields = {}) const {
     if (!type.empty()) fields["Content-Type"] = type;

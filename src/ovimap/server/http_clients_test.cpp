@@ -3,8 +3,6 @@
 // Clients that nobody would wish for: malformed, slow, vanishing, many.
 #include <gtest/gtest.h>
 
-#include <thread>
-
 #include "ovimap/io/map_file_fixture.h"
 #include "ovimap/server/server_fixture.h"
 
@@ -151,8 +149,12 @@ TEST_F(HttpClientsTest, TooManyListenersAreTurnedAway) {
   for (int i = 0; i < 33; ++i) EXPECT_EQ(status("127.0.0.3"), i < 32 ? "200" : "503");
   EXPECT_EQ(status("127.0.0.4"), "503");  // 64 in all
   expect_alive();
-  listeners.clear();
-  while (status("127.0.0.4") == "503") std::this_thread::yield();  // places come back
+  std::string again;
+  do {  // places come back
+    listeners.clear();
+    again = status("127.0.0.4");
+  } while (again == "503");
+  EXPECT_EQ(again, "200");
 }
 
 std::size_t count_of(const std::string& what, const std::string& text) {
@@ -180,7 +182,8 @@ TEST_F(HttpClientsTest, ABodyIsNeverTakenForARequest) {
   for (const std::string& head :
        {"GET /api/map" + host + length, "HEAD /api/map" + host + length,
         "PUT /api/map" + host + length, "POST /api/map" + host + length,
-        "POST /api/query" + host + length + length, "POST /api/query" + host + "Content-Length: 0\r\n" + length,
+        "POST /api/query" + host + length + length,
+        "POST /api/query" + host + "Content-Length: 0\r\n" + length,
         "POST /api/query" + host + "Transfer-Encoding: chunked\r\n",
         "POST /api/query" + host + length + "Transfer-Encoding: chunked\r\n"}) {
     const std::string all = answers(head + "\r\n" + kLast);
@@ -194,7 +197,8 @@ TEST_F(HttpClientsTest, BodiesAreRefusedByTheHead) {
     return answers("POST /api/query HTTP/1.1\r\nHost: localhost\r\n" + headers + "\r\n")
         .substr(9, 3);
   };
-  const std::string length = "Content-Length: 60000\r\n", type = "Content-Type: application/json\r\n";
+  const std::string length = "Content-Length: 60000\r\n",
+                    type = "Content-Type: application/json\r\n";
   EXPECT_EQ(status(length + type + "Content-Encoding: gzip\r\n"), "415");
   EXPECT_EQ(status(length + type + "Content-Encoding: identity, gzip\r\n"), "415");
   EXPECT_EQ(status(length + "Content-Type: multipart/form-data; boundary=a\r\n"), "415");
@@ -235,7 +239,7 @@ TEST_F(HttpClientsTest, ManySlowClientsLockNobodyOut) {
   config.patience_s = config.idle_s = 3600;  // nothing but the places may end them
   serve(config);
   std::vector<std::unique_ptr<RawConnection>> slow;
-  for (int i = 2; i < 255; ++i) {
+  for (int i = 2; i < 150; ++i) {
     const std::string from = "127.0.0." + std::to_string(i);
     for (int k = 0; k < 2; ++k) slow.push_back(saying("GET /api/map HT", from));
     slow.push_back(saying("POST /api/query HTTP/1.1\r\nHost: localhost\r\n"

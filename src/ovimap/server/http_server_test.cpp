@@ -368,7 +368,8 @@ TEST_F(HttpServerTest, DemandsTheToken) {
   config.token = "a b&c=%41;d";
   serve(config);
   const std::string address = running_->server().address();
-  const auto cookie = running_->client().get(address.substr(address.find("/?")))->field("set-cookie");
+  const auto opened_again = running_->client().get(address.substr(address.find("/?")));
+  const std::string cookie = opened_again->field("set-cookie");
   const std::string pair = cookie.substr(0, cookie.find(';'));
   EXPECT_EQ(running_->client().get("/api/map", {{"Cookie", pair}})->status, 200);
 }

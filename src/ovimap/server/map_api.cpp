@@ -142,8 +142,9 @@ HttpReply export_glb(const ServedMap& map, KeptGlb& kept) {
   const auto now = map.snapshot();
   if (!kept.file || kept.version != now->version || kept.mesh_version != mesh_version) {
     kept.file.reset();  // two never exist at once
-    const Bytes glb = encode_glb(labelled_surface(map.mesh(), now->instance_of_label, now->hidden()),
-                                 now->record->instances, now->record->names, now->record->up);
+    const Mesh surface = labelled_surface(map.mesh(), now->instance_of_label, now->hidden());
+    const Bytes glb =
+        encode_glb(surface, now->record->instances, now->record->names, now->record->up);
     kept.file = std::make_shared<std::string>(glb.begin(), glb.end());
     kept.version = now->version;
     kept.mesh_version = mesh_version;

@@ -34,7 +34,8 @@ TEST(MultipartTest, RefusesWhatIsNone) {
        {std::string(), std::string("--b"), std::string("--b\r\n"), good, good + "--b",
         good + "--bc--", "x" + good + "--b--", good + good + "--b--",
         std::string("--b\r\nContent-Disposition: form-data\r\n\r\n1\r\n--b--"),
-        std::string("--b\r\n\r\n1\r\n--b--"), "--b\r\nX: " + std::string(5000, 'a') + "\r\n\r\n1\r\n--b--"})
+        std::string("--b\r\n\r\n1\r\n--b--"),
+        "--b\r\nX: " + std::string(5000, 'a') + "\r\n\r\n1\r\n--b--"})
     EXPECT_THROW(parse_multipart(kType, body), BadRequest) << body.substr(0, 80);
   for (const char* type : {"multipart/form-data", "multipart/form-data; boundary=",
                            "multipart/form-data; boundary=\"", ""})
@@ -55,7 +56,8 @@ TEST(MultipartTest, HostileBodiesCostNoMoreThanOthers) {
   EXPECT_THROW(parse_multipart(type, head + near), BadRequest);
   EXPECT_THROW(parse_multipart(type, head + std::string(bytes, '-')), BadRequest);
   EXPECT_THROW(parse_multipart(type, std::string(bytes, '-')), BadRequest);
-  EXPECT_THROW(parse_multipart("multipart/form-data;" + std::string(8000, ';'), "--b--"), BadRequest);
+  EXPECT_THROW(parse_multipart("multipart/form-data;" + std::string(8000, ';'), "--b--"),
+               BadRequest);
 }
 
 }  // namespace

@@ -106,8 +106,11 @@ RequestDesk::Decision RequestDesk::find_decision(const HttpRequest& head) {
 
 /// Why a body of that length and type is not taken, whenever it is sent.
 std::optional<HttpReply> RequestDesk::misfit(const HttpRequest& head, BodyType body) const {
-  if (!head.content_length && body != BodyType::kNone)
-    return fault(411, "say how long the body is: Content-Length");
+  if (!head.content_length && body != BodyType::kNone) {
+    HttpReply reply = fault(411, "say how long the body is: Content-Length");
+    reply.ends_connection = true;  // a body that does not say so may follow
+    return reply;
+  }
   const std::uint64_t bytes = head.content_length.value_or(0);
   const bool frame = body == BodyType::kFrame && frames_.takes_frames();
   if (bytes > (frame ? config_.max_frame_bytes : config_.max_body_bytes))
@@ -151,9 +154,9 @@ void RequestDesk::compress(const HttpRequest& request, HttpReply& reply) {
   }
   if (reply.body->size() < kSmallestPacked) return;
   if (!encoding.empty()) reply.headers["Content-Encoding"] = encoding;
-  const auto make = [&] {
-    return encoding.empty() ? reply.body
-                            : std::make_shared<const std::string>(compressed(*reply.body, encoding));
+  const auto make = [&]() -> SentBodies::Body {
+    if (encoding.empty()) return reply.body;
+    return std::make_shared<std::string>(compressed(*reply.body, encoding));
   };
   const auto etag = reply.headers.find("ETag");
   reply.body = etag == reply.headers.end() ? make() : sent_.share(etag->second + encoding, make);

@@ -28,7 +28,7 @@ class RequestDesk {
     /// next request may follow.
     bool reads_on = false;
     RouteCost cost = RouteCost::kLittle;
-    std::shared_ptr<void> place = nullptr;  ///< the body's, to be kept until the request is answered
+    std::shared_ptr<void> place = nullptr;  ///< the body's, kept until the request is answered
   };
   Decision early(const HttpRequest& head);
 

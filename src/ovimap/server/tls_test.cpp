@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 #include <openssl/pem.h>
 #include <openssl/ssl.h>
-#include <openssl/x509v3.h>
+#include <openssl/x509.h>
+
+#include <csignal>
 
 #include "ovimap/io/map_file_fixture.h"
 #include "ovimap/server/server_fixture.h"
@@ -80,6 +82,7 @@ class TlsClient {
 class TlsTest : public MapFolder {
  protected:
   TlsTest() {
+    std::signal(SIGPIPE, SIG_IGN);  // OpenSSL's clients write to sockets that may be closed
     save_map(root_ / "room.ovimap", random_document(40, 3));
     write_certificate(certificate_, key_);
     config_.tls_certificate = certificate_;
