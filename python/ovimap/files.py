@@ -30,6 +30,23 @@ def exclusive(path: pathlib.Path) -> Iterator[int]:
         os.close(lock)
 
 
+def parse_json(text: str | bytes) -> dict[str, Any]:
+    """The JSON object that somebody else wrote. Raises ValueError, one line, for anything else, also where it is nested
+    deeper than the parser goes."""
+    try:
+        value = json.loads(text)
+    except RecursionError:
+        raise ValueError("it is nested too deeply") from None
+    if not isinstance(value, dict):
+        raise ValueError("it is no JSON object")
+    return value
+
+
+def read_json(path: pathlib.Path) -> dict[str, Any]:
+    """Likewise of a file. Raises OSError where it cannot be read."""
+    return parse_json(path.read_bytes())
+
+
 def write_json(path: pathlib.Path, value: Any) -> None:
     """Writes a file as a whole or not at all."""
     path.parent.mkdir(parents=True, exist_ok=True)

@@ -187,7 +187,7 @@ class FrameSender:
         self._heard = time.monotonic()
         try:
             value = json.loads(text)
-        except ValueError:
+        except (ValueError, RecursionError):  # the latter: nested very deep
             value = {}
         return reply.status, value if isinstance(value, dict) else {}
 

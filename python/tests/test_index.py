@@ -274,9 +274,11 @@ store.put_tables(rooms, ENCODER)
 def test_what_is_no_index_is_said_in_one_line(tmp_path, capsys):
     assert main(["query", str(tmp_path), "mug"]) == 2
     assert "there is no index in" in capsys.readouterr().err
-    (tmp_path / "index.json").write_text("{")
-    assert main(["list", str(tmp_path)]) == 2
-    assert "no sound index" in capsys.readouterr().err
+    for text in ("{", "[1]", '{"a":' * 500_000, "[" * 500_000, '{"format": 1}', '{"format": 1, "encoder": 3, "vectors": 0, "next_number": 1, "maps": []}'):
+        (tmp_path / "index.json").write_text(text)
+        assert main(["list", str(tmp_path)]) == 2
+        said = capsys.readouterr().err
+        assert "no sound index" in said and said.count("\n") == 1
     (tmp_path / "index.json").write_text('{"format": 99}')
     assert main(["list", str(tmp_path)]) == 2
     assert "format 99" in capsys.readouterr().err

@@ -4,12 +4,11 @@
 
 from __future__ import annotations
 
-import json
 import pathlib
 from typing import Any
 
 from .._ovimap import Error
-from ..files import write_json
+from ..files import read_json, write_json
 from ..map_facts import map_facts
 
 FOLDER = "jobs"  # beside the maps: notes and locks
@@ -70,7 +69,7 @@ def _words(value: Any) -> str:
 
 def _read(path: pathlib.Path) -> dict[str, Any] | None:
     try:
-        record: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+        record = read_json(path)
     except (OSError, ValueError):
         return None  # there is no note, or it means nothing: the work is done again, or gone on with
     return record if {"order", "content_hash", "report"} <= record.keys() else None

@@ -7,7 +7,6 @@ New files get new names, and replacing index.json puts them in force: whoever re
 
 from __future__ import annotations
 
-import json
 import os
 import pathlib
 from collections.abc import Iterable, Iterator
@@ -21,7 +20,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from .._ovimap import Error
-from ..files import exclusive, write_json
+from ..files import exclusive, read_json, write_json
 from ..map_facts import Encoder, map_facts
 from .objects import embeddings_of, object_table, require_same_encoder
 from .vectors import Ids, State, VectorFiles, Vectors
@@ -63,18 +62,21 @@ class Store:
         for cached in ("_vectors", "_numbers"):
             self.__dict__.pop(cached, None)
         try:
-            manifest: dict[str, Any] = json.loads((self.folder / MANIFEST).read_text(encoding="utf-8"))
+            manifest = read_json(self.folder / MANIFEST)
         except FileNotFoundError:
             manifest = {"format": FORMAT, "encoder": None, "vectors": None, "next_number": 1, "maps": []}
         except (OSError, ValueError) as fault:
             raise Error(f"{self.folder} holds no sound index ({fault}); build it anew in another folder") from None
         if manifest.get("format") != FORMAT:
-            raise Error(f"{self.folder} holds an index of format {manifest.get('format')}, this ovimap reads {FORMAT}; build it anew")
-        self._encoder = Encoder(**manifest["encoder"]) if manifest["encoder"] else None
-        self._state = State(**manifest["vectors"]) if manifest["vectors"] else None
-        self._next_number: int = manifest["next_number"]
-        self.entries = {entry["path"]: Entry(**entry) for entry in manifest["maps"]}
-        self.paths = {entry.number: entry.path for entry in self.entries.values()}
+            raise Error(f"{self.folder} holds an index of format {str(manifest.get('format'))[:20]}, this ovimap reads {FORMAT}; build it anew")
+        try:
+            self._encoder = Encoder(**manifest["encoder"]) if manifest["encoder"] else None
+            self._state = State(**manifest["vectors"]) if manifest["vectors"] else None
+            self._next_number: int = manifest["next_number"]
+            self.entries = {entry["path"]: Entry(**entry) for entry in manifest["maps"]}
+            self.paths = {entry.number: entry.path for entry in self.entries.values()}
+        except (KeyError, TypeError) as fault:
+            raise Error(f"{self.folder} holds no sound index ({fault}); build it anew in another folder") from None
 
     def require(self) -> None:
         if self._encoder is None:

@@ -6,6 +6,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include "ovimap/base/bounded_yaml.h"
 #include "ovimap/frames/color_calibration.h"
 #include "ovimap/image/codec.h"
 
@@ -45,14 +46,8 @@ YAML::Node vector_node(const Eigen::Vector3d& vector) {
 
 YAML::Node present_keys(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file)) return YAML::Node(YAML::NodeType::Map);
-  const Bytes bytes = read_file(file);
-  try {
-    const YAML::Node root = YAML::Load(std::string(bytes.begin(), bytes.end()));
-    return root.IsMap() ? root : YAML::Node(YAML::NodeType::Map);
-  } catch (const YAML::Exception& fault) {
-    throw Error(concat(file.string(), ": line ", fault.mark.line + 1, " is not YAML (", fault.msg,
-                       "); mend it first"));
-  }
+  const YAML::Node root = read_yaml(file, kSmallDocument);
+  return root.IsMap() ? root : YAML::Node(YAML::NodeType::Map);
 }
 
 /// Colour dimmed, so that lines stand out.

@@ -9,6 +9,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include "ovimap/base/bounded_yaml.h"
 #include "ovimap/base/config.h"
 #include "ovimap/image/codec.h"
 #include "ovimap/image/size_limits.h"
@@ -219,19 +220,13 @@ Pose CameraRig::world_from_depth_camera(const Eigen::Matrix4d& stored) const {
 }
 
 void apply_calibration(const std::filesystem::path& file, CameraRig& rig) {
-  const Bytes bytes = read_file(file);
-  apply_calibration(std::string(bytes.begin(), bytes.end()), file.string(), rig);
+  apply_calibration(read_bounded_text(file, kSmallDocument), file.string(), rig);
 }
 
 void apply_calibration(const std::string& yaml, const std::string& name, CameraRig& rig) {
-  try {
-    const YAML::Node root = YAML::Load(yaml);
-    if (root.IsNull()) return;
-    apply(Section(name, "", root), rig);
-  } catch (const YAML::Exception& fault) {
-    throw Error(concat(name, ": line ", fault.mark.line + 1, " is not YAML (", fault.msg,
-                       "); expected is as: depth_camera: {fx: 585, fy: 585, cx: 320, cy: 240}"));
-  }
+  const YAML::Node root = parse_yaml(yaml, name, kSmallDocument);
+  if (root.IsNull()) return;
+  apply(Section(name, "", root), rig);
 }
 
 std::string calibration_text(const CameraRig& rig) {

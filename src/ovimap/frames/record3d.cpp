@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
+#include "ovimap/base/bounded_json.h"
 #include "ovimap/base/error.h"
 #include "ovimap/frames/folder_parts.h"
 #include "ovimap/frames/number_text.h"
@@ -32,11 +33,10 @@ struct Metadata {
 };
 
 Metadata read_metadata(const fs::path& file) {
-  const Bytes bytes = read_file(file);
+  const auto document = read_json(file, kLargeDocument);
   Metadata metadata;
   std::vector<float> k;
   try {
-    const auto document = nlohmann::json::parse(bytes.begin(), bytes.end());
     k = document.at("K").get<std::vector<float>>();
     metadata.color_camera.width = document.at("w").get<int>();
     metadata.color_camera.height = document.at("h").get<int>();

@@ -7,11 +7,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "ovimap/base/bounded_json.h"
 #include "ovimap/base/error.h"
 #include "ovimap/frames/folder_parts.h"
 #include "ovimap/frames/number_text.h"
 #include "ovimap/frames/readers.h"
-#include "ovimap/image/codec.h"
 
 namespace ovimap {
 
@@ -95,9 +95,8 @@ void assign_poses(const fs::path& file, std::vector<RecordedFrame>& frames) {
 
 /// Open3D writes the matrix column by column: fx, 0, 0, 0, fy, 0, cx, cy, 1.
 PinholeCamera read_camera(const fs::path& file) {
-  const Bytes bytes = read_file(file);
+  const auto document = read_json(file, kSmallDocument);
   try {
-    const auto document = nlohmann::json::parse(bytes.begin(), bytes.end());
     const auto k = document.at("intrinsic_matrix").get<std::vector<float>>();
     if (k.size() != 9) throw std::invalid_argument("camera");
     PinholeCamera camera{

@@ -5,10 +5,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "ovimap/base/bounded_json.h"
 #include "ovimap/base/error.h"
 #include "ovimap/frames/readers.h"
 #include "ovimap/frames/trajectory.h"
-#include "ovimap/image/codec.h"
 
 namespace ovimap {
 
@@ -46,10 +46,10 @@ fs::path find_camera_file(const fs::path& folder) {
 }
 
 CameraRig read_rig(const fs::path& file) {
-  const Bytes bytes = read_file(file);
+  const auto document = read_json(file, kSmallDocument);
   CameraRig rig;
   try {
-    const auto camera = nlohmann::json::parse(bytes.begin(), bytes.end()).at("camera");
+    const auto& camera = document.at("camera");
     rig.depth_camera = {camera.at("w").get<int>(),    camera.at("h").get<int>(),
                         camera.at("fx").get<float>(), camera.at("fy").get<float>(),
                         camera.at("cx").get<float>(), camera.at("cy").get<float>()};

@@ -64,7 +64,14 @@ TEST_F(Replica, BrokenDescriptionsAreNamed) {
   fixture::write_text(folder_.path() / "cam_params.json", "{\"camera\": {\"w\": 80}}");
   EXPECT_NE(error().find("cam_params.json is not a camera description"), std::string::npos);
   fixture::write_text(folder_.path() / "cam_params.json", "{nonsense");
-  EXPECT_NE(error().find("cam_params.json is not a camera description"), std::string::npos);
+  EXPECT_NE(error().find("cam_params.json is not JSON: line 1"), std::string::npos);
+  const auto nested = [](std::size_t levels) {
+    return R"({"camera": )" + std::string(levels, '[') + std::string(levels, ']') + "}";
+  };
+  fixture::write_text(folder_.path() / "cam_params.json", nested(100'000));
+  EXPECT_NE(error().find("nested more than 32 levels deep"), std::string::npos);
+  fixture::write_text(folder_.path() / "cam_params.json", nested(500'000));
+  EXPECT_NE(error().find("cam_params.json is larger than"), std::string::npos);
   std::filesystem::rename(folder_.path() / "other", folder_.path() / "cam_params.json");
   std::filesystem::remove(scene_ / "traj.txt");
   EXPECT_NE(error().find("traj.txt"), std::string::npos);

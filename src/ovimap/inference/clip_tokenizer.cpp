@@ -9,6 +9,7 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "ovimap/base/bounded_json.h"
 #include "ovimap/base/error.h"
 #include "ovimap/inference/tokenizer.h"
 #include "ovimap/inference/unicode.h"
@@ -32,10 +33,9 @@ using Vocabulary = std::unordered_map<std::string, std::int64_t>;
 }
 
 Vocabulary read_vocabulary(const fs::path& file) {
-  std::ifstream in(file);
-  if (!in) fault(file, "cannot be read");
+  const nlohmann::json document = read_json(file, kLargeDocument);
   try {
-    return nlohmann::json::parse(in).get<Vocabulary>();
+    return document.get<Vocabulary>();
   } catch (const nlohmann::json::exception&) {
     fault(file, "is no JSON object of tokens and ids");
   }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 
+#include "ovimap/base/bounded_yaml.h"
 #include "ovimap/base/error.h"
 #include "ovimap/inference/sha256.h"
 
@@ -166,7 +167,7 @@ ModelFolder read_model_folder(const fs::path& folder) {
     throw Error(concat("model folder ", folder.string(), " has no ", kModelFile,
                        "; name a folder that tools/setup.sh or the export tool wrote"));
   try {
-    return parse(YAML::LoadFile(file.string()), folder);
+    return parse(read_yaml(file, kSmallDocument), folder);
   } catch (const YAML::Exception& error) {
     fault(folder, concat("line ", error.mark.line + 1, ": ", error.msg));
   }

@@ -4,8 +4,8 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include "ovimap/base/bounded_yaml.h"
 #include "ovimap/base/error.h"
-#include "ovimap/image/codec.h"
 
 namespace ovimap {
 
@@ -26,15 +26,10 @@ void set_fields(const YAML::Node& node, const std::string& prefix, ConfigFields&
 }  // namespace
 
 void load_config(const std::filesystem::path& path, ConfigFields& fields) {
-  try {
-    const Bytes text = read_file(path);
-    const YAML::Node root = YAML::Load(std::string(text.begin(), text.end()));
-    if (!root.IsMap() && !root.IsNull())
-      throw Error(concat("config file ", path.string(), " must hold 'name: value' lines"));
-    set_fields(root, "", fields);
-  } catch (const YAML::Exception& error) {
-    throw Error(concat("config file ", path.string(), " is not valid YAML: ", error.what()));
-  }
+  const YAML::Node root = read_yaml(path, kSmallDocument);
+  if (!root.IsMap() && !root.IsNull())
+    throw Error(concat("config file ", path.string(), " must hold 'name: value' lines"));
+  set_fields(root, "", fields);
 }
 
 }  // namespace ovimap

@@ -11,6 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "ovimap/base/bounded_json.h"
 #include "ovimap/base/error.h"
 #include "ovimap/image/codec.h"
 #include "ovimap/io/ply.h"
@@ -64,9 +65,8 @@ std::map<std::int32_t, std::string> names_in(const nlohmann::json& document, con
 }
 
 void read_names(const fs::path& path, Truth& truth) {
-  const Bytes bytes = read_file(path);
+  const nlohmann::json document = read_json(path, kLargeDocument);
   try {
-    const nlohmann::json document = nlohmann::json::parse(bytes.begin(), bytes.end());
     if (!document.is_object()) throw std::invalid_argument("not an object");
     truth.instance_names = names_in(document, "instances");
     truth.class_names = names_in(document, "classes");

@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "ovimap/base/bounded_json.h"
 #include "ovimap/base/error.h"
 #include "ovimap/image/codec.h"
 #include "ovimap/io/ply.h"
@@ -24,9 +25,9 @@ constexpr const char* kFaceProperty = "object_id";
 
 template <class Read>
 void read_info(const fs::path& path, Read&& read) {
-  const Bytes bytes = read_file(path);
+  const nlohmann::json document = read_json(path, kLargeDocument);
   try {
-    read(nlohmann::json::parse(bytes.begin(), bytes.end()));
+    read(document);
   } catch (const nlohmann::json::exception&) {
     throw Error(concat("'", path.string(), "' is not Replica's info_semantic.json: expected are ",
                        "classes with id and name, and objects with id, class_id and class_name"));

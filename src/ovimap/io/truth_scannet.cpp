@@ -10,6 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "ovimap/base/bounded_json.h"
 #include "ovimap/base/error.h"
 #include "ovimap/image/codec.h"
 #include "ovimap/io/ply.h"
@@ -71,17 +72,17 @@ fs::path find_table(const fs::path& mesh) {
 }
 
 template <class Read>
-auto read_json(const fs::path& file, const char* expected, Read&& read) {
-  const Bytes bytes = read_file(file);
+auto read_form(const fs::path& file, const char* expected, Read&& read) {
+  const nlohmann::json document = read_json(file, kLargeDocument);
   try {
-    return read(nlohmann::json::parse(bytes.begin(), bytes.end()));
+    return read(document);
   } catch (const nlohmann::json::exception&) {
     throw Error(concat("'", file.string(), "' is not of the form ", expected));
   }
 }
 
 std::vector<std::int64_t> read_segments(const fs::path& file) {
-  return read_json(file, R"({"segIndices": [1, 1, 5]})", [](const nlohmann::json& document) {
+  return read_form(file, R"({"segIndices": [1, 1, 5]})", [](const nlohmann::json& document) {
     return document.at("segIndices").get<std::vector<std::int64_t>>();
   });
 }
@@ -89,7 +90,7 @@ std::vector<std::int64_t> read_segments(const fs::path& file) {
 using Annotations = std::unordered_map<std::int64_t, Annotation>;  ///< by segment
 
 Annotations read_annotations(const fs::path& file) {
-  return read_json(file, R"({"segGroups": [{"objectId": 0, "label": "sofa", "segments": [1, 5]}]})",
+  return read_form(file, R"({"segGroups": [{"objectId": 0, "label": "sofa", "segments": [1, 5]}]})",
                    [](const nlohmann::json& document) {
                      Annotations annotations;
                      for (const auto& group : document.at("segGroups")) {

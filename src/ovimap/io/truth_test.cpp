@@ -137,10 +137,14 @@ TEST_F(TruthFolder, RefusesAMeshWithoutVertices) {
 
 TEST_F(TruthFolder, RefusesBrokenNames) {
   for (const char* text :
-       {"{", "[1]", R"({"instances": {"sofa": "12"}})", R"({"classes": {"1": 2}})"}) {
+       {"[1]", R"({"instances": {"sofa": "12"}})", R"({"classes": {"1": 2}})"}) {
     write("labels.json", text);
     EXPECT_TRUE(fault_names("is not of the form")) << text;
   }
+  write("labels.json", "{");
+  EXPECT_TRUE(fault_names("labels.json is not JSON")) << fault();
+  write("labels.json", R"({"instances": {"1": "sofa", "1": "bed"}})");
+  EXPECT_TRUE(fault_names("twice")) << fault();
 }
 
 }  // namespace

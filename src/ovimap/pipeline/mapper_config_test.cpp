@@ -58,7 +58,8 @@ TEST_F(LoadConfigTest, NamesWhatIsWrong) {
   EXPECT_NE(load("mask_interval: [1, 2]\n").find("must be one value"), std::string::npos);
   EXPECT_NE(load("hello").find("name: value"), std::string::npos);
   EXPECT_THROW(load_config(std::filesystem::temp_directory_path(), fields_), Error) << "a folder";
-  EXPECT_NE(load("a: {").find("not valid YAML"), std::string::npos);
+  EXPECT_NE(load("a: {").find("is not YAML"), std::string::npos);
+  EXPECT_NE(load("a: &a {b: *a}").find("aliases"), std::string::npos) << "it contains itself";
   EXPECT_THROW(load_config("/nowhere/x.yaml", fields_), Error);
 }
 

@@ -119,8 +119,7 @@ HttpReply FrameApi::frame(const HttpRequest& request) {
   for (const auto& [name, content] : parts)
     if (name != "color" && name != "depth" && name != "frame")
       throw BadRequest(400, concat("'", name, "' is no part of a frame; see /api/openapi.json"));
-  const json about = json::parse(part_of(parts, "frame"), nullptr, false);
-  if (!about.is_object()) throw BadRequest(400, "the part 'frame' must be a JSON object");
+  const json about = object_of(part_of(parts, "frame"), "the part 'frame'");
   check_keys(about, {"pose", "timestamp_s", "name"});
   const Eigen::Matrix4d pose = pose_of(about);
   const double timestamp_s = time_of(about);

@@ -157,6 +157,26 @@ TEST_F(FrameApiTest, SaysWhatIsWrongWithARequest) {
   set_camera(other, 409);
 }
 
+/// What walks JSON recursively would run out of stack, and the map be lost.
+TEST_F(FrameApiTest, DeeplyNestedJsonIsRefused) {
+  FrameIntake intake(2);
+  ServerConfig config;
+  config.max_body_bytes = 4 << 20;
+  serve(&intake, config);
+  const auto nested = [](std::size_t levels) {
+    return std::string(levels, '[') + std::string(levels, ']');
+  };
+  for (const std::size_t levels : {100u, 10'000u, 500'000u}) {
+    const std::string camera_body = R"({"camera": )" + nested(levels) + "}";
+    parsed(running_->client().post("/api/camera", camera_body, "application/json"), 400);
+    auto items = frame(0);
+    items[2].content = R"({"pose": )" + nested(levels) + "}";
+    push(items, 400);
+  }
+  set_camera(camera(), 200);
+  push(frame(0), 200);
+}
+
 TEST_F(FrameApiTest, WithoutAnIntakeItSaysHowToGetOne) {
   serve(nullptr);
   EXPECT_NE(set_camera(camera(), 409)["error"].get<std::string>().find("--live http"),

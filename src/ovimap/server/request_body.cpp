@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/server/request_body.h"
 
+#include "ovimap/base/bounded_json.h"
+
 namespace ovimap {
 
 using nlohmann::json;
@@ -9,10 +11,17 @@ using nlohmann::json;
 json body_of(const HttpRequest& request) {
   if (!request.header("content-type").starts_with("application/json"))
     throw BadRequest(415, "send the body as Content-Type: application/json");
-  json body = json::parse(request.body, nullptr, false);
-  if (body.is_discarded()) throw BadRequest(400, "the body is no JSON; see /api/openapi.json");
-  if (!body.is_object()) throw BadRequest(400, "the body must be a JSON object");
-  return body;
+  return object_of(request.body, "the body");
+}
+
+json object_of(std::string_view text, const std::string& name) {
+  try {
+    json object = parse_json(text, name, kSmallDocument);
+    if (object.is_object()) return object;
+  } catch (const Error& fault) {
+    throw BadRequest(400, concat(fault.what(), "; see /api/openapi.json"));
+  }
+  throw BadRequest(400, name + " must be a JSON object");
 }
 
 void check_keys(const json& body, std::initializer_list<const char*> known) {

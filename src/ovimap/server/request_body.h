@@ -9,6 +9,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -26,6 +27,9 @@ struct BadRequest : std::runtime_error {
 
 /// The JSON object in a request's body. Throws BadRequest where there is none.
 nlohmann::json body_of(const HttpRequest& request);
+
+/// The JSON object in `text`, which `name` names in faults. Throws BadRequest where there is none.
+nlohmann::json object_of(std::string_view text, const std::string& name);
 
 /// Throws BadRequest for a field that is not known.
 void check_keys(const nlohmann::json& body, std::initializer_list<const char*> known);
