@@ -1,0 +1,137 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The ovimap authors
+# SPDX-License-Identifier: Apache-2.0
+"""Attacks `ovimap serve` in the ways that servers are attacked, and sees it keep what docs/security.md promises.
+
+Everything happens on this machine's loopback: attackers come from 127.0.0.2 and up, the normal client from 127.0.0.1.
+
+Usage: attack_test.py PROGRAM [unittest's options]
+"""
+import contextlib
+import json
+import os
+import pathlib
+import resource
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+from bodies import Bodies
+from camera import Camera
+from crowds import Crowds
+from framing import Framing
+from served import Server
+from strangers import Strangers
+import wire
+
+NOT_AVAILABLE = 77
+PROGRAM = None
+FRAMES = 8
+
+
+def ovimap(*arguments):
+    return subprocess.run([PROGRAM, *map(str, arguments)], check=True, capture_output=True, text=True).stdout
+
+
+class Attacked(Strangers, Bodies, Framing, Crowds):
+    """All cases, against a server that is started anew after a case that it did not survive."""
+
+    is_live = False
+
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls.scratch.name)
+        ovimap("synth", cls.folder / "synth", "--room", "tiny", "--frames", FRAMES)
+        cls.room = cls.folder / "synth/room"
+        cls.server = None
+
+    @classmethod
+    def tearDownClass(cls):
+        if cls.server:
+            cls.server.stop()
+        cls.scratch.cleanup()
+
+    def setUp(self):
+        cls = type(self)
+        if cls.server is None:
+            cls.server = self.start()
+        with contextlib.suppress(OSError):
+            pathlib.Path(f"/proc/{cls.server.process.pid}/clear_refs").write_text("5")  # the peak of memory is that of a case
+
+    def rename(self, *lines, **options):
+        return wire.rename(self.server.instances[0] if self.server.instances else 1, *lines, **options)
+
+    def assert_refused(self, requests, statuses=range(400, 600)):
+        """Each is answered by a refusal, or not at all: where a request has no sound end the connection is closed."""
+        for request, answers in wire.ask_all(self.server.port, list(requests)):
+            for reply in answers:
+                self.assertIn(reply.status, statuses, f"{request[:300]!r} ... was answered {reply}")
+
+    @contextlib.contextmanager
+    def watched(self, bounded_memory=True):
+        server = self.server
+        try:
+            with server.watched(bounded_memory and not self.is_live):
+                yield
+            assert self.is_live or server.named() == server.names, "an object was renamed"
+        except Exception:
+            type(self).server = None  # the next case gets a sound one
+            server.process.kill()
+            server.stop()
+            raise
+
+
+class StillMap(Attacked, unittest.TestCase):
+    """A map that stays as it is."""
+
+    @classmethod
+    def start(cls):
+        made, served = cls.folder / "made.ovimap", cls.folder / "served.ovimap"
+        if not made.exists():
+            ovimap("run", cls.room, "--masks", "gt", "--encoder", "none", "-o", made, "--set", "map.voxel_size_m=0.03")
+        shutil.copy(made, served)  # an attack may have changed the last one
+        return Server(PROGRAM, served)
+
+
+class LiveMap(Attacked, unittest.TestCase):
+    """A map that is made of a camera's frames meanwhile."""
+
+    is_live = True
+
+    @classmethod
+    def start(cls):
+        cls.map = cls.folder / "live.ovimap"
+        for left in cls.folder.glob("live.ovimap*"):  # by a server that did not survive
+            left.unlink()
+        server = Server(PROGRAM, "http", "--live", "-o", cls.map, "--encoder", "none", "--set", "map.voxel_size_m=0.03")
+        cls.camera = Camera(server.port, cls.room)
+        return server
+
+    def test_zz_the_map_was_made(self):
+        """Last: it ends the mapping."""
+        self.camera.stop()
+        self.assertEqual(self.camera.faults, [])
+        self.assertEqual(self.server.ask("POST", "/api/finish")[0], 202)
+        code, said = self.server.stop()
+        type(self).server = None
+        self.assertEqual(code, 0)
+        self.assertEqual(json.loads(said)["saved"]["frames"], self.camera.taken)
+        self.assertEqual(json.loads(ovimap("info", self.map, "--json"))["frames"], self.camera.taken)
+
+
+def main():
+    global PROGRAM
+    PROGRAM = os.path.abspath(sys.argv.pop(1))
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    if hard < 2000:
+        print(f"a process may open {hard} files, the attacks need 2000; raise it: ulimit -n")
+        return NOT_AVAILABLE
+    resource.setrlimit(resource.RLIMIT_NOFILE, (max(soft, 2000), hard))
+    return unittest.main()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

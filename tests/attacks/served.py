@@ -1,0 +1,139 @@
+# SPDX-FileCopyrightText: 2026 The ovimap authors
+# SPDX-License-Identifier: Apache-2.0
+"""The program under attack, what it promises meanwhile, and the normal client that sees whether it holds.
+
+A promise of time cannot be held by a busy machine. So the normal client also asks a server that nobody attacks, and the
+server under attack may take longer by ten times what that one takes.
+"""
+import contextlib
+import http.client
+import json
+import os
+import pathlib
+import queue
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+HERE = pathlib.Path(__file__).parent
+MOST_GROWTH_BYTES = 64 << 20
+USUAL_S, USUAL_SHARE = 0.2, 0.98  # this share of the normal client's requests is answered within that time,
+SLOWEST_S = 2.0  # ... and each within this
+BUSY_FACTOR = 10  # of the echo's time, on top
+PATIENCE_S = 10.0  # more than the normal client has
+SHORTEST_WATCH_S = 1.0  # that is about a hundred requests
+
+
+class Witness:
+    """The normal client, in a process of its own from now on."""
+
+    def __init__(self, port):
+        self._echo = subprocess.Popen([sys.executable, HERE / "echo.py"], stdout=subprocess.PIPE, text=True)
+        echo_port = self._echo.stdout.readline().strip()
+        self._client = subprocess.Popen([sys.executable, HERE / "witness.py", str(port), echo_port], stdout=subprocess.PIPE, text=True)
+        self._lines = queue.SimpleQueue()
+        threading.Thread(target=self._read, daemon=True).start()
+
+    def _read(self):
+        for line in self._client.stdout:
+            self._lines.put(tuple(map(float, line.split())))
+
+    def requests(self):
+        """(begin, seconds or -1, seconds of the echo) of each request since the last call, also of the one that waits now."""
+        now, found = time.monotonic(), []
+        with contextlib.suppress(queue.Empty):
+            while not found or found[-1][0] < now:
+                found.append(self._lines.get(timeout=PATIENCE_S))
+        return found
+
+    def stop(self):
+        for process in (self._client, self._echo):
+            process.kill()
+            process.wait()
+            process.stdout.close()
+
+
+def fault_of(requests):
+    """What the normal client has to complain of; empty: nothing."""
+    if not requests:
+        return "the normal client got no answer at all"
+    failed = [request for request in requests if request[1] < 0]
+    if failed:
+        return f"{len(failed)} of {len(requests)} requests of the normal client failed"
+    took, echo = (sorted(column) for column in list(zip(*requests))[1:])
+    usual = int(USUAL_SHARE * (len(took) - 1))
+    allowed, slowest_allowed = USUAL_S + BUSY_FACTOR * echo[usual], SLOWEST_S + BUSY_FACTOR * echo[-1]
+    if took[usual] > allowed or took[-1] > slowest_allowed:
+        return (f"{USUAL_SHARE:.0%} of {len(took)} requests took up to {took[usual]:.3f} s, the slowest {took[-1]:.3f} s; "
+                f"promised are {allowed:.3f} and {slowest_allowed:.3f} s")  # fmt: skip
+    return ""
+
+
+class Server:
+    """`ovimap serve ARGUMENTS`, and its normal client."""
+
+    def __init__(self, program, *arguments):
+        self.process = subprocess.Popen([program, "serve", *map(str, arguments), "--port", "0", "--viewer", "none", "--json"],
+                                        stdout=subprocess.PIPE, text=True)  # fmt: skip
+        self.port = json.loads(self.process.stdout.readline())["port"]
+        self.instances = [entry["id"] for entry in self.get("/api/instances")["instances"]]
+        self.names = self.named()
+        self.witness = Witness(self.port)
+        time.sleep(0.5)
+        self.witness.requests()
+        self.start_bytes = self.resident("VmRSS")
+
+    def ask(self, method, path, body=None, headers=None):
+        """As a normal client; (status, value)."""
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=20)
+        try:
+            connection.request(method, path, body, headers or {})
+            reply = connection.getresponse()
+            return reply.status, json.loads(reply.read())
+        finally:
+            connection.close()
+
+    def get(self, path):
+        status, value = self.ask("GET", path)
+        assert status == 200, (path, status, value)
+        return value
+
+    def named(self):
+        return {entry["id"]: entry["name"] for entry in self.get("/api/instances")["instances"]}
+
+    def resident(self, key):
+        """Bytes; VmRSS: now, VmHWM: at most so far."""
+        lines = pathlib.Path(f"/proc/{self.process.pid}/status").read_text().splitlines()
+        return 1024 * next(int(line.split()[1]) for line in lines if line.startswith(key))
+
+    def cpu_s(self):
+        fields = pathlib.Path(f"/proc/{self.process.pid}/stat").read_text().rsplit(")", 1)[1].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    @contextlib.contextmanager
+    def watched(self, bounded_memory=True):
+        """Raises AssertionError when, in this block, the server does not keep what it promises."""
+        self.witness.requests()
+        begin = time.monotonic()
+        yield
+        time.sleep(max(0.0, begin + SHORTEST_WATCH_S - time.monotonic()))
+        assert self.process.poll() is None, f"the server ended with {self.process.poll()}"
+        grown = self.resident("VmHWM") - self.start_bytes
+        fault = fault_of(self.witness.requests())
+        assert not fault, fault
+        assert not bounded_memory or grown < MOST_GROWTH_BYTES, f"resident memory grew by {grown >> 20} MiB"
+        assert self.ask("GET", "/api/map")[0] == 200
+
+    def stop(self):
+        """How the program ended after Ctrl-C, and what it printed."""
+        self.witness.stop()
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGINT)
+        try:
+            said = self.process.communicate(timeout=60)[0]
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            said = self.process.communicate()[0]
+        return self.process.returncode, said
