@@ -12,7 +12,7 @@ seconds=$2
 jobs=$3
 shift 3
 targets=("$@")
-[ ${#targets[@]} -gt 0 ] || targets=(image json map_file ply tile yaml)
+[ ${#targets[@]} -gt 0 ] || targets=(frame image json map_file ply request tile yaml)
 
 seeds_of() {
   if [ "$1" = map_file ]; then echo "$root/tests/maps"; else echo "$root/fuzz/corpus/$1"; fi
