@@ -64,9 +64,9 @@ class Attacked(Strangers, Bodies, Framing, Crowds):
     def rename(self, *lines, **options):
         return wire.rename(self.server.instances[0] if self.server.instances else 1, *lines, **options)
 
-    def assert_refused(self, requests, statuses=range(400, 600)):
+    def assert_refused(self, requests, statuses=range(400, 600), patience_s=0.5):
         """Each is answered by a refusal, or not at all: where a request has no sound end the connection is closed."""
-        for request, answers in wire.ask_all(self.server.port, list(requests)):
+        for request, answers in wire.ask_all(self.server.port, list(requests), patience_s):
             for reply in answers:
                 self.assertIn(reply.status, statuses, f"{request[:300]!r} ... was answered {reply}")
 

@@ -55,6 +55,24 @@ class Crowds:
         path = "/api/mesh/0/{x}/{y}/{z}".format(**largest)
         self.held(wire.head("GET", path) * 5 + wire.head("GET", "/api/openapi.json") * 5, seconds=4, receive_buffer=4096)
 
+    def test_slow_readers_who_keep_coming_hold_nobody_up(self):
+        """All places are taken by replies that nobody reads, and each new connection needs another's place."""
+
+        def comers(count):
+            wires = wire.crowd(self.server.port, count, receive_buffer=4096)
+            for each in wires:
+                each.send(wire.head("GET", "/api/openapi.json") * 20, 0.01)
+            return wires
+
+        with self.watched():
+            wires = comers(3 * CROWD)
+            end = time.monotonic() + 3
+            while time.monotonic() < end:
+                for each in wires[:20]:
+                    each.reset()
+                wires = wires[20:] + comers(20)
+            wire.close_all(wires)
+
     def test_pipelined_requests_are_answered_or_refused(self):
         with self.watched():
             for count in (10, 100, 500):
