@@ -35,8 +35,8 @@ def ovimap(*arguments):
     return subprocess.run([PROGRAM, *map(str, arguments)], check=True, capture_output=True, text=True).stdout
 
 
-class Attacked(Strangers, Bodies, Framing, Crowds):
-    """All cases, against a server that is started anew after a case that it did not survive."""
+class Attacked(Strangers, Bodies, Crowds):
+    """Cases against a server, which is started anew after one that it did not survive."""
 
     is_live = False
 
@@ -84,8 +84,8 @@ class Attacked(Strangers, Bodies, Framing, Crowds):
             raise
 
 
-class StillMap(Attacked, unittest.TestCase):
-    """A map that stays as it is."""
+class StillMap(Framing, Attacked, unittest.TestCase):
+    """A map that stays as it is. How requests are cut apart is the same with any map, so it is tried here alone."""
 
     @classmethod
     def start(cls):
