@@ -7,6 +7,7 @@
 
 #include "ovimap/base/bounded_json.h"
 #include "ovimap/base/error.h"
+#include "ovimap/frames/number_text.h"
 #include "ovimap/frames/readers.h"
 #include "ovimap/frames/trajectory.h"
 
@@ -65,6 +66,15 @@ CameraRig read_rig(const fs::path& file) {
   return rig;
 }
 
+/// The times in seconds of frames 0, 1, ...; none where the recording does not say.
+std::vector<double> read_times(const fs::path& file) {
+  if (!fs::exists(file)) return {};
+  auto times = read_numbers(file);
+  if (!times)
+    throw Error(concat(file.string(), " holds other text than a time in seconds on each line"));
+  return std::move(*times);
+}
+
 Recording list_frames(const fs::path& folder, const FrameSourceConfig&) {
   Recording recording;
   recording.kind = kReplicaReader.kind;
@@ -74,12 +84,15 @@ Recording list_frames(const fs::path& folder, const FrameSourceConfig&) {
   std::map<std::int64_t, fs::path> colors;
   for (const auto& entry : fs::directory_iterator(folder / "results"))
     if (const auto number = color_number(entry.path())) colors[*number] = entry.path();
+  const std::vector<double> times = read_times(folder / "timestamps.txt");
   std::vector<std::int64_t> numbers;
   for (const auto& [number, color] : colors) {
     const std::string digits = color.stem().string().substr(5);
     RecordedFrame frame;
     frame.name = color.stem().string();
-    frame.timestamp_s = static_cast<double>(number) / kAssumedFramesPerSecond;
+    frame.timestamp_s = number < std::ssize(times)
+                            ? times[static_cast<std::size_t>(number)]
+                            : static_cast<double>(number) / kAssumedFramesPerSecond;
     frame.color = color;
     frame.depth = folder / "results" / ("depth" + digits + ".png");
     const fs::path truth = folder / "results" / ("instance" + digits + ".png");

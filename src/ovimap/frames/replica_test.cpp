@@ -53,6 +53,17 @@ TEST_F(Replica, TruthIdsAreReadWhereGiven) {
   EXPECT_THROW((void)source->truth_ids(2), Error);
 }
 
+TEST_F(Replica, TimesAreThoseOfItsFileOrOfThirtyFramesASecond) {
+  EXPECT_NEAR(open_frame_source(scene_)->read(2).frame->timestamp_s, 2. / 30, 1e-12);
+  const auto write = [&](const std::string& text) {
+    write_file(scene_ / "timestamps.txt", Bytes(text.begin(), text.end()));
+  };
+  write("0\n0.1\n0.2\n");
+  EXPECT_EQ(open_frame_source(scene_)->read(2).frame->timestamp_s, 0.2);
+  write("0\nsoon\n");
+  EXPECT_NE(error().find("timestamps.txt"), std::string::npos) << error();
+}
+
 TEST_F(Replica, CameraFileMayStandInTheScene) {
   std::filesystem::rename(folder_.path() / "cam_params.json", scene_ / "cam_params.json");
   EXPECT_EQ(open_frame_source(scene_)->size(), 3);

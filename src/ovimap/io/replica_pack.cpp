@@ -102,6 +102,7 @@ void write_labels(const fs::path& root, const ReplicaPack& pack) {
     class_of[instance.id] = instance.class_id;
     names["instances"][std::to_string(instance.id)] = instance.class_name;
     names["classes"][std::to_string(instance.class_id)] = instance.class_name;
+    if (!instance.room.empty()) names["rooms"][std::to_string(instance.id)] = instance.room;
   }
   if (!pack.instances.empty()) write_text(root / pack.scene / "labels.json", names.dump(1) + "\n");
   if (pack.truth.vertices.empty()) return;
@@ -116,21 +117,39 @@ void write_labels(const fs::path& root, const ReplicaPack& pack) {
   write_ply(root / concat(pack.scene, "_mesh.ply"), pack.truth);
 }
 
+/// With their line ends; none where there is no file.
+std::vector<std::string> lines_of(const fs::path& file) {
+  std::vector<std::string> lines;
+  if (!fs::exists(file)) return lines;
+  std::istringstream in(text_of(file));
+  for (std::string line; std::getline(in, line);) lines.push_back(line + "\n");
+  return lines;
+}
+
+std::string time_line(double time_s) {
+  std::array<char, 40> number{};
+  std::snprintf(number.data(), number.size(), "%.6f\n", time_s);
+  return number.data();
+}
+
 /// The lines of traj.txt are there exactly for the frames whose files are all there.
 class FrameWriter {
  public:
   FrameWriter(const fs::path& root, const ReplicaPack& pack, const ReplicaPackConfig& config)
-      : root_(root), pack_(pack), config_(config), trajectory_(root / pack.scene / "traj.txt") {
-    if (!fs::exists(trajectory_)) return;
-    std::istringstream in(text_of(trajectory_));
-    for (std::string line; std::getline(in, line);) lines_.push_back(line + "\n");
+      : root_(root),
+        pack_(pack),
+        config_(config),
+        trajectory_(root / pack.scene / "traj.txt"),
+        times_file_(root / pack.scene / "timestamps.txt") {
+    lines_ = lines_of(trajectory_);
+    if (pack.timed) times_ = lines_of(times_file_);
   }
 
   void write(std::int64_t position) {
     const FrameFiles files(root_ / pack_.scene / "results", position);
     const auto line = static_cast<std::size_t>(position);
-    if (line < lines_.size() && fs::exists(files.color) && fs::exists(files.depth) &&
-        has_ids(files, position))
+    const bool listed = line < lines_.size() && (!pack_.timed || line < times_.size());
+    if (listed && fs::exists(files.color) && fs::exists(files.depth) && has_ids(files, position))
       return;
     const Frame frame = checked_frame(*pack_.frames, position);
     write_once(root_ / "cam_params.json",
@@ -138,9 +157,8 @@ class FrameWriter {
     write_file(files.depth, encode_png(depth_units(frame.depth, config_.depth_units_per_m)));
     if (const auto ids = pack_.frames->truth_ids(position)) write_file(files.ids, encode_png(*ids));
     write_file(files.color, encode_jpeg(frame.color, config_.jpeg_quality));
-    lines_.resize(std::max(lines_.size(), line + 1));
-    lines_[line] = trajectory_line(frame.world_from_camera);
-    write_trajectory();
+    if (pack_.timed) write_line(times_file_, times_, line, time_line(frame.timestamp_s));
+    write_line(trajectory_, lines_, line, trajectory_line(frame.world_from_camera));
   }
 
  private:
@@ -148,17 +166,20 @@ class FrameWriter {
     return fs::exists(files.ids) || !pack_.frames->truth_ids(position).has_value();
   }
 
-  void write_trajectory() const {
+  static void write_line(const fs::path& file, std::vector<std::string>& lines, std::size_t number,
+                         const std::string& line) {
+    lines.resize(std::max(lines.size(), number + 1));
+    lines[number] = line;
     std::string text;
-    for (const std::string& line : lines_) text += line;
-    write_text(trajectory_, text);
+    for (const std::string& each : lines) text += each;
+    write_text(file, text);
   }
 
   const fs::path& root_;
   const ReplicaPack& pack_;
   const ReplicaPackConfig& config_;
-  fs::path trajectory_;
-  std::vector<std::string> lines_;
+  fs::path trajectory_, times_file_;
+  std::vector<std::string> lines_, times_;
 };
 
 }  // namespace

@@ -25,6 +25,7 @@ void list_fields(ReplicaPackConfig& config, ConfigFields& fields);
 struct PackInstance {
   std::uint32_t id = 0, class_id = 0;
   std::string class_name;
+  std::string room = {};  ///< which room it is in; empty: not said
 };
 
 /// A recording and its truth, as they go to disk.
@@ -34,6 +35,7 @@ struct ReplicaPack {
       nullptr;  ///< registered, one camera for all; with true ids or without
   Mesh truth;   ///< labels are instance ids; may be empty
   std::vector<PackInstance> instances;
+  bool timed = false;    ///< frames have true times: writes timestamps.txt
   std::string notice;    ///< who made what is shown (Markdown); empty: no NOTICE.md
   std::string settings;  ///< how it was made (YAML); empty: no settings.yaml
 };
@@ -42,12 +44,13 @@ struct ReplicaPack {
 using PackProgress = std::function<void(std::int64_t done, std::int64_t total)>;
 
 /// Writes a scene in the layout of NICE-SLAM's Replica pack, so that open_frame_source and
-/// load_truth read it: ROOT/cam_params.json; ROOT/SCENE/traj.txt, labels.json, NOTICE.md and
-/// settings.yaml; ROOT/SCENE/results/{frame%06d.jpg, depth%06d.png, instance%06d.png};
-/// ROOT/SCENE_mesh.ply; ROOT/{instance,semantic}_labels_SCENE.txt. Frames that are there already
-/// are left alone, so a broken-off run goes on where it stopped; every file appears only when
-/// complete. Throws Error when a frame cannot be read or is not registered, when what is there
-/// already has another camera or was made with other settings, or when a file cannot be written.
+/// load_truth read it: ROOT/cam_params.json; ROOT/SCENE/traj.txt, timestamps.txt (seconds, a line a
+/// frame), labels.json, NOTICE.md and settings.yaml; ROOT/SCENE/results/{frame%06d.jpg,
+/// depth%06d.png, instance%06d.png}; ROOT/SCENE_mesh.ply;
+/// ROOT/{instance,semantic}_labels_SCENE.txt. Frames that are there already are left alone, so a
+/// broken-off run goes on where it stopped; every file appears only when complete. Throws Error
+/// when a frame cannot be read or is not registered, when what is there already has another camera
+/// or was made with other settings, or when a file cannot be written.
 void write_replica_pack(const std::filesystem::path& root, const ReplicaPack& pack,
                         const ReplicaPackConfig& config = {}, const PackProgress& progress = {});
 

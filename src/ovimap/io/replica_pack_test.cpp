@@ -24,6 +24,7 @@ class RampSource final : public FrameSource {
     ++reads;
     Frame frame;
     frame.index = position;
+    frame.timestamp_s = 0.1 * static_cast<double>(position);
     frame.depth_camera = frame.color_camera = {32, 24, 30, 30, 15.5f, 11.5f};
     if (!registered_) frame.color_camera.fx = 31;
     frame.color = RgbImage(32, 24, {90, 120, static_cast<std::uint8_t>(10 * position)});
@@ -114,6 +115,36 @@ TEST_F(ReplicaPackTest, ABrokenOffRunGoesOnWhereItStopped) {
     EXPECT_TRUE(
         read->read(i).frame->world_from_camera.isApprox(all.read(i).frame->world_from_camera))
         << i;
+}
+
+TEST_F(ReplicaPackTest, RoomsAreNamedWhereThereAreSeveral) {
+  const RampSource source(1);
+  ReplicaPack made = pack(source);
+  const auto labels = [&] {
+    const Bytes bytes = read_file(folder_.path() / "den" / "labels.json");
+    return std::string(bytes.begin(), bytes.end());
+  };
+  write_replica_pack(folder_.path(), made);
+  EXPECT_EQ(labels().find("rooms"), std::string::npos);
+  made.instances[0].room = "attic";
+  write_replica_pack(folder_.path(), made);
+  EXPECT_NE(labels().find("\"rooms\": {\n  \"12\": \"attic\""), std::string::npos) << labels();
+  EXPECT_EQ(load_truth(folder_.path() / "den").instance_names.at(12), "sofa");
+}
+
+TEST_F(ReplicaPackTest, TimesAreWrittenWhereTheyAreTrue) {
+  const RampSource source(3);
+  ReplicaPack made = pack(source);
+  write_replica_pack(folder_.path(), made);
+  EXPECT_FALSE(fs::exists(folder_.path() / "den" / "timestamps.txt"));
+  made.timed = true;
+  made.scene = "film";
+  write_replica_pack(folder_.path(), made);
+  const auto read = open_frame_source(folder_.path() / "film");
+  EXPECT_EQ(read->read(2).frame->timestamp_s, 0.2);
+  fs::remove(folder_.path() / "film" / "timestamps.txt");
+  write_replica_pack(folder_.path(), made);  // goes on
+  EXPECT_EQ(open_frame_source(folder_.path() / "film")->read(1).frame->timestamp_s, 0.1);
 }
 
 TEST_F(ReplicaPackTest, MixingRecordingsIsRefused) {
