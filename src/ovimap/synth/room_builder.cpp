@@ -47,6 +47,11 @@ class Arranger {
 
   Arrangement arrange() {
     Arrangement result;
+    for (const Doorway& doorway : spec_.doorways) {
+      const OrientedBox box = doorway_box(spec_, doorway, kInWallDepth_m);
+      layout_.add(box);
+      layout_.keep_clear(RoomLayout::space_in_front(box, config_.door_clearance_m));
+    }
     for (const Piece& piece : pieces_) {
       auto box = place(piece);
       if (box && piece.request->placement != Placement::kRug) {
@@ -70,7 +75,8 @@ class Arranger {
     switch (piece.request->placement) {
       case Placement::kInWall: {
         const bool door = piece.request->class_name == "door";
-        return layout_.on_wall({size.x(), kInWallDepth_m, size.z()}, door ? 0 : kWindowSill_m);
+        return layout_.on_wall({size.x(), kInWallDepth_m, size.z()}, door ? 0 : kWindowSill_m,
+                               door ? std::array{true, true, true, true} : spec_.may_have_windows);
       }
       case Placement::kAgainstWall:
         return layout_.against_wall(size);
@@ -216,6 +222,17 @@ void add_piece(const Piece& piece, const OrientedBox& box, std::size_t lamps, Sy
 }
 
 }  // namespace
+
+OrientedBox doorway_box(const RoomSpec& spec, const Doorway& doorway, float depth_m) {
+  const WallLine wall = wall_lines(spec.size_m.head<2>())[doorway.wall];
+  const Eigen::Vector2f center =
+      wall.start_m + doorway.center_m * wall.along + depth_m / 2 * wall.inward;
+  return {center,
+          {doorway.width_m / 2, std::abs(depth_m) / 2},
+          yaw_facing(wall.inward),
+          0,
+          doorway.height_m};
+}
 
 SynthRoom build_room(const RoomSpec& spec, const std::filesystem::path& furniture_folder,
                      const LayoutConfig& config) {

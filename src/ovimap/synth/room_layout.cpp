@@ -132,16 +132,18 @@ std::optional<OrientedBox> RoomLayout::on_floor(const Eigen::Vector3f& size_m) {
   return std::nullopt;
 }
 
-std::optional<OrientedBox> RoomLayout::on_wall(const Eigen::Vector3f& size_m, float bottom_m) {
+std::optional<OrientedBox> RoomLayout::on_wall(const Eigen::Vector3f& size_m, float bottom_m,
+                                               const std::array<bool, 4>& allowed) {
   const auto walls = wall_lines(room_size_m_.head<2>());
   for (int i = 0; i < config_.tries; ++i) {
-    const WallLine& wall = walls[random_.index(walls.size())];
+    const std::size_t number = random_.index(walls.size());
+    const WallLine& wall = walls[number];
     const float half = size_m.x() / 2 + config_.gap_m;
     OrientedBox box =
         at_wall(wall, random_.uniform(half, wall.length_m - half), kRestGap_m, size_m);
     box.bottom_m += bottom_m;
     box.top_m += bottom_m;
-    if (fits(box)) return box;
+    if (allowed[number] && fits(box)) return box;
   }
   return std::nullopt;
 }

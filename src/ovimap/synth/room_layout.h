@@ -54,8 +54,10 @@ class RoomLayout {
   [[nodiscard]] std::optional<OrientedBox> in_corner(const Eigen::Vector3f& size_m);
   [[nodiscard]] std::optional<OrientedBox> in_middle(const Eigen::Vector3f& size_m);
   [[nodiscard]] std::optional<OrientedBox> on_floor(const Eigen::Vector3f& size_m);
-  /// Flat on a wall, its lower edge at `bottom_m`.
-  [[nodiscard]] std::optional<OrientedBox> on_wall(const Eigen::Vector3f& size_m, float bottom_m);
+  /// Flat on one of the `allowed` walls, its lower edge at `bottom_m`.
+  [[nodiscard]] std::optional<OrientedBox> on_wall(const Eigen::Vector3f& size_m, float bottom_m,
+                                                   const std::array<bool, 4>& allowed = {
+                                                       true, true, true, true});
   /// At a side of `table`, facing it.
   [[nodiscard]] std::optional<OrientedBox> around(const OrientedBox& table,
                                                   const Eigen::Vector3f& size_m);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/synth/room_shell.h"
 
+#include <algorithm>
+
 #include "ovimap/synth/mesh_parts.h"
 #include "ovimap/synth/random.h"
 #include "ovimap/synth/room_layout.h"
@@ -59,20 +61,54 @@ RoomObject ceiling_object(const RoomSpec& spec) {
   return shell_object("ceiling", "ceiling", std::move(mesh));
 }
 
-RoomObject wall_object(const RoomSpec& spec, const WallLine& wall, const SurfacePattern& pattern) {
+/// A part of a wall, seen from inside.
+struct WallPart {
+  float from_m, to_m;  ///< along the wall
+  float bottom_m, top_m;
+};
+
+/// What doorways leave of a wall: the parts between them, which stand on the floor, then the parts
+/// above them.
+std::vector<WallPart> parts_of(const RoomSpec& spec, std::size_t number, float length_m) {
+  std::vector<Doorway> doorways;
+  for (const Doorway& doorway : spec.doorways)
+    if (doorway.wall == number) doorways.push_back(doorway);
+  std::sort(doorways.begin(), doorways.end(),
+            [](const Doorway& a, const Doorway& b) { return a.center_m < b.center_m; });
+  std::vector<WallPart> parts, lintels;
+  float from = 0;
+  for (const Doorway& doorway : doorways) {
+    const float left = doorway.center_m - doorway.width_m / 2, right = left + doorway.width_m;
+    parts.push_back({from, left, 0, spec.size_m.z()});
+    lintels.push_back({left, right, doorway.height_m, spec.size_m.z()});
+    from = right;
+  }
+  parts.push_back({from, length_m, 0, spec.size_m.z()});
+  parts.insert(parts.end(), lintels.begin(), lintels.end());
+  return parts;
+}
+
+RoomObject wall_object(const RoomSpec& spec, std::size_t number, const WallLine& wall,
+                       const SurfacePattern& pattern) {
   TexturedMesh mesh;
   const auto surface = add_material(mesh, textured(pattern));
   SurfaceMaterial skirting;
   skirting.albedo = kSkirtingColor;
   const auto board = add_material(mesh, skirting);
-  const Eigen::Vector3f along = at_height(wall.along * wall.length_m, 0), up(0, 0, spec.size_m.z());
-  // Seen from inside, `along` runs to the left: the normal along x up points outwards.
-  add_panel(mesh, at_height(wall.start_m, 0) + along, -along, up, surface, Eigen::Vector2f::Zero(),
-            {wall.length_m / pattern.width_m, spec.size_m.z() / pattern.height_m});
   const Eigen::Vector3f out = at_height(wall.inward * kSkirtingDepth_m, 0);
-  const Eigen::Vector3f board_up(0, 0, kSkirtingHeight_m), start = at_height(wall.start_m, 0);
-  add_panel(mesh, start + along + out, -along, board_up, board);
-  add_panel(mesh, start + board_up, along, out, board);
+  for (const WallPart& part : parts_of(spec, number, wall.length_m)) {
+    // Seen from inside, `along` runs to the left: the normal along x up points outwards.
+    const Eigen::Vector3f along = at_height(wall.along * (part.to_m - part.from_m), 0);
+    const Eigen::Vector3f start = at_height(wall.start_m + wall.along * part.from_m, 0);
+    add_panel(mesh, start + along + Eigen::Vector3f(0, 0, part.bottom_m), -along,
+              Eigen::Vector3f(0, 0, part.top_m - part.bottom_m), surface,
+              {(wall.length_m - part.to_m) / pattern.width_m, part.bottom_m / pattern.height_m},
+              {(wall.length_m - part.from_m) / pattern.width_m, part.top_m / pattern.height_m});
+    if (part.bottom_m > 0) continue;
+    const Eigen::Vector3f board_up(0, 0, kSkirtingHeight_m);
+    add_panel(mesh, start + along + out, -along, board_up, board);
+    add_panel(mesh, start + board_up, along, out, board);
+  }
   return shell_object(wall.name, "wall", std::move(mesh));
 }
 
@@ -85,7 +121,8 @@ std::vector<RoomObject> room_shell(const RoomSpec& spec) {
   const SurfacePattern plain = wall_pattern(spec.wall_style, spec.wall_color, seed);
   const SurfacePattern accent = wall_pattern(spec.accent_style, spec.accent_color, seed);
   for (std::size_t i = 0; i < walls.size(); ++i)
-    objects.push_back(wall_object(spec, walls[i], i == spec.seed % walls.size() ? accent : plain));
+    objects.push_back(
+        wall_object(spec, i, walls[i], i == spec.seed % walls.size() ? accent : plain));
   objects.push_back(ceiling_object(spec));
   return objects;
 }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -37,6 +39,13 @@ struct FurnitureRequest {
   std::optional<float> bottom_m = {};  ///< for kOnWall: its lower edge; else centred at eye height
 };
 
+/// An opening in a wall that one walks through.
+struct Doorway {
+  std::size_t wall = 0;  ///< number of the wall in wall_lines
+  float center_m = 0;    ///< along the wall, from its start
+  float width_m = 0.9f, height_m = 2.05f;
+};
+
 /// What a room is made from. The same spec gives the same room.
 struct RoomSpec {
   std::string name;
@@ -48,6 +57,8 @@ struct RoomSpec {
   Rgb8 wall_color = {226, 220, 206};
   Rgb8 accent_color = {196, 206, 212};
   std::vector<FurnitureRequest> furniture;  ///< in the order of placing: large before small
+  std::vector<Doorway> doorways = {};
+  std::array<bool, 4> may_have_windows = {true, true, true, true};  ///< by wall
   int frames = 200;
   PinholeCamera camera;
 };
