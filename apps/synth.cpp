@@ -3,7 +3,9 @@
 #include <cstdio>
 
 #include "command.h"
+#include "ovimap/base/error.h"
 #include "ovimap/base/parallel.h"
+#include "ovimap/synth/floor_plan.h"
 #include "ovimap/synth/room_spec.h"
 #include "synth_catalog.h"
 #include "synth_room.h"
@@ -12,18 +14,42 @@ namespace ovimap::apps {
 
 namespace {
 
+constexpr int kLeastSide_px = 16, kMostSide_px = 8192;
+
 struct SynthOptions {
   std::filesystem::path out;
   RoomOptions room;
+  bool walk = false, exact = false;
+  VideoConfig video;
+  std::vector<CLI::Option*> of_videos;
+  std::string size;
+
+  bool is_video() const { return walk || !room.plan.empty(); }
+
   bool catalog = false;
   int views = PortraitConfig{}.views;
   int threads = 0;
   bool json = false;
 };
 
+/// "640x480".
+void set_size(const std::string& text, RoomOptions& options) {
+  char end = 0;
+  if (std::sscanf(text.c_str(), "%dx%d%c", &options.width, &options.height, &end) != 2 ||
+      options.width < kLeastSide_px || options.height < kLeastSide_px ||
+      options.width > kMostSide_px || options.height > kMostSide_px)
+    throw Error(concat("--size '", text, "': expected WIDTHxHEIGHT in pixels, each from ",
+                       kLeastSide_px, " to ", kMostSide_px, ", as 640x480"));
+}
+
 WrittenRoom render(const SynthOptions& options, const std::string& room, const std::string& scene) {
   RoomOptions chosen = options.room;
   chosen.room = room;
+  if (!options.size.empty()) set_size(options.size, chosen);
+  if (options.is_video()) {
+    chosen.video = options.video;
+    chosen.noise = !options.exact;
+  }
   Progress progress("rendering " + room);
   return write_room(options.out, chosen, scene, [&](std::int64_t done, std::int64_t total) {
     progress.show(static_cast<std::size_t>(done), static_cast<std::size_t>(total));
@@ -31,15 +57,20 @@ WrittenRoom render(const SynthOptions& options, const std::string& room, const s
 }
 
 int synth(const SynthOptions& options) {
+  for (const CLI::Option* option : options.of_videos)
+    if (option->count() > 0 && !options.is_video())
+      throw Error(concat(option->get_name(), " is of a walk; add --walk or --plan NAME"));
   const ThreadLimit limit(options.threads);
   if (options.catalog)
     return synth_catalog(
         {options.out, options.room.furniture, options.views, options.room.seed, options.json});
   std::vector<WrittenRoom> rooms;
-  if (options.room.room == kRoomsV1)
+  if (!options.room.plan.empty())
+    rooms.push_back(render(options, options.room.plan, options.room.plan));
+  else if (options.room.room == kRoomsV1)
     for (const std::string& name : rooms_v1_names()) rooms.push_back(render(options, name, name));
   else
-    rooms.push_back(render(options, options.room.room, "room"));
+    rooms.push_back(render(options, options.room.room, options.walk ? options.room.room : "room"));
   nlohmann::ordered_json scenes = nlohmann::ordered_json::array();
   for (const auto& [scene, frames, objects] : rooms) {
     scenes.push_back({{"scene", scene}, {"frames", frames}, {"instances", objects}});
@@ -48,29 +79,66 @@ int synth(const SynthOptions& options) {
                   objects);
   }
   if (options.json)
-    print_json(options.room.room == kRoomsV1 ? nlohmann::ordered_json{{"scenes", scenes}}
-                                             : scenes[0]);
+    print_json(rooms.size() > 1 ? nlohmann::ordered_json{{"scenes", scenes}} : scenes[0]);
   return kDone;
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+void add_walk_options(CLI::App& command, SynthOptions& options, CLI::Option* noise) {
+  command
+      .add_option("--plan", options.room.plan,
+                  "instead of a room a walk through the rooms of a floor plan, OUT/its name: " +
+                      listed(floor_plan_names()))
+      ->excludes("--room")
+      ->excludes("--frames");
+  command
+      .add_flag("--walk", options.walk,
+                "a video instead: a camera carried through the room at walking pace, as its sensor "
+                "sees it, with timestamps")
+      ->excludes(noise)
+      ->excludes("--frames");
+  WalkConfig& video = options.video.walk;
+  options.of_videos = {
+      command.add_option("--fps", video.fps, "of a walk: frames a second")
+          ->check(CLI::Range(1.0, 1000.0))
+          ->capture_default_str(),
+      command.add_option("--seconds", video.seconds, "of a walk: how long; 0: once round")
+          ->check(CLI::Range(0.0, 1e5))
+          ->capture_default_str(),
+      command.add_option("--speed", video.speed_mps, "of a walk: metres a second")
+          ->check(CLI::Range(0.05, 3.0))
+          ->capture_default_str(),
+      command.add_flag("--exact", options.exact, "of a walk: exact frames, as of no real sensor")};
 }
 
 }  // namespace
 
 Action add_synth(CLI::App& command) {
   auto options = std::make_shared<SynthOptions>();
-  std::string rooms;
-  for (const std::string& name : room_names()) rooms += (rooms.empty() ? "" : ", ") + name;
-  command.add_option("OUT", options->out, "folder to write; the recording is OUT/room")->required();
+  command
+      .add_option("OUT", options->out,
+                  "folder to write; the recording is OUT/room, a walk OUT/its room's name")
+      ->required();
   command
       .add_option("--room", options->room.room,
-                  concat("which room: ", rooms, "; or ", kRoomsV1,
+                  concat("which room: ", listed(room_names()), "; or ", kRoomsV1,
                          ", the five of the benchmark, each OUT/its name"))
       ->capture_default_str();
-  command.add_option("--frames", options->room.frames, "number of frames; 0: as the room says")
+  command
+      .add_option("--frames", options->room.frames,
+                  "number of frames, far apart, from all sides; 0: as the room says")
       ->check(CLI::Range(0, 1000000));
   command.add_option("--seed", options->room.seed, "another seed gives another room of the kind")
       ->capture_default_str();
-  command.add_flag("--noise", options->room.noise,
-                   "as a depth camera sees it: noise, quantisation, holes");
+  auto* noise = command.add_flag("--noise", options->room.noise,
+                                 "as a depth camera sees it: noise, quantisation, holes");
+  add_walk_options(command, *options, noise);
+  command.add_option("--size", options->size, "WIDTHxHEIGHT of the frames; else as the room says");
   auto* catalog = command.add_flag(
       "--catalog", options->catalog,
       "instead of a room: pictures of every furniture model by itself, OUT/crops and crops.csv");

@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "ovimap/synth/furniture_catalog.h"
+#include "ovimap/synth/sequence.h"
 
 namespace ovimap::apps {
 
@@ -17,6 +19,9 @@ struct RoomOptions {
   int frames = 0;             ///< 0: as the room says
   std::uint64_t seed = 1;
   bool noise = false;  ///< as a depth camera sees it
+  std::string plan;    ///< one of floor_plan_names, with a video; empty: the room
+  std::optional<VideoConfig> video;  ///< the video of a walk instead of frames from all sides
+  int width = 0, height = 0;         ///< pixels; 0: as the room says
 };
 
 struct WrittenRoom {

@@ -87,8 +87,15 @@ LightImage Lighting::gather(const Image<SurfacePoint>& surfaces) const {
 
 Eigen::Vector3f Lighting::light_at(const SurfacePoint& point, int pattern) const {
   Eigen::Vector3f light = ambient_light(point, pattern);
-  for (const AreaLight& lamp : room_.lights) light += lamp_light(lamp, point, pattern);
+  for (const AreaLight& lamp : room_.lights)
+    if (!faint(lamp, point)) light += lamp_light(lamp, point, pattern);
   return light;
+}
+
+bool Lighting::faint(const AreaLight& lamp, const SurfacePoint& point) const {
+  if (room_.faint_light <= 0) return false;
+  const Eigen::Vector3f to_lamp = lamp.center_m - point.position;
+  return lamp.intensity.maxCoeff() < room_.faint_light * to_lamp.squaredNorm();
 }
 
 Eigen::Vector3f Lighting::lamp_light(const AreaLight& lamp, const SurfacePoint& point,

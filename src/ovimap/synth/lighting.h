@@ -25,6 +25,7 @@ class Lighting {
 
  private:
   Eigen::Vector3f light_at(const SurfacePoint& point, int pattern) const;
+  bool faint(const AreaLight& lamp, const SurfacePoint& point) const;
   Eigen::Vector3f lamp_light(const AreaLight& lamp, const SurfacePoint& point, int pattern) const;
   Eigen::Vector3f ambient_light(const SurfacePoint& point, int pattern) const;
 

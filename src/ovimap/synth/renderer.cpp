@@ -9,6 +9,7 @@
 #include "ovimap/base/config.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/synth/lighting.h"
+#include "ovimap/synth/motion_blur.h"
 #include "ovimap/synth/surface_tracer.h"
 
 namespace ovimap {
@@ -88,24 +89,24 @@ struct Renderer::State {
     return surfaces;
   }
 
-  RgbImage draw(const PinholeCamera& camera, const Pose& pose,
-                const Image<SurfacePoint>& surfaces) const {
+  /// Linear light after the tone curve.
+  Image<Eigen::Vector3f> draw(const PinholeCamera& camera, const Pose& pose,
+                              const Image<SurfacePoint>& surfaces, float exposure) const {
     const LightImage light = lighting.gather(surfaces);
-    RgbImage color(camera.width, camera.height);
+    Image<Eigen::Vector3f> picture(camera.width, camera.height);
     for_each_pixel(camera.width, camera.height, [&](int x, int y) {
       if (!on_edge(surfaces, x, y)) {
-        color.at(x, y) =
-            srgb_from_linear(toned(surfaces.at(x, y), light.at(x, y), config.exposure));
+        picture.at(x, y) = toned(surfaces.at(x, y), light.at(x, y), exposure);
         return;
       }
       Eigen::Vector3f sum = Eigen::Vector3f::Zero();
       for (const auto& [dx, dy] : kSubPixels) {
         const SurfacePoint point = tracer.trace(camera, pose, x + dx, y + dy, true);
-        sum += toned(point, borrowed_light(surfaces, light, point, x, y), config.exposure);
+        sum += toned(point, borrowed_light(surfaces, light, point, x, y), exposure);
       }
-      color.at(x, y) = srgb_from_linear(sum / kSubPixels.size());
+      picture.at(x, y) = sum / kSubPixels.size();
     });
-    return color;
+    return picture;
   }
 
   RenderConfig config;
@@ -119,19 +120,43 @@ Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
-RenderedView Renderer::render(const PinholeCamera& camera, const Pose& world_from_camera,
-                              bool with_color) const {
-  const Image<SurfacePoint> surfaces = state_->trace(camera, world_from_camera, with_color);
+namespace {
+
+RgbImage encoded(const Image<Eigen::Vector3f>& picture) {
+  RgbImage color(picture.width(), picture.height());
+  for_each_pixel(picture.width(), picture.height(),
+                 [&](int x, int y) { color.at(x, y) = srgb_from_linear(picture.at(x, y)); });
+  return color;
+}
+
+RenderedView view_of(const Image<SurfacePoint>& surfaces) {
   RenderedView view;
-  view.depth = DepthImage(camera.width, camera.height);
-  view.ids = IdImage(camera.width, camera.height);
-  view.incidence_cos = Image<float>(camera.width, camera.height);
+  view.depth = DepthImage(surfaces.width(), surfaces.height());
+  view.ids = IdImage(surfaces.width(), surfaces.height());
+  view.incidence_cos = Image<float>(surfaces.width(), surfaces.height());
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     view.depth[i] = surfaces[i].depth;
     view.ids[i] = surfaces[i].id;
     view.incidence_cos[i] = surfaces[i].incidence_cos;
   }
-  if (with_color) view.color = state_->draw(camera, world_from_camera, surfaces);
+  return view;
+}
+
+}  // namespace
+
+RenderedView Renderer::render(const PinholeCamera& camera, const Pose& world_from_camera,
+                              bool with_color) const {
+  if (with_color) return render(camera, world_from_camera, Shutter{});
+  return view_of(state_->trace(camera, world_from_camera, false));
+}
+
+RenderedView Renderer::render(const PinholeCamera& camera, const Pose& world_from_camera,
+                              const Shutter& shutter) const {
+  const Image<SurfacePoint> surfaces = state_->trace(camera, world_from_camera, true);
+  const float exposure = state_->config.exposure * shutter.exposure;
+  RenderedView view = view_of(surfaces);
+  view.color = encoded(blurred(state_->draw(camera, world_from_camera, surfaces, exposure),
+                               view.depth, camera, world_from_camera, shutter.poses));
   return view;
 }
 

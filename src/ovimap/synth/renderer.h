@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "ovimap/geometry/camera.h"
 #include "ovimap/geometry/pose.h"
@@ -22,6 +23,13 @@ struct RenderConfig {
   float exposure = 1.f;          ///< factor on the light before the tone curve
 };
 void list_fields(RenderConfig& config, ConfigFields& fields);
+
+/// How the colour image is taken.
+struct Shutter {
+  std::vector<Pose> poses;  ///< world_from_camera while it is open: their pictures are averaged;
+                            ///< empty: one sharp picture
+  float exposure = 1;       ///< factor on RenderConfig::exposure
+};
 
 /// What a camera without noise sees. All images have the camera's size.
 struct RenderedView {
@@ -44,6 +52,9 @@ class Renderer {
 
   RenderedView render(const PinholeCamera& camera, const Pose& world_from_camera,
                       bool with_color = true) const;
+  /// Depth and ids at the pose, colour as the shutter lets it in (see motion_blur.h).
+  RenderedView render(const PinholeCamera& camera, const Pose& world_from_camera,
+                      const Shutter& shutter) const;
 
   const RayScene& scene() const;
 

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/synth/sequence.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <mutex>
 #include <set>
@@ -15,6 +17,7 @@ namespace ovimap {
 namespace {
 
 constexpr double kFramesPerSecond = 30;
+constexpr float kTruthSpacing_s = 0.2f;
 constexpr std::uint64_t kFrameStream = 9001;
 
 std::string frame_name(std::int64_t position) {
@@ -33,6 +36,11 @@ void list_fields(SynthSequenceConfig& config, ConfigFields& fields) {
   fields.group("truth", [&](ConfigFields& group) { list_fields(config.truth, group); });
 }
 
+void list_fields(VideoConfig& config, ConfigFields& fields) {
+  fields.group("walk", [&](ConfigFields& group) { list_fields(config.walk, group); });
+  fields.group("camera", [&](ConfigFields& group) { list_fields(config.camera, group); });
+}
+
 struct SynthSequence::State {
   State(SynthRoom made_room, const PinholeCamera& made_camera, int frames,
         const SynthSequenceConfig& sequence_config)
@@ -41,12 +49,52 @@ struct SynthSequence::State {
         config(sequence_config),
         renderer(room, config.render),
         poses(plan_trajectory(room, renderer.scene(), camera, frames, config.trajectory)) {}
+  State(SynthRoom made_room, const PinholeCamera& made_camera, const VideoConfig& video_config,
+        const SynthSequenceConfig& sequence_config)
+      : room(std::move(made_room)),
+        camera(made_camera),
+        config(sequence_config),
+        renderer(room, config.render),
+        video(Video{video_config, plan_walk(room, renderer.scene(), camera, video_config.walk)}) {
+    if (config.noise && video_config.camera.auto_exposure)
+      video->exposure.emplace(renderer, camera, video->walk, video_config.camera);
+    const double frames = video->walk.seconds() * static_cast<double>(video_config.walk.fps);
+    for (std::int64_t i = 0; i < std::max(1L, std::lround(frames)); ++i)
+      poses.push_back(video->walk.at(time_s(i)));
+  }
+
+  struct Video {
+    VideoConfig config;
+    Walk walk;
+    std::optional<AutoExposure> exposure = std::nullopt;
+  };
 
   SynthRoom room;
   PinholeCamera camera;
   SynthSequenceConfig config;
   Renderer renderer;
+  std::optional<Video> video;
   std::vector<Pose> poses;
+
+  double time_s(std::int64_t position) const {
+    return static_cast<double>(position) /
+           (video ? static_cast<double>(video->config.walk.fps) : kFramesPerSecond);
+  }
+
+  /// Frames of a video hardly differ: a few a second show all that is seen.
+  std::size_t truth_stride() const {
+    return video ? static_cast<std::size_t>(std::max(1.f, video->config.walk.fps * kTruthSpacing_s))
+                 : 1;
+  }
+
+  RenderedView render(std::int64_t position) const {
+    const Pose& pose = poses[static_cast<std::size_t>(position)];
+    if (!video || !config.noise) return renderer.render(camera, pose);
+    const double time = time_s(position);
+    Shutter shutter{shutter_poses(video->walk, camera, time, video->config.camera)};
+    if (video->exposure) shutter.exposure = video->exposure->at(time);
+    return renderer.render(camera, pose, shutter);
+  }
 
   void keep_ids(std::int64_t position, const IdImage& ids) {
     const std::lock_guard lock(mutex_);
@@ -68,6 +116,9 @@ struct SynthSequence::State {
 SynthSequence::SynthSequence(SynthRoom room, const PinholeCamera& camera, int frames,
                              const SynthSequenceConfig& config)
     : state_(std::make_unique<State>(std::move(room), camera, frames, config)) {}
+SynthSequence::SynthSequence(SynthRoom room, const PinholeCamera& camera, const VideoConfig& video,
+                             const SynthSequenceConfig& config)
+    : state_(std::make_unique<State>(std::move(room), camera, video, config)) {}
 SynthSequence::~SynthSequence() = default;
 SynthSequence::SynthSequence(SynthSequence&&) noexcept = default;
 SynthSequence& SynthSequence::operator=(SynthSequence&&) noexcept = default;
@@ -85,16 +136,20 @@ const std::vector<Pose>& SynthSequence::true_poses() const {
   return state_->poses;
 }
 
+bool SynthSequence::is_video() const {
+  return state_->video.has_value();
+}
+
 FrameRead SynthSequence::read(std::int64_t position) const {
   if (position < 0 || position >= size())
     return {std::nullopt, concat("frame ", position, ": the sequence has ", size(), " frames")};
   const Pose& pose = state_->poses[static_cast<std::size_t>(position)];
-  RenderedView view = state_->renderer.render(state_->camera, pose);
+  RenderedView view = state_->render(position);
   state_->keep_ids(position, view.ids);
   Frame frame;
   frame.index = position;
   frame.name = frame_name(position);
-  frame.timestamp_s = static_cast<double>(position) / kFramesPerSecond;
+  frame.timestamp_s = state_->time_s(position);
   frame.color_camera = frame.depth_camera = state_->camera;
   if (state_->config.noise) {
     const SensorNoiseConfig& sensor = state_->config.sensor;
@@ -122,13 +177,16 @@ std::vector<TruthInstance> SynthSequence::instances() const {
   std::vector<TruthInstance> instances;
   for (const RoomObject& object : state_->room.objects)
     instances.push_back(
-        {object.id, object.name, room_class_id(object.class_name), object.class_name});
+        {object.id, object.name, room_class_id(object.class_name), object.class_name, object.room});
   return instances;
 }
 
 Mesh SynthSequence::truth_mesh() const {
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < state_->poses.size(); i += state_->truth_stride())
+    poses.push_back(state_->poses[i]);
   return seen_part(surface_mesh(state_->room, state_->config.truth), state_->renderer.scene(),
-                   state_->camera, state_->poses, state_->config.truth);
+                   state_->camera, poses, state_->config.truth);
 }
 
 std::string SynthSequence::notice() const {
@@ -150,6 +208,8 @@ std::string SynthSequence::settings() const {
   const PinholeCamera& camera = state_->camera;
   ConfigFields fields;
   list_fields(state_->config, fields);
+  if (state_->video)
+    fields.group("video", [&](ConfigFields& group) { list_fields(state_->video->config, group); });
   return concat("room: ", state_->room.name, "\nseed: ", state_->room.seed, "\nframes: ", size(),
                 "\ncamera: {width: ", camera.width, ", height: ", camera.height,
                 ", fx: ", camera.fx, ", fy: ", camera.fy, ", cx: ", camera.cx, ", cy: ", camera.cy,

@@ -13,6 +13,8 @@
 #include "ovimap/synth/sensor_noise.h"
 #include "ovimap/synth/trajectory.h"
 #include "ovimap/synth/truth_mesh.h"
+#include "ovimap/synth/video_camera.h"
+#include "ovimap/synth/walk.h"
 
 namespace ovimap {
 
@@ -25,20 +27,31 @@ struct SynthSequenceConfig {
 };
 void list_fields(SynthSequenceConfig& config, ConfigFields& fields);
 
+/// How a walk is filmed; the camera's own side counts where SynthSequenceConfig::noise is set.
+struct VideoConfig {
+  WalkConfig walk;
+  VideoCameraConfig camera;
+};
+void list_fields(VideoConfig& config, ConfigFields& fields);
+
 /// One instance of the truth.
 struct TruthInstance {
   std::uint32_t id = 0;
   std::string name;
   std::uint32_t class_id = 0;  ///< room_class_id(class_name)
   std::string class_name;
+  std::string room = {};  ///< of a floor plan; else empty
 };
 
-/// A walk through a room as a sequence of posed RGB-D frames with exact truth. Frames are drawn
-/// when read, each from its position and the room's seed alone: any order and any subset gives the
-/// same bits. Colour and depth share one camera.
+/// Posed RGB-D frames of a room with exact truth: pictures from all sides, far apart, or the video
+/// of a walk. Frames are drawn when read, each from its position and the room's seed alone: any
+/// order and any subset gives the same bits. Colour and depth share one camera.
 class SynthSequence final : public FrameSource {
  public:
   SynthSequence(SynthRoom room, const PinholeCamera& camera, int frames,
+                const SynthSequenceConfig& config = {});
+  /// The video of a walk. Throws Error where there is no room to walk.
+  SynthSequence(SynthRoom room, const PinholeCamera& camera, const VideoConfig& video,
                 const SynthSequenceConfig& config = {});
   ~SynthSequence() override;
   SynthSequence(SynthSequence&&) noexcept;
@@ -52,6 +65,7 @@ class SynthSequence final : public FrameSource {
   const SynthRoom& room() const;
   const PinholeCamera& camera() const;
   const std::vector<Pose>& true_poses() const;  ///< world_from_camera, without noise
+  bool is_video() const;                        ///< whether frames have true times
 
   /// In the order of their ids.
   std::vector<TruthInstance> instances() const;

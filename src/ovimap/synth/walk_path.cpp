@@ -3,6 +3,7 @@
 #include "ovimap/synth/walk_path.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -72,6 +73,24 @@ Eigen::Vector2f corner(const SynthRoom& room, const WalkMap& map, float angle, f
   return best;
 }
 
+/// Through all corners and back to the first, which stands at both ends.
+std::vector<Eigen::Vector2f> closed_way(const WalkMap& map,
+                                        const std::vector<Eigen::Vector2f>& corners) {
+  std::vector<Eigen::Vector2f> loop;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    auto part = map.way(corners[i], corners[(i + 1) % corners.size()]);
+    loop.insert(loop.end(), part.begin(), part.end() - 1);
+  }
+  if (!loop.empty()) loop.push_back(loop.front());
+  return loop;
+}
+
+float length_of(const std::vector<Eigen::Vector2f>& line) {
+  float length = 0;
+  for (std::size_t i = 1; i < line.size(); ++i) length += (line[i] - line[i - 1]).norm();
+  return length;
+}
+
 }  // namespace
 
 WalkMap::WalkMap(const SynthRoom& room, const TrajectoryConfig& config) {
@@ -82,6 +101,8 @@ WalkMap::WalkMap(const SynthRoom& room, const TrajectoryConfig& config) {
     const Eigen::Vector2f point = center_of(static_cast<int>(i));
     const float wall = std::min(point.minCoeff(), (size - point).minCoeff());
     if (wall < config.body_radius_m) costs_[i] = kBlocked;
+    for (const OrientedBox& box : room.walls)
+      if (distance_outside(box, point) < config.body_radius_m) costs_[i] = kBlocked;
     for (const RoomObject& object : room.objects) {
       if (!object.footprint || object.footprint->top_m < kLow_m) continue;
       const OrientedBox& box = *object.footprint;
@@ -93,6 +114,35 @@ WalkMap::WalkMap(const SynthRoom& room, const TrajectoryConfig& config) {
         costs_[i] = std::max(costs_[i], config.low_furniture_cost);
     }
   }
+  find_largest_area();
+}
+
+void WalkMap::find_largest_area() {
+  std::vector<bool> seen(costs_.size(), false);
+  for (std::size_t start = 0; start < costs_.size(); ++start) {
+    if (seen[start] || costs_[start] == kBlocked) continue;
+    std::vector<int> area = {static_cast<int>(start)};
+    seen[start] = true;
+    for (std::size_t k = 0; k < area.size(); ++k)
+      for (const auto [dx, dy] : {std::array{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+        const int x = area[k] % costs_.width() + dx, y = area[k] / costs_.width() + dy;
+        if (!costs_.contains(x, y) || costs_.at(x, y) == kBlocked) continue;
+        const int next = y * costs_.width() + x;
+        if (seen[static_cast<std::size_t>(next)]) continue;
+        seen[static_cast<std::size_t>(next)] = true;
+        area.push_back(next);
+      }
+    if (area.size() > area_.size()) area_ = std::move(area);
+  }
+}
+
+std::optional<Eigen::Vector2f> WalkMap::nearest_free(const Eigen::Vector2f& point_m) const {
+  std::optional<Eigen::Vector2f> best;
+  for (const int cell : area_) {
+    const Eigen::Vector2f center = center_of(cell);
+    if (!best || (center - point_m).squaredNorm() < (*best - point_m).squaredNorm()) best = center;
+  }
+  return best;
 }
 
 int WalkMap::cell_of(const Eigen::Vector2f& point_m) const {
@@ -151,6 +201,21 @@ std::vector<Eigen::Vector2f> WalkMap::way(const Eigen::Vector2f& from_m,
   return points;
 }
 
+std::vector<Eigen::Vector2f> even_loop(const WalkMap& map,
+                                       const std::vector<Eigen::Vector2f>& corners,
+                                       float spacing_m) {
+  std::vector<Eigen::Vector2f> loop = closed_way(map, corners);
+  for (const float spacing : {kSpacing_m, spacing_m}) {
+    const float length = length_of(loop);
+    if (length <= 0) return {};
+    loop = resampled(loop, static_cast<int>(std::ceil(length / spacing)));
+    if (spacing == kSpacing_m) smooth_loop(map, loop);
+    loop.push_back(loop.front());
+  }
+  loop.pop_back();
+  return loop;
+}
+
 std::vector<Eigen::Vector2f> walk_round(const SynthRoom& room, int laps, int count,
                                         const TrajectoryConfig& config) {
   const WalkMap map(room, config);
@@ -160,16 +225,9 @@ std::vector<Eigen::Vector2f> walk_round(const SynthRoom& room, int laps, int cou
       const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(i) / kCornersPerLap;
       corners.push_back(corner(room, map, angle, lap == 0 ? 1.f : kInnerLap));
     }
-  std::vector<Eigen::Vector2f> loop;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    auto part = map.way(corners[i], corners[(i + 1) % corners.size()]);
-    loop.insert(loop.end(), part.begin(), part.end() - 1);
-  }
-  loop.push_back(loop.front());
-  float length = 0;
-  for (std::size_t i = 1; i < loop.size(); ++i) length += (loop[i] - loop[i - 1]).norm();
+  const std::vector<Eigen::Vector2f> loop = closed_way(map, corners);
   std::vector<Eigen::Vector2f> even =
-      resampled(loop, std::max(count, static_cast<int>(length / kSpacing_m)));
+      resampled(loop, std::max(count, static_cast<int>(length_of(loop) / kSpacing_m)));
   smooth_loop(map, even);
   even.push_back(even.front());
   return resampled(even, count);
