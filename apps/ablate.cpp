@@ -7,6 +7,7 @@
 #include <set>
 
 #include "ablation.h"
+#include "ablation_schedule.h"
 #include "kept_settings.h"
 #include "mapping_run.h"
 #include "ovimap/base/parallel.h"
@@ -48,6 +49,20 @@ std::string scene_name(const std::string& scene) {
   return slug((path.has_filename() ? path : path.parent_path()).filename().string());
 }
 
+double rate_of(const MappingOptions& mapping) {
+  const auto source = open_frame_source(mapping.source, read_program_config(mapping).source);
+  const auto range = positions(parse_frame_range(mapping.frames), source->size());
+  return video_rate(*source, range, mapping.source);
+}
+
+/// The schedule in frames of this recording.
+std::vector<std::string> settings_of(const AblationSchedule& schedule,
+                                     const MappingOptions& mapping) {
+  const double rate = rate_of(mapping);
+  return {concat("mask_interval=", frames_between(schedule.masks_s, rate)),
+          concat("view_interval=", frames_between(schedule.views_s, rate))};
+}
+
 MappingOptions options_of(const AblateOptions& options, const AblationVariant& variant,
                           const std::string& scene) {
   MappingOptions mapping = options.mapping;
@@ -59,6 +74,9 @@ MappingOptions options_of(const AblateOptions& options, const AblationVariant& v
   // What is compared without 2D masks is compared in words as well.
   if (variant.masks == "none" && mapping.encoder == "auto") mapping.encoder = "default";
   mapping.settings.insert(mapping.settings.end(), variant.settings.begin(), variant.settings.end());
+  if (variant.schedule)
+    for (std::string& setting : settings_of(*variant.schedule, mapping))
+      mapping.settings.push_back(std::move(setting));
   return mapping;
 }
 
@@ -142,6 +160,22 @@ std::string heading(const AblateOptions& options) {
                 "). Published figures are the paper's, with its own networks on its own data.");
 }
 
+/// What the heading says of the recordings' frame rates, where they matter.
+std::string rates_text(const AblateOptions& options, const Ablation& ablation) {
+  if (std::none_of(ablation.variants.begin(), ablation.variants.end(),
+                   [](const AblationVariant& variant) { return variant.schedule.has_value(); }))
+    return {};
+  std::string text = " Frames a second that are mapped:";
+  for (const std::string& scene : options.scenes) {
+    MappingOptions mapping = options.mapping;
+    mapping.source = scene;
+    char rate[32];
+    std::snprintf(rate, sizeof rate, " %.1f", rate_of(mapping));
+    text += (&scene == &options.scenes.front() ? "" : ",") + std::string(rate);
+  }
+  return text + ".";
+}
+
 /// A model that is missing or damaged is said now, not when its turn comes.
 void require_models(const AblateOptions& options, const Ablation& ablation) {
   std::set<std::pair<std::string, std::string>> tried;
@@ -177,6 +211,7 @@ int ablate(const AblateOptions& options) {
   for (const std::string& scene : options.scenes)  // before anything slow
     if (!timing) load_truth(scene);
   require_models(options, ablation);
+  const std::string rates = rates_text(options, ablation);
   make_folder(options.out);
   require_same_settings(options.out, settings_text(options.mapping));
   watch_for_interrupt();
@@ -184,7 +219,7 @@ int ablate(const AblateOptions& options) {
   std::vector<AblationResult> results;
   for (const AblationVariant& variant : ablation.variants)
     results.push_back(measure(options, ablation, variant));
-  const std::string table = ablation_markdown(ablation, results, heading(options));
+  const std::string table = ablation_markdown(ablation, results, heading(options) + rates);
   write_text(options.out / (options.name + ".md"), table);
   write_text(options.out / (options.name + ".csv"), ablation_csv(ablation, results));
   write_text(options.out / (options.name + ".svg"), ablation.along_frames

@@ -11,12 +11,18 @@
 
 namespace ovimap::apps {
 
+/// How often networks are asked in a video, whatever its frame rate; 0: in every frame.
+struct AblationSchedule {
+  double masks_s = 0, views_s = 0;
+};
+
 /// One way to make a map: what differs from the program's defaults.
 struct AblationVariant {
   std::string name;
   std::string masks, encoder, views;  ///< as the options take them; empty: as for all variants
   std::vector<std::string> settings;  ///< "a.b=c"
   std::string frames = ":";
+  std::optional<AblationSchedule> schedule;
   bool true_objects = false;  ///< embeds the truth's own objects and maps nothing
   std::string curve = {};     ///< of a variant that is one point of a curve: which one
   int frame_count = 0;        ///< ... and where on it

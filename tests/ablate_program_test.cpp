@@ -72,6 +72,34 @@ TEST_F(AblateProgramTest, TimesTheStages) {
   EXPECT_EQ(lines_with("out/timing.md", "*964.8*"), 1u);
 }
 
+TEST_F(AblateProgramTest, SchedulesAreInSecondsOfTheVideo) {
+  ASSERT_EQ(run(command("schedule")).code, 0);
+  EXPECT_EQ(lines_with("out/schedule.md", "Frames a second that are mapped: 30.0."), 1u);
+  EXPECT_EQ(lines_with("out/schedule.md", "| paper: masks 1, views 3 a second |"), 2u);
+  // A map remembers how it was made: 30 frames a second have masks in every 30th.
+  const auto config_of = [&](const std::string& map) {
+    return run_json("info out/maps/schedule/scene-" + map + ".ovimap --json")["config"]
+        .get<std::string>();
+  };
+  EXPECT_NE(config_of("offline-every-frame").find("\nmask_interval: 1\n"), std::string::npos);
+  const std::string paper = config_of("paper-masks-1-views-3-a-second");
+  EXPECT_NE(paper.find("\nmask_interval: 30\n"), std::string::npos);
+  EXPECT_NE(paper.find("\nview_interval: 10\n"), std::string::npos);
+}
+
+TEST_F(AblateProgramTest, ASchedulesInputIsAVideo) {
+  const auto times = [&](double spacing_s) {
+    std::string text;
+    for (int i = 0; i < 100; ++i) text += concat(spacing_s * i, "\n");
+    fixture::write_text(path("replica/scene/timestamps.txt"), text);
+  };
+  times(0.001);  // as if frames from all sides had been taken in no time
+  expect_complaint(command("schedule"), {"replica/scene", "m and turns", "--walk"});
+  times(1);
+  expect_complaint(command("schedule"), {"replica/scene", "1 frames a second", "--walk"});
+  EXPECT_FALSE(std::filesystem::exists(path("out/maps"))) << "said before anything slow";
+}
+
 TEST_F(AblateProgramTest, SaysWhatIsWrong) {
   expect_complaint(command("viewz"), {"viewz", "views"});
   expect_complaint("ablate fusion replica/scene -o late --encoder none --masks nosuch", {"nosuch"});
