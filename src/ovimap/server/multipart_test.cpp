@@ -55,7 +55,7 @@ TEST(MultipartTest, HostileBodiesCostNoMoreThanOthers) {
   const std::string head = "--" + boundary + "\r\nContent-Disposition: form-data; name=a\r\n\r\n";
   EXPECT_THROW(parse_multipart(type, head + near), BadRequest);
   EXPECT_THROW(parse_multipart(type, head + std::string(bytes, '-')), BadRequest);
-  EXPECT_THROW(parse_multipart(type, std::string(bytes, '-')), BadRequest);
+  EXPECT_TRUE(parse_multipart(type, std::string(bytes, '-')).empty());  // ends at once
   EXPECT_THROW(parse_multipart("multipart/form-data;" + std::string(8000, ';'), "--b--"),
                BadRequest);
 }
