@@ -74,7 +74,7 @@ class Attacked(Strangers, Bodies, Crowds):
     def watched(self, bounded_memory=True):
         server = self.server
         try:
-            with server.watched(bounded_memory and not self.is_live):
+            with server.watched(bounded_memory and not self.is_live, self.is_live):
                 yield
             assert self.is_live or server.named() == server.names, "an object was renamed"
         except Exception:

@@ -55,8 +55,9 @@ class Witness:
             process.stdout.close()
 
 
-def fault_of(requests):
-    """What the normal client has to complain of; empty: nothing."""
+def fault_of(requests, mapping):
+    """What the normal client has to complain of; empty: nothing. A mapping takes the processors, too: then only the
+    slowest counts."""
     if not requests:
         return "the normal client got no answer at all"
     failed = [request for request in requests if request[1] < 0]
@@ -65,7 +66,7 @@ def fault_of(requests):
     took, echo = (sorted(column) for column in list(zip(*requests))[1:])
     usual = int(USUAL_SHARE * (len(took) - 1))
     allowed, slowest_allowed = USUAL_S + BUSY_FACTOR * echo[usual], SLOWEST_S + BUSY_FACTOR * echo[-1]
-    if took[usual] > allowed or took[-1] > slowest_allowed:
+    if (took[usual] > allowed and not mapping) or took[-1] > slowest_allowed:
         return (f"{USUAL_SHARE:.0%} of {len(took)} requests took up to {took[usual]:.3f} s, the slowest {took[-1]:.3f} s; "
                 f"promised are {allowed:.3f} and {slowest_allowed:.3f} s")  # fmt: skip
     return ""
@@ -113,7 +114,7 @@ class Server:
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
     @contextlib.contextmanager
-    def watched(self, bounded_memory=True):
+    def watched(self, bounded_memory=True, mapping=False):
         """Raises AssertionError when, in this block, the server does not keep what it promises."""
         self.witness.requests()
         begin = time.monotonic()
@@ -121,7 +122,7 @@ class Server:
         time.sleep(max(0.0, begin + SHORTEST_WATCH_S - time.monotonic()))
         assert self.process.poll() is None, f"the server ended with {self.process.poll()}"
         grown = self.resident("VmHWM") - self.start_bytes
-        fault = fault_of(self.witness.requests())
+        fault = fault_of(self.witness.requests(), mapping)
         assert not fault, fault
         assert not bounded_memory or grown < MOST_GROWTH_BYTES, f"resident memory grew by {grown >> 20} MiB"
         assert self.ask("GET", "/api/map")[0] == 200

@@ -33,6 +33,7 @@ using Vocabulary = std::unordered_map<std::string, std::int64_t>;
 }
 
 Vocabulary read_vocabulary(const fs::path& file) {
+  if (!fs::is_regular_file(file)) fault(file, "cannot be read");
   const nlohmann::json document = read_json(file, kLargeDocument);
   try {
     return document.get<Vocabulary>();
