@@ -54,13 +54,15 @@ TEST(FuseViews, MayTakeTheLargestAlone) {
   std::vector<ObjectView> views = {view(1, 5, {0, 1}), view(2, 9, {1, 0}), view(3, 7, {1, 0}),
                                    view(4, 5, {0, 1})};
   const auto east = Eigen::Vector2f(1, 0);
-  EXPECT_TRUE(fuse_views(views, {FeatureFusion::kPixelWeighted, 2}).isApprox(east));
-  EXPECT_TRUE(fuse_views(views, {FeatureFusion::kMean, 2}).isApprox(east));
-  EXPECT_GT(fuse_views(views, {FeatureFusion::kMean, 3})[1], 0.1f);
-  EXPECT_EQ(fuse_views(views, {FeatureFusion::kMean, 4}), fuse_views(views, FeatureFusion::kMean));
-  EXPECT_EQ(fuse_views(views, {FeatureFusion::kMean, 0}), fuse_views(views, FeatureFusion::kMean));
+  EXPECT_TRUE(fuse_views(refs(views), {FeatureFusion::kPixelWeighted, 2}).isApprox(east));
+  EXPECT_TRUE(fuse_views(refs(views), {FeatureFusion::kMean, 2}).isApprox(east));
+  EXPECT_GT(fuse_views(refs(views), {FeatureFusion::kMean, 3})[1], 0.1f);
+  EXPECT_EQ(fuse_views(refs(views), {FeatureFusion::kMean, 4}),
+            fuse_views(refs(views), FeatureFusion::kMean));
+  EXPECT_EQ(fuse_views(refs(views), {FeatureFusion::kMean, 0}),
+            fuse_views(refs(views), FeatureFusion::kMean));
   views[1].embedding = {};  // not answered: the next in size takes its place
-  EXPECT_GT(fuse_views(views, {FeatureFusion::kMean, 2})[1], 0.1f);
+  EXPECT_GT(fuse_views(refs(views), {FeatureFusion::kMean, 2})[1], 0.1f);
 }
 
 TEST(FuseViews, PassesOverViewsWithoutAnswer) {
