@@ -77,8 +77,15 @@ OVIMAP_INLINE Floats slopes(const FusionView& view, const ProjectedRow& row, Int
   return slope;
 }
 
-/// Distances and weights: 1/z^2 in steps of 1/4096, falling to zero between one voxel and one
-/// truncation behind the surface; beyond 90 m they are 0. Returns whether any voxel is observed.
+/// What an observation's weight is the inverse of (Observation::sigma_m).
+OVIMAP_INLINE Floats variance(const FusionView& view, const ProjectedRow& row, Floats depth) {
+  if (!view.frame.sigma_m) return depth * depth;
+  const Floats sigma = gather(view.frame.sigma_m->data(), row.pixel) * view.voxels_per_m;
+  return sigma * sigma + FusionView::kLeastVariance;
+}
+
+/// Distances and weights, in steps of 1/4096, falling to zero between one voxel and one truncation
+/// behind the surface; below half a step they are 0. Returns whether any voxel is observed.
 OVIMAP_INLINE bool observe(const FusionView& view, const ProjectedRow& row, ObservedRow& seen) {
   if (!any(row.inside)) return false;
   const Floats depth = gather(view.frame.depth.data(), row.pixel);
@@ -92,7 +99,7 @@ OVIMAP_INLINE bool observe(const FusionView& view, const ProjectedRow& row, Obse
   const Floats falloff =
       smaller(broadcast(1.f), (seen.distance_m + view.truncation_m) * view.inverse_falloff);
   // Adding a number drops what lies below its last bit: the steps of a weight.
-  const Floats rounded = falloff / (depth * depth) + kWeightRounder - kWeightRounder;
+  const Floats rounded = falloff / variance(view, row, depth) + kWeightRounder - kWeightRounder;
   seen.observed = near & (rounded > 0.f);
   seen.weight = seen.observed ? rounded : Floats{};
   return any(seen.observed);
@@ -177,6 +184,7 @@ FusionView::FusionView(const VoxelMapConfig& config, const Observation& observat
       to_tsdf(VoxelBlock::kTsdfScale / truncation_m),
       max_weight(config.max_weight),
       label_band_m(config.label_band_voxels * config.voxel_size_m),
+      voxels_per_m(1.f / config.voxel_size_m),
       voxel_size_m_(config.voxel_size_m) {
   const Pose camera_from_world = observation.world_from_camera.inverse();
   rotation_ = camera_from_world.linear();

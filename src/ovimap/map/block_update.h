@@ -9,6 +9,9 @@ namespace ovimap {
 /// Everything about a frame that is the same for all blocks.
 class FusionView {
  public:
+  /// Squared voxels. However sure a depth is, a voxel stands for what lies within half of one.
+  static constexpr float kLeastVariance = 0.25f;
+
   FusionView(const VoxelMapConfig& config, const Observation& observation);
 
   /// Camera coordinates of a block's first voxel centre; in double, as maps may be far from the
@@ -20,7 +23,7 @@ class FusionView {
 
   const Observation& frame;
   const PinholeCamera& camera;
-  float truncation_m, inverse_falloff, to_tsdf, max_weight, label_band_m;
+  float truncation_m, inverse_falloff, to_tsdf, max_weight, label_band_m, voxels_per_m;
   Eigen::Matrix3f voxel_steps;  ///< one voxel along x, y, z of the world, camera frame, metres
 
  private:

@@ -19,13 +19,19 @@ struct Observation {
   const Pose& world_from_camera;
   const RgbImage* color = nullptr;             ///< registered to the depth; black = unknown
   const Image<float>* plane_slope = nullptr;   ///< see DepthSurface::plane_slope; 0 = unknown
+  const Image<float>* sigma_m = nullptr;  ///< standard deviation of the depth; null: unknown, it
+                                          ///< is taken to grow with depth
   const IdImage* segment_ids = nullptr;        ///< segment of each pixel; 0 = none
   std::span<const Label> segment_labels = {};  ///< label of segment id, at [id - 1]
 };
 
 /// Fuses one frame into the map: distance, colour and label support, one pass over the blocks near
-/// the observed surface (method section 5; weights 1/z^2 as in voxblox, linear drop-off behind the
-/// surface).
+/// the observed surface (method section 5; linear drop-off behind the surface).
+///
+/// An observation weighs what it tells: the inverse of its variance in squared voxels, to which the
+/// voxel's own half is added (Curless and Levoy 1996, section 3.1). So the weight of a voxel is its
+/// information, and the square root of its inverse the standard error of its distance, in voxels.
+/// Where the deviation is unknown an observation weighs 1/z^2, z in metres, as in voxblox.
 ///
 /// Where a plane was fitted the distance is that to the plane: the difference of depths times the
 /// plane's slope, else times the length of the ray. Projective distances alone are too long on

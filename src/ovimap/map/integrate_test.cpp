@@ -65,13 +65,14 @@ TEST(Integrate, GivesTheSameBitsForEveryThreadCount) {
 /// segments of which one has no label.
 struct RoughFrame {
   DepthImage depth;
-  Image<float> slope;
+  Image<float> slope, sigma;
   RgbImage color;
   IdImage segments;
 
   RoughFrame(const SphereScene& scene, std::uint32_t seed)
       : depth(scene.depth()),
         slope(scene.plane_slope()),
+        sigma(depth.width(), depth.height()),
         color(depth.width(), depth.height()),
         segments(depth.width(), depth.height()) {
     for (std::size_t i = 0; i < depth.size(); ++i) {
@@ -79,6 +80,7 @@ struct RoughFrame {
       depth[i] += depth[i] > 0.f ? 0.01f * (static_cast<float>(seed >> 8) / 16777216.f - 0.5f) : 0;
       if (seed >> 28 == 0) depth[i] = 0.f;
       if (seed >> 28 == 1) slope[i] = 0.f;
+      sigma[i] = 0.2f * static_cast<float>(seed >> 20 & 255) / 256.f;
       if (seed >> 28 > 2)
         color[i] = {static_cast<std::uint8_t>(seed >> 20), static_cast<std::uint8_t>(seed >> 12),
                     static_cast<std::uint8_t>(seed >> 4)};
@@ -101,6 +103,7 @@ TEST(Integrate, EqualsThePlainFusionToTheBit) {
                                   .world_from_camera = pose,
                                   .color = view == 2 ? nullptr : &frame.color,
                                   .plane_slope = view == 3 ? nullptr : &frame.slope,
+                                  .sigma_m = view == 0 ? nullptr : &frame.sigma,
                                   .segment_ids = view == 1 ? nullptr : &frame.segments,
                                   .segment_labels = labels};
     integrate(fast, observation);

@@ -44,6 +44,13 @@ class VoxelFusion {
     return fitted > 0.f ? std::max(fitted, 0.1f) : view_.ray_length(static_cast<int>(pixel));
   }
 
+  float variance(std::size_t pixel) const {
+    const float depth = view_.frame.depth[pixel];
+    if (!view_.frame.sigma_m) return depth * depth;
+    const float sigma = (*view_.frame.sigma_m)[pixel] * view_.voxels_per_m;
+    return sigma * sigma + FusionView::kLeastVariance;
+  }
+
   void fuse_voxel(std::size_t voxel, const Eigen::Vector3f& point) {
     const int index = pixel_of(point);
     if (index < 0) return;
@@ -55,7 +62,7 @@ class VoxelFusion {
     if (depth <= 0.f || in_front * in_front * range_squared >= reach * reach) return;
     const float distance = in_front * slope(pixel);
     const float falloff = std::min(1.f, (distance + view_.truncation_m) * view_.inverse_falloff);
-    const float weight = std::nearbyint(falloff / (depth * depth) * 4096.f) / 4096.f;
+    const float weight = std::nearbyint(falloff / variance(pixel) * 4096.f) / 4096.f;
     if (weight <= 0.f) return;
     const float sum = block_.weight[voxel] + weight, share = weight / sum;
     constexpr float kMost = VoxelBlock::kTsdfScale;

@@ -40,11 +40,14 @@ void fuse_again(const KeptFrame& kept, const PinholeCamera& camera, const Pose& 
   const KeptImages images = decode_kept(kept, camera);
   const DepthSurface surface = fit_depth_surface(images.depth, camera, config.segment.surface);
   const std::vector<Label> labels = roots_of(kept.labels, map.labels());
-  integrate(map, {.depth = images.depth,
+  const DepthEstimate estimate =
+      estimate_depth(images.depth, surface, config.segment.surface.noise, config.depth);
+  integrate(map, {.depth = estimate.depth_m,
                   .camera = camera,
                   .world_from_camera = world_from_camera,
                   .color = &images.color,
                   .plane_slope = &surface.plane_slope,
+                  .sigma_m = estimate.sigma_m.empty() ? nullptr : &estimate.sigma_m,
                   .segment_ids = labels.empty() ? nullptr : &images.segment_ids,
                   .segment_labels = labels});
 }

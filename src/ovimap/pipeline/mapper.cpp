@@ -16,11 +16,13 @@ namespace {
 
 Observation observation_of(const PreparedFrame& prepared, const FrameSegments* cut,
                            std::span<const Label> labels) {
-  return {.depth = prepared.frame->depth,
+  const Image<float>& sigma = prepared.depth.sigma_m;
+  return {.depth = prepared.depth.depth_m,
           .camera = prepared.frame->depth_camera,
           .world_from_camera = prepared.frame->world_from_camera,
           .color = &prepared.color,
           .plane_slope = &prepared.surface.plane_slope,
+          .sigma_m = sigma.empty() ? nullptr : &sigma,
           .segment_ids = cut ? &cut->segments.ids : nullptr,
           .segment_labels = labels};
 }

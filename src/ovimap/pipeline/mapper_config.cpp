@@ -14,6 +14,7 @@ constexpr int kNeverSoMany = 100000000;  // pixels; no image has them
 
 void list_fields(MapperConfig& config, ConfigFields& fields) {
   fields.group("segment", [&](ConfigFields& f) { list_fields(config.segment, f); });
+  fields.group("depth", [&](ConfigFields& f) { list_fields(config.depth, f); });
   fields.group("mask_fusion", [&](ConfigFields& f) { list_fields(config.mask_fusion, f); });
   fields.group("association", [&](ConfigFields& f) { list_fields(config.association, f); });
   fields.group("instance", [&](ConfigFields& f) { list_fields(config.instance, f); });
@@ -49,7 +50,9 @@ MapperConfig mapper_preset(const std::string& name) {
   config.association.association = AssociationRule::kOneToOne;
   config.instance.instances = InstanceReading::kEntityVotes;
   config.instance.merging.merge_max_dissent = 1e6f;  // the paper counts no dissent
+  config.depth.enabled = false;
   config.map.max_weight = 1e4f;
+  config.map.min_mesh_weight = 1e-4f;
   config.map.label_band_voxels = static_cast<float>(config.map.truncation_voxels);
   config.mask_fusion.min_entity_px = kNeverSoMany;
   config.summary.min_instance_voxels = 1;

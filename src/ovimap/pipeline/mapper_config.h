@@ -11,6 +11,7 @@
 #include "ovimap/map/voxel_map.h"
 #include "ovimap/pipeline/appearance_builder.h"
 #include "ovimap/pipeline/frame_store.h"
+#include "ovimap/segment/depth_estimate.h"
 #include "ovimap/segment/depth_segmentation.h"
 #include "ovimap/segment/mask_fusion.h"
 
@@ -19,6 +20,7 @@ namespace ovimap {
 /// Every parameter of the mapper, each defined beside its component.
 struct MapperConfig {
   SegmentDepthConfig segment;
+  DepthEstimateConfig depth;
   MaskFusionConfig mask_fusion;
   AssociationConfig association;
   InstanceConfig instance;

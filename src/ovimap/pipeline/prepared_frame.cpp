@@ -43,8 +43,12 @@ PreparedFrame prepare_frame(std::shared_ptr<const Frame> frame, const MapperConf
     auto t = timers.measure("surface");
     return fit_depth_surface(frame->depth, frame->depth_camera, config.segment.surface);
   }();
+  DepthEstimate estimate = [&] {
+    auto t = timers.measure("estimate");
+    return estimate_depth(frame->depth, surface, config.segment.surface.noise, config.depth);
+  }();
   RgbImage color = registration.color_at_depth(frame->color);
-  return {std::move(frame), std::move(registration), std::move(surface), std::move(color)};
+  return {std::move(frame), std::move(registration), std::move(surface), std::move(estimate), std::move(color)};
 }
 
 std::optional<FrameSegments> cut_segments(const PreparedFrame& prepared, MaskSource* masks,

@@ -17,6 +17,7 @@ struct PreparedFrame {
   std::shared_ptr<const Frame> frame;
   Registration registration;
   DepthSurface surface;
+  DepthEstimate depth;  ///< what is fused
   RgbImage color;  ///< registered to the depth
 };
 
