@@ -16,8 +16,8 @@ namespace {
 
 Observation observation_of(const PreparedFrame& prepared, const FrameSegments* cut,
                            std::span<const Label> labels) {
-  const Image<float>& sigma = prepared.depth.sigma_m;
-  return {.depth = prepared.depth.depth_m,
+  const Image<float>& sigma = prepared.estimate.sigma_m;
+  return {.depth = prepared.estimate.depth_m,
           .camera = prepared.frame->depth_camera,
           .world_from_camera = prepared.frame->world_from_camera,
           .color = &prepared.color,

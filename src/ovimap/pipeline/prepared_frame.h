@@ -17,7 +17,7 @@ struct PreparedFrame {
   std::shared_ptr<const Frame> frame;
   Registration registration;
   DepthSurface surface;
-  DepthEstimate depth;  ///< what is fused
+  DepthEstimate estimate;  ///< what is fused
   RgbImage color;  ///< registered to the depth
 };
 
