@@ -152,10 +152,7 @@ Ablation schedule() {
                        of_periods("masks 6 a second", 1. / 6, 0),
                        of_periods("masks 1 a second", 1, 0),
                        of_periods("paper: masks 1, views 3 a second", 1, 1. / 3)};
-  ablation.published = {{"offline", "Replica", {26.5, 32.2, 34.5, 21.2, 8.5, kNone, kNone}},
-                        {"30 fps", "Replica", {27.0, 32.5, 31.8, 17.7, 8.0, kNone, kNone}},
-                        {"offline", "ScanNet", {17.5, 27.6, 23.4, 15.7, 7.2, kNone, kNone}},
-                        {"30 fps", "ScanNet", {16.3, 25.4, 21.1, 14.4, 7.0, kNone, kNone}}};
+  ablation.published = published_schedule();
   return ablation;
 }
 

@@ -112,4 +112,11 @@ std::vector<PublishedRow> published_encoders() {
           {"siglip2-so400m-patch14-384", kReplica, {26.4, 34.3, 36.4, 23.1, 9.4}}};
 }
 
+std::vector<PublishedRow> published_schedule() {
+  return {{"offline", kReplica, {26.5, 32.2, 34.5, 21.2, 8.5, kNone, kNone}},
+          {"30 fps", kReplica, {27.0, 32.5, 31.8, 17.7, 8.0, kNone, kNone}},
+          {"offline", kScanNet, {17.5, 27.6, 23.4, 15.7, 7.2, kNone, kNone}},
+          {"30 fps", kScanNet, {16.3, 25.4, 21.1, 14.4, 7.0, kNone, kNone}}};
+}
+
 }  // namespace ovimap::apps

@@ -25,5 +25,6 @@ std::vector<PublishedRow> published_views();     ///< classes' mIoU, mAcc, AP25,
 std::vector<PublishedRow> published_masks();     ///< instances' mIoU ... AP25, classes' ... AP50
 std::vector<PublishedRow> published_fusion();    ///< classes' mIoU, mAcc, AP25, AP50, AP
 std::vector<PublishedRow> published_encoders();  ///< classes' mIoU, mAcc, AP25, AP50, AP
+std::vector<PublishedRow> published_schedule();  ///< the same, then instances' mIoU and AP50
 
 }  // namespace ovimap::apps

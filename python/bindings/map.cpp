@@ -303,9 +303,10 @@ nb::tuple map_identity(const nb::object& path) {
     const WithoutGil release;
     map = read_map_identity(file);
   }
-  return nb::make_tuple(map.source, map.frames, map.unfinished, hash_text(map.content_hash),
+  return nb::make_tuple(map.source, map.frames, map.unfinished,
+                        ovimap::hash_text(map.content_hash),
                         nb::make_tuple(map.encoder.name, map.encoder.dimension, map.encoder.digest),
-                        hash_text(map.revision));
+                        ovimap::hash_text(map.revision));
 }
 
 void bind_map(nb::module_& module) {

@@ -23,7 +23,13 @@ void integrate_some(VoxelMap& map, int first, int last, Label label,
   const IdImage ids(depth.width(), depth.height(), 1);
   for (int view = first; view < last; ++view) {
     const Pose pose = world_from_scene * scene.pose(2 * M_PI * view / 12);
-    integrate(map, {depth, scene.camera, pose, &color, &slope, nullptr, &ids, std::span(&label, 1)});
+    integrate(map, {.depth = depth,
+                    .camera = scene.camera,
+                    .world_from_camera = pose,
+                    .color = &color,
+                    .plane_slope = &slope,
+                    .segment_ids = &ids,
+                    .segment_labels = std::span(&label, 1)});
   }
 }
 

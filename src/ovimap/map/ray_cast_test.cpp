@@ -102,8 +102,11 @@ TEST(RayCast, AgreesWithThePlainMarchOnNoisyDepth) {
     for (float& d : depth) d = d > 0.f && random() % 10 != 0 ? d + noise(random) : 0.f;
     const IdImage segments(depth.width(), depth.height(), 1);
     const std::array<Label, 1> labels{label};
-    integrate(map,
-              {depth, scene.camera, scene.pose(0.2 * view), nullptr, nullptr, &segments, labels});
+    integrate(map, {.depth = depth,
+                    .camera = scene.camera,
+                    .world_from_camera = scene.pose(0.2 * view),
+                    .segment_ids = &segments,
+                    .segment_labels = labels});
   }
   const Pose pose = scene.pose(0.5);
   const Disagreement found(cast_rays(map, scene.camera, pose, 5.f),

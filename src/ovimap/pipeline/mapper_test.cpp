@@ -52,8 +52,8 @@ TEST(Mapper, MasksOfAnotherSizeAreAFaultOfTheirFrame) {
   class SmallMasks : public MaskSource {
    public:
     std::string kind() const override { return "small"; }
-    Entities entities(const Frame&, std::span<const MaskPrompt>) override {
-      return {IdImage(8, 6, 1), {1.f}};
+    std::optional<Entities> entities(const Frame&, std::span<const MaskPrompt>) override {
+      return Entities{IdImage(8, 6, 1), {1.f}};
     }
   };
   Mapper mapper({}, std::make_shared<SmallMasks>());
