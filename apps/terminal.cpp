@@ -81,6 +81,7 @@ bool interrupted() {
 void watch_for_interrupt() {
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
+  std::signal(SIGPIPE, SIG_IGN);  // who reads what is printed may go; what is mapped must not
 }
 
 }  // namespace ovimap::apps

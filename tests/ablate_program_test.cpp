@@ -26,7 +26,7 @@ TEST_F(AblateProgramTest, ComparesFusionRules) {
   const ProgramResult result = run(command("fusion"));
   ASSERT_EQ(result.code, 0) << result.err;
   EXPECT_EQ(result.out, slurp(path("out/fusion.md")));
-  EXPECT_EQ(lines_with("out/fusion.md", "| pixel_weighted |"), 2u);  // one a protocol
+  EXPECT_EQ(lines_with("out/fusion.md", "| pixel_weighted |"), 3u) << "two protocols, one paper";
   EXPECT_EQ(lines_with("out/fusion.csv", ",measured,"), 8u);
   EXPECT_EQ(lines_with("out/fusion.csv", "\"published, Replica\",26.9,33.2,36.4,22,8.6"), 1u);
   EXPECT_EQ(lines_with("out/fusion.svg", "<rect"), 1 + 5 + 4 * 5u);

