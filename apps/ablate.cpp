@@ -12,10 +12,10 @@
 #include "mapping_run.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/base/version.h"
-#include "ovimap/io/map_file.h"
-#include "ovimap/io/truth.h"
-#include "ovimap/pipeline/geometry_embedding.h"
-#include "ovimap/pipeline/map_pictures.h"
+#include "ovimap/io/map_file/map_file.h"
+#include "ovimap/io/truth/truth.h"
+#include "ovimap/pipeline/report/map_pictures.h"
+#include "ovimap/pipeline/sequence/geometry_embedding.h"
 
 namespace ovimap::apps {
 

@@ -5,8 +5,8 @@
 #include <cstdio>
 
 #include "ablation.h"
-#include "ovimap/io/map_file.h"
-#include "ovimap/pipeline/timings_text.h"
+#include "ovimap/io/map_file/map_file.h"
+#include "ovimap/pipeline/sequence/timings_text.h"
 
 namespace ovimap::apps {
 

@@ -10,10 +10,10 @@
 #include "bench.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/base/version.h"
-#include "ovimap/io/map_file.h"
-#include "ovimap/map/mesh_extraction.h"
-#include "ovimap/pipeline/map_search.h"
-#include "ovimap/pipeline/sequence_run.h"
+#include "ovimap/io/map_file/map_file.h"
+#include "ovimap/map/surface/mesh_extraction.h"
+#include "ovimap/pipeline/search/map_search.h"
+#include "ovimap/pipeline/sequence/sequence_run.h"
 
 namespace ovimap::apps {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "command.h"
-#include "ovimap/map/incremental_mesh.h"
+#include "ovimap/map/surface/incremental_mesh.h"
 
 namespace ovimap::apps {
 

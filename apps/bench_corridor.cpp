@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "bench.h"
-#include "ovimap/synth/corridor.h"
+#include "ovimap/synth/recordings/corridor.h"
 
 namespace ovimap::apps {
 

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "ovimap/base/parallel.h"
-#include "ovimap/frames/color_calibration.h"
+#include "ovimap/frames/calibration/color_calibration.h"
 #include "ovimap/image/codec.h"
 
 namespace ovimap::apps {

@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "command.h"
-#include "ovimap/frames/source_check.h"
+#include "ovimap/frames/check/source_check.h"
 
 namespace ovimap::apps {
 

@@ -11,12 +11,12 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "ovimap/frames/frame_source.h"
-#include "ovimap/inference/image_text_encoder.h"
+#include "ovimap/frames/frame/frame_source.h"
+#include "ovimap/inference/encoders/image_text_encoder.h"
 #include "ovimap/inference/mask_source_factory.h"
-#include "ovimap/io/map_document.h"
-#include "ovimap/pipeline/checkpointer.h"
-#include "ovimap/pipeline/live_mapper.h"
+#include "ovimap/io/map_tables/map_document.h"
+#include "ovimap/pipeline/live/live_mapper.h"
+#include "ovimap/pipeline/mapping/checkpointer.h"
 
 namespace ovimap::apps {
 

@@ -5,15 +5,15 @@
 
 #include "command.h"
 #include "ovimap/base/parallel.h"
-#include "ovimap/frames/number_text.h"
+#include "ovimap/frames/recording/number_text.h"
 #include "ovimap/image/codec.h"
-#include "ovimap/io/map_edits.h"
-#include "ovimap/io/map_file.h"
-#include "ovimap/io/pictures.h"
-#include "ovimap/io/ply.h"
-#include "ovimap/pipeline/map_alignment.h"
-#include "ovimap/pipeline/map_diff.h"
-#include "ovimap/pipeline/map_merge.h"
+#include "ovimap/io/map_file/map_edits.h"
+#include "ovimap/io/map_file/map_file.h"
+#include "ovimap/io/mesh/ply.h"
+#include "ovimap/io/pictures/pictures.h"
+#include "ovimap/pipeline/revise/map_alignment.h"
+#include "ovimap/pipeline/revise/map_diff.h"
+#include "ovimap/pipeline/revise/map_merge.h"
 
 namespace ovimap::apps {
 

@@ -5,9 +5,9 @@
 
 #include "command.h"
 #include "ovimap/base/parallel.h"
-#include "ovimap/io/map_file.h"
-#include "ovimap/pipeline/map_correction.h"
-#include "ovimap/pipeline/pose_match.h"
+#include "ovimap/io/map_file/map_file.h"
+#include "ovimap/pipeline/revise/map_correction.h"
+#include "ovimap/pipeline/revise/pose_match.h"
 
 namespace ovimap::apps {
 

@@ -5,8 +5,8 @@
 #include <ctime>
 
 #include "command.h"
-#include "ovimap/io/map_edits.h"
-#include "ovimap/io/map_file.h"
+#include "ovimap/io/map_file/map_edits.h"
+#include "ovimap/io/map_file/map_file.h"
 
 namespace ovimap::apps {
 

@@ -7,10 +7,10 @@
 
 #include "command.h"
 #include "ovimap/base/parallel.h"
-#include "ovimap/io/map_file.h"
-#include "ovimap/io/ply.h"
-#include "ovimap/io/truth.h"
-#include "ovimap/pipeline/geometry_embedding.h"
+#include "ovimap/io/map_file/map_file.h"
+#include "ovimap/io/mesh/ply.h"
+#include "ovimap/io/truth/truth.h"
+#include "ovimap/pipeline/sequence/geometry_embedding.h"
 
 namespace ovimap::apps {
 

@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "ovimap/pipeline/map_evaluation.h"
+#include "ovimap/pipeline/evaluation/map_evaluation.h"
 
 namespace ovimap::apps {
 

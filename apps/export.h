@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "ovimap/geometry/mesh.h"
-#include "ovimap/semantics/label_set.h"
+#include "ovimap/semantics/classes/label_set.h"
 
 namespace ovimap::apps {
 

@@ -3,10 +3,10 @@
 #include "command.h"
 #include "export.h"
 #include "ovimap/image/codec.h"
-#include "ovimap/io/instance_json.h"
-#include "ovimap/io/map_file.h"
-#include "ovimap/io/palette.h"
-#include "ovimap/pipeline/map_search.h"
+#include "ovimap/io/exports/instance_json.h"
+#include "ovimap/io/map_file/map_file.h"
+#include "ovimap/io/pictures/palette.h"
+#include "ovimap/pipeline/search/map_search.h"
 
 namespace ovimap::apps {
 

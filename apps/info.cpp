@@ -3,11 +3,11 @@
 #include <cstdio>
 
 #include "command.h"
-#include "ovimap/io/instance_json.h"
-#include "ovimap/io/map_check.h"
-#include "ovimap/io/map_file.h"
-#include "ovimap/io/map_file_access.h"
-#include "ovimap/pipeline/timings_text.h"
+#include "ovimap/io/exports/instance_json.h"
+#include "ovimap/io/map_file/map_check.h"
+#include "ovimap/io/map_file/map_file.h"
+#include "ovimap/io/map_file/map_file_access.h"
+#include "ovimap/pipeline/sequence/timings_text.h"
 
 namespace ovimap::apps {
 

@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include "ovimap/base/thread_priority.h"
-#include "ovimap/inference/id_mask_sources.h"
-#include "ovimap/io/map_file.h"
+#include "ovimap/inference/masks/id_mask_sources.h"
+#include "ovimap/io/map_file/map_file.h"
 
 namespace ovimap::apps {
 

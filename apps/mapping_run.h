@@ -3,7 +3,7 @@
 #pragma once
 
 #include "command.h"
-#include "ovimap/pipeline/live_run.h"
+#include "ovimap/pipeline/live/live_run.h"
 
 namespace ovimap::apps {
 

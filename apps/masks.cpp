@@ -5,8 +5,8 @@
 #include "command.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/eval/standard_scores.h"
-#include "ovimap/inference/id_mask_sources.h"
-#include "ovimap/pipeline/prepared_frame.h"
+#include "ovimap/inference/masks/id_mask_sources.h"
+#include "ovimap/pipeline/mapping/prepared_frame.h"
 
 namespace ovimap::apps {
 

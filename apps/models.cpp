@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "command.h"
-#include "ovimap/inference/model_folder.h"
+#include "ovimap/inference/models/model_folder.h"
 
 namespace ovimap::apps {
 

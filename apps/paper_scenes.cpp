@@ -6,7 +6,7 @@
 
 #include "ovimap/base/error.h"
 #include "ovimap/inference/mask_source_factory.h"
-#include "ovimap/io/truth.h"
+#include "ovimap/io/truth/truth.h"
 
 namespace ovimap::apps {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "ovimap/frames/frame_source.h"
+#include "ovimap/frames/frame/frame_source.h"
 
 namespace ovimap::apps {
 

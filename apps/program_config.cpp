@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 #include "command.h"
-#include "ovimap/io/config_file.h"
-#include "ovimap/io/map_mesh.h"
+#include "ovimap/io/mesh/map_mesh.h"
+#include "ovimap/io/settings/config_file.h"
 
 namespace ovimap::apps {
 

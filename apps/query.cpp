@@ -7,12 +7,12 @@
 #include "ovimap/base/parallel.h"
 #include "ovimap/image/codec.h"
 #include "ovimap/instance/instance_mesh.h"
-#include "ovimap/io/pictures.h"
-#include "ovimap/io/ply.h"
-#include "ovimap/pipeline/map_search.h"
-#include "ovimap/semantics/query_engine.h"
-#include "ovimap/semantics/query_grammar.h"
-#include "ovimap/semantics/query_text.h"
+#include "ovimap/io/mesh/ply.h"
+#include "ovimap/io/pictures/pictures.h"
+#include "ovimap/pipeline/search/map_search.h"
+#include "ovimap/semantics/query/query_engine.h"
+#include "ovimap/semantics/query/query_grammar.h"
+#include "ovimap/semantics/query/query_text.h"
 
 namespace ovimap::apps {
 

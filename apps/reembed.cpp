@@ -4,8 +4,8 @@
 
 #include "command.h"
 #include "ovimap/base/parallel.h"
-#include "ovimap/io/map_file.h"
-#include "ovimap/pipeline/reembed.h"
+#include "ovimap/io/map_file/map_file.h"
+#include "ovimap/pipeline/revise/reembed.h"
 
 namespace ovimap::apps {
 

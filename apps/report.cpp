@@ -5,10 +5,10 @@
 #include "command.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/image/codec.h"
-#include "ovimap/io/map_file.h"
-#include "ovimap/pipeline/map_pictures.h"
-#include "ovimap/pipeline/map_report.h"
-#include "ovimap/pipeline/map_search.h"
+#include "ovimap/io/map_file/map_file.h"
+#include "ovimap/pipeline/report/map_pictures.h"
+#include "ovimap/pipeline/report/map_report.h"
+#include "ovimap/pipeline/search/map_search.h"
 
 namespace ovimap::apps {
 

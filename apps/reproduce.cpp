@@ -8,8 +8,8 @@
 #include "mapping_run.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/base/version.h"
-#include "ovimap/io/map_file.h"
-#include "ovimap/pipeline/map_pictures.h"
+#include "ovimap/io/map_file/map_file.h"
+#include "ovimap/pipeline/report/map_pictures.h"
 #include "reproduce_report.h"
 #include "run_report.h"
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mapping_run.h"
 #include "ovimap/base/parallel.h"
-#include "ovimap/io/map_file.h"
-#include "ovimap/pipeline/map_pictures.h"
+#include "ovimap/io/map_file/map_file.h"
+#include "ovimap/pipeline/report/map_pictures.h"
 #include "run_report.h"
 
 namespace ovimap::apps {

@@ -6,8 +6,8 @@
 #include <thread>
 
 #include "ovimap/base/parallel.h"
-#include "ovimap/server/access.h"
-#include "ovimap/server/viewer_files.h"
+#include "ovimap/server/api/viewer_files.h"
+#include "ovimap/server/http/access.h"
 #include "run_report.h"
 #include "serve_live.h"
 

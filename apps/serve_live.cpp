@@ -4,8 +4,8 @@
 
 #include <thread>
 
-#include "ovimap/io/map_file.h"
-#include "ovimap/server/live_feed.h"
+#include "ovimap/io/map_file/map_file.h"
+#include "ovimap/server/served/live_feed.h"
 
 namespace ovimap::apps {
 

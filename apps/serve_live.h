@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "mapping_run.h"
-#include "ovimap/server/http_server.h"
+#include "ovimap/server/front/http_server.h"
 
 namespace ovimap::apps {
 

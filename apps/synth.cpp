@@ -5,8 +5,8 @@
 #include "command.h"
 #include "ovimap/base/error.h"
 #include "ovimap/base/parallel.h"
-#include "ovimap/synth/floor_plan.h"
-#include "ovimap/synth/room_spec.h"
+#include "ovimap/synth/buildings/floor_plan.h"
+#include "ovimap/synth/rooms/room_spec.h"
 #include "synth_catalog.h"
 #include "synth_room.h"
 

@@ -12,8 +12,8 @@
 #include "ovimap/base/error.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/image/codec.h"
-#include "ovimap/synth/furniture_model.h"
-#include "ovimap/synth/furniture_palette.h"
+#include "ovimap/synth/furniture/furniture_model.h"
+#include "ovimap/synth/furniture/furniture_palette.h"
 
 namespace ovimap::apps {
 

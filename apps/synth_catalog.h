@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "ovimap/synth/furniture_portrait.h"
+#include "ovimap/synth/recordings/furniture_portrait.h"
 
 namespace ovimap::apps {
 

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "synth_room.h"
 
-#include "ovimap/io/replica_pack.h"
-#include "ovimap/synth/floor_plan.h"
-#include "ovimap/synth/room_builder.h"
-#include "ovimap/synth/rooms_v1.h"
+#include "ovimap/io/truth/replica_pack.h"
+#include "ovimap/synth/buildings/floor_plan.h"
+#include "ovimap/synth/buildings/room_builder.h"
+#include "ovimap/synth/rooms/rooms_v1.h"
 
 namespace ovimap::apps {
 

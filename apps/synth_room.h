@@ -8,8 +8,8 @@
 #include <optional>
 #include <string>
 
-#include "ovimap/synth/furniture_catalog.h"
-#include "ovimap/synth/sequence.h"
+#include "ovimap/synth/furniture/furniture_catalog.h"
+#include "ovimap/synth/recordings/sequence.h"
 
 namespace ovimap::apps {
 

@@ -4,8 +4,8 @@
 // threads. Usage: map_live RECORDING MAP; the recording stands for the camera here.
 #include <cstdio>
 
-#include "ovimap/io/map_file.h"
-#include "ovimap/pipeline/live_run.h"
+#include "ovimap/io/map_file/map_file.h"
+#include "ovimap/pipeline/live/live_run.h"
 
 int main(int argc, char** argv) try {
   if (argc != 3) throw ovimap::Error("usage: map_live RECORDING MAP");

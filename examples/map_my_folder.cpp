@@ -3,8 +3,8 @@
 // How do I map my recording? Usage: map_my_folder RECORDING MAP
 #include <cstdio>
 
-#include "ovimap/io/map_file.h"
-#include "ovimap/pipeline/sequence_run.h"
+#include "ovimap/io/map_file/map_file.h"
+#include "ovimap/pipeline/sequence/sequence_run.h"
 
 int main(int argc, char** argv) try {
   if (argc != 3) throw ovimap::Error("usage: map_my_folder RECORDING MAP");

@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "ovimap/base/error.h"
-#include "ovimap/io/map_file.h"
+#include "ovimap/io/map_file/map_file.h"
 
 int main(int argc, char** argv) try {
   if (argc != 2) throw ovimap::Error("usage: read_a_map MAP");

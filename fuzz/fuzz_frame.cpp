@@ -5,8 +5,8 @@
 #include <string>
 
 #include "ovimap/base/error.h"
-#include "ovimap/server/frame_api.h"
-#include "ovimap/server/request_body.h"
+#include "ovimap/server/api/frame_api.h"
+#include "ovimap/server/http/request_body.h"
 
 namespace {
 

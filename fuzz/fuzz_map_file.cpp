@@ -4,8 +4,8 @@
 // their own: fuzz_tile.
 #include "input_file.h"
 #include "ovimap/base/error.h"
-#include "ovimap/io/map_check.h"
-#include "ovimap/io/map_file.h"
+#include "ovimap/io/map_file/map_check.h"
+#include "ovimap/io/map_file/map_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto path = input_file(".ovimap", {data, size});

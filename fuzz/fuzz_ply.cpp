@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // PLY meshes of any kind.
 #include "ovimap/base/error.h"
-#include "ovimap/io/ply.h"
+#include "ovimap/io/mesh/ply.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

@@ -4,8 +4,8 @@
 #include <string>
 #include <variant>
 
-#include "ovimap/server/access.h"
-#include "ovimap/server/http_head.h"
+#include "ovimap/server/http/access.h"
+#include "ovimap/server/http/http_head.h"
 
 namespace {
 

@@ -5,7 +5,7 @@
 // behind the compression.
 #include <zstd.h>
 
-#include "ovimap/io/map_file_blocks.h"
+#include "ovimap/io/map_tables/map_file_blocks.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   constexpr std::size_t kHead = 9;

@@ -3,9 +3,9 @@
 // YAML files of a recording and of the program: calibration and settings.
 #include "input_file.h"
 #include "ovimap/base/error.h"
-#include "ovimap/frames/camera_rig.h"
-#include "ovimap/io/config_file.h"
-#include "ovimap/semantics/query_config.h"
+#include "ovimap/frames/frame/camera_rig.h"
+#include "ovimap/io/settings/config_file.h"
+#include "ovimap/semantics/query/query_config.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto path = input_file(".yaml", {data, size});

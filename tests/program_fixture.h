@@ -14,7 +14,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "ovimap/frames/sequence_fixture.h"
+#include "ovimap/frames/recording/sequence_fixture.h"
 
 namespace ovimap {
 

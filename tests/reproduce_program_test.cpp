@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 // `ovimap reproduce` on tiny recordings laid out as the paper's data sets are.
-#include "ovimap/frames/scannet_fixture.h"
+#include "ovimap/frames/readers/scannet_fixture.h"
 #include "truth_fixture.h"
 
 namespace ovimap {

@@ -9,9 +9,9 @@
 #include <thread>
 #include <utility>
 
-#include "ovimap/io/map_checkpoint.h"
-#include "ovimap/io/map_file.h"
-#include "ovimap/map/block_tiles.h"
+#include "ovimap/io/map_file/map_checkpoint.h"
+#include "ovimap/io/map_file/map_file.h"
+#include "ovimap/map/voxels/block_tiles.h"
 #include "program_fixture.h"
 
 namespace ovimap {

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "ovimap/frames/color_calibration.h"
-#include "ovimap/synth/furniture_catalog.h"
-#include "ovimap/synth/room_builder.h"
-#include "ovimap/synth/room_spec.h"
-#include "ovimap/synth/sensor_noise.h"
-#include "ovimap/synth/sequence.h"
+#include "ovimap/frames/calibration/color_calibration.h"
+#include "ovimap/synth/buildings/room_builder.h"
+#include "ovimap/synth/camera/sensor_noise.h"
+#include "ovimap/synth/furniture/furniture_catalog.h"
+#include "ovimap/synth/recordings/sequence.h"
+#include "ovimap/synth/rooms/room_spec.h"
 
 namespace ovimap {
 namespace {

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "ovimap/semantics/class_names.h"
-#include "ovimap/semantics/word_lists.h"
-#include "ovimap/synth/furniture_palette.h"
+#include "ovimap/semantics/classes/class_names.h"
+#include "ovimap/semantics/query/word_lists.h"
+#include "ovimap/synth/furniture/furniture_palette.h"
 
 namespace ovimap {
 namespace {

@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "ovimap/io/map_edits.h"
-#include "ovimap/server/server_fixture.h"
+#include "ovimap/io/map_file/map_edits.h"
+#include "ovimap/server/front/server_fixture.h"
 #include "program_fixture.h"
 
 namespace ovimap {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 // `ovimap synth` as a user meets it, in rooms that need no furniture.
-#include "ovimap/frames/frame_source.h"
+#include "ovimap/frames/frame/frame_source.h"
 #include "program_fixture.h"
 
 namespace ovimap {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "ovimap/io/ply.h"
+#include "ovimap/io/mesh/ply.h"
 #include "program_fixture.h"
 
 namespace ovimap {

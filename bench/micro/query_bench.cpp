@@ -5,7 +5,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "ovimap/semantics/verdict.h"
+#include "ovimap/semantics/query/verdict.h"
 
 namespace ovimap::bench {
 namespace {

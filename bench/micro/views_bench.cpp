@@ -4,7 +4,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "ovimap/semantics/view_selection.h"
+#include "ovimap/semantics/views/view_selection.h"
 #include "room_scene.h"
 
 namespace ovimap::bench {

@@ -10,14 +10,14 @@
 #include <iostream>
 #include <sstream>
 
-#include "ovimap/frames/frame_source.h"
+#include "ovimap/frames/frame/frame_source.h"
 #include "ovimap/instance/association.h"
-#include "ovimap/io/ply.h"
-#include "ovimap/map/integrate.h"
-#include "ovimap/map/mesh_extraction.h"
-#include "ovimap/map/ray_cast.h"
-#include "ovimap/map/surface_lookup.h"
-#include "ovimap/pipeline/prepared_frame.h"
+#include "ovimap/io/mesh/ply.h"
+#include "ovimap/map/fusion/integrate.h"
+#include "ovimap/map/rays/ray_cast.h"
+#include "ovimap/map/rays/surface_lookup.h"
+#include "ovimap/map/surface/mesh_extraction.h"
+#include "ovimap/pipeline/mapping/prepared_frame.h"
 
 namespace ovimap {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "ovimap/geometry/pose.h"
 #include "ovimap/image/image.h"
-#include "ovimap/inference/image_text_encoder.h"
+#include "ovimap/inference/encoders/image_text_encoder.h"
 
 namespace ovimap::python {
 

@@ -4,7 +4,7 @@
 
 #include "arrays.h"
 #include "bindings.h"
-#include "ovimap/frames/color_calibration.h"
+#include "ovimap/frames/calibration/color_calibration.h"
 #include "settings.h"
 #include "without_gil.h"
 

@@ -4,7 +4,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "bindings.h"
-#include "ovimap/frames/source_check.h"
+#include "ovimap/frames/check/source_check.h"
 #include "settings.h"
 #include "without_gil.h"
 

@@ -12,7 +12,7 @@
 #include "arrays.h"
 #include "bindings.h"
 #include "callback.h"
-#include "ovimap/inference/text_cache.h"
+#include "ovimap/inference/encoders/text_cache.h"
 #include "settings.h"
 #include "without_gil.h"
 

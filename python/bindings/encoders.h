@@ -6,7 +6,7 @@
 
 #include <memory>
 
-#include "ovimap/inference/image_text_encoder.h"
+#include "ovimap/inference/encoders/image_text_encoder.h"
 
 namespace ovimap::python {
 

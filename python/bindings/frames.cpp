@@ -5,7 +5,7 @@
 
 #include "arrays.h"
 #include "bindings.h"
-#include "ovimap/frames/frame_source.h"
+#include "ovimap/frames/frame/frame_source.h"
 
 namespace ovimap::python {
 

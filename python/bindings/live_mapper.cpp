@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
-#include "ovimap/pipeline/live_mapper.h"
+#include "ovimap/pipeline/live/live_mapper.h"
 
 #include <nanobind/stl/string.h>
 
@@ -12,7 +12,7 @@
 #include "mapping.h"
 #include "masks.h"
 #include "open_handle.h"
-#include "ovimap/io/map_file.h"
+#include "ovimap/io/map_file/map_file.h"
 #include "without_gil.h"
 
 namespace ovimap::python {

@@ -11,8 +11,8 @@
 #include "mapping.h"
 #include "masks.h"
 #include "open_handle.h"
-#include "ovimap/frames/frame_decoder.h"
-#include "ovimap/io/map_file.h"
+#include "ovimap/frames/decoding/frame_decoder.h"
+#include "ovimap/io/map_file/map_file.h"
 #include "without_gil.h"
 
 namespace ovimap::python {

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "ovimap/io/map_document.h"
-#include "ovimap/pipeline/sequence_run.h"
+#include "ovimap/io/map_tables/map_document.h"
+#include "ovimap/pipeline/sequence/sequence_run.h"
 #include "settings.h"
 
 namespace ovimap::python {

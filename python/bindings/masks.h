@@ -6,7 +6,7 @@
 
 #include <memory>
 
-#include "ovimap/inference/mask_source.h"
+#include "ovimap/inference/masks/mask_source.h"
 
 namespace ovimap::python {
 

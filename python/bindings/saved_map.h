@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "ovimap/frames/frame_source.h"
-#include "ovimap/pipeline/map_search.h"
-#include "ovimap/semantics/query_engine.h"
+#include "ovimap/frames/frame/frame_source.h"
+#include "ovimap/pipeline/search/map_search.h"
+#include "ovimap/semantics/query/query_engine.h"
 
 namespace ovimap::python {
 

@@ -5,12 +5,12 @@
 #include <nanobind/stl/vector.h>
 
 #include "bindings.h"
-#include "ovimap/frames/color_calibration.h"
-#include "ovimap/frames/source_check.h"
+#include "ovimap/frames/calibration/color_calibration.h"
+#include "ovimap/frames/check/source_check.h"
 #include "ovimap/inference/mask_source_factory.h"
-#include "ovimap/pipeline/live_mapper.h"
-#include "ovimap/pipeline/map_evaluation.h"
-#include "ovimap/semantics/query_config.h"
+#include "ovimap/pipeline/evaluation/map_evaluation.h"
+#include "ovimap/pipeline/live/live_mapper.h"
+#include "ovimap/semantics/query/query_config.h"
 
 namespace ovimap::python {
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "ovimap/frames/frame_source.h"
+#include "ovimap/frames/frame/frame_source.h"
 
 namespace ovimap::python {
 

@@ -12,7 +12,7 @@
 #include "arrays.h"
 #include "bindings.h"
 #include "ovimap/base/error.h"
-#include "ovimap/pipeline/sequence_run.h"
+#include "ovimap/pipeline/sequence/sequence_run.h"
 #include "settings.h"
 #include "source.h"
 #include "without_gil.h"

@@ -4,10 +4,10 @@
 
 #include "ovimap/base/config.h"
 #include "ovimap/base/error.h"
-#include "ovimap/inference/entity_mask_source.h"
-#include "ovimap/inference/id_mask_sources.h"
-#include "ovimap/inference/model_folder.h"
-#include "ovimap/inference/sam_mask_source.h"
+#include "ovimap/inference/masks/entity_mask_source.h"
+#include "ovimap/inference/masks/id_mask_sources.h"
+#include "ovimap/inference/models/model_folder.h"
+#include "ovimap/inference/sam/sam_mask_source.h"
 
 namespace ovimap {
 

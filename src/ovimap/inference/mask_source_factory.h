@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "ovimap/inference/entity_config.h"
-#include "ovimap/inference/mask_source.h"
-#include "ovimap/inference/onnx_session.h"
-#include "ovimap/inference/sam_config.h"
+#include "ovimap/inference/masks/entity_config.h"
+#include "ovimap/inference/masks/mask_source.h"
+#include "ovimap/inference/models/onnx_session.h"
+#include "ovimap/inference/sam/sam_config.h"
 
 namespace ovimap {
 

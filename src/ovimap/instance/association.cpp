@@ -9,7 +9,7 @@
 
 #include "ovimap/base/config.h"
 #include "ovimap/base/parallel.h"
-#include "ovimap/map/label_slots.h"
+#include "ovimap/map/voxels/label_slots.h"
 
 namespace ovimap {
 

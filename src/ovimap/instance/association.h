@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "ovimap/map/voxel_map.h"
+#include "ovimap/map/voxels/voxel_map.h"
 #include "ovimap/segment/mask_fusion.h"
 
 namespace ovimap {

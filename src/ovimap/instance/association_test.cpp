@@ -7,7 +7,7 @@
 #include <random>
 
 #include "ovimap/instance/plain_association.h"
-#include "ovimap/map/label_slots.h"
+#include "ovimap/map/voxels/label_slots.h"
 
 namespace ovimap {
 namespace {

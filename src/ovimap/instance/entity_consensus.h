@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "ovimap/map/label_forest.h"
+#include "ovimap/map/voxels/label_forest.h"
 
 namespace ovimap {
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/instance/instance_mesh.h"
 
-#include "ovimap/map/incremental_mesh.h"
-#include "ovimap/map/mesh_extraction.h"
+#include "ovimap/map/surface/incremental_mesh.h"
+#include "ovimap/map/surface/mesh_extraction.h"
 
 namespace ovimap {
 

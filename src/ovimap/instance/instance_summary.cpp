@@ -8,8 +8,8 @@
 
 #include "ovimap/base/config.h"
 #include "ovimap/base/parallel.h"
-#include "ovimap/map/block_tiles.h"
-#include "ovimap/map/label_slots.h"
+#include "ovimap/map/voxels/block_tiles.h"
+#include "ovimap/map/voxels/label_slots.h"
 
 namespace ovimap {
 

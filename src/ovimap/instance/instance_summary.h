@@ -9,7 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "ovimap/instance/instance_registry.h"
-#include "ovimap/map/voxel_map.h"
+#include "ovimap/map/voxels/voxel_map.h"
 
 namespace ovimap {
 

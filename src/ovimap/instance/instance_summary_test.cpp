@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ovimap/map/sphere_fixture.h"
+#include "ovimap/map/rays/sphere_fixture.h"
 
 namespace ovimap {
 namespace {

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/base/error.h"
+#include "ovimap/frames/readers/readers.h"
+
+namespace ovimap {
+
+namespace {
+
+/// Most particular layout first.
+const Reader* const kReaders[] = {&kReplicaReader, &kSevenScenesReader, &kIclNuimReader,
+                                  &kTumReader,     &kScanNetReader,     &kSensReader,
+                                  &kRedwoodReader, &kRecord3dReader,    &kFolderReader};
+
+const Reader* reader_of(const std::filesystem::path& folder) {
+  for (const Reader* reader : kReaders)
+    if (reader->recognises(folder)) return reader;
+  return nullptr;
+}
+
+/// The first folder in this one that holds a recording, by name; empty when there is none.
+std::filesystem::path recording_in(const std::filesystem::path& folder) {
+  std::filesystem::path first;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) try {
+      const bool earlier = first.empty() || entry.path() < first;
+      if (earlier && entry.is_directory() && reader_of(entry.path())) first = entry.path();
+    } catch (const std::filesystem::filesystem_error&) {  // not for us to read
+    }
+  return first;
+}
+
+const Reader& find_reader(const std::filesystem::path& folder) {
+  if (const Reader* reader = reader_of(folder)) return *reader;
+  if (std::filesystem::is_empty(folder))
+    throw Error(concat(folder.string(), " is empty; give the folder of a recording"));
+  if (const std::filesystem::path inside = recording_in(folder); !inside.empty())
+    throw Error(concat(folder.string(), " holds no frames itself, but '", inside.string(),
+                       "' in it is a recording; give that"));
+  std::string looked_for;
+  for (const Reader* reader : kReaders)
+    looked_for += concat(looked_for.empty() ? "" : "; ", reader->looks_for);
+  throw Error(
+      concat(folder.string(),
+             " holds no known layout (docs/sources.md describes them); looked for: ", looked_for));
+}
+
+/// Cameras that the user gives go before those that a recording has for each frame.
+void override_cameras(const std::filesystem::path& folder, Recording& recording) {
+  const PinholeCamera color = recording.rig.color_camera, depth = recording.rig.depth_camera;
+  for (const char* name : {"camera.yaml", "calibration.yaml"})
+    if (std::filesystem::exists(folder / name)) apply_calibration(folder / name, recording.rig);
+  if (color == recording.rig.color_camera && depth == recording.rig.depth_camera) return;
+  for (RecordedFrame& frame : recording.frames) frame.camera.reset();
+}
+
+}  // namespace
+
+std::unique_ptr<FrameSource> open_frame_source(const std::filesystem::path& path,
+                                               const FrameSourceConfig& config) {
+  std::error_code unreadable;
+  const auto status = std::filesystem::status(path, unreadable);
+  if (!std::filesystem::exists(status))
+    throw Error(concat(path.string(), " does not exist; give a folder of frames"));
+  const bool is_folder = std::filesystem::is_directory(status);
+  if (path.extension() == ".r3d" && !is_folder)
+    throw Error(concat(path.string(), " is a zip file; unzip it, and give the folder"));
+  if (!is_folder && !kSensReader.recognises(path))
+    throw Error(concat(path.string(),
+                       " is a file; give the folder that holds the frames, or a .sens file"));
+  const std::filesystem::path folder = is_folder ? path : path.parent_path();
+  if (!(config.min_depth_m < config.max_depth_m))
+    throw Error(concat("min_depth_m is ", config.min_depth_m, " and max_depth_m ",
+                       config.max_depth_m, "; the first must be smaller"));
+  try {
+    const Reader& reader = is_folder ? find_reader(path) : kSensReader;
+    Recording recording = reader.list_frames(path, config);
+    override_cameras(folder, recording);
+    return open_recording(std::move(recording), config);
+  } catch (const std::filesystem::filesystem_error& fault) {
+    throw Error(concat(path.string(), " cannot be listed: ", fault.code().message()));
+  }
+}
+
+}  // namespace ovimap

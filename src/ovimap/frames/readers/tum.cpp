@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "ovimap/base/error.h"
+#include "ovimap/frames/readers/readers.h"
+#include "ovimap/frames/recording/number_text.h"
+#include "ovimap/frames/recording/trajectory.h"
+
+namespace ovimap {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// One line of rgb.txt or depth.txt.
+struct TimedImage {
+  double time_s = 0;
+  fs::path file;
+};
+
+bool recognises(const fs::path& folder) {
+  return fs::is_regular_file(folder / "rgb.txt") && fs::is_regular_file(folder / "depth.txt");
+}
+
+std::vector<TimedImage> read_list(const fs::path& file) {
+  std::vector<TimedImage> images;
+  for (const TextLine& line : read_lines(file)) {
+    const std::size_t blank = std::min(line.text.find_first_of(" \t"), line.text.size());
+    const std::size_t name = line.text.find_first_not_of(" \t", blank);
+    const auto time = parse_numbers(std::string_view(line.text).substr(0, blank));
+    if (!time || time->size() != 1 || name == std::string::npos)
+      throw Error(concat(file.string(), " line ", line.number, " is '", line.text,
+                         "'; expected a time in seconds and a file name"));
+    images.push_back({time->front(), file.parent_path() / line.text.substr(name)});
+  }
+  std::stable_sort(images.begin(), images.end(),
+                   [](const TimedImage& a, const TimedImage& b) { return a.time_s < b.time_s; });
+  return images;
+}
+
+/// Pairs (colour, depth) at most `max_gap_s` apart, the closest first, each image used once; in
+/// order of time.
+std::vector<std::pair<std::size_t, std::size_t>> associate(const std::vector<TimedImage>& color,
+                                                           const std::vector<TimedImage>& depth,
+                                                           double max_gap_s) {
+  std::vector<std::tuple<double, std::size_t, std::size_t>> candidates;
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < color.size(); ++i) {
+    while (first < depth.size() && depth[first].time_s < color[i].time_s - max_gap_s) ++first;
+    for (std::size_t j = first; j < depth.size() && depth[j].time_s <= color[i].time_s + max_gap_s;
+         ++j)
+      candidates.emplace_back(std::abs(depth[j].time_s - color[i].time_s), i, j);
+  }
+  std::sort(candidates.begin(), candidates.end());
+  std::vector<char> color_used(color.size()), depth_used(depth.size());
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (const auto& [gap_s, i, j] : candidates) {
+    if (color_used[i] || depth_used[j]) continue;
+    color_used[i] = depth_used[j] = 1;
+    pairs.emplace_back(i, j);
+  }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+Recording list_frames(const fs::path& folder, const FrameSourceConfig& config) {
+  Recording recording;
+  recording.kind = kTumReader.kind;
+  recording.folder = folder;
+  recording.rig.depth_camera =
+      recording.rig.color_camera = {640, 480, 525.f, 525.f, 319.5f, 239.5f};
+  recording.rig.depth_units_per_m = 5000;
+
+  const auto colors = read_list(folder / "rgb.txt"), depths = read_list(folder / "depth.txt");
+  const Trajectory trajectory = read_trajectory(folder / "groundtruth.txt");
+  const PoseTimeline timeline(trajectory);
+  for (const auto& [i, j] : associate(colors, depths, config.max_time_gap_s)) {
+    RecordedFrame frame;
+    frame.name = colors[i].file.stem().string();
+    frame.timestamp_s = colors[i].time_s;
+    frame.color = colors[i].file;
+    frame.depth = depths[j].file;
+    if (const TrajectoryPose* pose = timeline.nearest(depths[j].time_s, config.max_time_gap_s)) {
+      frame.pose = pose->matrix;
+      frame.pose_origin = pose->origin;
+    }
+    recording.frames.push_back(std::move(frame));
+  }
+  if (recording.frames.empty())
+    throw Error(concat(folder.string(), ": none of the ", colors.size(), " images of rgb.txt and ",
+                       depths.size(), " of depth.txt are within ", config.max_time_gap_s,
+                       " s of each other; check that both use one clock, or raise max_time_gap_s"));
+  return recording;
+}
+
+}  // namespace
+
+const Reader kTumReader = {"tum", "rgb.txt, depth.txt and groundtruth.txt (TUM RGB-D)", &recognises,
+                           &list_frames};
+
+}  // namespace ovimap

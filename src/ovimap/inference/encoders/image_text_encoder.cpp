@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/inference/encoders/image_text_encoder.h"
+
+#include "ovimap/inference/encoders/dual_encoder.h"
+#include "ovimap/inference/models/model_folder.h"
+
+namespace ovimap {
+
+std::unique_ptr<ImageTextEncoder> make_image_text_encoder(
+    const std::string& spec, const RuntimeConfig& runtime,
+    const std::vector<std::filesystem::path>& model_dirs, EncoderUse use) {
+  if (spec.empty() || spec == "none") return nullptr;
+  const std::string name = spec == "default" ? kDefaultEncoder : spec;
+  const std::filesystem::path path(name);
+  const std::filesystem::path folder = std::filesystem::is_regular_file(path / "model.yaml")
+                                           ? path
+                                           : find_model(name, model_search_path(model_dirs));
+  return std::make_unique<DualEncoder>(read_model_folder(folder), runtime, use);
+}
+
+}  // namespace ovimap

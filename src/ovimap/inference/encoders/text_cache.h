@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "ovimap/inference/encoders/image_text_encoder.h"
+
+namespace ovimap {
+
+/// The encoder, with lists of many texts (those that verdicts and guessed names are calibrated by)
+/// encoded once: they are kept in memory and in a file in `folder`, one for each list and model.
+/// What a person asks is short and never stored. A file that cannot be read, is damaged or cannot
+/// be written is done without; processes may share the folder. Empty `folder`: memory alone.
+std::unique_ptr<ImageTextEncoder> remember_text_lists(std::unique_ptr<ImageTextEncoder> encoder,
+                                                      std::filesystem::path folder);
+
+/// Where programs of this user keep such files: $XDG_CACHE_HOME/ovimap, else ~/.cache/ovimap; empty
+/// where neither is known.
+std::filesystem::path text_cache_folder();
+
+}  // namespace ovimap

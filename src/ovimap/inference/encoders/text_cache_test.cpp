@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/inference/encoders/text_cache.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "ovimap/base/error.h"
+
+namespace ovimap {
+namespace {
+
+/// Gives each text a direction, and counts how many it was asked for.
+class CountingEncoder : public ImageTextEncoder {
+ public:
+  explicit CountingEncoder(int& asked, std::string digest = "a") : asked_(asked) {
+    identity_ = {"counting", 3, std::move(digest)};
+  }
+  const EncoderIdentity& identity() const override { return identity_; }
+  std::optional<MatchCalibration> calibration() const override { return std::nullopt; }
+  Embeddings encode_images(std::span<const RgbImage>) override { return {}; }
+  Embeddings encode_texts(std::span<const std::string> texts) override {
+    asked_ += static_cast<int>(texts.size());
+    Embeddings rows(static_cast<Eigen::Index>(texts.size()), 3);
+    for (Eigen::Index i = 0; i < rows.rows(); ++i)
+      rows.row(i) << static_cast<float>(i + 1), static_cast<float>(texts[0].size()), 1.f;
+    return rows;
+  }
+
+ private:
+  int& asked_;
+  EncoderIdentity identity_;
+};
+
+class TextCacheTest : public ::testing::Test {
+ protected:
+  TextCacheTest() { std::filesystem::remove_all(folder_); }
+  ~TextCacheTest() override { std::filesystem::remove_all(folder_); }
+
+  std::unique_ptr<ImageTextEncoder> encoder(const std::string& digest = "a") {
+    return remember_text_lists(std::make_unique<CountingEncoder>(asked_, digest), folder_);
+  }
+  static std::vector<std::string> list(std::size_t count, const std::string& first = "word") {
+    std::vector<std::string> texts(count, "word");
+    texts[0] = first;
+    return texts;
+  }
+  std::vector<std::filesystem::path> files() const {
+    std::vector<std::filesystem::path> found;
+    if (!std::filesystem::exists(folder_)) return found;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_))
+      found.push_back(entry.path());
+    return found;
+  }
+
+  const std::filesystem::path folder_ = std::filesystem::temp_directory_path() /
+                                        ("ovimap_text_cache_test_" + std::to_string(::getpid()));
+  int asked_ = 0;
+};
+
+TEST_F(TextCacheTest, EncodesAListOnceForAllProcesses) {
+  const auto first = encoder();
+  const Embeddings rows = first->encode_texts(list(100));
+  EXPECT_EQ(first->encode_texts(list(100)), rows);
+  EXPECT_EQ(asked_, 100);
+  EXPECT_EQ(encoder()->encode_texts(list(100)), rows);  // as another process would
+  EXPECT_EQ(asked_, 100);
+  EXPECT_EQ(files().size(), 1u);
+}
+
+TEST_F(TextCacheTest, TellsListsAndModelsApart) {
+  encoder()->encode_texts(list(100));
+  encoder()->encode_texts(list(100, "other"));
+  encoder()->encode_texts(list(99));
+  encoder("b")->encode_texts(list(100));
+  EXPECT_EQ(asked_, 399);
+}
+
+TEST_F(TextCacheTest, NeverStoresQueries) {
+  const auto one = encoder();
+  one->encode_texts(list(3));
+  one->encode_texts(list(3));
+  EXPECT_EQ(asked_, 6);
+  EXPECT_TRUE(files().empty());
+}
+
+TEST_F(TextCacheTest, DoesWithoutDamagedFiles) {
+  const Embeddings rows = encoder()->encode_texts(list(100));
+  {
+    std::fstream file(files().at(0), std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(200);
+    file.put('\x7f');
+  }
+  EXPECT_EQ(encoder()->encode_texts(list(100)), rows);
+  EXPECT_EQ(asked_, 200);
+  std::filesystem::resize_file(files().at(0), 10);
+  EXPECT_EQ(encoder()->encode_texts(list(100)), rows);
+  EXPECT_EQ(encoder()->encode_texts(list(100)), rows);  // it was written anew
+  EXPECT_EQ(asked_, 300);
+}
+
+TEST_F(TextCacheTest, DoesWithoutAFolder) {
+  std::ofstream(folder_.string()) << "a file where the folder should be";
+  EXPECT_EQ(encoder()->encode_texts(list(100)).rows(), 100);
+  EXPECT_EQ(encoder()->encode_texts(list(100)).rows(), 100);
+  EXPECT_EQ(asked_, 200);
+}
+
+}  // namespace
+}  // namespace ovimap

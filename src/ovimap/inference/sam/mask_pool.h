@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "ovimap/inference/masks/bit_mask.h"
+#include "ovimap/inference/masks/logit_grid.h"
+#include "ovimap/inference/masks/mask_source.h"
+#include "ovimap/inference/sam/sam_config.h"
+#include "ovimap/inference/sam/sam_network.h"
+
+namespace ovimap {
+
+/// A mask that passed the quality tests.
+struct AcceptedMask {
+  BitMask mask;               ///< on the logit grid
+  int area = 0;               ///< grid pixels
+  float stability = 0;        ///< IoU between the masks at a raised and a lowered threshold
+  float score = 0;            ///< predicted IoU times stability, in [0, 1]
+  bool own_region = false;    ///< fills the geometric region that prompted it
+  std::vector<float> logits;  ///< size x size, for painting at full resolution
+};
+
+/// Gathers the masks of one image and makes non-overlapping entities of them.
+class MaskPool {
+ public:
+  MaskPool(const SamConfig& config, const LogitGrid& grid);
+
+  /// Takes one of the proposals that pass the quality tests, unless it repeats a mask held already.
+  /// With the geometric `region` that prompted, the best whose size is like the region's; without,
+  /// the largest of those that score about as well as the best, because an entity is wanted rather
+  /// than its part. After a box prompt (`boxed`) only masks that stay inside its box pass. Returns
+  /// whether the answer explains the region, or, without one, whether any proposal passed.
+  bool offer(const MaskProposals& proposals, const MaskPrompt* region = nullptr,
+             bool boxed = false);
+
+  const std::vector<AcceptedMask>& masks() const { return masks_; }
+  const BitMask& covered() const { return covered_; }
+  const LogitGrid& grid() const { return grid_; }
+
+  /// Entities of the colour image: parts dropped, small masks painted over large ones.
+  Entities entities() const;
+
+ private:
+  std::optional<AcceptedMask> test(const MaskProposals& proposals, int token) const;
+  std::size_t largest_stable(const std::vector<AcceptedMask>& passed) const;
+  std::size_t best_for_region(const std::vector<AcceptedMask>& passed,
+                              const MaskPrompt& region) const;
+  bool fills(const AcceptedMask& mask, const MaskPrompt& region) const;
+  float share_inside(const AcceptedMask& mask, const MaskPrompt& region) const;
+  void add(AcceptedMask mask);
+  bool is_part(const AcceptedMask& mask, const AcceptedMask& larger) const;
+  std::vector<std::size_t> whole_masks() const;
+
+  SamConfig config_;
+  LogitGrid grid_;
+  std::vector<AcceptedMask> masks_;
+  BitMask covered_;
+};
+
+}  // namespace ovimap

@@ -1,0 +1,174 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/inference/sam/mask_pool.h"
+
+#include <gtest/gtest.h>
+
+namespace ovimap {
+namespace {
+
+constexpr int kGrid = 32;
+constexpr float kSure = 8.f;
+
+struct Box {
+  int x0, y0, x1, y1;
+};
+
+/// A 64 x 64 image on a 32 x 32 grid: two image pixels a grid pixel.
+LogitGrid test_grid() {
+  ImageInputSpec spec;
+  spec.size_px = 128;
+  return logit_grid(input_frame(64, 64, spec), 128, kGrid, 64, 64);
+}
+
+SamConfig test_config() {
+  SamConfig config;
+  config.min_mask_px = 16;
+  return config;
+}
+
+/// Proposals of one mask each: +-kSure inside and outside a box of grid pixels. The first `unsure`
+/// columns have logit 0.5, so they are inside but not at a raised threshold.
+struct Proposal {
+  Box box;
+  float iou = 0.9f;
+  int unsure = 0;
+};
+
+MaskProposals proposals_of(const std::vector<Proposal>& list) {
+  MaskProposals proposals{static_cast<int>(list.size()), kGrid, {}, {}};
+  for (const Proposal& proposal : list) {
+    const Box& box = proposal.box;
+    for (int y = 0; y < kGrid; ++y)
+      for (int x = 0; x < kGrid; ++x) {
+        const bool inside = x >= box.x0 && x < box.x1 && y >= box.y0 && y < box.y1;
+        const bool sure = x >= box.x0 + proposal.unsure;
+        proposals.logits.push_back(inside ? (sure ? kSure : 0.5f) : -kSure);
+      }
+    proposals.predicted_iou.push_back(proposal.iou);
+  }
+  return proposals;
+}
+
+/// The region that fills `box` of grid pixels.
+MaskPrompt region_of(const Box& box) {
+  MaskPrompt region;
+  region.extent_px = Eigen::AlignedBox2f(
+      Eigen::Vector2f(2.f * static_cast<float>(box.x0), 2.f * static_cast<float>(box.y0)),
+      Eigen::Vector2f(2.f * static_cast<float>(box.x1) - 1, 2.f * static_cast<float>(box.y1) - 1));
+  region.interior_px = region.extent_px.center();
+  region.area_px = 4 * (box.x1 - box.x0) * (box.y1 - box.y0);
+  return region;
+}
+
+TEST(MaskPool, DropsWhatTheNetworkDoubts) {
+  MaskPool pool(test_config(), test_grid());
+  EXPECT_FALSE(pool.offer(proposals_of({{{4, 4, 12, 12}, 0.8f}})));
+  EXPECT_FALSE(pool.offer(proposals_of({{{4, 4, 12, 12}, 0.9f, 4}})));  // stability 0.5
+  EXPECT_FALSE(pool.offer(proposals_of({{{4, 4, 5, 5}, 0.9f}})));       // 4 pixels of the image
+  EXPECT_FALSE(pool.offer(proposals_of({{{0, 0, 32, 32}, 0.9f}})));     // all of the image
+  EXPECT_TRUE(pool.masks().empty());
+  EXPECT_EQ(pool.covered().count(), 0);
+}
+
+TEST(MaskPool, ScoreIsPredictedIouTimesStability) {
+  MaskPool pool(test_config(), test_grid());
+  EXPECT_TRUE(pool.offer(proposals_of({{{4, 4, 14, 12}, 0.9f, 1}})));
+  ASSERT_EQ(pool.masks().size(), 1u);
+  EXPECT_EQ(pool.masks()[0].area, 80);
+  EXPECT_FLOAT_EQ(pool.masks()[0].stability, 0.9f);
+  EXPECT_FLOAT_EQ(pool.masks()[0].score, 0.81f);
+  EXPECT_EQ(pool.covered().count(), 80);
+}
+
+TEST(MaskPool, WithoutRegionTakesTheLargestStable) {
+  MaskPool pool(test_config(), test_grid());
+  pool.offer(
+      proposals_of({{{8, 8, 12, 12}, 0.99f}, {{4, 4, 20, 20}, 0.85f}, {{2, 2, 26, 26}, 0.95f, 5}}));
+  ASSERT_EQ(pool.masks().size(), 1u);
+  EXPECT_EQ(pool.masks()[0].area, 16 * 16);  // the largest of all is too unstable to be preferred
+}
+
+TEST(MaskPool, WithRegionTakesTheOneOfItsSize) {
+  MaskPool pool(test_config(), test_grid());
+  const MaskPrompt region = region_of({8, 8, 16, 16});
+  EXPECT_TRUE(pool.offer(proposals_of({{{8, 8, 16, 16}, 0.9f}, {{0, 0, 30, 30}, 0.92f}}), &region));
+  ASSERT_EQ(pool.masks().size(), 1u);
+  EXPECT_EQ(pool.masks()[0].area, 64);
+  EXPECT_TRUE(pool.masks()[0].own_region);
+}
+
+TEST(MaskPool, TellsWhenTheRegionIsNotExplained) {
+  const MaskPrompt region = region_of({8, 8, 16, 16});
+  MaskPool small(test_config(), test_grid());
+  EXPECT_FALSE(small.offer(proposals_of({{{8, 8, 12, 12}}}), &region));
+  EXPECT_EQ(small.masks().size(), 1u);  // kept all the same
+  MaskPool large(test_config(), test_grid());
+  EXPECT_FALSE(large.offer(proposals_of({{{0, 0, 24, 24}}}), &region));
+  EXPECT_FALSE(large.masks()[0].own_region);
+}
+
+TEST(MaskPool, BoxPromptsAcceptOnlyMasksInTheBox) {
+  MaskPool pool(test_config(), test_grid());
+  const MaskPrompt region = region_of({8, 8, 16, 16});
+  EXPECT_FALSE(pool.offer(proposals_of({{{0, 0, 24, 24}, 0.95f}}), &region, true));
+  EXPECT_TRUE(pool.masks().empty());
+  EXPECT_TRUE(
+      pool.offer(proposals_of({{{0, 0, 24, 24}, 0.95f}, {{8, 8, 16, 15}, 0.83f}}), &region, true));
+  EXPECT_EQ(pool.masks()[0].area, 56);
+}
+
+TEST(MaskPool, KeepsTheBetterOfDuplicates) {
+  MaskPool pool(test_config(), test_grid());
+  pool.offer(proposals_of({{{4, 4, 20, 20}, 0.85f}}));
+  pool.offer(proposals_of({{{4, 4, 20, 19}, 0.95f}}));
+  pool.offer(proposals_of({{{4, 4, 20, 18}, 0.90f}}));
+  ASSERT_EQ(pool.masks().size(), 1u);
+  EXPECT_EQ(pool.masks()[0].area, 16 * 15);
+}
+
+TEST(MaskPool, PaintsAtFullSizeSmallOverLarge) {
+  MaskPool pool(test_config(), test_grid());
+  pool.offer(proposals_of({{{16, 16, 28, 28}}}));  // half of it lies on the next
+  pool.offer(proposals_of({{{0, 0, 22, 32}, 0.95f}}));
+  const Entities entities = pool.entities();
+  ASSERT_EQ(entities.ids.width(), 64);
+  ASSERT_EQ(entities.ids.height(), 64);
+  ASSERT_EQ(entities.scores.size(), 2u);
+  EXPECT_FLOAT_EQ(entities.scores[0], 0.95f);
+  EXPECT_EQ(entities.ids.at(10, 10), 1);
+  EXPECT_EQ(entities.ids.at(34, 40), 2);
+  EXPECT_EQ(entities.ids.at(31, 40), 1);  // the boundary between grid columns 15 and 16
+  EXPECT_EQ(entities.ids.at(32, 40), 2);
+  EXPECT_EQ(entities.ids.at(60, 60), 0);
+}
+
+TEST(MaskPool, DropsParts) {
+  MaskPool pool(test_config(), test_grid());
+  pool.offer(proposals_of({{{8, 8, 12, 12}, 0.93f}}));
+  pool.offer(proposals_of({{{0, 0, 20, 20}, 0.90f}}));
+  EXPECT_EQ(pool.entities().scores.size(), 1u);
+  EXPECT_EQ(pool.entities().ids.at(20, 20), 1);
+}
+
+TEST(MaskPool, KeepsAMuchBetterMaskInAPoorOne) {
+  MaskPool pool(test_config(), test_grid());
+  pool.offer(proposals_of({{{8, 8, 12, 12}, 0.99f}}));
+  pool.offer(proposals_of({{{0, 0, 20, 20}, 0.83f}}));
+  EXPECT_EQ(pool.entities().scores.size(), 2u);
+}
+
+// A mug on a table whose mask has no hole: geometry says that it is a thing of its own.
+TEST(MaskPool, KeepsAThingOnItsSupport) {
+  MaskPool pool(test_config(), test_grid());
+  const MaskPrompt mug = region_of({8, 8, 12, 12});
+  pool.offer(proposals_of({{{0, 0, 28, 28}, 0.94f}}));
+  pool.offer(proposals_of({{{8, 8, 12, 12}, 0.90f}}), &mug, true);
+  const Entities entities = pool.entities();
+  EXPECT_EQ(entities.scores.size(), 2u);
+  EXPECT_EQ(entities.ids.at(20, 20), 2);
+  EXPECT_EQ(entities.ids.at(40, 40), 1);
+}
+
+}  // namespace
+}  // namespace ovimap

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/inference/sam/sam_mask_source.h"
+
+#include <algorithm>
+
+#include "ovimap/inference/sam/mask_pool.h"
+#include "ovimap/inference/sam/prompt_planner.h"
+
+namespace ovimap {
+
+SamMaskSource::SamMaskSource(const ModelFolder& model, const SamConfig& config,
+                             const RuntimeConfig& runtime)
+    : network_(model, runtime), config_(config) {}
+
+std::optional<Entities> SamMaskSource::entities(const Frame& frame,
+                                                std::span<const MaskPrompt> prompts) {
+  const ImageFeatures features = network_.encode(frame.color);
+  const LogitGrid grid = logit_grid(features.frame, network_.input_size_px(), network_.grid_size(),
+                                    frame.color.width(), frame.color.height());
+  MaskPool pool(config_, grid);
+  if (config_.prompting == Prompting::kGrid)
+    ask_on_grid(features, pool);
+  else
+    ask_where_unexplained(features, prompts, pool);
+  return pool.entities();
+}
+
+void SamMaskSource::ask_where_unexplained(const ImageFeatures& features,
+                                          std::span<const MaskPrompt> regions,
+                                          MaskPool& pool) const {
+  PromptPlanner planner(config_, pool.grid(), regions);
+  for (int budget = config_.max_decoder_prompts; budget > 0;) {
+    const std::vector<PlannedPrompt> batch =
+        planner.next(pool, std::min(budget, config_.decoder_batch));
+    if (batch.empty()) break;
+    budget -= static_cast<int>(batch.size());
+    std::vector<PromptPoints> points;
+    for (const PlannedPrompt& prompt : batch) points.push_back(prompt.points);
+    const std::vector<MaskProposals> answers = network_.decode(features, points);
+    for (std::size_t i = 0; i < batch.size(); ++i)
+      if (!pool.offer(answers[i], planner.region_of(batch[i]), batch[i].boxed))
+        planner.failed(batch[i]);
+  }
+}
+
+void SamMaskSource::ask_on_grid(const ImageFeatures& features, MaskPool& pool) const {
+  const std::vector<PromptPoints> points =
+      grid_prompts(pool.grid().image_width_px, pool.grid().image_height_px, config_.grid_side);
+  const auto batch = static_cast<std::size_t>(config_.decoder_batch);
+  for (std::size_t first = 0; first < points.size(); first += batch) {
+    const auto chosen = std::span(points).subspan(first, std::min(batch, points.size() - first));
+    for (const MaskProposals& answer : network_.decode(features, chosen)) pool.offer(answer);
+  }
+}
+
+}  // namespace ovimap

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "ovimap/io/map_file/map_edits.h"
+
+namespace SQLite {
+class Database;
+}
+
+namespace ovimap {
+
+/// Which edits have an effect, undone ones and undos left out, oldest first.
+MapEdits effective_edits(const MapEdits& log);
+
+/// Sets undone_by throughout.
+void mark_undone(MapEdits& log);
+
+/// Whether a text is valid UTF-8, which the log's JSON asks for.
+bool is_utf8(const std::string& text);
+
+/// The table `edits`. Reading an older map gives an empty log. Throws Error with a phrase when the
+/// table is not what was written.
+void write_edits(SQLite::Database& database, const MapEdits& log);
+MapEdits read_edits(SQLite::Database& database);
+
+}  // namespace ovimap

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/io/exports/instance_csv.h"
+
+#include <charconv>
+#include <cmath>
+
+namespace ovimap {
+
+namespace {
+
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string result = "\"";
+  for (const char c : text) result += c == '"' ? "\"\"" : std::string(1, c);
+  return result + '"';
+}
+
+std::string number(float value) {
+  if (!std::isfinite(value)) return {};
+  char text[48];
+  return {text, std::to_chars(text, text + sizeof(text), value).ptr};
+}
+
+}  // namespace
+
+std::string instances_csv(std::span<const InstanceSummary> instances,
+                          const std::map<InstanceId, std::string>& names) {
+  std::string csv =
+      "id,name,min_x,min_y,min_z,max_x,max_y,max_z,centroid_x,centroid_y,centroid_z,points,"
+      "views\r\n";
+  for (const InstanceSummary& instance : instances) {
+    const auto name = names.find(instance.id);
+    csv += std::to_string(instance.id) + ',' + (name == names.end() ? "" : quoted(name->second));
+    for (const Eigen::Vector3f& point : {Eigen::Vector3f(instance.box.min()),
+                                         Eigen::Vector3f(instance.box.max()), instance.centroid})
+      for (const float value : point) csv += ',' + number(value);
+    csv += ',' + std::to_string(instance.points) + ',' + std::to_string(instance.views) + "\r\n";
+  }
+  return csv;
+}
+
+}  // namespace ovimap

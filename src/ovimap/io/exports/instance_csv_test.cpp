@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/io/exports/instance_csv.h"
+
+#include <gtest/gtest.h>
+
+namespace ovimap {
+namespace {
+
+TEST(InstanceCsv, QuotesWhatNeedsIt) {
+  InstanceSummary cup, nothing;
+  cup.id = 7;
+  cup.box = {Eigen::Vector3f(0.1f, -2, 0), Eigen::Vector3f(0.2f, -1.5f, 1e-3f)};
+  cup.centroid = {0.15f, -1.75f, 0};
+  cup.points = 5000000000;
+  cup.views = 3;
+  nothing.id = 8;
+  const std::string csv =
+      instances_csv(std::vector{cup, nothing}, {{7, "cup, \"old\"\nblue"}, {9, "elsewhere"}});
+  EXPECT_EQ(csv.substr(0, 9), "id,name,m");
+  EXPECT_NE(csv.find("7,\"cup, \"\"old\"\"\nblue\",0.1,-2,0,0.2,-1.5,0.001,0.15,-1.75,0,5000000000,"
+                     "3\r\n"),
+            std::string::npos)
+      << csv;
+  EXPECT_NE(csv.find("\r\n8,,"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ovimap

@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/io/exports/instance_json.h"
+
+#include <charconv>
+#include <cmath>
+
+#include "ovimap/io/exports/instance_json_value.h"
+#include "ovimap/io/map_tables/map_file_record.h"
+#include "ovimap/semantics/query/query_grammar.h"
+
+namespace ovimap {
+
+using Json = nlohmann::ordered_json;
+
+Json json_number(float value) {
+  if (!std::isfinite(value)) return nullptr;
+  char text[48];
+  const char* end = std::to_chars(text, text + sizeof(text), value).ptr;
+  double shortest = 0;
+  std::from_chars(text, end, shortest);
+  return shortest;
+}
+
+Json json_vector(const Eigen::Vector3f& v) {
+  return Json::array({json_number(v.x()), json_number(v.y()), json_number(v.z())});
+}
+
+Json instance_json_value(const InstanceSummary& instance,
+                         const std::map<InstanceId, std::string>& names) {
+  const auto name = names.find(instance.id);
+  Json entry;
+  entry["id"] = instance.id;
+  entry["name"] = name == names.end() ? std::string() : name->second;
+  entry["box"]["min"] = json_vector(instance.box.min());
+  entry["box"]["max"] = json_vector(instance.box.max());
+  entry["centroid"] = json_vector(instance.centroid);
+  entry["points"] = instance.points;
+  entry["views"] = instance.views;
+  entry["superpoints"] = instance.super_points;
+  return entry;
+}
+
+Json relation_json_value(const ObjectRelation& relation) {
+  return {{"object", relation.object},
+          {"relation", relation_name(relation.relation)},
+          {"anchor", relation.anchor},
+          {"score", json_number(relation.score)},
+          {"evidence", relation.evidence}};
+}
+
+namespace {
+
+Json instance_list(std::span<const InstanceSummary> instances,
+                   const std::map<InstanceId, std::string>& names) {
+  Json list = Json::array();
+  for (const InstanceSummary& instance : instances)
+    list.push_back(instance_json_value(instance, names));
+  return list;
+}
+
+Json relation_list(std::span<const ObjectRelation> relations) {
+  Json list = Json::array();
+  for (const ObjectRelation& relation : relations) list.push_back(relation_json_value(relation));
+  return list;
+}
+
+Json info_value(const std::filesystem::path& path, const MapInfo& info) {
+  Json document;
+  document["map"] = path.string();
+  document["schema"] = info.schema;
+  document["frames"] = info.frames;
+  document["mask_frames"] = info.mask_frames;
+  document["instances"] = instance_list(info.instances, info.names);
+  document["hidden"] = Json::array();
+  for (const InstanceSummary& instance : info.hidden) document["hidden"].push_back(instance.id);
+  document["locked"] = info.locked;
+  document["voxel_size_m"] = json_number(info.voxel_size_m);
+  document["blocks"] = info.blocks;
+  document["size_bytes"] = info.size_bytes;
+  document["content_hash"] = hash_text(info.content_hash);
+  document["source"] = info.source;
+  document["version"] = info.version;
+  document["config"] = info.config_text;
+  return document;
+}
+
+std::string text_of(const Json& document) {
+  constexpr int kCompact = -1;
+  return document.dump(kCompact, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
+std::string instances_json(std::span<const InstanceSummary> instances,
+                           const std::map<InstanceId, std::string>& names) {
+  Json document;
+  document["instances"] = instance_list(instances, names);
+  return text_of(document);
+}
+
+std::string info_json(const std::filesystem::path& path, const MapInfo& info) {
+  return text_of(info_value(path, info));
+}
+
+std::string scene_json(const std::filesystem::path& path, const MapInfo& info,
+                       std::span<const ObjectRelation> relations) {
+  Json document = info_value(path, info);
+  document["up"] = json_vector(info.up);
+  document["relations"] = relation_list(relations);
+  return text_of(document);
+}
+
+}  // namespace ovimap

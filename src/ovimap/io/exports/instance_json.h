@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+
+#include "ovimap/instance/instance_summary.h"
+#include "ovimap/io/map_file/map_file.h"
+#include "ovimap/semantics/relations/scene_relations.h"
+
+namespace ovimap {
+
+/// Instances as a JSON object {"instances": [...]}, each {"id", "name", "box": {"min", "max"},
+/// "centroid", "points", "views", "superpoints"}; metres in the world frame. The name is "" when it
+/// has none; what is not UTF-8 in it is replaced.
+std::string instances_json(std::span<const InstanceSummary> instances,
+                           const std::map<InstanceId, std::string>& names);
+
+/// What a map file is, as a JSON object: {"map", "schema", "frames", "mask_frames", "instances" (as
+/// above), "hidden" and "locked" (ids, as people corrected the map), "voxel_size_m", "blocks",
+/// "size_bytes", "content_hash" (16 hexadecimal digits), "source", "version", "config"}. `path` is
+/// how the map is called in it.
+std::string info_json(const std::filesystem::path& path, const MapInfo& info);
+
+/// The same and how the objects stand to each other: "up" (away from the ground, world frame) and
+/// "relations", a list of {"object", "relation", "anchor", "score", "evidence"}, ids.
+std::string scene_json(const std::filesystem::path& path, const MapInfo& info,
+                       std::span<const ObjectRelation> relations);
+
+}  // namespace ovimap

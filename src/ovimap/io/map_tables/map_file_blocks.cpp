@@ -1,0 +1,336 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/io/map_tables/map_file_blocks.h"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+
+#include <zstd.h>
+
+#include "ovimap/base/error.h"
+
+namespace ovimap {
+
+namespace {
+
+// What is left after prediction is noise, which higher levels do not shrink any further.
+constexpr int kCompressionLevel = 1;
+constexpr std::size_t kMaskBytes = kBlockVoxels / 8;
+constexpr std::size_t kPaletteLimit = 256;
+constexpr std::size_t kVoxelBytes = 24;
+
+/// The order in which voxels are stored: a path through the block whose every step goes to a
+/// neighbour, so that the voxel before is a good prediction.
+constexpr std::array<std::uint16_t, kBlockVoxels> kPath = [] {
+  std::array<std::uint16_t, kBlockVoxels> path{};
+  for (int i = 0; i < kBlockVoxels; ++i) {
+    const int column = i % kBlockSide, row = i / kBlockSide % kBlockSide,
+              z = i / (kBlockSide * kBlockSide);
+    const int x = row % 2 == 0 ? column : kBlockSide - 1 - column;
+    const int y = z % 2 == 0 ? row : kBlockSide - 1 - row;
+    path[static_cast<std::size_t>(i)] =
+        static_cast<std::uint16_t>(x + kBlockSide * (y + kBlockSide * z));
+  }
+  return path;
+}();
+
+/// A stored voxel. `Block` is const when saving.
+template <class Block>
+struct Place {
+  Block* block;
+  std::uint16_t voxel;
+};
+
+/// The parts of a tile's body after the blocks' heads. Bytes of like statistics lie together, and
+/// the low bytes, which are mostly noise, come last.
+struct BodyLayout {
+  std::size_t labels, support, tsdf_high, weight_high, color_high, low, end;
+  std::size_t voxels, supports;
+
+  BodyLayout(std::size_t head_bytes, std::size_t voxel_count, std::size_t support_count)
+      : voxels(voxel_count), supports(support_count) {
+    labels = head_bytes;
+    support = labels + kLabelSlots * voxels;
+    tsdf_high = support + 2 * supports;
+    weight_high = tsdf_high + voxels;
+    color_high = weight_high + voxels;
+    low = color_high + 3 * voxels;
+    end = low + 7 * voxels;
+  }
+};
+
+template <class Number>
+Number zigzag(Number difference) {
+  const bool negative = difference >> (8 * sizeof(Number) - 1);
+  return static_cast<Number>(static_cast<Number>(difference << 1) ^
+                             (negative ? static_cast<Number>(~Number{0}) : Number{0}));
+}
+
+template <class Number>
+Number unzigzag(Number code) {
+  return static_cast<Number>(static_cast<Number>(code >> 1) ^
+                             static_cast<Number>(Number{0} - (code & 1)));
+}
+
+/// Byte planes of a sequence of numbers, lowest byte first; each number is stored as the difference
+/// to the one before.
+template <class Number>
+class Planes {
+ public:
+  using Pointers = std::array<std::uint8_t*, sizeof(Number)>;
+  explicit Planes(const Pointers& planes) : planes_(planes) {}
+
+  void put(Number value) {
+    Number code = zigzag(static_cast<Number>(value - previous_));
+    previous_ = value;
+    for (std::uint8_t*& plane : planes_) {
+      *plane++ = static_cast<std::uint8_t>(code);
+      code = static_cast<Number>(code >> 8);
+    }
+  }
+
+  Number take() {
+    Number code = 0;
+    for (std::size_t i = 0; i < sizeof(Number); ++i)
+      code = static_cast<Number>(code |
+                                 static_cast<Number>(static_cast<Number>(*planes_[i]++) << 8 * i));
+    previous_ = static_cast<Number>(previous_ + unzigzag(code));
+    return previous_;
+  }
+
+ private:
+  Pointers planes_;
+  Number previous_ = 0;
+};
+
+Planes<std::uint16_t> tsdf_planes(std::uint8_t* body, const BodyLayout& at) {
+  return Planes<std::uint16_t>({body + at.low, body + at.tsdf_high});
+}
+Planes<std::uint32_t> weight_planes(std::uint8_t* body, const BodyLayout& at) {
+  std::uint8_t* low = body + at.low + at.voxels;
+  return Planes<std::uint32_t>({low, low + at.voxels, low + 2 * at.voxels, body + at.weight_high});
+}
+Planes<std::uint16_t> color_planes(std::uint8_t* body, const BodyLayout& at, std::size_t channel) {
+  return Planes<std::uint16_t>(
+      {body + at.low + (4 + channel) * at.voxels, body + at.color_high + channel * at.voxels});
+}
+Planes<std::uint16_t> support_planes(std::uint8_t* body, const BodyLayout& at) {
+  return Planes<std::uint16_t>({body + at.support, body + at.support + at.supports});
+}
+
+void append(Bytes& bytes, std::uint32_t value, int count) {
+  for (int i = 0; i < count; ++i) bytes.push_back(static_cast<std::uint8_t>(value >> 8 * i));
+}
+
+bool stored(const VoxelBlock& block, std::size_t v) {
+  std::uint32_t any =
+      static_cast<std::uint16_t>(block.tsdf[v]) | std::bit_cast<std::uint32_t>(block.weight[v]);
+  for (const auto& channel : block.color) any |= channel[v];
+  for (const auto& slot : block.label) any |= slot[v];
+  return any != 0;
+}
+
+using SavedPlace = Place<const VoxelBlock>;
+using LoadedPlace = Place<VoxelBlock>;
+
+/// Writes the blocks' heads (epochs, palettes, which voxels are stored) and lists the stored
+/// voxels.
+std::vector<SavedPlace> put_heads(std::span<const VoxelBlock* const> blocks, Bytes& body) {
+  std::vector<SavedPlace> places;
+  for (const VoxelBlock* block : blocks) append(body, block->forest_epoch, 4);
+  for (const VoxelBlock* block : blocks)
+    append(body, static_cast<std::uint32_t>(block->palette.size()), 2);
+  for (const VoxelBlock* block : blocks)
+    for (Label label : block->palette) append(body, label, 4);
+  for (const VoxelBlock* block : blocks) {
+    const std::size_t mask = body.size();
+    body.resize(mask + kMaskBytes);
+    for (std::size_t i = 0; i < kBlockVoxels; ++i) {
+      if (!stored(*block, kPath[i])) continue;
+      body[mask + i / 8] = static_cast<std::uint8_t>(body[mask + i / 8] | 1u << i % 8);
+      places.push_back({block, kPath[i]});
+    }
+  }
+  return places;
+}
+
+void put_voxels(const std::vector<SavedPlace>& places, std::uint8_t* body, const BodyLayout& at) {
+  Planes<std::uint16_t> tsdf = tsdf_planes(body, at);
+  for (const auto [block, v] : places) tsdf.put(static_cast<std::uint16_t>(block->tsdf[v]));
+  Planes<std::uint32_t> weight = weight_planes(body, at);
+  for (const auto [block, v] : places) weight.put(std::bit_cast<std::uint32_t>(block->weight[v]));
+  // Green, then red and blue as differences to it: the three channels rise and fall together.
+  Planes<std::uint16_t> green = color_planes(body, at, 0), red = color_planes(body, at, 1),
+                        blue = color_planes(body, at, 2);
+  for (const auto [block, v] : places) {
+    const auto& [r, g, b] = block->color;
+    green.put(g[v]);
+    red.put(static_cast<std::uint16_t>(r[v] - g[v]));
+    blue.put(static_cast<std::uint16_t>(b[v] - g[v]));
+  }
+  Planes<std::uint16_t> support = support_planes(body, at);
+  std::uint8_t* label = body + at.labels;
+  for (std::size_t s = 0; s < kLabelSlots; ++s) {
+    for (const auto [block, v] : places) {
+      *label++ = block->label[s][v];
+      if (block->label[s][v] != 0) support.put(block->support[s][v]);
+    }
+  }
+}
+
+/// Reads little-endian numbers, and says when there are none left.
+class HeadCursor {
+ public:
+  explicit HeadCursor(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
+  bool has(std::size_t count) const { return bytes_.size() - at_ >= count; }
+  std::size_t position() const { return at_; }
+  std::uint32_t take(int count) {
+    std::uint32_t value = 0;
+    for (int i = 0; i < count; ++i) value |= static_cast<std::uint32_t>(bytes_[at_++]) << 8 * i;
+    return value;
+  }
+
+ private:
+  std::span<const std::uint8_t> bytes_;
+  std::size_t at_ = 0;
+};
+
+/// Reads the blocks' heads; returns what is wrong with them.
+std::string take_heads(HeadCursor& head, std::span<VoxelBlock* const> blocks,
+                       const LabelForest& forest, std::vector<LoadedPlace>& places) {
+  if (!head.has(blocks.size() * 6)) return "its heads are cut off";
+  for (VoxelBlock* block : blocks) {
+    block->forest_epoch = head.take(4);
+    if (block->forest_epoch > forest.epoch()) return "it is newer than the table of merged labels";
+  }
+  for (VoxelBlock* block : blocks) {
+    const std::uint32_t size = head.take(2);
+    if (size == 0 || size > kPaletteLimit) return concat("a palette cannot have ", size, " labels");
+    block->palette.resize(size);
+  }
+  for (VoxelBlock* block : blocks) {
+    if (!head.has(block->palette.size() * 4)) return "its palettes are cut off";
+    for (Label& label : block->palette) {
+      label = head.take(4);
+      if (label > forest.last_label()) return concat("label ", label, " was never given");
+    }
+    if (block->palette[0] != kNoLabel) return "a palette does not begin with 'no label'";
+  }
+  for (VoxelBlock* block : blocks) {
+    if (!head.has(kMaskBytes)) return "its voxel masks are cut off";
+    for (std::size_t i = 0; i < kBlockVoxels; i += 8)
+      for (std::uint32_t bits = head.take(1), k = 0; bits != 0; bits >>= 1, ++k)
+        if (bits & 1) places.push_back({block, kPath[i + k]});
+  }
+  return {};
+}
+
+/// Reads the label slots; false when one points beyond its palette.
+bool take_labels(const std::vector<LoadedPlace>& places, std::uint8_t* body, const BodyLayout& at) {
+  Planes<std::uint16_t> support = support_planes(body, at);
+  const std::uint8_t* label = body + at.labels;
+  for (std::size_t s = 0; s < kLabelSlots; ++s) {
+    for (const auto [block, v] : places) {
+      if (*label >= block->palette.size()) return false;
+      block->label[s][v] = *label;
+      if (*label++ != 0) block->support[s][v] = support.take();
+    }
+  }
+  return true;
+}
+
+/// Reads distances, weights and colours; false when a weight is none.
+bool take_voxels(const std::vector<LoadedPlace>& places, std::uint8_t* body, const BodyLayout& at) {
+  Planes<std::uint16_t> tsdf = tsdf_planes(body, at);
+  for (const auto [block, v] : places) block->tsdf[v] = static_cast<std::int16_t>(tsdf.take());
+  Planes<std::uint32_t> weight = weight_planes(body, at);
+  bool weights_valid = true;
+  for (const auto [block, v] : places) {
+    const float value = std::bit_cast<float>(weight.take());
+    weights_valid = weights_valid && value >= 0.f && value <= std::numeric_limits<float>::max();
+    block->weight[v] = value;
+  }
+  Planes<std::uint16_t> green = color_planes(body, at, 0), red = color_planes(body, at, 1),
+                        blue = color_planes(body, at, 2);
+  for (const auto [block, v] : places) {
+    auto& [r, g, b] = block->color;
+    g[v] = green.take();
+    r[v] = static_cast<std::uint16_t>(red.take() + g[v]);
+    b[v] = static_cast<std::uint16_t>(blue.take() + g[v]);
+  }
+  return weights_valid;
+}
+
+std::size_t count_supports(std::span<const std::uint8_t> labels) {
+  return labels.size() - static_cast<std::size_t>(std::count(labels.begin(), labels.end(), 0));
+}
+
+}  // namespace
+
+TileEncoder::TileEncoder()
+    : context_(ZSTD_createCCtx(), [](ZSTD_CCtx* context) { ZSTD_freeCCtx(context); }) {}
+TileEncoder::~TileEncoder() = default;
+
+Bytes TileEncoder::encode(std::span<const VoxelBlock* const> blocks) {
+  body_.clear();
+  const std::vector<SavedPlace> places = put_heads(blocks, body_);
+  std::size_t supports = 0;
+  for (const auto [block, v] : places)
+    for (const auto& slot : block->label) supports += slot[v] != 0;
+  const BodyLayout layout(body_.size(), places.size(), supports);
+  body_.resize(layout.end);
+  put_voxels(places, body_.data(), layout);
+
+  // A flush between the two parts gives each its own entropy tables; it is one frame all the same.
+  ZSTD_CCtx_reset(context_.get(), ZSTD_reset_session_and_parameters);
+  ZSTD_CCtx_setParameter(context_.get(), ZSTD_c_compressionLevel, kCompressionLevel);
+  ZSTD_CCtx_setPledgedSrcSize(context_.get(), body_.size());
+  constexpr std::size_t kFlushBytes = 64;
+  Bytes data(ZSTD_compressBound(body_.size()) + kFlushBytes);
+  ZSTD_outBuffer out{data.data(), data.size(), 0};
+  ZSTD_inBuffer in{body_.data(), layout.low, 0};
+  const std::size_t flushed = ZSTD_compressStream2(context_.get(), &out, &in, ZSTD_e_flush);
+  in.size = body_.size();
+  const std::size_t left = ZSTD_compressStream2(context_.get(), &out, &in, ZSTD_e_end);
+  if (flushed != 0 || left != 0)
+    throw Error("the compressor ran out of memory; close other programs");
+  data.resize(out.pos);
+  return data;
+}
+
+TileDecoder::TileDecoder()
+    : context_(ZSTD_createDCtx(), [](ZSTD_DCtx* context) { ZSTD_freeDCtx(context); }) {}
+TileDecoder::~TileDecoder() = default;
+
+std::string TileDecoder::decode(std::span<const std::uint8_t> data, const Tile& tile,
+                                VoxelMap& map) {
+  std::vector<VoxelBlock*> blocks;
+  for (const std::uint32_t slot : tile.slots) blocks.push_back(&map.writable_block(slot));
+  return decode(data, blocks, map.labels());
+}
+
+std::string TileDecoder::decode(std::span<const std::uint8_t> data,
+                                std::span<VoxelBlock* const> blocks, const LabelForest& forest) {
+  constexpr std::size_t kMostBlockBytes =
+      6 + 4 * kPaletteLimit + kMaskBytes + kVoxelBytes * kBlockVoxels;
+  body_.resize(std::max(body_.size(), blocks.size() * kMostBlockBytes));
+  const std::size_t size = ZSTD_decompressDCtx(
+      context_.get(), body_.data(), blocks.size() * kMostBlockBytes, data.data(), data.size());
+  if (ZSTD_isError(size)) return concat("it does not decompress (", ZSTD_getErrorName(size), ")");
+  const std::span<const std::uint8_t> body(body_.data(), size);
+  HeadCursor head(body);
+  std::vector<LoadedPlace> places;
+  if (std::string fault = take_heads(head, blocks, forest, places); !fault.empty()) return fault;
+  const std::size_t label_bytes = kLabelSlots * places.size();
+  if (!head.has(label_bytes)) return "its labels are cut off";
+  const BodyLayout layout(head.position(), places.size(),
+                          count_supports(body.subspan(head.position(), label_bytes)));
+  if (layout.end != size)
+    return concat("it has ", size, " bytes where ", layout.end, " are expected");
+  if (!take_labels(places, body_.data(), layout)) return "a label slot points beyond its palette";
+  if (!take_voxels(places, body_.data(), layout)) return "a weight is negative or not finite";
+  return {};
+}
+
+}  // namespace ovimap

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ovimap/image/codec.h"
+#include "ovimap/map/voxels/block_tiles.h"
+
+struct ZSTD_CCtx_s;
+struct ZSTD_DCtx_s;
+
+namespace ovimap {
+
+/// Turns the blocks of a tile, in the order of their bits, into bytes (docs/map-format.md,
+/// "Tiles"). Keeps its buffers between calls; one per thread.
+class TileEncoder {
+ public:
+  TileEncoder();
+  ~TileEncoder();
+  Bytes encode(std::span<const VoxelBlock* const> blocks);
+
+ private:
+  std::unique_ptr<ZSTD_CCtx_s, void (*)(ZSTD_CCtx_s*)> context_;
+  Bytes body_;
+};
+
+/// The way back. Trusts no byte of its input.
+class TileDecoder {
+ public:
+  TileDecoder();
+  ~TileDecoder();
+
+  /// Fills `blocks`, which must be fresh, in the order of their bits, and returns what is wrong
+  /// with `data`; empty when nothing is. `forest`: the labels that there are.
+  [[nodiscard]] std::string decode(std::span<const std::uint8_t> data,
+                                   std::span<VoxelBlock* const> blocks, const LabelForest& forest);
+  /// The same for the blocks of a map's tile. Different tiles of one map may be filled at the same
+  /// time.
+  [[nodiscard]] std::string decode(std::span<const std::uint8_t> data, const Tile& tile,
+                                   VoxelMap& map);
+
+ private:
+  std::unique_ptr<ZSTD_DCtx_s, void (*)(ZSTD_DCtx_s*)> context_;
+  Bytes body_;
+};
+
+}  // namespace ovimap

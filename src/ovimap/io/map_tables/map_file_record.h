@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "ovimap/io/map_tables/map_document.h"
+#include "ovimap/io/map_tables/map_file_rows.h"
+
+namespace SQLite {
+class Database;
+}
+
+namespace ovimap {
+
+/// What the table `meta` holds besides the fields of MapRecord.
+struct MapMeta {
+  VoxelMapConfig map_config;
+  std::int64_t frames = 0;
+  std::uint64_t blocks = 0;
+  std::uint64_t content_hash = 0;  ///< 0 when unfinished
+  bool unfinished = false;         ///< as in MapRecord
+};
+
+/// Where objects are described: as mapping found them, and as people corrected them.
+struct InstanceTables {
+  const MapTable &instances, &super_points, &names;
+};
+inline constexpr InstanceTables kFoundInstanceTables{
+    map_tables::kInstances, map_tables::kInstanceSuperPoints, map_tables::kInstanceNames};
+inline constexpr InstanceTables kCorrectedInstanceTables{map_tables::kCorrectedInstances,
+                                                         map_tables::kCorrectedSuperPoints,
+                                                         map_tables::kCorrectedNames};
+
+/// Maps of the first schema know nothing of looks.
+inline constexpr int kSchemaWithSemantics = 2;
+/// Those before this one tell looks and records by instance, not by super-point.
+inline constexpr int kSchemaWithSuperPoints = 5;
+
+/// Writes everything of a map but its blocks and its forest of labels.
+void write_record(SQLite::Database& database, const MapRecord& record, const MapMeta& meta);
+
+/// Which labels are merged.
+void write_forest(SQLite::Database& database, const LabelForest& forest);
+LabelForest read_forest(SQLite::Database& database);
+
+/// The parts of the way back. Each fills its part of `record` and throws Error with a phrase when
+/// the file does not hold what was written.
+MapMeta read_meta(SQLite::Database& database, MapRecord& record);
+void write_instances(SQLite::Database& database, const MapRecord& record,
+                     const InstanceTables& tables);  ///< with their names
+void read_instances(SQLite::Database& database, MapRecord& record, const InstanceTables& tables);
+void read_frames(SQLite::Database& database, MapRecord& record);
+/// `forest`: the labels that the state may speak of.
+void read_registry(SQLite::Database& database, int schema, const LabelForest& forest,
+                   MapRecord& record);
+
+/// A label that exists, and an instance that was once given out.
+Label take_label(RowReader& rows, const LabelForest& forest);
+InstanceId take_instance(RowReader& rows, InstanceId last_id);
+
+/// 16 hexadecimal digits.
+std::string hash_text(std::uint64_t hash);
+
+}  // namespace ovimap

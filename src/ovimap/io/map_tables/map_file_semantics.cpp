@@ -1,0 +1,221 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/io/map_tables/map_file_semantics.h"
+
+#include <bit>
+#include <cmath>
+
+#include "ovimap/io/map_tables/map_file_record.h"
+#include "ovimap/io/map_tables/map_file_rows.h"
+
+namespace ovimap {
+
+namespace {
+
+using namespace map_tables;
+
+/// Numbers as bytes, little-endian.
+template <class Word>
+void append_word(Bytes& bytes, Word word) {
+  for (std::size_t i = 0; i < sizeof(Word); ++i)
+    bytes.push_back(static_cast<std::uint8_t>(word >> 8 * i));
+}
+
+template <class Word>
+std::vector<Word> words_of(std::span<const std::uint8_t> bytes, const RowReader& rows) {
+  if (bytes.size() % sizeof(Word) != 0) rows.fail(concat("has a list of ", bytes.size(), " bytes"));
+  std::vector<Word> words(bytes.size() / sizeof(Word));
+  for (std::size_t i = 0; i < bytes.size(); ++i)
+    words[i / sizeof(Word)] |= static_cast<Word>(Word{bytes[i]} << 8 * (i % sizeof(Word)));
+  return words;
+}
+
+Bytes embedding_bytes(const Eigen::VectorXf& embedding) {
+  Bytes bytes;
+  for (const float value : embedding) append_word(bytes, std::bit_cast<std::uint32_t>(value));
+  return bytes;
+}
+
+/// An embedding in the encoder's space, or none.
+Eigen::VectorXf take_embedding(RowReader& rows, const EncoderIdentity& encoder) {
+  const auto words = words_of<std::uint32_t>(rows.blob(), rows);
+  if (!words.empty() && encoder.name.empty()) rows.fail("has an embedding of no encoder");
+  if (!words.empty() && words.size() != static_cast<std::size_t>(encoder.dimension))
+    rows.fail(concat("has an embedding of ", words.size(), " numbers"));
+  Eigen::VectorXf embedding(static_cast<Eigen::Index>(words.size()));
+  for (std::size_t i = 0; i < words.size(); ++i)
+    embedding[static_cast<Eigen::Index>(i)] = std::bit_cast<float>(words[i]);
+  if (!embedding.allFinite()) rows.fail("has an embedding that is not finite");
+  return embedding;
+}
+
+void insert_look(RowWriter& rows, Label label, const SuperPointLook& look) {
+  const auto &low = look.seen_in_world.min(), &high = look.seen_in_world.max();
+  rows.insert(label, low.x(), low.y(), low.z(), high.x(), high.y(), high.z(), look.offered,
+              look.queries);
+}
+
+void insert_view(RowWriter& rows, const ObjectView& view) {
+  Bytes bins;
+  for (const std::uint64_t word : view.directions.bins.words()) append_word(bins, word);
+  const Bytes embedding = embedding_bytes(view.embedding);
+  const Eigen::Vector3f& center = view.directions.center_in_world;
+  const auto &low = view.crop.object_px.min(), &high = view.crop.object_px.max();
+  const bool crop = !view.crop.empty();
+  rows.insert(view.super_point, view.frame, view.visible_px, center.x(), center.y(), center.z(),
+              std::span<const std::uint8_t>(bins), std::span<const std::uint8_t>(embedding),
+              std::span<const std::uint8_t>(view.crop.image_jpeg),
+              std::span<const std::uint8_t>(view.crop.mask_png), crop ? low.x() : 0,
+              crop ? low.y() : 0, crop ? high.x() : 0, crop ? high.y() : 0);
+}
+
+constexpr float kSteps = 65535.f;
+constexpr std::size_t kPointBytes = 6;
+
+/// The box's corners as six floats, then three 16-bit numbers a point.
+Bytes surface_bytes(const std::vector<Eigen::Vector3f>& points) {
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector3f& point : points) box.extend(point);
+  Bytes bytes;
+  for (const Eigen::Vector3f& corner : {box.min(), box.max()})
+    for (const float value : corner) append_word(bytes, std::bit_cast<std::uint32_t>(value));
+  const Eigen::Array3f scale = kSteps / box.sizes().array().max(1e-6f);
+  for (const Eigen::Vector3f& point : points)
+    for (const float value : (point - box.min()).array() * scale + 0.5f)
+      append_word(bytes, static_cast<std::uint16_t>(value));
+  return bytes;
+}
+
+std::vector<Eigen::Vector3f> take_surface(RowReader& rows) {
+  constexpr std::size_t kHead = 24;
+  const std::span<const std::uint8_t> bytes = rows.blob();
+  if (bytes.size() <= kHead || (bytes.size() - kHead) % kPointBytes != 0)
+    rows.fail(concat("has a surface of ", bytes.size(), " bytes"));
+  Eigen::Vector3f corners[2];
+  const auto head = words_of<std::uint32_t>(bytes.first(kHead), rows);
+  for (std::size_t i = 0; i < 6; ++i)
+    corners[i / 3][static_cast<Eigen::Index>(i % 3)] = std::bit_cast<float>(head[i]);
+  if (!corners[0].allFinite() || !(corners[1] - corners[0]).allFinite())
+    rows.fail("has a surface that is not finite");
+  const auto steps = words_of<std::uint16_t>(bytes.subspan(kHead), rows);
+  const Eigen::Array3f scale = (corners[1] - corners[0]).array().max(1e-6f) / kSteps;
+  std::vector<Eigen::Vector3f> points(steps.size() / 3);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Array3f step(steps[3 * i], steps[3 * i + 1], steps[3 * i + 2]);
+    points[i] = corners[0] + (step * scale).matrix();
+  }
+  return points;
+}
+
+}  // namespace
+
+void write_surfaces(SQLite::Database& database, const InstanceSurfaces& surfaces,
+                    const MapTable& table) {
+  RowWriter rows(database, table);
+  for (const auto& [id, points] : surfaces) {
+    if (points.empty()) continue;
+    const Bytes bytes = surface_bytes(points);
+    rows.insert(id, std::span<const std::uint8_t>(bytes));
+  }
+  rows.finish();
+}
+
+InstanceSurfaces read_surfaces(SQLite::Database& database, const MapTable& table) {
+  InstanceSurfaces surfaces;
+  RowReader rows(database, table);
+  while (rows.next()) {
+    const auto id = rows.integer<InstanceId>();
+    surfaces.emplace(id, take_surface(rows));
+  }
+  return surfaces;
+}
+
+void write_semantics(SQLite::Database& database, const MapRecord& record) {
+  RowWriter looks(database, kSuperPointLooks);
+  for (const auto& [label, look] : record.semantics.looks) insert_look(looks, label, look);
+  looks.finish();
+  RowWriter views(database, kSuperPointViews);
+  for (const auto& [label, look] : record.semantics.looks)
+    for (const ObjectView& view : look.views) insert_view(views, view);
+  views.finish();
+  write_embeddings(database, record, kEmbeddings);
+}
+
+void write_embeddings(SQLite::Database& database, const MapRecord& record, const MapTable& table) {
+  const SemanticRecord& semantics = record.semantics;
+  RowWriter embeddings(database, table);
+  for (const InstanceSummary& instance : record.instances) {
+    const Appearance look = appearance_of(semantics.looks, instance.super_points);
+    const Eigen::VectorXf fused = fuse_views(look.views, semantics.views.fusion);
+    if (fused.size() == 0) continue;
+    const Bytes bytes = embedding_bytes(fused);
+    embeddings.insert(instance.id, std::span<const std::uint8_t>(bytes));
+  }
+  embeddings.finish();
+}
+
+BinSet take_bins(RowReader& rows, const SphereGrid& grid) {
+  auto words = words_of<std::uint64_t>(rows.blob(), rows);
+  if (words.empty()) return {};
+  const std::size_t count = words.size();
+  std::optional<BinSet> bins = BinSet::from_words(std::move(words), grid.bins());
+  if (!bins)
+    rows.fail(concat("has bins of ", count, " words that do not fit the grid of ", grid.rows, "x",
+                     grid.columns, " directions"));
+  return std::move(*bins);
+}
+
+void take_picture(RowReader& rows, const EncoderIdentity& encoder, ObjectView& view) {
+  view.embedding = take_embedding(rows, encoder);
+  const std::span<const std::uint8_t> image = rows.blob();
+  view.crop.image_jpeg.assign(image.begin(), image.end());
+  const std::span<const std::uint8_t> mask = rows.blob();
+  view.crop.mask_png.assign(mask.begin(), mask.end());
+  Eigen::Vector2i corners[2];
+  for (Eigen::Vector2i& corner : corners)
+    for (int& coordinate : corner) coordinate = rows.integer<int>();
+  if (!view.crop.empty()) view.crop.object_px = {corners[0], corners[1]};
+}
+
+SuperPointLooks read_looks(SQLite::Database& database, const LabelForest& forest,
+                           const SemanticRecord& settings, const PinholeCamera& depth_camera) {
+  const SphereGrid grid = settings.views.grid(depth_camera);
+  SuperPointLooks result;
+  RowReader looks(database, kSuperPointLooks);
+  while (looks.next()) {
+    SuperPointLook& look = result[take_label(looks, forest)];
+    for (Eigen::Vector3f* point : {&look.seen_in_world.min(), &look.seen_in_world.max()})
+      for (float& coordinate : *point) coordinate = static_cast<float>(looks.real());
+    look.offered = looks.integer<int>();
+    look.queries = looks.integer<int>();
+  }
+  RowReader views(database, kSuperPointViews);
+  while (views.next()) {
+    ObjectView view;
+    view.super_point = take_label(views, forest);
+    view.frame = views.integer<std::int64_t>();
+    view.visible_px = views.integer<int>();
+    for (float& coordinate : view.directions.center_in_world)
+      coordinate = static_cast<float>(views.real());
+    view.directions.bins = take_bins(views, grid);
+    take_picture(views, settings.encoder, view);
+    const auto look = result.find(forest.root(view.super_point));
+    if (look == result.end()) views.fail("has a view of a super-point without look");
+    insert_view(look->second, std::move(view));
+  }
+  return result;
+}
+
+std::map<InstanceId, Eigen::VectorXf> read_embeddings(SQLite::Database& database,
+                                                      const EncoderIdentity& encoder,
+                                                      const MapTable& table) {
+  std::map<InstanceId, Eigen::VectorXf> result;
+  RowReader rows(database, table);
+  while (rows.next()) {
+    const auto id = rows.integer<InstanceId>();
+    result.emplace(id, take_embedding(rows, encoder));
+  }
+  return result;
+}
+
+}  // namespace ovimap

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+
+#include "ovimap/io/map_tables/map_document.h"
+#include "ovimap/io/map_tables/map_file_rows.h"
+
+namespace SQLite {
+class Database;
+}
+
+namespace ovimap {
+
+/// Writes the looks of super-points: their views and crops, and for each instance that has one its
+/// fused embedding, so that a search reads nothing else.
+void write_semantics(SQLite::Database& database, const MapRecord& record);
+
+/// The way back, without the fused embeddings. Throws Error with a phrase when the file does not
+/// hold what was written, or what does not fit the encoder and the grid of `settings`.
+SuperPointLooks read_looks(SQLite::Database& database, const LabelForest& forest,
+                           const SemanticRecord& settings, const PinholeCamera& depth_camera);
+
+/// The last columns of a row of views.
+void take_picture(RowReader& rows, const EncoderIdentity& encoder, ObjectView& view);
+/// Directions that were seen: none, or of the map's own grid.
+BinSet take_bins(RowReader& rows, const SphereGrid& grid);
+
+/// The fused embeddings by instance.
+std::map<InstanceId, Eigen::VectorXf> read_embeddings(SQLite::Database& database,
+                                                      const EncoderIdentity& encoder,
+                                                      const MapTable& table);
+/// Of each instance of the record the views' embeddings, fused.
+void write_embeddings(SQLite::Database& database, const MapRecord& record, const MapTable& table);
+
+/// Points of the objects' surfaces, in steps of 1/65535 of their boxes.
+void write_surfaces(SQLite::Database& database, const InstanceSurfaces& surfaces,
+                    const MapTable& table);
+InstanceSurfaces read_surfaces(SQLite::Database& database, const MapTable& table);
+
+}  // namespace ovimap

@@ -1,0 +1,135 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/io/map_tables/map_file_semantics.h"
+
+#include <limits>
+
+#include "ovimap/io/map_file/map_file.h"
+#include "ovimap/io/map_file/map_file_fixture.h"
+
+namespace ovimap {
+namespace {
+
+namespace fs = std::filesystem;
+
+class MapFileSemantics : public ::testing::Test {
+ protected:
+  MapFileSemantics() : root_(fs::temp_directory_path() / concat("ovimap_semantics_", ::getpid())) {
+    fs::create_directories(root_);
+  }
+  ~MapFileSemantics() override { fs::remove_all(root_); }
+  fs::path root_;
+};
+
+TEST_F(MapFileSemantics, ASearchNeedsNoVoxels) {
+  const MapDocument saved = random_document(5, 1);
+  save_map(root_ / "a.ovimap", saved);
+  const SearchableMap map = read_searchable_map(root_ / "a.ovimap");
+  EXPECT_EQ(map.info.encoder, saved.semantics.encoder);
+  ASSERT_EQ(map.embeddings.rows(), 2);
+  ASSERT_EQ(map.embeddings.cols(), 3);
+  EXPECT_TRUE(map.embeddings.row(0).transpose().isApprox(Eigen::Vector3f(0, 0.6f, -0.8f)));
+  EXPECT_EQ(map.embeddings.row(1).norm(), 0.f);  // never seen well enough
+}
+
+TEST_F(MapFileSemantics, FusesByTheMapsOwnRule) {
+  MapDocument saved = random_document(5, 1);
+  auto& views = saved.semantics.looks[1].views;
+  views.resize(2);
+  views[0].embedding = Eigen::Vector3f(1, 0, 0);
+  views[0].visible_px = 300;
+  views[1].embedding = Eigen::Vector3f(0, 1, 0);
+  views[1].visible_px = 100;
+  save_map(root_ / "a.ovimap", saved);
+  EXPECT_NEAR(read_searchable_map(root_ / "a.ovimap").embeddings(0, 0), 0.94868f, 1e-5f);
+  saved.semantics.views.fusion = FeatureFusion::kMean;
+  save_map(root_ / "a.ovimap", saved);
+  EXPECT_NEAR(read_searchable_map(root_ / "a.ovimap").embeddings(0, 0), 0.70711f, 1e-5f);
+}
+
+TEST_F(MapFileSemantics, RefusesEmbeddingsThatCannotBe) {
+  MapDocument saved = random_document(5, 1);
+  saved.semantics.looks[1].views[0].embedding = Eigen::Vector2f(1, 0);
+  save_map(root_ / "a.ovimap", saved);
+  EXPECT_THROW(load_map(root_ / "a.ovimap"), Error);
+  EXPECT_THROW(read_searchable_map(root_ / "a.ovimap"), Error);
+}
+
+TEST_F(MapFileSemantics, ReadsMapsOfTheFourthSchemaWhoseLooksAreByInstance) {
+  const fs::path path = fs::path(OVIMAP_SOURCE_DIR) / "tests/maps/schema4.ovimap";
+  const MapDocument map = load_map(path);
+  EXPECT_EQ(read_map_info(path).schema, 4);
+  // What a search found before it finds now: the stored embeddings are those of the views.
+  const SearchableMap stored = read_searchable_map(path);
+  EXPECT_GT(stored.embeddings.norm(), 0);
+  EXPECT_TRUE(fused_embeddings(map.semantics.looks, map.instances, map.semantics.views.fusion,
+                               map.semantics.encoder.dimension)
+                  .isApprox(stored.embeddings, 1e-6f));
+  InstanceRegistry registry(map.instance_config);
+  registry.restore(InstanceRegistry::State(map.registry));
+  int with_bins = 0;
+  for (const InstanceSummary& instance : map.instances) {
+    EXPECT_EQ(registry.record(instance.id).views, instance.views);
+    for (const ObjectView* view : appearance_of(map, instance.id).views)
+      with_bins += !view->directions.bins.empty();
+  }
+  EXPECT_GT(with_bins, 0);
+  save_map(root_ / "new.ovimap", map);
+  EXPECT_EQ(difference(map, load_map(root_ / "new.ovimap")), "");
+}
+
+TEST_F(MapFileSemantics, ObjectsOfOldMapsWithoutSuperPointsGetOne) {
+  const fs::path path = fs::path(OVIMAP_SOURCE_DIR) / "tests/maps/schema4_embed.ovimap";
+  const MapDocument map = load_map(path);
+  const SearchableMap stored = read_searchable_map(path);
+  ASSERT_FALSE(map.instances.empty());
+  for (const InstanceSummary& instance : map.instances)
+    ASSERT_EQ(instance.super_points.size(), 1u);
+  EXPECT_GT(stored.embeddings.norm(), 0);
+  EXPECT_TRUE(fused_embeddings(map.semantics.looks, map.instances, map.semantics.views.fusion,
+                               map.semantics.encoder.dimension)
+                  .isApprox(stored.embeddings, 1e-6f));
+  save_map(root_ / "new.ovimap", map);
+  EXPECT_EQ(difference(map, load_map(root_ / "new.ovimap")), "");
+}
+
+TEST_F(MapFileSemantics, ReadsMapsOfTheThirdSchema) {
+  const fs::path path = fs::path(OVIMAP_SOURCE_DIR) / "tests/maps/schema3.ovimap";
+  const MapDocument map = load_map(path);
+  EXPECT_EQ(read_map_info(path).schema, 3);
+  EXPECT_FALSE(map.instances.empty());
+  EXPECT_FALSE(map.registry.entity_sightings.empty());
+  EXPECT_TRUE(map.kept_frames.empty());
+  save_map(root_ / "new.ovimap", map);
+  EXPECT_EQ(difference(map, load_map(root_ / "new.ovimap")), "");
+}
+
+TEST_F(MapFileSemantics, ReadsMapsOfTheSecondSchema) {
+  const fs::path path = fs::path(OVIMAP_SOURCE_DIR) / "tests/maps/schema2.ovimap";
+  const MapDocument map = load_map(path);
+  EXPECT_EQ(read_map_info(path).schema, 2);
+  EXPECT_FALSE(map.instances.empty());
+  EXPECT_FALSE(map.semantics.looks.empty());
+  EXPECT_TRUE(map.registry.entity_sightings.empty());
+  EXPECT_EQ(map.instance_config.instances, InstanceReading::kEntityVotes)
+      << "a map goes on as it was begun";
+  EXPECT_GT(read_searchable_map(path).embeddings.norm(), 0);
+  save_map(root_ / "new.ovimap", map);
+  EXPECT_EQ(difference(map, load_map(root_ / "new.ovimap")), "");
+}
+
+TEST_F(MapFileSemantics, ReadsMapsOfTheFirstSchema) {
+  const fs::path path = fs::path(OVIMAP_SOURCE_DIR) / "tests/maps/schema1.ovimap";
+  const MapDocument map = load_map(path);
+  EXPECT_EQ(map.instances.size(), 3u);
+  EXPECT_TRUE(map.semantics.looks.empty());
+  EXPECT_EQ(map.semantics.encoder.name, "");
+  EXPECT_EQ(read_map_info(path).schema, 1);
+  EXPECT_EQ(read_searchable_map(path).embeddings.rows(), 3);
+  save_map(root_ / "new.ovimap", map);
+  EXPECT_EQ(read_map_info(root_ / "new.ovimap").schema, kMapSchema);
+  EXPECT_EQ(difference(map, load_map(root_ / "new.ovimap")), "");
+}
+
+}  // namespace
+}  // namespace ovimap

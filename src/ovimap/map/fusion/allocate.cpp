@@ -1,0 +1,127 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+#include "ovimap/base/error.h"
+#include "ovimap/base/parallel.h"
+#include "ovimap/map/fusion/integrate.h"
+#include "ovimap/map/rays/pixel_rays.h"
+
+namespace ovimap {
+
+namespace {
+
+constexpr std::size_t kRowsPerTask = 32;
+
+void sort_unique(std::vector<std::uint64_t>& keys) {
+  std::sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+}
+
+/// Throws Error where blocks lie so far out that their keys would be those of others (pack_index).
+void check_reach(const VoxelMapConfig& config, const Pose& world_from_camera) {
+  constexpr double kUsed = 0.95;  // the rest is for what the camera sees
+  const double reach_m = kUsed * (1 << 20) * static_cast<double>(config.block_size_m()),
+               away_m = world_from_camera.translation().cwiseAbs().maxCoeff();
+  if (!(away_m < reach_m))
+    throw Error(concat("the camera is ", away_m, " m from the origin, and a map of voxels of ",
+                       config.voxel_size_m, " m reaches ", reach_m,
+                       " m; subtract an offset from all poses, or take larger voxels "
+                       "(map.voxel_size_m)"));
+}
+
+/// Block keys, with most repetitions left out: neighbouring pixels run through the same blocks.
+class KeyCollector {
+ public:
+  void add(std::uint64_t key) {
+    std::uint64_t& recent = recent_[(key ^ key >> 18 ^ key >> 35) % kRecent];
+    if (recent == key) return;
+    recent = key;
+    keys_.push_back(key);
+  }
+  std::vector<std::uint64_t> take() {
+    sort_unique(keys_);
+    return std::move(keys_);
+  }
+
+ private:
+  static constexpr std::size_t kRecent = 512;
+  std::array<std::uint64_t, kRecent> recent_{};  // 0 is the key of no block near any origin
+  std::vector<std::uint64_t> keys_;
+};
+
+/// Collects the blocks that the bands around the points of pixels run through.
+class BandBlocks {
+ public:
+  BandBlocks(const VoxelMapConfig& config, const PinholeCamera& camera,
+             const Pose& world_from_camera)
+      : rays_(camera, world_from_camera.linear().cast<float>()),
+        origin_(world_from_camera.translation().cast<float>()),
+        truncation_m_(config.truncation_m()),
+        inverse_block_size_(1.f / config.block_size_m()),
+        // Samples at most half a block apart leave out only corners that the ray cuts by less than
+        // that; an odd number of them includes the point itself.
+        samples_(1 + 2 * static_cast<int>(
+                             std::ceil(config.truncation_m() / (0.5f * config.block_size_m())))) {
+    // Neighbouring sampled pixels may be a quarter of a block apart on the surface. A pixel whose
+    // column and row are multiples of 2^k, and not both of 2^(k+1), is left out where every 2^(k+1)
+    // pixels are enough.
+    const float pitch_m = 0.25f * config.block_size_m() * camera.fx;
+    for (int k = 0; k < kMostSkips; ++k) nearest_m_[k] = pitch_m / static_cast<float>(2 << k);
+    nearest_m_[kMostSkips] = 0.f;
+  }
+
+  void add_row(const float* depth, int y, int width, KeyCollector& keys) const {
+    float nearest_m[1 << kMostSkips];  // by column, which repeats
+    for (int x = 0; x < 1 << kMostSkips; ++x)
+      nearest_m[x] =
+          nearest_m_[std::min(std::countr_zero(static_cast<unsigned>(x | y)), kMostSkips)];
+    for (int x = 0; x < width; ++x)
+      if (depth[x] > nearest_m[x % (1 << kMostSkips)]) add(rays_.at(x, y), depth[x], keys);
+  }
+
+ private:
+  void add(const Eigen::Vector3f& ray, float depth_m, KeyCollector& keys) const {
+    const Eigen::Vector3f reach = ray * (truncation_m_ / ray.norm());
+    const Eigen::Vector3f start = origin_ + ray * depth_m - reach;
+    const Eigen::Vector3f step = reach * (2.f / static_cast<float>(samples_ - 1));
+    for (int i = 0; i < samples_; ++i)
+      keys.add(pack_index(block_at(start + step * static_cast<float>(i), inverse_block_size_)));
+  }
+
+  static constexpr int kMostSkips = 3;  ///< every 2^3 pixels at least
+  PixelRays rays_;
+  Eigen::Vector3f origin_;
+  float truncation_m_, inverse_block_size_;
+  int samples_;
+  float nearest_m_[kMostSkips + 1];  ///< depth from which such a pixel counts, by k
+};
+
+}  // namespace
+
+std::vector<std::uint32_t> allocate_blocks(VoxelMap& map, const DepthImage& depth,
+                                           const PinholeCamera& camera,
+                                           const Pose& world_from_camera) {
+  check_reach(map.config(), world_from_camera);
+  const BandBlocks band(map.config(), camera, world_from_camera);
+  const auto rows = static_cast<std::size_t>(depth.height());
+  std::vector<std::vector<std::uint64_t>> keys((rows + kRowsPerTask - 1) / kRowsPerTask);
+  parallel_for_ranges(rows, kRowsPerTask, [&](std::size_t begin, std::size_t end) {
+    KeyCollector collector;
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
+      band.add_row(depth.row(y), y, depth.width(), collector);
+    keys[begin / kRowsPerTask] = collector.take();
+  });
+  std::vector<std::uint64_t> all;
+  for (const auto& part : keys) all.insert(all.end(), part.begin(), part.end());
+  sort_unique(all);
+  std::vector<std::uint32_t> slots(all.size());
+  std::transform(all.begin(), all.end(), slots.begin(),
+                 [&map](std::uint64_t key) { return map.find_or_create(unpack_index(key)); });
+  return slots;
+}
+
+}  // namespace ovimap

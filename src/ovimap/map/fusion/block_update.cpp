@@ -1,0 +1,248 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/map/fusion/block_update.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "ovimap/base/lanes.h"
+#include "ovimap/base/vectorize.h"
+#include "ovimap/map/voxels/label_slots.h"
+
+namespace ovimap {
+
+namespace {
+
+// Weights are whole multiples of 1/4096, so that their sums are exact and their last bytes zeros,
+// which a map file need not store. Up to the weight of a surface 3 cm away, a sum with this number
+// has its last bit there.
+constexpr float kWeightRounder = 3072.f;
+constexpr float kColorScale = 256.f;            ///< 8.8 fixed point
+constexpr float kLeastColorShare = 1.f / 64.f;  ///< colours go on following the view
+constexpr float kLeastSlope = 0.1f;  ///< surfaces seen at more than 84 degrees: a guess at best
+
+static_assert(kBlockSide == kLanes, "a row of voxels is worked on at once");
+static_assert(std::endian::native == std::endian::little);
+
+/// Where eight voxels in a row along x lie in the image.
+struct ProjectedRow {
+  Floats z_m;            ///< of the voxel's centre along the optical axis
+  Floats range_squared;  ///< of the voxel's centre from the camera, m^2
+  Ints pixel;            ///< index of the nearest pixel, 0 outside the image
+  Ints inside;           ///< mask
+};
+
+/// What the frame says of them.
+struct ObservedRow {
+  Floats distance_m;  ///< to the surface, positive in front
+  Floats weight;      ///< of the observation; 0: the voxel keeps what it has
+  Ints observed;      ///< mask: the weight is not 0
+};
+
+// Vectors are passed between inlined functions only.
+#pragma GCC diagnostic ignored "-Wpsabi"
+#define OVIMAP_INLINE inline __attribute__((always_inline))
+
+OVIMAP_INLINE void project(const PinholeCamera& camera, const Eigen::Vector3f& start,
+                           const Eigen::Matrix3f& steps, ProjectedRow& row) {
+  const Floats along = {0.f, 1.f, 2.f, 3.f, 4.f, 5.f, 6.f, 7.f};
+  const Floats x = start.x() + along * steps(0, 0), y = start.y() + along * steps(1, 0);
+  row.z_m = start.z() + along * steps(2, 0);
+  row.range_squared = x * x + y * y + row.z_m * row.z_m;
+  const Floats inverse = 1.f / larger(row.z_m, broadcast(1e-6f));
+  const Floats u = camera.fx * (x * inverse) + (camera.cx + 0.5f);
+  const Floats v = camera.fy * (y * inverse) + (camera.cy + 0.5f);
+  row.inside = (row.z_m > 1e-3f) & (u >= 0.f) & (v >= 0.f) &
+               (u < static_cast<float>(camera.width)) & (v < static_cast<float>(camera.height));
+  row.pixel = __builtin_convertvector(row.inside ? v : Floats{}, Ints) * camera.width +
+              __builtin_convertvector(row.inside ? u : Floats{}, Ints);
+}
+
+OVIMAP_INLINE Floats gather(const float* image, Ints pixel) {
+  return Floats{image[pixel[0]], image[pixel[1]], image[pixel[2]], image[pixel[3]],
+                image[pixel[4]], image[pixel[5]], image[pixel[6]], image[pixel[7]]};
+}
+
+/// Metres off the surface per metre of depth, at the pixels of `wanted` lanes.
+OVIMAP_INLINE Floats slopes(const FusionView& view, const ProjectedRow& row, Ints wanted) {
+  Floats slope = {};
+  if (view.frame.plane_slope) slope = gather(view.frame.plane_slope->data(), row.pixel);
+  const Ints unknown = slope <= 0.f;
+  slope = larger(slope, broadcast(kLeastSlope));
+  if (any(unknown & wanted))
+    for (int i = 0; i < kLanes; ++i)
+      if (unknown[i]) slope[i] = view.ray_length(row.pixel[i]);
+  return slope;
+}
+
+/// What an observation's weight is the inverse of (Observation::sigma_m).
+OVIMAP_INLINE Floats variance(const FusionView& view, const ProjectedRow& row, Floats depth) {
+  if (!view.frame.sigma_m) return depth * depth;
+  const Floats sigma = gather(view.frame.sigma_m->data(), row.pixel) * view.voxels_per_m;
+  return sigma * sigma + FusionView::kLeastVariance;
+}
+
+/// Distances and weights, in steps of 1/4096, falling to zero between one voxel and one truncation
+/// behind the surface; below half a step they are 0. Returns whether any voxel is observed.
+OVIMAP_INLINE bool observe(const FusionView& view, const ProjectedRow& row, ObservedRow& seen) {
+  if (!any(row.inside)) return false;
+  const Floats depth = gather(view.frame.depth.data(), row.pixel);
+  const Floats in_front = depth - row.z_m;
+  // Along the ray the distance is range / z times as long: both sides are squared, times z^2.
+  const Floats reach = row.z_m * view.truncation_m;
+  const Ints near =
+      row.inside & (depth > 0.f) & (in_front * in_front * row.range_squared < reach * reach);
+  if (!any(near)) return false;
+  seen.distance_m = in_front * slopes(view, row, near);
+  const Floats falloff =
+      smaller(broadcast(1.f), (seen.distance_m + view.truncation_m) * view.inverse_falloff);
+  // Adding a number drops what lies below its last bit: the steps of a weight.
+  const Floats rounded = falloff / variance(view, row, depth) + kWeightRounder - kWeightRounder;
+  seen.observed = near & (rounded > 0.f);
+  seen.weight = seen.observed ? rounded : Floats{};
+  return any(seen.observed);
+}
+
+/// Running weighted mean of the distance; returns the share of the observation in the new value. A
+/// weight of 0 leaves everything as it is.
+OVIMAP_INLINE Floats blend_distance(const FusionView& view, const ObservedRow& seen,
+                                    VoxelBlock::Tsdf* tsdf, float* weights) {
+  const Floats sum = load(weights) + seen.weight;
+  const Floats share = seen.observed ? seen.weight / sum : Floats{};
+  const Floats old = load_integers(tsdf);
+  const Floats target = smaller(broadcast(VoxelBlock::kTsdfScale), seen.distance_m * view.to_tsdf);
+  store_integers(old + share * (larger(broadcast(-VoxelBlock::kTsdfScale), target) - old), tsdf);
+  store(smaller(sum, broadcast(view.max_weight)), weights);
+  return share;
+}
+
+/// Red, green and blue of a pixel in the low bytes of a word; what follows in memory above them.
+OVIMAP_INLINE std::int32_t color_word(const RgbImage& image, std::int32_t pixel) {
+  std::int32_t word = 0;
+  const bool last = static_cast<std::size_t>(pixel) + 1 == image.size();  // nothing follows it
+  std::memcpy(&word, image.data() + pixel, last ? sizeof(Rgb8) : sizeof(word));
+  return word;
+}
+
+OVIMAP_INLINE void blend_colors(const RgbImage& image, const ProjectedRow& row, Floats share,
+                                std::uint16_t* const color[3]) {
+  const Ints& p = row.pixel;
+  const Ints words = {color_word(image, p[0]), color_word(image, p[1]), color_word(image, p[2]),
+                      color_word(image, p[3]), color_word(image, p[4]), color_word(image, p[5]),
+                      color_word(image, p[6]), color_word(image, p[7])};
+  const Floats old[3] = {load_integers(color[0]), load_integers(color[1]), load_integers(color[2])};
+  const Ints first = old[0] + old[1] + old[2] == 0.f;
+  const Ints known = (words & 0xffffff) != 0;  // black is unknown
+  const Floats mix = first ? broadcast(1.f) : larger(share, broadcast(kLeastColorShare));
+  const Floats shares = known & (share > 0.f) ? mix : Floats{};
+  for (int channel = 0; channel < 3; ++channel) {
+    const Floats target =
+        __builtin_convertvector((words >> (8 * channel)) & 0xff, Floats) * kColorScale;
+    store_integers(old[channel] + shares * (target - old[channel]), color[channel]);
+  }
+}
+
+/// Votes of a block's voxels for the labels of the segments they see.
+class Voter {
+ public:
+  Voter(const FusionView& view, VoxelBlock& block) : view_(view), block_(block) {}
+
+  OVIMAP_INLINE void vote(const ProjectedRow& row, const ObservedRow& seen, int first_voxel) {
+    const Ints on_surface = seen.observed & (magnitude(seen.distance_m) <= view_.label_band_m);
+    if (!any(on_surface)) return;
+    for (int i = 0; i < kLanes; ++i)
+      if (on_surface[i])
+        vote((*view_.frame.segment_ids)[static_cast<std::size_t>(row.pixel[i])], first_voxel + i);
+  }
+
+ private:
+  void vote(std::uint16_t segment, int voxel) {
+    if (segment == 0) return;
+    if (segment != last_segment_) {  // neighbouring voxels mostly see the same segment
+      last_segment_ = segment;
+      const Label label = view_.frame.segment_labels[segment - 1u];
+      position_ = label == kNoLabel ? 0 : palette_position(block_, label);
+    }
+    if (position_ != 0) add_support(block_, voxel, position_);
+  }
+
+  const FusionView& view_;
+  VoxelBlock& block_;
+  std::uint16_t last_segment_ = 0;
+  std::uint8_t position_ = 0;
+};
+
+}  // namespace
+
+FusionView::FusionView(const VoxelMapConfig& config, const Observation& observation)
+    : frame(observation),
+      camera(observation.camera),
+      truncation_m(config.truncation_m()),
+      inverse_falloff(1.f / (truncation_m - config.voxel_size_m)),
+      to_tsdf(VoxelBlock::kTsdfScale / truncation_m),
+      max_weight(config.max_weight),
+      label_band_m(config.label_band_voxels * config.voxel_size_m),
+      voxels_per_m(1.f / config.voxel_size_m),
+      voxel_size_m_(config.voxel_size_m) {
+  const Pose camera_from_world = observation.world_from_camera.inverse();
+  rotation_ = camera_from_world.linear();
+  translation_ = camera_from_world.translation();
+  voxel_steps = rotation_.cast<float>() * config.voxel_size_m;
+}
+
+float FusionView::ray_length(int pixel) const {
+  return camera
+      .unproject(static_cast<float>(pixel % camera.width), static_cast<float>(pixel / camera.width),
+                 1.f)
+      .norm();
+}
+
+Eigen::Vector3f FusionView::block_origin(const BlockIndex& index) const {
+  const Eigen::Vector3d first =
+      (index.cast<double>() * kBlockSide + Eigen::Vector3d::Constant(0.5)) * voxel_size_m_;
+  return (rotation_ * first + translation_).cast<float>();
+}
+
+namespace {
+
+/// Calls `visit(first_voxel, row, seen)` for every row of the block in which the frame shows
+/// something.
+template <class Visit>
+OVIMAP_INLINE void for_each_row(const FusionView& view, const VoxelBlock& block,
+                                const Visit& visit) {
+  const Eigen::Vector3f origin = view.block_origin(block.index);
+  const Eigen::Matrix3f& steps = view.voxel_steps;
+  ProjectedRow row;
+  ObservedRow seen;
+  for (int first = 0; first < kBlockVoxels; first += kBlockSide) {
+    const float y = static_cast<float>(first / kBlockSide % kBlockSide),
+                z = static_cast<float>(first / (kBlockSide * kBlockSide));
+    project(view.camera, origin + steps.col(1) * y + steps.col(2) * z, steps, row);
+    if (observe(view, row, seen)) visit(first, row, seen);
+  }
+}
+
+}  // namespace
+
+OVIMAP_VECTORIZE void update_block(const FusionView& view, VoxelBlock& block) {
+  Voter voter(view, block);
+  for_each_row(view, block, [&](int first, const ProjectedRow& row, const ObservedRow& seen) {
+    const Floats share =
+        blend_distance(view, seen, block.tsdf.data() + first, block.weight.data() + first);
+    std::uint16_t* const color[3] = {block.color[0].data() + first, block.color[1].data() + first,
+                                     block.color[2].data() + first};
+    if (view.frame.color) blend_colors(*view.frame.color, row, share, color);
+    if (view.frame.segment_ids) voter.vote(row, seen, first);
+  });
+}
+
+OVIMAP_VECTORIZE void vote_in_block(const FusionView& view, VoxelBlock& block) {
+  Voter voter(view, block);
+  for_each_row(view, block, [&](int first, const ProjectedRow& row, const ObservedRow& seen) {
+    voter.vote(row, seen, first);
+  });
+}
+
+}  // namespace ovimap

@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/map/fusion/integrate.h"
+
+#include "ovimap/base/parallel.h"
+#include "ovimap/map/fusion/block_update.h"
+#include "ovimap/map/voxels/label_slots.h"
+
+namespace ovimap {
+
+namespace {
+
+constexpr std::size_t kBlocksPerTask = 16;
+
+template <class Update>
+std::vector<std::uint32_t> update_blocks(VoxelMap& map, const Observation& observation,
+                                         const Update& update) {
+  std::vector<std::uint32_t> slots =
+      allocate_blocks(map, observation.depth, observation.camera, observation.world_from_camera);
+  const FusionView view(map.config(), observation);
+  parallel_for(slots.size(), kBlocksPerTask, [&](std::size_t i) {
+    VoxelBlock& block = map.writable_block(slots[i]);
+    resolve_labels(block, map.labels());
+    update(view, block);
+  });
+  return slots;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> integrate(VoxelMap& map, const Observation& observation) {
+  return update_blocks(map, observation, update_block);
+}
+
+std::vector<std::uint32_t> vote_labels(VoxelMap& map, const Observation& observation) {
+  OVIMAP_ASSERT(observation.segment_ids != nullptr);
+  return update_blocks(map, observation, vote_in_block);
+}
+
+}  // namespace ovimap

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "ovimap/geometry/camera.h"
+#include "ovimap/geometry/pose.h"
+#include "ovimap/image/image.h"
+#include "ovimap/map/voxels/voxel_map.h"
+
+namespace ovimap {
+
+/// What one frame adds to the map. All images have the depth camera's size.
+struct Observation {
+  const DepthImage& depth;      ///< metres, 0 = invalid
+  const PinholeCamera& camera;  ///< of the depth
+  const Pose& world_from_camera;
+  const RgbImage* color = nullptr;             ///< registered to the depth; black = unknown
+  const Image<float>* plane_slope = nullptr;   ///< see DepthSurface::plane_slope; 0 = unknown
+  const Image<float>* sigma_m = nullptr;  ///< standard deviation of the depth; null: unknown, it
+                                          ///< is taken to grow with depth
+  const IdImage* segment_ids = nullptr;        ///< segment of each pixel; 0 = none
+  std::span<const Label> segment_labels = {};  ///< label of segment id, at [id - 1]
+};
+
+/// Fuses one frame into the map: distance, colour and label support, one pass over the blocks near
+/// the observed surface (method section 5; linear drop-off behind the surface).
+///
+/// An observation weighs what it tells: the inverse of its variance in squared voxels, to which the
+/// voxel's own half is added (Curless and Levoy 1996, section 3.1). So the weight of a voxel is its
+/// information, and the square root of its inverse the standard error of its distance, in voxels.
+/// Where the deviation is unknown an observation weighs 1/z^2, z in metres, as in voxblox.
+///
+/// Where a plane was fitted the distance is that to the plane: the difference of depths times the
+/// plane's slope, else times the length of the ray. Projective distances alone are too long on
+/// surfaces seen at a slant, and differ from view to view. Voxels further than the truncation from
+/// the surface along their ray keep what they have.
+///
+/// The only writer of voxels, with vote_labels. Returns the slots of the blocks it visited, in
+/// block-index order.
+std::vector<std::uint32_t> integrate(VoxelMap& map, const Observation& observation);
+
+/// The frame's label votes alone, for masks that come after their frame was fused: the same voxels
+/// as `integrate` would ask, without touching distance, weight or colour. The observation must have
+/// segments. Returns likewise.
+std::vector<std::uint32_t> vote_labels(VoxelMap& map, const Observation& observation);
+
+/// Creates the blocks within the truncation band of the observed surface and returns the slots of
+/// all blocks in that band, in block-index order.
+std::vector<std::uint32_t> allocate_blocks(VoxelMap& map, const DepthImage& depth,
+                                           const PinholeCamera& camera,
+                                           const Pose& world_from_camera);
+
+}  // namespace ovimap

@@ -1,0 +1,192 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/map/fusion/integrate.h"
+
+#include <gtest/gtest.h>
+
+#include "ovimap/base/parallel.h"
+#include "ovimap/map/fusion/plain_fusion.h"
+#include "ovimap/map/rays/sphere_fixture.h"
+#include "ovimap/map/voxels/label_slots.h"
+
+namespace ovimap {
+namespace {
+
+TEST(Integrate, DistancesMatchTheSphereAlongTheView) {
+  const SphereScene scene;
+  VoxelMap map;
+  scene.integrate_views(map, 1, 7);
+  int checked = 0;
+  for (std::uint32_t slot = 0; slot < map.block_count(); ++slot) {
+    const VoxelBlock& block = map.block(slot);
+    for (int v = 0; v < kBlockVoxels; ++v) {
+      if (block.weight[static_cast<std::size_t>(v)] <= 0.f) continue;
+      const Eigen::Vector3i offset(v & 7, v >> 3 & 7, v >> 6);
+      const Eigen::Vector3f center =
+          ((block.index * 8 + offset).cast<float>().array() + 0.5f) * 0.01f;
+      if (center.head<2>().norm() > 0.05f) continue;  // near the axis the ray is the normal
+      EXPECT_NEAR(map.distance_m(block, v), center.norm() - SphereScene::kRadius, 0.004f);
+      ++checked;
+    }
+  }
+  EXPECT_GT(checked, 500);
+}
+
+TEST(Integrate, SurfaceVoxelsTakeColourAndLabel) {
+  const SphereScene scene;
+  VoxelMap map;
+  const Label label = map.labels().create();
+  scene.integrate_views(map, 4, label);
+  int labelled = 0;
+  for (std::uint32_t slot = 0; slot < map.block_count(); ++slot) {
+    const VoxelBlock& block = map.block(slot);
+    for (int v = 0; v < kBlockVoxels; ++v) {
+      if (voxel_label(block, v, map.labels()) == kNoLabel) continue;
+      ++labelled;
+      EXPECT_EQ(block.color[0][static_cast<std::size_t>(v)] >> 8, 200);
+      EXPECT_LE(voxel_labels(block, v, map.labels())[0].support, 4u) << "one vote a frame";
+    }
+  }
+  EXPECT_GT(labelled, 1000);
+}
+
+TEST(Integrate, GivesTheSameBitsForEveryThreadCount) {
+  const SphereScene scene;
+  const auto hash = [&](int threads) {
+    ThreadLimit limit(threads);
+    VoxelMap map;
+    scene.integrate_views(map, 5, map.labels().create());
+    return map.content_hash();
+  };
+  EXPECT_EQ(hash(1), hash(2));
+}
+
+/// A frame with everything that makes fusion branch: noise, holes, unknown planes and colours, and
+/// segments of which one has no label.
+struct RoughFrame {
+  DepthImage depth;
+  Image<float> slope, sigma;
+  RgbImage color;
+  IdImage segments;
+
+  RoughFrame(const SphereScene& scene, std::uint32_t seed)
+      : depth(scene.depth()),
+        slope(scene.plane_slope()),
+        sigma(depth.width(), depth.height()),
+        color(depth.width(), depth.height()),
+        segments(depth.width(), depth.height()) {
+    for (std::size_t i = 0; i < depth.size(); ++i) {
+      seed = seed * 1664525u + 1013904223u;
+      depth[i] += depth[i] > 0.f ? 0.01f * (static_cast<float>(seed >> 8) / 16777216.f - 0.5f) : 0;
+      if (seed >> 28 == 0) depth[i] = 0.f;
+      if (seed >> 28 == 1) slope[i] = 0.f;
+      sigma[i] = 0.2f * static_cast<float>(seed >> 20 & 255) / 256.f;
+      if (seed >> 28 > 2)
+        color[i] = {static_cast<std::uint8_t>(seed >> 20), static_cast<std::uint8_t>(seed >> 12),
+                    static_cast<std::uint8_t>(seed >> 4)};
+      segments[i] = static_cast<std::uint16_t>(i / 37 % 4);
+    }
+  }
+};
+
+TEST(Integrate, EqualsThePlainFusionToTheBit) {
+  const SphereScene scene;
+  VoxelMap fast, plain;
+  std::vector<Label> labels;
+  for (VoxelMap* map : {&fast, &plain})
+    labels = {map->labels().create(), kNoLabel, map->labels().create()};
+  for (int view = 0; view < 5; ++view) {
+    const RoughFrame frame(scene, 7u + static_cast<std::uint32_t>(view));
+    const Pose pose = scene.pose(0.4 * view);
+    const Observation observation{.depth = frame.depth,
+                                  .camera = scene.camera,
+                                  .world_from_camera = pose,
+                                  .color = view == 2 ? nullptr : &frame.color,
+                                  .plane_slope = view == 3 ? nullptr : &frame.slope,
+                                  .sigma_m = view == 0 ? nullptr : &frame.sigma,
+                                  .segment_ids = view == 1 ? nullptr : &frame.segments,
+                                  .segment_labels = labels};
+    integrate(fast, observation);
+    plain::integrate(plain, observation);
+    ASSERT_EQ(fast.content_hash(), plain.content_hash()) << "view " << view;
+  }
+  EXPECT_GT(fast.block_count(), 100u);
+}
+
+TEST(VoteLabels, GivesTheVotesThatIntegrateWouldHaveGiven) {
+  const SphereScene scene;
+  VoxelMap together, apart;
+  std::vector<Label> labels;
+  for (VoxelMap* map : {&together, &apart})
+    labels = {map->labels().create(), kNoLabel, map->labels().create()};
+  for (int view = 0; view < 3; ++view) {
+    const RoughFrame frame(scene, 50u + static_cast<std::uint32_t>(view));
+    const Pose pose = scene.pose(0.4 * view);
+    Observation observation{.depth = frame.depth,
+                            .camera = scene.camera,
+                            .world_from_camera = pose,
+                            .color = &frame.color,
+                            .plane_slope = &frame.slope,
+                            .segment_ids = &frame.segments,
+                            .segment_labels = labels};
+    integrate(together, observation);
+    observation.segment_ids = nullptr;
+    integrate(apart, observation);
+    EXPECT_NE(apart.content_hash(), together.content_hash());
+    observation.segment_ids = &frame.segments;
+    vote_labels(apart, observation);
+    EXPECT_EQ(apart.content_hash(), together.content_hash());
+  }
+}
+
+TEST(Integrate, IgnoresInvalidDepth) {
+  VoxelMap map;
+  const PinholeCamera camera{8, 8, 8.f, 8.f, 3.5f, 3.5f};
+  const Pose pose = Pose::Identity();
+  EXPECT_TRUE(
+      integrate(map, {.depth = DepthImage(8, 8), .camera = camera, .world_from_camera = pose})
+          .empty());
+  EXPECT_EQ(map.block_count(), 0u);
+}
+
+TEST(AllocateBlocks, RefusesBlocksThatWouldHaveTheKeysOfOthers) {
+  const PinholeCamera camera{8, 6, 8.f, 8.f, 3.5f, 2.5f};
+  const DepthImage depth(8, 6, 1.f);
+  VoxelMapConfig config;
+  config.voxel_size_m = 0.001f;
+  VoxelMap map(config);
+  Pose pose = Pose::Identity();
+  pose.translation().y() = -7900;
+  for (const std::uint32_t slot : allocate_blocks(map, depth, camera, pose))
+    EXPECT_LT(map.block_index(slot).y(), 0);
+  pose.translation().y() = -9000;  // of poses up to 10 km are taken
+  try {
+    allocate_blocks(map, depth, camera, pose);
+    FAIL();
+  } catch (const Error& fault) {
+    EXPECT_NE(std::string(fault.what()).find("9000 m from the origin"), std::string::npos);
+  }
+}
+
+TEST(AllocateBlocks, CoversTheBandOfEveryPixel) {
+  const SphereScene scene;
+  VoxelMap map;
+  const DepthImage depth = scene.depth();
+  const Pose pose = scene.pose(0.3);
+  allocate_blocks(map, depth, scene.camera, pose);
+  int points = 0, covered = 0;
+  for (int y = 0; y < depth.height(); ++y)
+    for (int x = 0; x < depth.width(); ++x) {
+      if (depth.at(x, y) <= 0.f) continue;
+      const Eigen::Vector3f point =
+          pose.cast<float>() *
+          scene.camera.unproject(static_cast<float>(x), static_cast<float>(y), depth.at(x, y));
+      ++points;
+      covered += map.find(block_at(point, 1.f / map.config().block_size_m())) != nullptr;
+    }
+  EXPECT_GT(covered, points * 995 / 1000)
+      << "only corners cut by less than the sampling pitch may be missing";
+}
+
+}  // namespace
+}  // namespace ovimap

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/map/rays/observed_space.h"
+
+#include <gtest/gtest.h>
+
+#include "ovimap/map/rays/sphere_fixture.h"
+
+namespace ovimap {
+namespace {
+
+class ObservedSpaceTest : public ::testing::Test {
+ protected:
+  ObservedSpaceTest() { scene_.integrate_views(map_, 4, 1); }
+  const SphereScene scene_;
+  VoxelMap map_;
+};
+
+TEST_F(ObservedSpaceTest, IsWhatLiesBeforeTheSurface) {
+  const std::vector<Pose> poses = {scene_.pose(0.)};  // at z = -1.2, looking along +z
+  const ObservedSpace space(map_, scene_.camera, poses);
+  EXPECT_EQ(space.views(), 1u);
+  EXPECT_EQ(space.seen_through({0.f, 0.f, -0.7f}), 1);
+  EXPECT_EQ(space.seen_through({0.f, 0.f, -0.31f}), 0);   // too near to the surface to be sure
+  EXPECT_EQ(space.seen_through({0.f, 0.f, 0.f}), 0);      // within the sphere
+  EXPECT_EQ(space.seen_through({0.f, 0.f, 0.7f}), 0);     // behind it
+  EXPECT_EQ(space.seen_through({0.f, 0.f, -1.5f}), 0);    // behind the camera
+  EXPECT_EQ(space.seen_through({0.38f, 0.f, -0.1f}), 0);  // beside it: that ray met nothing
+  EXPECT_EQ(space.seen_through({9.f, 0.f, 0.f}), 0);      // outside the picture
+}
+
+TEST_F(ObservedSpaceTest, CountsViews) {
+  std::vector<Pose> poses;
+  for (int i = 0; i < 12; ++i) poses.push_back(scene_.pose(0.02 * i));
+  const ObservedSpace space(map_, scene_.camera, poses);
+  EXPECT_EQ(space.seen_through({0.f, 0.f, -0.6f}, 100), 12);
+  EXPECT_EQ(space.seen_through({0.f, 0.f, -0.6f}, 5), 5);
+  ObservedSpaceConfig few;
+  few.max_views = 3;
+  EXPECT_EQ(ObservedSpace(map_, scene_.camera, poses, few).views(), 3u);
+}
+
+TEST_F(ObservedSpaceTest, IsEmptyWithoutFrames) {
+  EXPECT_EQ(ObservedSpace(map_, scene_.camera, {}).seen_through({0.f, 0.f, -0.7f}), 0);
+  const std::vector<Pose> poses = {scene_.pose(0.)};
+  EXPECT_EQ(ObservedSpace(map_, PinholeCamera{}, poses).views(), 0u);
+}
+
+}  // namespace
+}  // namespace ovimap

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/map/voxels/voxel_map.h"
+
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "ovimap/base/error.h"
+
+namespace ovimap {
+namespace {
+
+TEST(PackIndex, RoundTripsAndOrdersByZThenYThenX) {
+  std::mt19937 random(2);
+  std::uniform_int_distribution<int> axis(-100000, 100000);
+  for (int i = 0; i < 1000; ++i) {
+    const BlockIndex index(axis(random), axis(random), axis(random));
+    EXPECT_EQ(unpack_index(pack_index(index)), index);
+  }
+  EXPECT_LT(pack_index({5, 5, -1}), pack_index({-5, -5, 0}));
+  EXPECT_LT(pack_index({5, -1, 0}), pack_index({-5, 0, 0}));
+}
+
+TEST(VoxelMap, FindsWhatWasCreated) {
+  VoxelMap map;
+  EXPECT_EQ(map.find({1, -2, 3}), nullptr);
+  const std::uint32_t slot = map.find_or_create({1, -2, 3});
+  EXPECT_EQ(map.find_or_create({1, -2, 3}), slot);
+  EXPECT_EQ(map.find({1, -2, 3})->index, BlockIndex(1, -2, 3));
+  EXPECT_EQ(map.find({1, -2, 4}), nullptr);
+  ASSERT_NE(map.find_region({0, -1, 0}), nullptr);
+  EXPECT_EQ(map.find_region({0, -1, 0})->slot({1, -2, 3}), slot);
+  EXPECT_EQ(map.find_region({1, -1, 0}), nullptr);
+}
+
+TEST(VoxelRef, EveryVoxelOfEveryBlockHasANumberOfItsOwn) {
+  constexpr auto kLast = static_cast<std::uint32_t>(VoxelRef::kMostBlocks - 1);
+  const VoxelRef last = VoxelRef::of(kLast, kBlockVoxels - 1);
+  EXPECT_TRUE(last);
+  EXPECT_EQ(last.block(), kLast);
+  EXPECT_EQ(last.voxel(), kBlockVoxels - 1);
+  EXPECT_FALSE(VoxelRef::of(kLast + 1, kBlockVoxels - 1)) << "one more block would not fit";
+}
+
+TEST(VoxelMap, RefusesMoreBlocksThanCanBeReferredTo) {
+  VoxelMap map({}, 2);
+  map.find_or_create({0, 0, 0});
+  map.find_or_create({1, 0, 0});
+  EXPECT_EQ(map.find_or_create({1, 0, 0}), 1u) << "what is there can be found";
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    try {
+      map.find_or_create({2, 0, 0});
+      FAIL();
+    } catch (const Error& fault) {
+      EXPECT_NE(std::string(fault.what()).find("at most 2 blocks"), std::string::npos);
+      EXPECT_NE(std::string(fault.what()).find("map.voxel_size_m"), std::string::npos);
+    }
+  }
+  EXPECT_THROW(map.create_away({2, 0, 0}), Error);
+  EXPECT_EQ(map.block_count(), 2u);
+  EXPECT_EQ(map.find({2, 0, 0}), nullptr);
+}
+
+TEST(VoxelMap, ContentHashIgnoresCreationOrderAndSeesEveryVoxel) {
+  VoxelMap a, b;
+  a.find_or_create({0, 0, 0});
+  a.find_or_create({1, 0, 0});
+  b.find_or_create({1, 0, 0});
+  b.find_or_create({0, 0, 0});
+  EXPECT_EQ(a.content_hash(), b.content_hash());
+  b.writable_block(0).tsdf[511] = 1;
+  EXPECT_NE(a.content_hash(), b.content_hash());
+}
+
+TEST(VoxelBlock, TakesTwentyFourBytesAVoxel) {
+  EXPECT_LE(sizeof(VoxelBlock), 24u * kBlockVoxels + 64u);
+}
+
+}  // namespace
+}  // namespace ovimap

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <optional>
+
+#include "ovimap/frames/frame/frame.h"
+
+namespace ovimap {
+
+/// Where frames of one depth camera wait that others push: at most so many, and what does not fit
+/// is counted. Frames are numbered as they are handed out. Thread-safe.
+class FrameIntake {
+ public:
+  explicit FrameIntake(std::size_t capacity) : capacity_(capacity) {}
+
+  enum class Answer {
+    kTaken,
+    kFull,         ///< as many wait as may; the frame was left out
+    kEnded,        ///< finish() was called
+    kOtherCamera,  ///< than the depth camera of the frames so far
+  };
+  enum class Offer {
+    kFirst,
+    kAgain,  ///< the frame was left out before: counted already
+  };
+  /// Does not wait. A frame without a name is named by its index.
+  Answer offer(Frame frame, Offer offer = Offer::kFirst);
+  /// What `offer` would answer now; kFull counts as it does there, so ask for one frame once.
+  Answer room(Offer offer);
+  /// No more frames come. Those that wait are still handed out.
+  void finish();
+
+  /// Before the first frame is handed out: a resumed run goes on counting, with its camera. What
+  /// waits of another is left out, and counted.
+  void resume_at(std::int64_t index, const PinholeCamera& depth_camera);
+  /// Of the frames so far; nullopt before the first.
+  std::optional<PinholeCamera> depth_camera() const;
+  /// The oldest frame that waits, once there is one; nullopt when none came for so long, or none
+  /// comes any more.
+  std::optional<Frame> next(std::chrono::milliseconds patience);
+  /// finish() was called and everything is handed out.
+  bool ended() const;
+
+  struct Counts {
+    std::int64_t taken = 0, skipped = 0, waiting = 0;
+  };
+  Counts counts() const;
+
+ private:
+  Answer room_now(Offer offer);
+
+  const std::size_t capacity_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Frame> frames_;
+  std::optional<PinholeCamera> depth_camera_;
+  std::int64_t next_index_ = 0, taken_ = 0, skipped_ = 0;
+  bool finished_ = false;
+};
+
+}  // namespace ovimap

@@ -1,0 +1,140 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/pipeline/live/frame_intake.h"
+
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "ovimap/frames/recording/sequence_fixture.h"
+#include "ovimap/pipeline/live/live_run.h"
+
+namespace ovimap {
+namespace {
+
+using Answer = FrameIntake::Answer;
+using std::chrono::milliseconds;
+
+Frame frame_of(const fixture::Sequence& sequence, int index) {
+  Frame frame;
+  frame.color_camera = frame.depth_camera = sequence.depth_camera;
+  frame.color = sequence.color(index);
+  frame.depth = sequence.depth(index);
+  frame.world_from_camera = fixture::room_pose(index);
+  return frame;
+}
+
+TEST(FrameIntake, CountsWhatDoesNotFit) {
+  FrameIntake intake(2);
+  intake.resume_at(7, {});
+  Frame named;
+  named.name = "mine";
+  EXPECT_EQ(intake.offer({}), Answer::kTaken);
+  EXPECT_EQ(intake.offer(named), Answer::kTaken);
+  EXPECT_EQ(intake.offer({}), Answer::kFull);
+  EXPECT_EQ(intake.counts().taken, 2);
+  EXPECT_EQ(intake.counts().skipped, 1);
+  EXPECT_EQ(intake.counts().waiting, 2);
+  EXPECT_EQ(intake.next(milliseconds(0))->name, "frame000007");
+  EXPECT_EQ(intake.offer({}), Answer::kTaken);
+  EXPECT_EQ(intake.next(milliseconds(0))->name, "mine");
+  EXPECT_EQ(intake.next(milliseconds(0))->index, 9);
+  EXPECT_FALSE(intake.next(milliseconds(0)));
+}
+
+TEST(FrameIntake, AResumedRunGoesOnWithItsCamera) {
+  Frame mine, other;
+  mine.depth_camera = {640, 480, 500.f, 500.f, 320.f, 240.f};
+  other.depth_camera = {320, 240, 250.f, 250.f, 160.f, 120.f};
+  FrameIntake intake(4);
+  EXPECT_EQ(intake.offer(mine), Answer::kTaken);
+  EXPECT_EQ(intake.offer(other), Answer::kOtherCamera);
+  FrameIntake early(4);  // frames come while the run is still read
+  EXPECT_EQ(early.offer(other), Answer::kTaken);
+  early.resume_at(20, mine.depth_camera);
+  EXPECT_EQ(early.counts().taken, 0);
+  EXPECT_EQ(early.counts().skipped, 1);
+  EXPECT_EQ(early.offer(other), Answer::kOtherCamera);
+  EXPECT_EQ(early.offer(mine), Answer::kTaken);
+  EXPECT_EQ(early.next(milliseconds(0))->index, 20);
+}
+
+TEST(FrameIntake, CountsAFrameThatIsOfferedAgainOnce) {
+  FrameIntake intake(1);
+  using Offer = FrameIntake::Offer;
+  EXPECT_EQ(intake.room(Offer::kFirst), Answer::kTaken);
+  EXPECT_EQ(intake.offer({}), Answer::kTaken);
+  EXPECT_EQ(intake.offer({}), Answer::kFull);
+  EXPECT_EQ(intake.offer({}, Offer::kAgain), Answer::kFull);
+  EXPECT_EQ(intake.room(Offer::kAgain), Answer::kFull);
+  EXPECT_EQ(intake.counts().skipped, 1);
+  EXPECT_TRUE(intake.next(milliseconds(0)));
+  EXPECT_EQ(intake.offer({}, Offer::kAgain), Answer::kTaken);
+  EXPECT_EQ(intake.counts().skipped, 0) << "it was not left out after all";
+  EXPECT_EQ(intake.room(Offer::kFirst), Answer::kFull);
+  EXPECT_EQ(intake.counts().skipped, 1);
+}
+
+TEST(FrameIntake, HandsOutWhatWaitsOnceItIsFinished) {
+  FrameIntake intake(4);
+  intake.offer({});
+  intake.finish();
+  EXPECT_EQ(intake.offer({}), Answer::kEnded);
+  EXPECT_FALSE(intake.ended());
+  EXPECT_TRUE(intake.next(milliseconds(0)));
+  EXPECT_TRUE(intake.ended());
+  EXPECT_FALSE(intake.next(std::chrono::hours(1))) << "nobody need wait any more";
+}
+
+TEST(FrameIntake, PushedFramesMapAsMapperDoes) {
+  const fixture::Sequence sequence;
+  MapperConfig config;
+  Mapper direct(config);
+  for (int i = 0; i < sequence.frames; ++i) {
+    Frame frame = frame_of(sequence, i);
+    frame.index = i;
+    direct.process(frame);
+  }
+  FrameIntake intake(3);
+  LiveMapper live(config, {});
+  std::thread camera([&] {
+    for (int i = 0; i < sequence.frames; ++i)
+      while (intake.offer(frame_of(sequence, i)) == Answer::kFull)
+        std::this_thread::sleep_for(milliseconds(1));
+    intake.finish();
+  });
+  const LiveRunResult result = run_pushed(intake, live);
+  camera.join();
+  EXPECT_EQ(result.sequence.frames.size(), static_cast<std::size_t>(sequence.frames));
+  EXPECT_EQ(result.statistics.frames_dropped, intake.counts().skipped);
+  EXPECT_EQ(result.sequence.frames[5].index, 5);
+  Mapper made = live.take();
+  EXPECT_EQ(made.map().content_hash(), direct.map().content_hash());
+}
+
+TEST(FrameIntake, WithoutFramesThereIsNoMap) {
+  FrameIntake intake(3);
+  intake.finish();
+  LiveMapper live(MapperConfig{}, {});
+  try {
+    run_pushed(intake, live);
+    FAIL() << "it mapped nothing";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("no frame"), std::string::npos) << error.what();
+  }
+}
+
+TEST(FrameIntake, EndsWhenItIsTold) {
+  const fixture::Sequence sequence;
+  FrameIntake intake(3);
+  LiveMapper live(MapperConfig{}, {});
+  for (int i = 0; i < 2; ++i) intake.offer(frame_of(sequence, i));
+  int looks = 0;
+  const auto result = run_pushed(
+      intake, live, [&](std::size_t done, std::size_t) { return done < 2 || ++looks < 2; });
+  EXPECT_EQ(result.sequence.frames.size(), 2u);
+  EXPECT_EQ(intake.offer({}), Answer::kEnded) << "who pushes hears of it";
+}
+
+}  // namespace
+}  // namespace ovimap

@@ -1,0 +1,277 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/pipeline/live/live_mapper.h"
+
+#include <ranges>
+#include <utility>
+
+#include "ovimap/base/config.h"
+#include "ovimap/base/thread_priority.h"
+
+namespace ovimap {
+
+namespace {
+
+double milliseconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+      .count();
+}
+
+/// A camera does not wait, and what it saw does not come again: an encoder that fails must not end
+/// the run.
+std::unique_ptr<Mapper> forgiving_mapper(const MapperConfig& config,
+                                         std::shared_ptr<MaskSource> masks,
+                                         std::shared_ptr<ImageTextEncoder> encoder) {
+  auto mapper = std::make_unique<Mapper>(config, std::move(masks), std::move(encoder));
+  mapper->forgive_encoder();
+  return mapper;
+}
+
+}  // namespace
+
+void list_fields(LiveConfig& config, ConfigFields& fields) {
+  fields.group("masks", [&](ConfigFields& f) { list_fields(config.masks, f); });
+  fields.add("view_interval", config.view_interval, 1, 1000000,
+             "objects are looked at in every n-th frame");
+  fields.add("queue", config.queue, 1, 1000000,
+             "frames that wait at most; then new ones are dropped");
+  fields.add("mask_backlog", config.mask_backlog, 0, 1000000,
+             "no new masks while more frames than this wait");
+  fields.add("view_backlog", config.view_backlog, 0, 1000000,
+             "no looks at objects while more frames than this wait");
+  fields.add("wait_for_masks", config.wait_for_masks, "hold each frame until its masks are there");
+}
+
+LiveMapper::LiveMapper(const MapperConfig& config, const LiveConfig& live,
+                       std::shared_ptr<MaskSource> masks, std::shared_ptr<ImageTextEncoder> encoder)
+    : config_(config),
+      live_(live),
+      mask_source_(masks),
+      mapper_(forgiving_mapper(config, std::move(masks), std::move(encoder))),
+      schedule_(live.masks),
+      incoming_(static_cast<std::size_t>(live.queue)),
+      prepared_(1),
+      wanted_masks_(1),
+      found_masks_(1),
+      preparing_([this] { run_stage([this] { prepare_frames(); }); }),
+      fusing_([this] { run_stage([this] { fuse_frames(); }); }),
+      masking_([this] { run_stage([this] { find_masks(); }); }) {}
+
+LiveMapper::~LiveMapper() {
+  cancel();
+}
+
+// ----------------------------------------------------------------------------------- from outside
+
+bool LiveMapper::push(Frame frame) {
+  rethrow_failure();
+  const bool taken =
+      incoming_.try_push({std::make_shared<const Frame>(std::move(frame)), Clock::now()});
+  const std::lock_guard lock(mutex_);
+  ++statistics_.frames_pushed;
+  if (!taken) ++statistics_.frames_dropped;
+  return taken;
+}
+
+void LiveMapper::push_and_wait(Frame frame) {
+  const bool taken =
+      incoming_.push({std::make_shared<const Frame>(std::move(frame)), Clock::now()});
+  rethrow_failure();
+  const std::lock_guard lock(mutex_);
+  ++statistics_.frames_pushed;
+  if (!taken) ++statistics_.frames_dropped;  // drained or cancelled
+}
+
+void LiveMapper::drain() {
+  incoming_.close();
+  join();
+  rethrow_failure();
+}
+
+void LiveMapper::cancel() {
+  stop();
+  join();
+}
+
+void LiveMapper::stop() {
+  cancelled_ = true;
+  incoming_.cancel();
+  prepared_.cancel();
+  wanted_masks_.cancel();
+  found_masks_.cancel();
+}
+
+Mapper LiveMapper::take() {
+  join();
+  mapper_->timers().merge(prepare_timers_);
+  mapper_->timers().merge(mask_timers_);
+  return std::move(*mapper_);
+}
+
+LiveStatistics LiveMapper::statistics() const {
+  const std::lock_guard lock(mutex_);
+  LiveStatistics result = statistics_;
+  const auto lags = lags_.summary();
+  if (const auto found = lags.find("geometry"); found != lags.end())
+    result.geometry_lag = found->second;
+  if (const auto found = lags.find("masks"); found != lags.end()) result.mask_lag = found->second;
+  return result;
+}
+
+// --------------------------------------------------------------------------------------- preparing
+
+void LiveMapper::prepare_frames() {
+  while (auto next = incoming_.pop()) {
+    begin("prepare");
+    Prepared prepared{nullptr, nullptr, next->pushed};
+    prepared.frame = std::make_shared<const PreparedFrame>(
+        prepare_frame(std::move(next->frame), config_, prepare_timers_));
+    if (!mask_source_)
+      prepared.cut = std::make_shared<const FrameSegments>(
+          *cut_segments(*prepared.frame, nullptr, config_, prepare_timers_));
+    prepared_.push(std::move(prepared));
+  }
+  prepared_.close();
+}
+
+void LiveMapper::restore(MapDocument&& document) {
+  frames_ = document.frames;
+  mapper_->restore(std::move(document));
+}
+
+// ------------------------------------------------------------------------------------------ fusing
+
+void LiveMapper::fuse_frames() {
+  while (auto next = prepared_.pop()) {
+    apply_late_masks();
+    fuse(std::move(*next));
+  }
+  wanted_masks_.close();
+  while (auto late = found_masks_.pop()) apply_masks(std::move(*late));
+  if (cancelled_) return;
+  mapper_->finish();
+  count_encoder_failures();
+}
+
+void LiveMapper::count_encoder_failures() {
+  EncoderFailures failures = mapper_->encoder_failures();
+  const std::lock_guard lock(mutex_);
+  statistics_.views_failed = failures.views;
+  statistics_.encoder_fault = std::move(failures.first);
+}
+
+void LiveMapper::fuse(Prepared prepared) {
+  begin("fuse");
+  const Frame& frame = *prepared.frame->frame;
+  const auto waiting = static_cast<int>(incoming_.size() + prepared_.size());
+  if (mask_source_ && schedule_.wants(frame, mapper_->map())) {
+    const bool busy = masks_under_way_ > 0 || waiting > live_.mask_backlog;
+    if (!busy || live_.wait_for_masks) {
+      schedule_.chosen(frame);
+      if (live_.wait_for_masks) {
+        prepared.cut = masks_for(prepared);
+        if (!prepared.cut) schedule_.went_without();
+      } else if (wanted_masks_.try_push(prepared)) {
+        ++masks_under_way_;
+      }
+    } else {
+      const std::lock_guard lock(mutex_);
+      ++statistics_.masks_skipped;
+    }
+  }
+  mapper_->fuse(*prepared.frame, prepared.cut.get());
+  const double lag_ms = milliseconds_since(prepared.pushed);
+  frames_.push_back({frame.index, frame.timestamp_s, frame.name, frame.world_from_camera,
+                     prepared.cut != nullptr});
+  const bool look = mapper_->frames() % live_.view_interval == 0;
+  const bool no_time = waiting > live_.view_backlog || !mapper_->encoder_keeps_up();
+  if (look && !no_time) {
+    begin("views");
+    mapper_->look_at_objects(frame, Mapper::Encoder::kRunOn);
+  }
+  if (after_frame) after_frame(*mapper_, frames_, frame.depth_camera);
+  count_encoder_failures();
+  const std::lock_guard lock(mutex_);
+  ++statistics_.frames_fused;
+  statistics_.views_skipped += look && no_time;
+  statistics_.mask_frames += prepared.cut && prepared.cut->masked;
+  lags_.add("geometry", lag_ms);
+}
+
+void LiveMapper::apply_late_masks() {
+  while (auto late = found_masks_.try_pop()) apply_masks(std::move(*late));
+}
+
+void LiveMapper::apply_masks(Prepared late) {
+  --masks_under_way_;
+  if (!late.cut) return schedule_.went_without();
+  begin("apply_masks");
+  mapper_->label(*late.frame, *late.cut);
+  for (FrameLogEntry& entry : std::views::reverse(frames_))
+    if (entry.index == late.frame->frame->index) {
+      entry.labelled = true;
+      break;
+    }
+  if (after_frame) after_frame(*mapper_, frames_, late.frame->frame->depth_camera);
+  const std::lock_guard lock(mutex_);
+  ++statistics_.mask_frames;
+  ++statistics_.masks_late;
+  lags_.add("masks", milliseconds_since(late.pushed));
+}
+
+// ------------------------------------------------------------------------------------------- masks
+
+void LiveMapper::find_masks() {
+  lower_thread_priority();
+  while (auto wanted = wanted_masks_.pop()) {
+    wanted->cut = masks_for(*wanted);
+    found_masks_.push(std::move(*wanted));
+  }
+  found_masks_.close();
+}
+
+/// Null when the frame's masks are bad or there are none of it; other frames may do better.
+std::shared_ptr<const FrameSegments> LiveMapper::masks_for(const Prepared& prepared) {
+  begin("masks");
+  try {
+    if (auto cut = cut_segments(*prepared.frame, mask_source_.get(), config_, mask_timers_))
+      return std::make_shared<const FrameSegments>(std::move(*cut));
+    const std::lock_guard lock(mutex_);
+    ++statistics_.masks_absent;
+  } catch (const FrameError& fault) {
+    const std::lock_guard lock(mutex_);
+    if (statistics_.masks_failed++ == 0) statistics_.mask_fault = fault.what();
+  }
+  return nullptr;
+}
+
+// ----------------------------------------------------------------------------------------- threads
+
+template <class Work>
+void LiveMapper::run_stage(const Work& work) {
+  try {
+    work();
+  } catch (...) {
+    fail(std::current_exception());
+  }
+}
+
+void LiveMapper::fail(std::exception_ptr failure) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!failure_) failure_ = std::move(failure);
+  }
+  stop();
+}
+
+void LiveMapper::rethrow_failure() {
+  const std::lock_guard lock(mutex_);
+  if (failure_) std::rethrow_exception(failure_);
+}
+
+void LiveMapper::join() {
+  for (std::thread* thread : {&preparing_, &fusing_, &masking_})
+    if (thread->joinable()) thread->join();
+}
+
+}  // namespace ovimap

@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "ovimap/base/bounded_queue.h"
+#include "ovimap/io/map_tables/map_document.h"
+#include "ovimap/pipeline/live/mask_schedule.h"
+#include "ovimap/pipeline/mapping/mapper.h"
+
+namespace ovimap {
+
+struct LiveConfig {
+  MaskScheduleConfig masks;
+  int view_interval = 10;       ///< objects are looked at in every n-th frame
+  int queue = 8;                ///< frames that wait at most; then new ones are dropped
+  int mask_backlog = 2;         ///< no new masks while more frames than this wait
+  int view_backlog = 4;         ///< no views while more frames than this wait
+  bool wait_for_masks = false;  ///< hold the frame until its masks are there, as Mapper does
+};
+void list_fields(LiveConfig& config, ConfigFields& fields);
+
+/// What a live run did and left out. Lags are from `push` until the result was in the map.
+struct LiveStatistics {
+  std::int64_t frames_pushed = 0, frames_fused = 0, frames_dropped = 0;
+  std::int64_t mask_frames = 0;    ///< frames whose masks are in the map
+  std::int64_t masks_late = 0;     ///< ... after their frame was fused
+  std::int64_t masks_skipped = 0;  ///< frames that wanted masks while the network was busy
+  std::int64_t masks_failed = 0;   ///< frames whose masks were bad
+  std::int64_t masks_absent = 0;   ///< frames that the source had no masks of
+  std::int64_t views_skipped = 0;  ///< looks at objects left out
+  std::int64_t views_failed = 0;   ///< views without embedding, because the encoder threw
+  StageSummary geometry_lag, mask_lag;
+  std::string mask_fault;     ///< of the first that failed
+  std::string encoder_fault;  ///< likewise
+};
+
+/// Mapper for a camera that does not wait. Frames go through threads of their own: one prepares
+/// (registration, surface, and regions where there are no masks), one fuses, one runs the mask
+/// network, one the encoder. Masks that come late are applied with the depth and pose of their own
+/// frame. When it falls behind it leaves out masks first, views second, frames last, and counts
+/// them. Bad masks and an encoder that throws cost what they were asked for, and are counted too;
+/// whatever else throws ends the run. All calls but `statistics` come from one thread.
+class LiveMapper {
+ public:
+  LiveMapper(const MapperConfig& config, const LiveConfig& live,
+             std::shared_ptr<MaskSource> masks = nullptr,
+             std::shared_ptr<ImageTextEncoder> encoder = nullptr);
+  /// Cancels.
+  ~LiveMapper();
+
+  /// Takes a frame without waiting; false when it had to be dropped. Throws what a stage threw.
+  bool push(Frame frame);
+  /// Waits for room instead. Throws what a stage threw.
+  void push_and_wait(Frame frame);
+
+  /// Goes on where a stored map stopped, made with the same config. Before the first push only.
+  void restore(MapDocument&& document);
+
+  /// Waits until everything pushed is in the map, with its masks and embeddings; then no more
+  /// frames are taken. Throws what a stage threw.
+  void drain();
+  /// Stops as soon as each stage has finished what it is at. What was fused stays.
+  void cancel();
+  /// The same without waiting for the stages, from any thread: calls that wait for them return.
+  void stop();
+
+  /// The map and everything about it, once drained or cancelled. Call once.
+  Mapper take();
+  /// The frames that were fused, in order, once drained or cancelled.
+  const std::vector<FrameLogEntry>& frames() const { return frames_; }
+
+  LiveStatistics statistics() const;
+  const MapperConfig& config() const { return config_; }
+
+  /// Called by every stage before it works, on its thread. For tests; set before the first push.
+  std::function<void(const char* stage)> before_stage;
+  /// Called after every frame and every change of labels, on the fusing thread, with all frames so
+  /// far. For checkpoints; set before the first push. What it throws ends the run.
+  std::function<void(Mapper&, const std::vector<FrameLogEntry>&, const PinholeCamera&)> after_frame;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Incoming {
+    std::shared_ptr<const Frame> frame;
+    Clock::time_point pushed;
+  };
+  struct Prepared {
+    std::shared_ptr<const PreparedFrame> frame;
+    std::shared_ptr<const FrameSegments> cut;  ///< null: not masked, or masks are to come
+    Clock::time_point pushed;
+  };
+
+  void prepare_frames();
+  void fuse_frames();
+  void find_masks();
+  void fuse(Prepared prepared);
+  void count_encoder_failures();
+  void apply_masks(Prepared late);
+  void apply_late_masks();
+  std::shared_ptr<const FrameSegments> masks_for(const Prepared& prepared);
+
+  void begin(const char* stage) const {
+    if (before_stage) before_stage(stage);
+  }
+  template <class Work>
+  void run_stage(const Work& work);
+  void fail(std::exception_ptr failure);
+  void rethrow_failure();
+  void join();
+
+  MapperConfig config_;
+  LiveConfig live_;
+  std::shared_ptr<MaskSource> mask_source_;
+  std::unique_ptr<Mapper> mapper_;  ///< the fusing thread's, until that ends
+  MaskSchedule schedule_;
+  StageTimers prepare_timers_, mask_timers_;
+
+  BoundedQueue<Incoming> incoming_;
+  BoundedQueue<Prepared> prepared_;
+  BoundedQueue<Prepared> wanted_masks_, found_masks_;
+  std::int64_t masks_under_way_ = 0;  ///< the fusing thread's, as the next
+  std::vector<FrameLogEntry> frames_;
+
+  std::atomic<bool> cancelled_ = false;
+  mutable std::mutex mutex_;  ///< guards what follows
+  LiveStatistics statistics_;
+  StageTimers lags_;
+  std::exception_ptr failure_;
+
+  std::thread preparing_, fusing_, masking_;  // last: they start when everything else is there
+};
+
+}  // namespace ovimap

@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/pipeline/live/live_run.h"
+
+#include <thread>
+
+#include "ovimap/base/error.h"
+
+namespace ovimap {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr std::size_t kReadAhead = 8;
+
+struct NextFrame {
+  std::int64_t position;
+  FrameRead read;
+};
+
+/// Decodes frames on a thread of its own.
+class ReadAhead {
+ public:
+  ReadAhead(const FrameSource& source, const std::vector<std::int64_t>& positions)
+      : frames_(kReadAhead), reader_([this, &source, &positions] { read(source, positions); }) {}
+  ~ReadAhead() {
+    frames_.cancel();
+    reader_.join();
+  }
+
+  /// Throws what reading threw.
+  std::optional<NextFrame> next() {
+    std::optional<NextFrame> frame = frames_.pop();
+    if (!frame && failure_) std::rethrow_exception(failure_);
+    return frame;
+  }
+
+ private:
+  void read(const FrameSource& source, const std::vector<std::int64_t>& positions) {
+    try {
+      for (const std::int64_t position : positions)
+        if (!frames_.push({position, source.read(position)})) return;
+    } catch (...) {
+      failure_ = std::current_exception();
+    }
+    frames_.close();
+  }
+
+  BoundedQueue<NextFrame> frames_;
+  std::exception_ptr failure_;  ///< set before the queue is closed
+  std::thread reader_;
+};
+
+/// What a run must not pass over in silence.
+void check_outcome(const LiveRunResult& result, const MapperConfig& config) {
+  const std::vector<FrameLogEntry>& frames = result.sequence.frames;
+  if (frames.empty())
+    throw Error(concat("none of the frames is usable: ", commonest_fault(result.sequence.skipped),
+                       "; `ovimap check` tells more"));
+  require_motion(frames, config);
+  if (result.statistics.masks_failed > 0 && result.statistics.mask_frames == 0)
+    throw Error(result.statistics.mask_fault);
+}
+
+}  // namespace
+
+LiveRunResult run_live(const FrameSource& source, const std::vector<std::int64_t>& positions,
+                       LiveMapper& mapper, double fps, const LiveProgress& progress) {
+  LiveRunResult result;
+  ReadAhead reader(source, positions);
+  std::optional<NextFrame> next = reader.next();  // the camera starts when a frame is there
+  const auto start = Clock::now();
+  const auto due = [&](std::size_t frame) {
+    return start + std::chrono::duration_cast<Clock::duration>(
+                       std::chrono::duration<double>(static_cast<double>(frame) / fps));
+  };
+  for (std::size_t i = 0; next; ++i) {
+    std::this_thread::sleep_until(due(i));
+    if (next->read.frame) {
+      result.sequence.depth_camera = next->read.frame->depth_camera;
+      mapper.push(std::move(*next->read.frame));
+    } else {
+      result.sequence.skipped.push_back({next->position, next->read.fault});
+    }
+    result.camera_seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    if (progress && !progress(i + 1, positions.size())) break;
+    next = reader.next();
+    result.frames_read_late += next && Clock::now() > due(i + 1);
+  }
+  mapper.drain();
+  result.sequence.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  result.sequence.frames = mapper.frames();
+  result.statistics = mapper.statistics();
+  check_outcome(result, mapper.config());
+  return result;
+}
+
+LiveRunResult run_pushed(FrameIntake& intake, LiveMapper& mapper, const LiveProgress& progress) {
+  constexpr std::chrono::milliseconds kLook{50};  // between looks at whether to go on
+  LiveRunResult result;
+  std::optional<Clock::time_point> start;  // the first frame's
+  for (std::size_t done = 0; !intake.ended();) {
+    if (std::optional<Frame> frame = intake.next(kLook)) {
+      if (!start) start = Clock::now();
+      result.sequence.depth_camera = frame->depth_camera;
+      mapper.push_and_wait(std::move(*frame));
+      result.camera_seconds = std::chrono::duration<double>(Clock::now() - *start).count();
+      ++done;
+    }
+    if (progress && !progress(done, done)) intake.finish();
+  }
+  mapper.drain();
+  if (start) result.sequence.seconds = std::chrono::duration<double>(Clock::now() - *start).count();
+  result.sequence.frames = mapper.frames();
+  result.statistics = mapper.statistics();
+  result.statistics.frames_dropped += intake.counts().skipped;
+  if (result.sequence.frames.empty())
+    throw Error("no frame came, so there is no map; docs/live.md says how to send frames");
+  check_outcome(result, mapper.config());
+  return result;
+}
+
+}  // namespace ovimap

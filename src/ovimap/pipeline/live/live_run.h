@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "ovimap/pipeline/live/frame_intake.h"
+#include "ovimap/pipeline/live/live_mapper.h"
+#include "ovimap/pipeline/sequence/sequence_run.h"
+
+namespace ovimap {
+
+struct LiveRunResult {
+  SequenceResult sequence;
+  LiveStatistics statistics;
+  double camera_seconds = 0;          ///< from the first frame handed over to the last
+  std::int64_t frames_read_late = 0;  ///< decoding was not done when the camera would have been
+};
+
+/// Called after every frame is handed over. Returning false ends the run early; what was fused
+/// stays.
+using LiveProgress = std::function<bool(std::size_t done, std::size_t total)>;
+
+/// Feeds a recording to the mapper as a camera of `fps` frames a second would, whatever the mapper
+/// manages, and drains it. Frames are decoded ahead. Throws Error as run_sequence does, when masks
+/// were asked for and none was good, and what a stage threw.
+LiveRunResult run_live(const FrameSource& source, const std::vector<std::int64_t>& positions,
+                       LiveMapper& mapper, double fps, const LiveProgress& progress = nullptr);
+
+/// Feeds the mapper what comes into `intake` until that ends, waiting for room, and drains it.
+/// `progress` is called after every frame and now and then while none comes, with the frames so
+/// far; when it returns false the run ends, and the intake with it. What the intake had no room for
+/// counts as dropped. Throws as run_live.
+LiveRunResult run_pushed(FrameIntake& intake, LiveMapper& mapper,
+                         const LiveProgress& progress = nullptr);
+
+}  // namespace ovimap

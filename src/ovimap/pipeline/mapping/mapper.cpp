@@ -1,0 +1,208 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/pipeline/mapping/mapper.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "ovimap/base/error.h"
+#include "ovimap/base/version.h"
+#include "ovimap/map/fusion/integrate.h"
+#include "ovimap/map/rays/surface_lookup.h"
+
+namespace ovimap {
+
+namespace {
+
+Observation observation_of(const PreparedFrame& prepared, const FrameSegments* cut,
+                           std::span<const Label> labels) {
+  const Image<float>& sigma = prepared.estimate.sigma_m;
+  return {.depth = prepared.estimate.depth_m,
+          .camera = prepared.frame->depth_camera,
+          .world_from_camera = prepared.frame->world_from_camera,
+          .color = &prepared.color,
+          .plane_slope = &prepared.surface.plane_slope,
+          .sigma_m = sigma.empty() ? nullptr : &sigma,
+          .segment_ids = cut ? &cut->segments.ids : nullptr,
+          .segment_labels = labels};
+}
+
+std::vector<Label> labels_of(std::span<const SegmentAssociation> associations) {
+  std::vector<Label> labels;
+  for (const SegmentAssociation& segment : associations) labels.push_back(segment.label);
+  return labels;
+}
+
+}  // namespace
+
+Mapper::Mapper(const MapperConfig& config, std::shared_ptr<MaskSource> masks,
+               std::shared_ptr<ImageTextEncoder> encoder)
+    : config_(config),
+      masks_(std::move(masks)),
+      map_(config.map),
+      registry_(config.instance),
+      frame_store_(config.frame_store) {
+  if (config_.view_interval == 0)
+    config_.view_interval = encoder ? 1 : config_.stored_view_interval;
+  builder_ = std::make_unique<AppearanceBuilder>(config_.semantics, std::move(encoder));
+  if (config_.mask_interval == 0)
+    config_.mask_interval = masks_ && masks_->is_slow() ? config_.network_mask_interval : 1;
+}
+
+FrameReport Mapper::process(const Frame& frame) {
+  const std::shared_ptr<const Frame> borrowed(std::shared_ptr<const Frame>(), &frame);
+  const PreparedFrame prepared = prepare_frame(borrowed, config_, timers_);
+  std::optional<FrameSegments> cut;
+  if (frames_ % config_.mask_interval == 0)
+    cut = cut_segments(prepared, masks_.get(), config_, timers_);
+  FrameReport report = fuse(prepared, cut ? &*cut : nullptr);
+  if (frames_ % config_.view_interval == 0) report.views = look_at_objects(frame);
+  return report;
+}
+
+FrameReport Mapper::fuse(const PreparedFrame& prepared, const FrameSegments* cut) {
+  builder_->rethrow_failure();  // before anything changes
+  const std::vector<SegmentAssociation> associations = find_labels(prepared, cut);
+  const std::vector<Label> labels = labels_of(associations);
+  {
+    auto t = timers_.measure("integrate");
+    touched_blocks_ = integrate(map_, observation_of(prepared, cut, labels));
+  }
+  if (config_.frame_store.max_mb > 0) {
+    auto t = timers_.measure("keep_frame");
+    frame_store_.add(prepared.frame->index, prepared.frame->depth, prepared.color,
+                     cut ? &cut->segments.ids : nullptr, labels);
+  }
+  ++frames_;
+  return observe(*prepared.frame, cut, associations);
+}
+
+FrameReport Mapper::label(const PreparedFrame& prepared, const FrameSegments& cut) {
+  const std::vector<SegmentAssociation> associations = find_labels(prepared, &cut);
+  const std::vector<Label> labels = labels_of(associations);
+  {
+    auto t = timers_.measure("vote");
+    touched_blocks_ = vote_labels(map_, observation_of(prepared, &cut, labels));
+  }
+  frame_store_.add_labels(prepared.frame->index, cut.segments.ids, labels);
+  return observe(*prepared.frame, &cut, associations);
+}
+
+std::vector<SegmentAssociation> Mapper::find_labels(const PreparedFrame& prepared,
+                                                    const FrameSegments* cut) {
+  if (!cut) return {};
+  auto t = timers_.measure("associate");
+  const Frame& frame = *prepared.frame;
+  const Image<VoxelRef> voxels =
+      surface_voxels(map_, frame.depth, frame.depth_camera, frame.world_from_camera);
+  return associate(cut->segments, voxels, map_, config_.association);
+}
+
+FrameReport Mapper::observe(const Frame& frame, const FrameSegments* cut,
+                            std::span<const SegmentAssociation> associations) {
+  if (!cut) return {};
+  auto t = timers_.measure("registry");
+  registry_.observe(cut->segments, associations, frame.index, cut->masked, map_.labels());
+  mask_frames_ += cut->masked;
+  FrameReport report;
+  report.regions = cut->regions;
+  report.entities = cut->entities;
+  report.labelled = true;
+  report.segments = static_cast<int>(cut->segments.segments.size());
+  report.founded = static_cast<int>(std::count_if(associations.begin(), associations.end(),
+                                                  [](const auto& a) { return a.founded; }));
+  return report;
+}
+
+int Mapper::look_at_objects(const Frame& frame, Encoder encoder) {
+  const InstanceView view = project(frame);
+  int chosen = 0;
+  {
+    auto t = timers_.measure("views");
+    const Registration registration(frame, view.depth, config_.occlusion_margin_m);
+    chosen = builder_->choose(frame,
+                              {.depth = view.depth,
+                               .instances = view.instances,
+                               .labels = view.labels,
+                               .sensor_depth = frame.depth,
+                               .color_index = registration.color_index(),
+                               .camera = frame.depth_camera,
+                               .world_from_camera = frame.world_from_camera,
+                               .frame = frame.index},
+                              registry_, map_.labels());
+  }
+  auto t = timers_.measure("await_encoder");
+  builder_->submit(encoder == Encoder::kCatchUp);
+  return chosen;
+}
+
+MapRecord Mapper::record(MapHeader header, std::vector<FrameLogEntry> frames,
+                         const PinholeCamera& depth_camera) const {
+  MapRecord record{std::move(header)};
+  record.instance_config = config_.instance;
+  record.registry = registry_.state();
+  record.semantics.views = config_.semantics.views;
+  record.semantics.crops = config_.semantics.crops;
+  if (encoder()) record.semantics.encoder = encoder()->identity();
+  record.frames = std::move(frames);
+  record.kept_frames = kept_frames();
+  record.depth_camera = depth_camera;
+  record.mask_frames = mask_frames_;
+  record.version = concat(version(), " (", commit(), ")");
+  return record;
+}
+
+void Mapper::restore(MapDocument&& document) {
+  OVIMAP_ASSERT(frames_ == 0);
+  map_ = std::move(document.map);
+  registry_.restore(std::move(document.registry));
+  builder_->restore(std::move(document.semantics.looks));
+  frame_store_.restore(std::move(document.kept_frames), document.frames.size());
+  frames_ = static_cast<int>(document.frames.size());
+  mask_frames_ = document.mask_frames;
+}
+
+void Mapper::await_encoder() {
+  auto t = timers_.measure("await_encoder");
+  builder_->catch_up(map_.labels());
+}
+
+void Mapper::finish() {
+  {
+    auto t = timers_.measure("await_encoder");
+    builder_->finish(map_.labels());
+  }
+  for (const double milliseconds : builder_->take_durations_ms())
+    timers_.add("embed", milliseconds);
+}
+
+SuperPointLooks Mapper::take_looks() {
+  finish();
+  return builder_->take();
+}
+
+InstanceView Mapper::project(const Frame& frame) {
+  auto t = timers_.measure("project");
+  const Image<VoxelRef> voxels =
+      surface_voxels(map_, frame.depth, frame.depth_camera, frame.world_from_camera);
+  Projection seen = cast_rays_with_depth(map_, frame.depth, voxels, frame.depth_camera,
+                                         frame.world_from_camera, config_.max_range_m);
+  Image<InstanceId> instances = instances_of(seen.labels);
+  return {std::move(seen.depth), std::move(instances), std::move(seen.labels)};
+}
+
+/// Asks the registry once per label in sight: a frame shows a few of the map's labels.
+Image<InstanceId> Mapper::instances_of(const Image<Label>& labels) const {
+  constexpr InstanceId kUnasked = ~InstanceId{0};
+  const LabelForest& forest = map_.labels();
+  std::vector<InstanceId> known(forest.roots().size(), kUnasked);
+  Image<InstanceId> instances(labels.width(), labels.height());
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    InstanceId& id = known[labels[i]];
+    if (id == kUnasked) id = registry_.instance_of(forest.root(labels[i]));
+    instances[i] = id;
+  }
+  return instances;
+}
+
+}  // namespace ovimap

@@ -1,0 +1,332 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/pipeline/revise/map_diff.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "ovimap/base/config.h"
+#include "ovimap/base/parallel.h"
+#include "ovimap/io/mesh/map_mesh.h"
+#include "ovimap/io/mesh/mesh_pieces.h"
+#include "ovimap/map/rays/surface_lookup.h"
+#include "ovimap/pipeline/revise/object_overlap.h"
+
+namespace ovimap {
+
+namespace {
+
+std::vector<Pose> camera_poses(const MapRecord& map) {
+  std::vector<Pose> poses;
+  for (const FrameLogEntry& frame : map.frames) poses.push_back(frame.world_from_camera);
+  return poses;
+}
+
+/// What one map knows of a place of the other.
+class Witness {
+ public:
+  Witness(const MapDocument& map, const Pose& map_from_other, const MapDiffConfig& config)
+      : map_(map),
+        map_from_other_(map_from_other.cast<float>()),
+        config_(config),
+        space_(map.map, map.depth_camera, camera_poses(map), config.space) {}
+
+  /// Fills the evidence about an object of the other map.
+  void testify(const std::vector<Eigen::Vector3f>& surface, ObjectChange& change) const {
+    if (surface.empty()) return;
+    VoxelFinder finder(map_.map);
+    std::size_t through = 0, there = 0;
+    for (const Eigen::Vector3f& other : surface) {
+      const Eigen::Vector3f point = map_from_other_ * other;
+      if (is_surface(finder, point))
+        ++there;
+      else if (space_.seen_through(point, config_.gone_views) >= config_.gone_views)
+        ++through;
+    }
+    const auto count = static_cast<float>(surface.size());
+    change.seen_through = static_cast<float>(through) / count;
+    change.surface_there = static_cast<float>(there) / count;
+  }
+
+ private:
+  bool is_surface(VoxelFinder& finder, const Eigen::Vector3f& point) const {
+    if (!finder.seek(point)) return false;
+    return finder.block().weight[static_cast<std::size_t>(finder.voxel())] > 0.f &&
+           std::fabs(finder.distance_m()) <= config_.tolerance_m;
+  }
+
+  const MapDocument& map_;
+  Eigen::Isometry3f map_from_other_;
+  const MapDiffConfig& config_;
+  ObservedSpace space_;
+};
+
+std::vector<Eigen::Vector3f> surface_of(const MapRecord& map, InstanceId id) {
+  const auto found = map.surfaces.find(id);
+  return found == map.surfaces.end() ? std::vector<Eigen::Vector3f>{} : found->second;
+}
+
+const InstanceSummary& instance_of(const MapRecord& map, InstanceId id) {
+  return *std::find_if(map.instances.begin(), map.instances.end(),
+                       [&](const InstanceSummary& instance) { return instance.id == id; });
+}
+
+std::string percent(float share) {
+  char text[16];
+  std::snprintf(text, sizeof text, "%.0f %%", 100. * double{share});
+  return text;
+}
+
+std::string metres(float value) {
+  char text[24];
+  std::snprintf(text, sizeof text, "%.2f m", double{value});
+  return text;
+}
+
+/// Compares two maps object by object.
+class MapComparison {
+ public:
+  MapComparison(const MapDocument& before, const MapDocument& after, const Pose& before_from_after,
+                const MapDiffConfig& config)
+      : before_(before),
+        after_(after),
+        before_from_after_(before_from_after),
+        config_(config),
+        overlaps_(overlaps(before, after, before_from_after, config.tolerance_m)) {}
+
+  std::vector<ObjectChange> changes() {
+    list_objects();
+    judge_places();
+    match_moved();
+    for (ObjectChange& change : changes_) explain(change);
+    return std::move(changes_);
+  }
+
+ private:
+  /// Pairs objects that lie at the same place; what has no partner stands alone.
+  void list_objects() {
+    std::set<InstanceId> found;
+    for (const InstanceSummary& instance : before_.instances) {
+      ObjectChange& change = changes_.emplace_back();
+      change.before = instance.id;
+      for (const auto& [pair, overlap] : overlaps_) {
+        if (pair.first != instance.id) continue;
+        if (overlap.iou >= config_.same_iou ||
+            std::max(overlap.share_a, overlap.share_b) >= config_.same_share) {
+          found.insert(pair.second);
+          if (overlap.iou > change.overlap)
+            change.after = pair.second, change.overlap = overlap.iou;
+        }
+      }
+    }
+    for (const InstanceSummary& instance : after_.instances)
+      if (!found.contains(instance.id)) changes_.emplace_back().after = instance.id;
+  }
+
+  void judge_places() {
+    const Witness later(after_, before_from_after_.inverse(), config_),
+        earlier(before_, before_from_after_, config_);
+    parallel_for(changes_.size(), 1, [&](std::size_t i) {
+      ObjectChange& change = changes_[i];
+      if (change.before != 0)
+        later.testify(surface_of(before_, change.before), change);
+      else
+        earlier.testify(surface_of(after_, change.after), change);
+      if (change.before != 0 && change.after != 0) {
+        judge_shift(earlier, change);
+        return;
+      }
+      if (change.seen_through >= config_.gone_share)
+        change.kind = change.before != 0 ? ChangeKind::kRemoved : ChangeKind::kNew;
+      else
+        change.kind =
+            change.surface_there >= config_.gone_share ? ChangeKind::kSame : ChangeKind::kUnseen;
+    });
+  }
+
+  /// An object that overlaps with itself but left a part of its place, and came to a new part.
+  void judge_shift(const Witness& earlier, ObjectChange& change) const {
+    change.cosine = look_similarity(before_, change.before, after_, change.after);
+    ObjectChange arrived;
+    earlier.testify(surface_of(after_, change.after), arrived);
+    if (change.seen_through < config_.shift_share || arrived.seen_through < config_.shift_share)
+      return;
+    change.kind = ChangeKind::kMoved;
+    change.shift_m = shift(change.before, change.after);
+  }
+
+  Eigen::Vector3f shift(InstanceId before, InstanceId after) const {
+    return before_from_after_.cast<float>() * instance_of(after_, after).centroid -
+           instance_of(before_, before).centroid;
+  }
+
+  /// What went from one place and came to another is one thing when it looks alike; the most alike
+  /// first.
+  void match_moved() {
+    struct Candidate {
+      float cosine;
+      std::size_t gone, come;
+    };
+    std::vector<Candidate> candidates;
+    for (std::size_t i = 0; i < changes_.size(); ++i)
+      for (std::size_t j = 0; j < changes_.size(); ++j) {
+        if (changes_[i].kind != ChangeKind::kRemoved || changes_[j].kind != ChangeKind::kNew)
+          continue;
+        const auto cosine = look_similarity(before_, changes_[i].before, after_, changes_[j].after);
+        const float size = size_similarity(instance_of(before_, changes_[i].before),
+                                           instance_of(after_, changes_[j].after));
+        if (cosine && *cosine >= config_.moved_cosine && size >= config_.moved_size &&
+            stands_out(changes_[i].before, changes_[j].after, *cosine))
+          candidates.push_back({*cosine, i, j});
+      }
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.cosine > b.cosine; });
+    std::set<std::size_t> used;
+    for (const Candidate& candidate : candidates) {
+      if (used.contains(candidate.gone) || used.contains(candidate.come)) continue;
+      used.insert({candidate.gone, candidate.come});
+      ObjectChange& change = changes_[candidate.gone];
+      change.kind = ChangeKind::kMoved;
+      change.after = changes_[candidate.come].after;
+      change.cosine = candidate.cosine;
+      change.shift_m = shift(change.before, change.after);
+      changes_[candidate.come].after = 0;  // told with where it went from
+    }
+    std::erase_if(changes_, [](const ObjectChange& c) { return c.before == 0 && c.after == 0; });
+  }
+
+  /// How alike is alike depends on the encoder, so the others are the measure.
+  bool stands_out(InstanceId before, InstanceId after, float cosine) const {
+    const auto more_alike = [&](const MapRecord& others, const auto& likeness) {
+      std::size_t better = 0, known = 0;
+      for (const InstanceSummary& other : others.instances)
+        if (const std::optional<float> value = likeness(other.id)) {
+          ++known;
+          better += *value > cosine;
+        }
+      return static_cast<float>(better) / static_cast<float>(std::max<std::size_t>(known, 1));
+    };
+    return more_alike(after_,
+                      [&](InstanceId other) {
+                        return look_similarity(before_, before, after_, other);
+                      }) <= config_.moved_rank &&
+           more_alike(before_, [&](InstanceId other) {
+             return look_similarity(before_, other, after_, after);
+           }) <= config_.moved_rank;
+  }
+
+  static void explain(ObjectChange& change) {
+    const std::string through = percent(change.seen_through), there = percent(change.surface_there);
+    const std::string look = change.cosine ? concat(", looks alike with a cosine of ",
+                                                    metres(*change.cosine).substr(0, 4))
+                                           : "";
+    switch (change.kind) {
+      case ChangeKind::kSame:
+        change.evidence =
+            change.before != 0 && change.after != 0
+                ? concat("overlap ", percent(change.overlap), look)
+                : concat("surface at ", there, " of its place, as part of other things");
+        return;
+      case ChangeKind::kMoved:
+        change.evidence =
+            concat("by ", metres(change.shift_m.norm()), "; the later map saw through ", through,
+                   " of its old place", look);
+        return;
+      case ChangeKind::kRemoved:
+        change.evidence = concat("the later map saw through ", through, " of its place");
+        return;
+      case ChangeKind::kNew:
+        change.evidence = concat("the earlier map saw through ", through, " of its place");
+        return;
+      case ChangeKind::kUnseen:
+        change.evidence = concat("the other map saw through ", through,
+                                 " of its place and has surface "
+                                 "at ",
+                                 there);
+        return;
+    }
+  }
+
+  const MapDocument &before_, &after_;
+  Pose before_from_after_;
+  const MapDiffConfig& config_;
+  ObjectOverlaps overlaps_;
+  std::vector<ObjectChange> changes_;
+};
+
+using Color = std::array<std::uint8_t, 3>;
+constexpr Color kNewColor{40, 170, 70}, kMovedColor{40, 90, 220}, kOldPlaceColor{140, 190, 250},
+    kRemovedColor{215, 45, 45};
+
+void append(Mesh& mesh, const Mesh& piece, const Color& color) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), piece.vertices.begin(), piece.vertices.end());
+  mesh.normals.insert(mesh.normals.end(), piece.normals.begin(), piece.normals.end());
+  mesh.colors.resize(mesh.vertices.size(), color);
+  mesh.labels.resize(mesh.vertices.size(), 0);
+  for (auto triangle : piece.triangles) {
+    for (std::uint32_t& corner : triangle) corner += first;
+    mesh.triangles.push_back(triangle);
+  }
+}
+
+/// Half-way to a light grey, so that changes stand out.
+Color faded(const Color& color) {
+  const int grey = (2 * color[0] + 5 * color[1] + color[2]) / 8;
+  const auto level = static_cast<std::uint8_t>(110 + grey / 2);
+  return {level, level, level};
+}
+
+}  // namespace
+
+void list_fields(MapDiffConfig& config, ConfigFields& fields) {
+  fields.add("tolerance_m", config.tolerance_m, 0.001f, 1.f,
+             "surfaces nearer to each other are at the same place, metres");
+  fields.add("same_iou", config.same_iou, 0.f, 1.f, "overlap at which two objects are one");
+  fields.add("same_share", config.same_share, 0.f, 1.f, "of an object's points: it is the same");
+  fields.add("gone_share", config.gone_share, 0.f, 1.f, "of points seen through: it is gone");
+  fields.add("shift_share", config.shift_share, 0.f, 1.f, "of points seen through: it moved");
+  fields.add("gone_views", config.gone_views, 1, 1000, "cameras that must see through a point");
+  fields.add("moved_cosine", config.moved_cosine, -1.f, 1.f, "least likeness of a moved thing");
+  fields.add("moved_rank", config.moved_rank, 0.f, 1.f, "of other objects that look more like it");
+  fields.add("moved_size", config.moved_size, 0.f, 1.f, "least likeness of its size");
+  fields.group("space", [&](ConfigFields& space) { list_fields(config.space, space); });
+}
+
+const char* change_name(ChangeKind kind) {
+  constexpr std::array kNames = {"same", "moved", "removed", "new", "unseen"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+std::vector<ObjectChange> diff_maps(const MapDocument& before, const MapDocument& after,
+                                    const Pose& before_from_after, const MapDiffConfig& config) {
+  return MapComparison(before, after, before_from_after, config).changes();
+}
+
+Mesh diff_mesh(const MapDocument& before, const MapDocument& after, const Pose& before_from_after,
+               const std::vector<ObjectChange>& changes) {
+  std::map<InstanceId, Color> in_before, in_after;
+  for (const ObjectChange& change : changes) {
+    if (change.kind == ChangeKind::kNew) in_after[change.after] = kNewColor;
+    if (change.kind == ChangeKind::kRemoved) in_before[change.before] = kRemovedColor;
+    if (change.kind != ChangeKind::kMoved) continue;
+    in_after[change.after] = kMovedColor;
+    in_before[change.before] = kOldPlaceColor;
+  }
+  Mesh mesh = visible_mesh(after);
+  const Eigen::Isometry3f pose = before_from_after.cast<float>();
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    mesh.vertices[i] = pose * mesh.vertices[i];
+    mesh.normals[i] = pose.linear() * mesh.normals[i];
+    const auto color = in_after.find(mesh.labels[i]);
+    mesh.colors[i] = color == in_after.end() ? faded(mesh.colors[i]) : color->second;
+  }
+  const auto pieces = split_by_label(visible_mesh(before));
+  for (const auto& [id, color] : in_before)
+    if (const auto piece = pieces.find(id); piece != pieces.end())
+      append(mesh, piece->second, color);
+  return mesh;
+}
+
+}  // namespace ovimap

@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/pipeline/search/map_search.h"
+
+#include <unordered_map>
+
+#include "ovimap/base/error.h"
+#include "ovimap/base/parallel.h"
+#include "ovimap/inference/encoders/text_cache.h"
+#include "ovimap/inference/models/model_folder.h"
+#include "ovimap/io/pictures/palette.h"
+
+namespace ovimap {
+
+namespace {
+
+constexpr std::size_t kShapesPerTask = 8;
+
+SearchIndex index_of(const SearchableMap& map) {
+  std::vector<SearchObject> objects;
+  for (const InstanceSummary& instance : map.info.instances) {
+    const auto name = map.info.names.find(instance.id);
+    objects.push_back({instance.id, instance.box, instance.centroid, instance.points,
+                       name == map.info.names.end() ? "" : name->second});
+  }
+  return SearchIndex(std::move(objects), map.embeddings);
+}
+
+QueryScene scene_of(const SearchableMap& map, const SearchIndex& index,
+                    const ObjectShapeConfig& config) {
+  const Eigen::Matrix3f ground = ground_from_world(map.info.up);
+  QueryScene scene = scene_of_boxes(index, map.info.up, config);
+  parallel_for_ranges(index.size(), kShapesPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto surface = map.surfaces.find(index.object(i).id);
+      if (surface != map.surfaces.end() && !surface->second.empty())
+        scene.shapes[i] = shape_of_points(ground, surface->second, config);
+    }
+  });
+  std::vector<Pose> cameras;
+  for (const FrameLogEntry& frame : map.frames) cameras.push_back(frame.world_from_camera);
+  if (!cameras.empty()) scene.viewpoint = mean_viewpoint(ground, cameras);
+  return scene;
+}
+
+MapSearch search_in(SearchableMap&& map, const ObjectShapeConfig& config) {
+  MapSearch search;
+  search.index = index_of(map);
+  search.scene = scene_of(map, search.index, config);
+  search.info = std::move(map.info);
+  return search;
+}
+
+/// The folder of the model on the search path that is the map's encoder, or at least bears its
+/// name. A map without embeddings takes the default.
+std::string model_of_map(const EncoderIdentity& wanted,
+                         const std::vector<std::filesystem::path>& model_dirs) {
+  if (wanted.name.empty()) return "default";
+  std::string namesake;
+  for (const ModelListing& listing : list_models(model_search_path(model_dirs))) {
+    if (listing.kind != "dual_encoder") continue;
+    const ModelFolder model = read_model_folder(listing.folder);
+    if (model.name != wanted.name) continue;
+    if (model.digest() == wanted.digest) return listing.folder.string();
+    if (namesake.empty()) namesake = listing.folder.string();
+  }
+  if (!namesake.empty()) return namesake;
+  throw Error(concat("the map's embeddings are of encoder '", wanted.name,
+                     "', which is not on this machine; name its folder with --encoder or "
+                     "--model-dir, or run `ovimap reembed` to use another"));
+}
+
+}  // namespace
+
+MapSearch open_map_search(const std::filesystem::path& map, const ObjectShapeConfig& config) {
+  return search_in(read_searchable_map(map), config);
+}
+
+MapSearch make_map_search(const MapRecord& corrected, MapInfo info,
+                          const ObjectShapeConfig& config) {
+  SearchableMap map;
+  info.instances = corrected.instances;
+  info.hidden = corrected.hidden;
+  info.locked = corrected.locked;
+  info.names = corrected.names;
+  info.encoder = corrected.semantics.encoder;
+  info.up = corrected.up;
+  info.frames = static_cast<std::int64_t>(corrected.frames.size());
+  info.mask_frames = corrected.mask_frames;
+  info.depth_camera = corrected.depth_camera;
+  map.embeddings = fused_embeddings(corrected.semantics.looks, corrected.instances,
+                                    corrected.semantics.views.fusion,
+                                    corrected.semantics.encoder.dimension);
+  map.surfaces = corrected.surfaces;
+  map.frames = corrected.frames;
+  map.info = std::move(info);
+  return search_in(std::move(map), config);
+}
+
+std::unique_ptr<ImageTextEncoder> encoder_of_map(
+    const EncoderIdentity& of_map, const std::string& spec, const RuntimeConfig& runtime,
+    const std::vector<std::filesystem::path>& model_dirs) {
+  auto encoder = make_image_text_encoder(spec == "auto" ? model_of_map(of_map, model_dirs) : spec,
+                                         runtime, model_dirs, EncoderUse::kTexts);
+  if (!encoder || of_map.name.empty() || encoder->identity() == of_map)
+    return encoder ? remember_text_lists(std::move(encoder), text_cache_folder()) : nullptr;
+  throw Error(
+      concat("the map's embeddings are of encoder '", of_map.name, "' (", of_map.dimension,
+             " numbers), not of '", encoder->identity().name, "' (", encoder->identity().dimension,
+             " numbers, other files); name that one with --encoder, or run `ovimap reembed`"));
+}
+
+std::unique_ptr<ImageTextEncoder> needed_encoder_of_map(
+    const EncoderIdentity& of_map, const std::string& spec, const RuntimeConfig& runtime,
+    const std::vector<std::filesystem::path>& model_dirs) {
+  if (auto encoder = encoder_of_map(of_map, spec, runtime, model_dirs)) return encoder;
+  throw Error(concat("--encoder '", spec,
+                     "' names no encoder, and this cannot be done without; name one, or leave the "
+                     "option out for the map's own"));
+}
+
+void color_by_relevance(Mesh& mesh, const SearchIndex& index, const Eigen::VectorXf& relevance) {
+  OVIMAP_ASSERT(static_cast<std::size_t>(relevance.size()) == index.size());
+  std::unordered_map<std::uint32_t, Rgb8> colors;
+  for (std::size_t i = 0; i < index.size(); ++i)
+    colors[index.object(i).id] = heat_color(relevance[static_cast<Eigen::Index>(i)]);
+  const Rgb8 cold = heat_color(0.f);
+  mesh.colors.resize(mesh.vertices.size());
+  for (std::size_t v = 0; v < mesh.labels.size(); ++v) {
+    const auto known = colors.find(mesh.labels[v]);
+    const Rgb8 color = known == colors.end() ? cold : known->second;
+    mesh.colors[v] = {color.r, color.g, color.b};
+  }
+}
+
+}  // namespace ovimap

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/pipeline/sequence/map_description.h"
+
+#include "ovimap/instance/instance_mesh.h"
+#include "ovimap/io/pictures/scene_axes.h"
+#include "ovimap/map/surface/incremental_mesh.h"
+
+namespace ovimap {
+
+void describe_map(const VoxelMap& map, const InstanceRegistry& registry,
+                  const InstanceSummaryConfig& config, MapRecord& record) {
+  record.instances = summarize_instances(map, registry, config);
+  const std::vector<InstanceId> instance_of = instances_by_label(map, record.instances);
+  SurfaceSampler sampler(config.surface_spacing_m);
+  SurfaceDirections directions;
+  for_each_patch(map, [&](Mesh& patch) {
+    for (std::uint32_t& label : patch.labels) label = instance_of[label];
+    sampler.add(patch);
+    directions.add(patch);
+  });
+  record.surfaces = sampler.take();
+  std::vector<Pose> poses;
+  for (const FrameLogEntry& frame : record.frames) poses.push_back(frame.world_from_camera);
+  record.up = guess_up(directions, poses);
+}
+
+}  // namespace ovimap

@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/pipeline/sequence/sequence_run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <future>
+
+#include "ovimap/base/error.h"
+#include "ovimap/pipeline/sequence/map_description.h"
+#include "ovimap/pipeline/sequence/timings_text.h"
+
+namespace ovimap {
+
+namespace {
+
+constexpr std::size_t kFramesUntilMotion = 30;  // tell early, not after an hour
+
+/// Returns what kept the frame out of the map, empty when nothing did. What is wrong with the very
+/// first frame is wrong with all of them as a rule, and better told at once.
+std::string fuse(const Frame& frame, Mapper& mapper, bool others_went_well, FrameReport& report) {
+  try {
+    report = mapper.process(frame);
+    return {};
+  } catch (const FrameError& fault) {
+    if (!others_went_well) throw;
+    return fault.what();
+  }
+}
+
+}  // namespace
+
+std::string commonest_fault(const std::vector<SkippedFrame>& skipped) {
+  std::vector<std::string> faults;
+  for (const SkippedFrame& frame : skipped) faults.push_back(frame.fault);
+  return faults.empty() ? "the chosen range (--frames) holds none"
+                        : count_faults(faults).front().example;
+}
+
+void require_motion(const std::vector<FrameLogEntry>& frames, const MapperConfig& config) {
+  if (config.allow_still_camera || frames.size() < 2) return;
+  const bool still = std::all_of(frames.begin(), frames.end(), [&](const FrameLogEntry& frame) {
+    return frame.world_from_camera.matrix() == frames.front().world_from_camera.matrix();
+  });
+  if (still)
+    throw Error(concat("all ", frames.size(),
+                       " frames have the same pose; give the camera's real poses, or, if it stood "
+                       "still, --set allow_still_camera=true"));
+}
+
+std::vector<Pose> poses_of(const std::vector<FrameLogEntry>& frames) {
+  std::vector<Pose> poses;
+  for (const FrameLogEntry& frame : frames) poses.push_back(frame.world_from_camera);
+  return poses;
+}
+
+SequenceResult run_sequence(const FrameSource& source, const std::vector<std::int64_t>& positions,
+                            Mapper& mapper, const SequenceProgress& progress, SequenceResult begun,
+                            Checkpointer* checkpoints) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto read = [&source](std::int64_t position) {
+    return std::async(std::launch::async, [&source, position] { return source.read(position); });
+  };
+  SequenceResult result = std::move(begun);
+  std::future<FrameRead> next;
+  if (!positions.empty()) next = read(positions[0]);
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    FrameRead current = [&] {
+      auto t = mapper.timers().measure("wait_for_frame");
+      return next.get();
+    }();
+    if (i + 1 < positions.size()) next = read(positions[i + 1]);
+    FrameReport report;
+    if (current.frame) current.fault = fuse(*current.frame, mapper, !result.frames.empty(), report);
+    if (current.fault.empty()) {
+      const Frame& frame = *current.frame;
+      if (result.frames.empty()) result.depth_camera = frame.depth_camera;
+      result.frames.push_back(
+          {frame.index, frame.timestamp_s, frame.name, frame.world_from_camera, report.labelled});
+      if (checkpoints) checkpoints->after_frame(mapper, result.frames, result.depth_camera);
+    } else {
+      result.skipped.push_back({positions[i], current.fault});
+    }
+    if (result.frames.size() == kFramesUntilMotion) require_motion(result.frames, mapper.config());
+    const bool fused = current.fault.empty();
+    if (progress && !progress(i + 1, positions.size(), fused ? &report : nullptr)) break;
+  }
+  if (next.valid()) next.wait();
+  if (result.frames.empty())
+    throw Error(concat("none of the ", result.skipped.size(), " frames is usable: ",
+                       commonest_fault(result.skipped), "; `ovimap check` tells more"));
+  require_motion(result.frames, mapper.config());
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+MapDocument make_document(Mapper&& mapper, const SequenceResult& sequence, MapHeader header) {
+  SuperPointLooks looks = mapper.take_looks();
+  MapDocument document{mapper.record(std::move(header), sequence.frames, sequence.depth_camera),
+                       {}};
+  document.semantics.looks = std::move(looks);
+  describe_map(mapper.map(), mapper.registry(), mapper.config().summary, document);
+  document.timings = timings_text(mapper.timers().summary());
+  document.content_hash = mapper.map().content_hash();
+  document.map = std::move(mapper).take_map();
+  return document;
+}
+
+}  // namespace ovimap

@@ -1,0 +1,216 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/semantics/query/query_engine.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "ovimap/base/error.h"
+#include "ovimap/semantics/query/query_text.h"
+
+namespace ovimap {
+
+namespace {
+
+constexpr float kNeverRanked = std::numeric_limits<float>::lowest();
+
+double model_probability(const MatchCalibration& model, float cosine) {
+  return 1.0 / (1.0 + std::exp(-(double{model.scale} * double{cosine} + double{model.bias})));
+}
+
+std::vector<std::size_t> some_embedded(const SearchIndex& index, std::size_t most) {
+  std::vector<std::size_t> positions;
+  for (std::size_t i = 0; i < index.size(); ++i)
+    if (index.has_embedding(i)) positions.push_back(i);
+  if (positions.size() <= most) return positions;
+  std::vector<std::size_t> some(most);
+  for (std::size_t i = 0; i < most; ++i) some[i] = positions[i * positions.size() / most];
+  return some;
+}
+
+}  // namespace
+
+QueryEngine::QueryEngine(const SearchIndex& index, ImageTextEncoder* encoder,
+                         const QueryConfig& config, Embeddings vocabulary, QueryScene scene)
+    : index_(index), encoder_(encoder), config_(config), scene_(std::move(scene)) {
+  require_embeddings(index);
+  if (scene_.shapes.empty())
+    scene_.shapes = scene_of_boxes(index, Eigen::Vector3f::UnitZ(), config.shapes).shapes;
+  if (encoder) matcher_.emplace(index, *encoder, config, std::move(vocabulary));
+}
+
+QueryAnswer QueryEngine::find(const Query& query) const {
+  const std::string text = checked_query_text(query.text, config_.max_text_chars);
+  std::vector<std::string> negatives;
+  for (const std::string& negative : query.not_texts)
+    for (std::string& term : split_terms(checked_query_text(negative, config_.max_text_chars)))
+      negatives.push_back(std::move(term));
+  if (config_.grammar) {
+    const QueryPhrase phrase = parse_query(text);
+    if (!phrase.free_text()) {
+      QueryAnswer result = find_phrase(phrase, negatives, query.relevance);
+      result.query = text;
+      return result;
+    }
+  }
+  const std::vector<std::string> terms = split_terms(text);
+  if (terms.empty())
+    throw Error(concat("the query '", text, "' names nothing; say what to look for"));
+  const auto model = encoder().calibration();
+  const MatchScores scores = matcher_->match(terms, negatives);
+  const PValue p_value = [&](float score) { return matcher_->p_value(scores, score); };
+  QueryAnswer result = answer(scores, p_value, model, query.relevance);
+  result.query = text;
+  return result;
+}
+
+QueryAnswer QueryEngine::find_phrase(const QueryPhrase& phrase,
+                                     const std::vector<std::string>& negatives,
+                                     bool relevance) const {
+  const PhraseSearch search(index_, matcher(), scene_, config_);
+  const PhraseMatch found = search.match(phrase, negatives);
+  QueryAnswer result;
+  result.reading = describe(phrase);
+  std::vector<std::size_t> order;
+  bool any_holds = false;
+  for (std::size_t i = 0; i < index_.size(); ++i)
+    if (found.scores[static_cast<Eigen::Index>(i)] > 0.f) {
+      order.push_back(i);
+      any_holds = any_holds || found.holds[i];
+    }
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::tuple(-found.scores[static_cast<Eigen::Index>(a)], index_.object(a).id) <
+           std::tuple(-found.scores[static_cast<Eigen::Index>(b)], index_.object(b).id);
+  });
+  order.resize(std::min(order.size(), static_cast<std::size_t>(config_.top_k)));
+  for (const std::size_t position : order) result.matches.push_back(phrase_match(found, position));
+  if (found.missing.empty() && any_holds) result.verdict = Verdict::kFound;
+  for (const std::string& things : found.missing)
+    result.reason += concat(result.reason.empty() ? "" : ", ", "no [", things, "] in the map");
+  if (found.missing.empty() && !any_holds) result.reason = "for nothing in the map is this true";
+  if (relevance) result.relevance = found.scores;
+  return result;
+}
+
+QueryMatch QueryEngine::phrase_match(const PhraseMatch& found, std::size_t position) const {
+  const auto row = static_cast<Eigen::Index>(position);
+  QueryMatch match;
+  match.position = position;
+  match.id = index_.object(position).id;
+  match.probability = double{found.scores[row]};
+  match.evidence = found.evidence[position];
+  if (found.things.standard.size() == 0) return match;  // "anything"
+  match.score = found.things.cosines[row];
+  match.standard_score = found.things.standard[row];
+  match.p_value = matcher_->p_value(found.things, match.standard_score);
+  return match;
+}
+
+QueryAnswer QueryEngine::find_like(const RgbImage& image, const std::string& name,
+                                   bool relevance) const {
+  const Embeddings row = encoder().encode_images({&image, 1});
+  if (row.isZero(0.f)) throw Error(concat("the encoder gave no embedding of ", name));
+  QueryAnswer result = answer_like(row.row(0).transpose(), ScoreCalibration::kNoObject, relevance);
+  result.query = name;
+  return result;
+}
+
+QueryAnswer QueryEngine::find_like(InstanceId id, bool relevance) const {
+  const std::optional<std::size_t> itself = index_.find(id);
+  if (!itself) throw Error(concat("the map has no object ", id, "; `ovimap info` lists them"));
+  if (!index_.has_embedding(*itself))
+    throw Error(concat("object ", id, " has no embedding; choose one that was seen better"));
+  const auto row = index_.embeddings().row(static_cast<Eigen::Index>(*itself));
+  QueryAnswer result = answer_like(row.transpose(), *itself, relevance);
+  result.query = concat("#", id);
+  return result;
+}
+
+QueryAnswer QueryEngine::answer_like(const Eigen::VectorXf& embedding, std::size_t itself,
+                                     bool relevance) const {
+  MatchScores scores;
+  scores.cosines = index_.cosines(embedding);
+  scores.excluded.assign(index_.size(), false);
+  if (itself != ScoreCalibration::kNoObject) scores.excluded[itself] = true;
+
+  // The map's own objects say what pictures of different things have in common.
+  const std::vector<std::size_t> own =
+      some_embedded(index_, static_cast<std::size_t>(config_.max_like_references));
+  if (own.size() < static_cast<std::size_t>(config_.verdict.min_references)) {
+    scores.standard = scores.cosines;
+    QueryAnswer result = answer(scores, {}, {}, relevance);
+    result.reason = concat("the best of ", own.size(),
+                           " objects; too few to tell whether it is a match at all");
+    return result;
+  }
+  Embeddings references(static_cast<Eigen::Index>(own.size()), index_.dimension());
+  for (std::size_t i = 0; i < own.size(); ++i)
+    references.row(static_cast<Eigen::Index>(i)) =
+        index_.embeddings().row(static_cast<Eigen::Index>(own[i]));
+  const ScoreCalibration calibration(index_, references, config_.verdict, own);
+  scores.standard = calibration.standard_scores(scores.cosines);
+  const PValue p_value = [&](float score) {
+    return calibration.null_distribution().p_value(double{score});
+  };
+  return answer(scores, p_value, {}, relevance);
+}
+
+std::vector<QueryMatch> QueryEngine::best_matches(const MatchScores& scores, RankRule rule,
+                                                  std::size_t count) const {
+  Eigen::VectorXf ranked = rule == RankRule::kCosine ? scores.cosines : scores.standard;
+  for (std::size_t i = 0; i < scores.excluded.size(); ++i)
+    if (scores.excluded[i]) ranked[static_cast<Eigen::Index>(i)] = kNeverRanked;
+  std::vector<QueryMatch> matches;
+  for (const std::size_t position : index_.best(ranked, count)) {
+    if (scores.excluded[position]) break;
+    const auto row = static_cast<Eigen::Index>(position);
+    matches.push_back({position,
+                       index_.object(position).id,
+                       scores.cosines[row],
+                       scores.standard[row],
+                       {},
+                       {},
+                       {}});
+  }
+  return matches;
+}
+
+QueryAnswer QueryEngine::answer(const MatchScores& scores, const PValue& p_value,
+                                std::optional<MatchCalibration> model, bool relevance) const {
+  QueryAnswer result;
+  result.matches = best_matches(scores, config_.rank_by, static_cast<std::size_t>(config_.top_k));
+  const auto best = best_matches(scores, RankRule::kStandardScore, 1);
+  if (!best.empty() &&
+      (!p_value || p_value(best[0].standard_score) <= double{config_.verdict.false_positive_rate}))
+    result.verdict = Verdict::kFound;
+  for (QueryMatch& match : result.matches) {
+    if (!p_value) break;
+    match.p_value = p_value(match.standard_score);
+    match.probability =
+        model ? model_probability(*model, match.score) : match_probability(*match.p_value);
+  }
+  if (relevance) result.relevance = rate_all(scores, p_value);
+  return result;
+}
+
+Eigen::VectorXf QueryEngine::rate_all(const MatchScores& scores, const PValue& p_value) const {
+  Eigen::VectorXf relevance = scores.cosines.cwiseMax(0.f);
+  for (std::size_t i = 0; i < index_.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    if (!index_.has_embedding(i) || scores.excluded[i])
+      relevance[row] = 0.f;
+    else if (p_value)
+      relevance[row] = static_cast<float>(match_probability(p_value(scores.standard[row])));
+  }
+  return relevance;
+}
+
+ImageTextEncoder& QueryEngine::encoder() const {
+  if (!encoder_)
+    throw Error("a text or picture needs an encoder, none was given; name one with --encoder");
+  return *encoder_;
+}
+
+}  // namespace ovimap

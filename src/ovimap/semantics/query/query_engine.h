@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ovimap/image/image.h"
+#include "ovimap/semantics/query/query_matcher.h"
+#include "ovimap/semantics/query/query_scene.h"
+
+namespace ovimap {
+
+struct Query {
+  std::string text;  ///< free text, terms separated by commas, or a phrase of query_grammar.h
+  std::vector<std::string> not_texts;  ///< what it must not be
+  bool relevance = false;              ///< whether the answer shall rate every object
+};
+
+struct QueryMatch {
+  std::size_t position = 0;  ///< of the object in the index
+  InstanceId id = 0;
+  float score = 0;                    ///< cosine
+  float standard_score = 0;           ///< standard deviations above unrelated things
+  std::optional<double> p_value;      ///< chance that an absent thing's best object scores as high
+  std::optional<double> probability;  ///< the model's own where it has one, else from p_value; of
+                                      ///< the whole phrase where there is a relation
+  std::string evidence;               ///< why a relation holds: "0.02 m above the top of #12"
+};
+
+struct QueryAnswer {
+  std::string query;
+  std::string reading;  ///< how a phrase was understood: "[mug] on [table]"; empty for free text
+  std::string reason;   ///< why a phrase was not found: "no [table] in the map"
+  Verdict verdict = Verdict::kNotInMap;
+  std::vector<QueryMatch> matches;  ///< best first, also when the verdict is kNotInMap
+  Eigen::VectorXf relevance;        ///< [objects] in [0, 1], for heat maps; empty unless asked for
+};
+
+/// Answers queries on one map with one encoder (method section 11; docs/query.md). The index and
+/// the encoder must outlive it. Calls are thread-safe.
+class QueryEngine {
+ public:
+  /// `encoder` may be null: then only objects can be asked for. `vocabulary`: embeddings of
+  /// TextMatcher::vocabulary_texts() where they are known already. Throws Error when the map has no
+  /// embeddings, or of another length than the encoder's. `scene`: geometry of relations; without
+  /// shapes the objects' boxes are taken, with +z up.
+  QueryEngine(const SearchIndex& index, ImageTextEncoder* encoder, const QueryConfig& config = {},
+              Embeddings vocabulary = {}, QueryScene scene = {});
+
+  /// Throws Error for an empty or overlong text, or without encoder.
+  QueryAnswer find(const Query& query) const;
+
+  /// Objects that look like the picture; `name` is what the answer calls it. Throws Error without
+  /// encoder or when it cannot embed the picture.
+  QueryAnswer find_like(const RgbImage& image, const std::string& name,
+                        bool relevance = false) const;
+
+  /// Objects that look like that one, without itself. Throws Error for an unknown id or an object
+  /// without embedding.
+  QueryAnswer find_like(InstanceId id, bool relevance = false) const;
+
+  /// Null without encoder.
+  const TextMatcher* matcher() const { return matcher_ ? &*matcher_ : nullptr; }
+
+ private:
+  using PValue = std::function<double(float standard_score)>;  // empty: no calibration
+
+  QueryAnswer find_phrase(const QueryPhrase& phrase, const std::vector<std::string>& negatives,
+                          bool relevance) const;
+  QueryMatch phrase_match(const PhraseMatch& found, std::size_t position) const;
+  QueryAnswer answer(const MatchScores& scores, const PValue& p_value,
+                     std::optional<MatchCalibration> model, bool relevance) const;
+  QueryAnswer answer_like(const Eigen::VectorXf& embedding, std::size_t itself,
+                          bool relevance) const;
+  std::vector<QueryMatch> best_matches(const MatchScores& scores, RankRule rule,
+                                       std::size_t count) const;
+  Eigen::VectorXf rate_all(const MatchScores& scores, const PValue& p_value) const;
+  ImageTextEncoder& encoder() const;
+
+  const SearchIndex& index_;
+  ImageTextEncoder* encoder_;
+  QueryConfig config_;
+  std::optional<TextMatcher> matcher_;
+  QueryScene scene_;
+};
+
+}  // namespace ovimap

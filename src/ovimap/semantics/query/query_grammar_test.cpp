@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/semantics/query/query_grammar.h"
+
+#include <gtest/gtest.h>
+
+namespace ovimap {
+namespace {
+
+std::string reading(std::string_view text) {
+  return describe(parse_query(text));
+}
+
+TEST(QueryGrammar, ReadsRelations) {
+  EXPECT_EQ(reading("mug on the table"), "[mug] on [table]");
+  EXPECT_EQ(reading("the chair nearest to the television"), "[chair] nearest to [television]");
+  EXPECT_EQ(reading("chair closest to a window"), "[chair] nearest to [window]");
+  EXPECT_EQ(reading("a plant next to the sofa"), "[plant] beside [sofa]");
+  EXPECT_EQ(reading("book on top of the shelf"), "[book] on [shelf]");
+  EXPECT_EQ(reading("lamp to the left of the bed"), "[lamp] left of [bed]");
+  EXPECT_EQ(reading("lamp on the right side of the bed"), "[lamp] right of [bed]");
+  EXPECT_EQ(reading("stool in front of the desk"), "[stool] in front of [desk]");
+  EXPECT_EQ(reading("bin behind the door"), "[bin] behind [door]");
+  EXPECT_EQ(reading("picture above the sofa"), "[picture] above [sofa]");
+  EXPECT_EQ(reading("rug underneath the table"), "[rug] under [table]");
+  EXPECT_EQ(reading("cup in the sink"), "[cup] inside [sink]");
+  EXPECT_EQ(reading("chair furthest from the door"), "[chair] farthest from [door]");
+  EXPECT_EQ(reading("keys close to the door"), "[keys] near [door]");
+}
+
+TEST(QueryGrammar, ReadsSuperlatives) {
+  EXPECT_EQ(reading("largest cabinet"), "largest [cabinet]");
+  EXPECT_EQ(reading("the biggest white cabinet"), "largest [white cabinet]");
+  EXPECT_EQ(reading("smallest mug on the largest table"), "smallest [mug] on largest [table]");
+  EXPECT_EQ(reading("tallest thing"), "tallest [thing]");
+  EXPECT_TRUE(parse_query("tallest thing").anything);
+  EXPECT_FALSE(parse_query("tallest chair").anything);
+}
+
+TEST(QueryGrammar, NestsToTheRight) {
+  EXPECT_EQ(reading("mug on the table near the window"), "[mug] on [table] near [window]");
+  const QueryPhrase phrase = parse_query("mug on the table near the window");
+  ASSERT_EQ(phrase.anchors.size(), 1u);
+  EXPECT_EQ(phrase.anchors[0].things, "table");
+  EXPECT_EQ(phrase.anchors[0].anchors.at(0).things, "window");
+}
+
+TEST(QueryGrammar, ReadsBetween) {
+  EXPECT_EQ(reading("box between the sofa and the television"),
+            "[box] between [sofa] and [television]");
+  EXPECT_EQ(reading("box between the two chairs"), "[box] between two of [chairs]");
+  EXPECT_EQ(reading("box in between chairs"), "[box] between two of [chairs]");
+  EXPECT_EQ(reading("box between the sofa and the chair near the window"),
+            "[box] between [sofa] and [chair] near [window]");
+}
+
+TEST(QueryGrammar, ReadsNegationAndDropsFillers) {
+  EXPECT_EQ(reading("mug not on the table"), "[mug] not on [table]");
+  EXPECT_EQ(reading("the mug that is not on the table"), "[mug] not on [table]");
+  EXPECT_EQ(reading("mug standing on the table"), "[mug] on [table]");
+  EXPECT_EQ(reading("picture which is hanging above the bed"), "[picture] above [bed]");
+}
+
+TEST(QueryGrammar, FallsThroughToFreeText) {
+  for (const char* text :
+       {"game controller on", "on", "on the table", "near", "the on", "largest", "chair",
+        "a chair with four legs", "salt and pepper", "between", "box between", "inside",
+        "built-in wardrobe", "", "the", "largest the"}) {
+    EXPECT_TRUE(parse_query(text).free_text()) << text;
+    EXPECT_EQ(parse_query(text).things, text);
+  }
+}
+
+TEST(QueryGrammar, TakesALaterRelationWhenTheFirstHasNoOperand) {
+  EXPECT_EQ(reading("television on on the wall"), "[television on] on [wall]");
+  EXPECT_EQ(reading("on switch on the wall"), "[on switch] on [wall]");
+}
+
+TEST(QueryGrammar, QuotesProtect) {
+  EXPECT_TRUE(parse_query("\"cat on a hot tin roof\"").free_text());
+  EXPECT_EQ(reading("\"cat on a roof\" on the wall"), "[\"cat on a roof\"] on [wall]");
+}
+
+TEST(QueryGrammar, KeepsCommasAndCase) {
+  EXPECT_EQ(reading("Mug, IKEA cup ON The table"), "[Mug, IKEA cup] on [table]");
+}
+
+TEST(QueryGrammar, SurvivesAnything) {
+  std::string text;
+  for (int i = 0; i < 300; ++i) text += "on in between and not the ";
+  EXPECT_FALSE(describe(parse_query(text)).empty());
+  std::string nested = "cup";
+  for (int i = 0; i < 60; ++i) nested += " between plates";
+  EXPECT_TRUE(parse_query(nested).free_text());
+  const QueryPhrase inches = parse_query("24\" monitor on the desk");
+  EXPECT_EQ(inches.things, "24\" monitor");
+  EXPECT_EQ(inches.relation, Relation::kOn);
+  for (const char* place : {"picture on the left", "chair in the corner", "bin in front"})
+    EXPECT_TRUE(parse_query(place).free_text()) << place;
+}
+
+}  // namespace
+}  // namespace ovimap

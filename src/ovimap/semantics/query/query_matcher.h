@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ovimap/semantics/query/query_config.h"
+#include "ovimap/semantics/query/search_index.h"
+
+namespace ovimap {
+
+/// How well each object matches a query.
+struct MatchScores {
+  Eigen::VectorXf cosines;   ///< [objects]
+  Eigen::VectorXf standard;  ///< [objects] standard deviations above unrelated things
+  std::vector<bool> excluded;
+  int alternatives = 1;  ///< terms of which the best counted
+};
+
+/// Scores texts against all objects of a map. The index and the encoder must outlive it.
+/// Thread-safe.
+class TextMatcher {
+ public:
+  /// `vocabulary`: embeddings of vocabulary_texts(); encoded here when it has no rows. Throws Error
+  /// when the map has no embeddings or they are of another length than the encoder's or the
+  /// vocabulary's.
+  TextMatcher(const SearchIndex& index, ImageTextEncoder& encoder, const QueryConfig& config,
+              Embeddings vocabulary);
+
+  /// The unrelated words that calibrate the verdict.
+  static std::vector<std::string> vocabulary_texts();
+  /// Their embeddings, as a matcher of that config takes them.
+  static Embeddings encode_vocabulary(ImageTextEncoder& encoder, const QueryConfig& config);
+
+  /// Matches with `terms` joined by the config's rule (at least one), less what `negatives` match
+  /// better. Throws Error when the encoder has no embedding of a text.
+  MatchScores match(const std::vector<std::string>& terms,
+                    const std::vector<std::string>& negatives) const;
+
+  /// Chance that a thing not in the map scores this high with its best object.
+  double p_value(const MatchScores& scores, float standard_score) const;
+  /// The standard score with that p-value, in (0, 1).
+  float score_at(const MatchScores& scores, double p) const;
+
+  const Embeddings& vocabulary() const { return vocabulary_; }
+  const ScoreCalibration& calibration() const { return *calibration_; }
+
+ private:
+  MatchScores joined(const Embeddings& rows, Eigen::Index first, Eigen::Index count,
+                     TermRule rule) const;
+  void apply_negatives(const MatchScores& negative, MatchScores& scores) const;
+
+  const SearchIndex& index_;
+  ImageTextEncoder& encoder_;
+  QueryConfig config_;
+  std::vector<std::string> prompts_;
+  Embeddings vocabulary_;
+  std::optional<ScoreCalibration> calibration_;
+};
+
+/// Throws Error when no object of the index has an embedding.
+void require_embeddings(const SearchIndex& index);
+
+/// Throws Error when the index's embeddings cannot be of that encoder: `length` numbers against
+/// those of `whose`.
+void require_embedding_length(const SearchIndex& index, Eigen::Index length,
+                              const std::string& whose);
+
+}  // namespace ovimap

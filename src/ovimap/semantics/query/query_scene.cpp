@@ -1,0 +1,288 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/semantics/query/query_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "ovimap/base/error.h"
+#include "ovimap/base/parallel.h"
+#include "ovimap/semantics/query/query_text.h"
+
+namespace ovimap {
+
+namespace {
+
+constexpr float kBorder = 0.5f;  // of a rating: below it a relation does not hold
+constexpr std::size_t kObjectsPerTask = 4;
+
+float& at(Eigen::VectorXf& values, std::size_t i) {
+  return values[static_cast<Eigen::Index>(i)];
+}
+float at(const Eigen::VectorXf& values, std::size_t i) {
+  return values[static_cast<Eigen::Index>(i)];
+}
+
+/// "0.02 m above the top of #12, which is 0.30 m from #4"
+std::string with_anchor(const std::string& clause, const std::string& anchor_evidence) {
+  return anchor_evidence.empty() ? clause : clause + ", which is " + anchor_evidence;
+}
+
+void add_evidence(std::string& evidence, const std::string& clause) {
+  evidence += (evidence.empty() ? "" : "; ") + clause;
+}
+
+void add_missing(PhraseMatch& result, const PhraseMatch& anchors) {
+  result.missing.insert(result.missing.end(), anchors.missing.begin(), anchors.missing.end());
+}
+
+/// Given objects in order of preference: the chance of each that it fits and none before it does.
+void first_that_fits(const std::vector<std::size_t>& ordered, const Eigen::VectorXf& chances,
+                     Eigen::VectorXf& result) {
+  float none_before = 1.f;
+  for (const std::size_t i : ordered) {
+    at(result, i) = at(chances, i) * none_before;
+    none_before *= 1.f - at(chances, i);
+  }
+}
+
+std::vector<std::size_t> positive(const Eigen::VectorXf& scores) {
+  std::vector<std::size_t> positions;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(scores.size()); ++i)
+    if (at(scores, i) > 0.f) positions.push_back(i);
+  return positions;
+}
+
+}  // namespace
+
+QueryScene scene_of_boxes(const SearchIndex& index, const Eigen::Vector3f& up_in_world,
+                          const ObjectShapeConfig& config) {
+  const Eigen::Matrix3f ground = ground_from_world(up_in_world);
+  QueryScene scene;
+  for (const SearchObject& object : index.objects())
+    scene.shapes.push_back(shape_of_box(ground, object.box, object.centroid, config));
+  return scene;
+}
+
+GroundViewpoint mean_viewpoint(const Eigen::Matrix3f& ground_from_world,
+                               std::span<const Pose> world_from_camera) {
+  OVIMAP_ASSERT(!world_from_camera.empty());
+  Eigen::Vector3d position = Eigen::Vector3d::Zero(), forward = Eigen::Vector3d::Zero();
+  for (const Pose& pose : world_from_camera) {
+    position += pose.translation();
+    forward += pose.linear().col(2);
+  }
+  position /= static_cast<double>(world_from_camera.size());
+  const Eigen::Vector2f ahead = (ground_from_world * forward.cast<float>()).head<2>();
+  GroundViewpoint viewpoint;
+  viewpoint.position = (ground_from_world * position.cast<float>()).head<2>();
+  if (!ahead.isZero()) viewpoint.forward = ahead.normalized();
+  return viewpoint;
+}
+
+PhraseSearch::PhraseSearch(const SearchIndex& index, const TextMatcher* matcher,
+                           const QueryScene& scene, const QueryConfig& config)
+    : index_(index), matcher_(matcher), scene_(scene), config_(config) {
+  OVIMAP_ASSERT(scene.shapes.size() == index.size());
+}
+
+PhraseMatch PhraseSearch::match(const QueryPhrase& phrase,
+                                const std::vector<std::string>& negatives) const {
+  // What only resembles the thing may be listed, but proves nothing.
+  return match_phrase(phrase, negatives, config_.verdict.false_positive_rate);
+}
+
+PhraseMatch PhraseSearch::match_phrase(const QueryPhrase& phrase,
+                                       const std::vector<std::string>& negatives,
+                                       float most_p) const {
+  PhraseMatch result = match_things(phrase, negatives, most_p);
+  if (phrase.relation) {
+    // Which of several tables it is on need not be the one that looks most like a table.
+    const PhraseMatch anchors = match_phrase(phrase.anchors[0], {}, config_.candidate_rate);
+    if (!phrase.negated) add_missing(result, anchors);
+    if (*phrase.relation == Relation::kBetween) {
+      const bool two = phrase.anchors.size() > 1;
+      const PhraseMatch second =
+          two ? match_phrase(phrase.anchors[1], {}, config_.candidate_rate) : anchors;
+      if (two) add_missing(result, second);
+      apply_between(anchors, second, !two, result);
+    } else if (*phrase.relation == Relation::kNearest || *phrase.relation == Relation::kFarthest) {
+      apply_order(phrase, anchors, result);
+    } else {
+      apply_pairs(phrase, anchors, result);
+    }
+  }
+  if (phrase.superlative) apply_superlative(*phrase.superlative, result);
+  return result;
+}
+
+PhraseMatch PhraseSearch::match_things(const QueryPhrase& phrase,
+                                       const std::vector<std::string>& negatives,
+                                       float most_p) const {
+  PhraseMatch result;
+  result.scores = Eigen::VectorXf::Ones(static_cast<Eigen::Index>(index_.size()));
+  result.holds.assign(index_.size(), true);
+  result.evidence.resize(index_.size());
+  const std::vector<std::string> terms = split_terms(phrase.things);
+  if (phrase.anything) {
+    if (!negatives.empty()) leave_out(negatives, result);
+    return result;
+  }
+  if (terms.empty())
+    throw Error(concat("the query names nothing in '", phrase.things, "'; say what to look for"));
+  result.things = needed_matcher(phrase.things).match(terms, negatives);
+  rate_by_text(phrase, most_p, result);
+  return result;
+}
+
+void PhraseSearch::rate_by_text(const QueryPhrase& phrase, float most_p,
+                                PhraseMatch& result) const {
+  const MatchScores& text = result.things;
+  result.scores.setZero();
+  std::optional<std::size_t> best;
+  for (std::size_t i = 0; i < index_.size(); ++i)
+    if (index_.has_embedding(i) && !text.excluded[i] &&
+        (!best || at(text.standard, i) > at(text.standard, *best)))
+      best = i;
+  const double best_p = best ? matcher_->p_value(text, at(text.standard, *best)) : 1.0;
+  if (best_p > double{config_.verdict.false_positive_rate}) result.missing.push_back(phrase.things);
+  result.holds.assign(index_.size(), false);
+  if (!best) return;
+  at(result.scores, *best) = static_cast<float>(match_probability(best_p));  // if only as a guess
+  // A weak candidate can win a comparison of places; it cannot make a relation true.
+  const bool compares = phrase.superlative || phrase.relation == Relation::kNearest ||
+                        phrase.relation == Relation::kFarthest;
+  float level = matcher_->score_at(text, double{config_.candidate_rate});
+  if (compares) level = std::max(level, config_.rival_share * at(text.standard, *best));
+  for (std::size_t i = 0; i < index_.size(); ++i) {
+    const bool candidate = index_.has_embedding(i) && !text.excluded[i];
+    const double p = candidate ? matcher_->p_value(text, at(text.standard, i)) : 1.0;
+    result.holds[i] = p <= double{most_p};
+    if (candidate && at(text.standard, i) >= level)
+      at(result.scores, i) = static_cast<float>(match_probability(p));
+  }
+}
+
+void PhraseSearch::leave_out(const std::vector<std::string>& negatives, PhraseMatch& result) const {
+  const MatchScores text = needed_matcher("--not " + negatives.front()).match(negatives, {});
+  for (std::size_t i = 0; i < index_.size(); ++i) {
+    if (!index_.has_embedding(i)) continue;
+    const double p = matcher_->p_value(text, at(text.standard, i));
+    if (p > double{config_.verdict.false_positive_rate}) continue;
+    at(result.scores, i) = 0.f;
+    result.holds[i] = false;
+  }
+}
+
+const TextMatcher& PhraseSearch::needed_matcher(const std::string& what) const {
+  if (matcher_) return *matcher_;
+  throw Error(concat("'", what, "' needs an encoder, none was given; name one with --encoder"));
+}
+
+std::vector<std::size_t> PhraseSearch::anchors_of(const PhraseMatch& match) const {
+  std::vector<std::size_t> anchors = positive(match.scores);
+  std::sort(anchors.begin(), anchors.end(), [&](std::size_t a, std::size_t b) {
+    return std::tuple(-at(match.scores, a), id_of(a)) < std::tuple(-at(match.scores, b), id_of(b));
+  });
+  anchors.resize(std::min(anchors.size(), static_cast<std::size_t>(config_.max_anchors)));
+  return anchors;
+}
+
+void PhraseSearch::apply_pairs(const QueryPhrase& phrase, const PhraseMatch& anchors,
+                               PhraseMatch& result) const {
+  const std::vector<std::size_t> candidates = positive(result.scores), near = anchors_of(anchors);
+  std::vector<char> holds(index_.size(), 0);  // vector<bool> cannot be written in parallel
+  parallel_for(candidates.size(), kObjectsPerTask, [&](std::size_t k) {
+    const std::size_t i = candidates[k];
+    float best = -1.f;
+    std::string clause;
+    for (const std::size_t j : near) {
+      if (i == j) continue;
+      const RelationRating rating =
+          rate_relation(*phrase.relation, scene_.shapes[i], scene_.shapes[j], id_of(j),
+                        scene_.viewpoint, config_.relations);
+      if (rating.score >= kBorder && anchors.holds[j]) holds[i] = 1;
+      if (at(anchors.scores, j) * rating.score <= best) continue;
+      best = at(anchors.scores, j) * rating.score;
+      clause = with_anchor(rating.evidence, anchors.evidence[j]);
+      if (phrase.negated)
+        clause = concat("not ", relation_name(*phrase.relation), " #", id_of(j), " (",
+                        rating.evidence, ")");
+    }
+    best = std::max(best, 0.f);
+    at(result.scores, i) *= phrase.negated ? 1.f - best : best;
+    result.evidence[i] = clause;
+  });
+  for (const std::size_t i : candidates)
+    result.holds[i] = result.holds[i] && (holds[i] != 0) != phrase.negated;
+}
+
+void PhraseSearch::apply_order(const QueryPhrase& phrase, const PhraseMatch& anchors,
+                               PhraseMatch& result) const {
+  const bool nearest = *phrase.relation == Relation::kNearest;
+  const Eigen::VectorXf chances = result.scores;
+  const std::vector<bool> things_hold = result.holds;
+  result.scores.setZero();
+  for (const std::size_t j : anchors_of(anchors)) {
+    std::vector<std::size_t> ordered = positive(chances);
+    std::erase(ordered, j);
+    std::vector<float> gaps(index_.size()), centres(index_.size());
+    parallel_for(ordered.size(), kObjectsPerTask, [&](std::size_t k) {
+      const ObjectShape &a = scene_.shapes[ordered[k]], &b = scene_.shapes[j];
+      const float sign = nearest ? 1.f : -1.f;
+      gaps[ordered[k]] = sign * gap_m(a, b);
+      centres[ordered[k]] = sign * (a.centroid - b.centroid).norm();
+    });
+    std::sort(ordered.begin(), ordered.end(), [&](std::size_t a, std::size_t b) {
+      return std::tuple(gaps[a], centres[a], id_of(a)) < std::tuple(gaps[b], centres[b], id_of(b));
+    });
+    Eigen::VectorXf scores = Eigen::VectorXf::Zero(chances.size());
+    first_that_fits(ordered, chances, scores);
+    for (const std::size_t i : ordered) {
+      const float score = at(scores, i) * at(anchors.scores, j);
+      if (score <= at(result.scores, i)) continue;
+      at(result.scores, i) = score;
+      result.holds[i] = things_hold[i] && anchors.holds[j];
+      const auto rating = rate_relation(Relation::kNear, scene_.shapes[i], scene_.shapes[j],
+                                        id_of(j), scene_.viewpoint, config_.relations);
+      result.evidence[i] = with_anchor(rating.evidence, anchors.evidence[j]);
+    }
+  }
+}
+
+void PhraseSearch::apply_between(const PhraseMatch& first, const PhraseMatch& second,
+                                 bool same_kind, PhraseMatch& result) const {
+  const std::vector<std::size_t> left = anchors_of(first), right = anchors_of(second);
+  for (const std::size_t i : positive(result.scores)) {
+    float best = 0.f;
+    bool holds = false;
+    for (const std::size_t j : left)
+      for (const std::size_t k : right) {
+        if (i == j || i == k || j == k || (same_kind && k < j)) continue;
+        const auto rating =
+            rate_between(scene_.shapes[i], scene_.shapes[j], scene_.shapes[k], id_of(j), id_of(k));
+        const float score = at(first.scores, j) * at(second.scores, k) * rating.score;
+        holds = holds || (rating.score >= kBorder && first.holds[j] && second.holds[k]);
+        if (score <= best) continue;
+        best = score;
+        result.evidence[i] = rating.evidence;
+      }
+    at(result.scores, i) *= best;
+    result.holds[i] = result.holds[i] && holds;
+  }
+}
+
+void PhraseSearch::apply_superlative(Superlative superlative, PhraseMatch& result) const {
+  std::vector<std::size_t> ordered = positive(result.scores);
+  std::vector<SuperlativeMeasure> measures(index_.size());
+  for (const std::size_t i : ordered) measures[i] = measure(superlative, scene_.shapes[i]);
+  std::sort(ordered.begin(), ordered.end(), [&](std::size_t a, std::size_t b) {
+    return std::tuple(-measures[a].value, id_of(a)) < std::tuple(-measures[b].value, id_of(b));
+  });
+  const Eigen::VectorXf chances = result.scores;
+  first_that_fits(ordered, chances, result.scores);
+  for (const std::size_t i : ordered) add_evidence(result.evidence[i], measures[i].evidence);
+}
+
+}  // namespace ovimap

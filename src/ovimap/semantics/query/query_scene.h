@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ovimap/geometry/pose.h"
+#include "ovimap/semantics/query/query_config.h"
+#include "ovimap/semantics/query/query_grammar.h"
+#include "ovimap/semantics/query/query_matcher.h"
+
+namespace ovimap {
+
+/// The geometry that relations are judged by.
+struct QueryScene {
+  std::vector<ObjectShape> shapes;  ///< of each object of the index, by position
+  GroundViewpoint viewpoint;        ///< for left, right, in front and behind
+};
+
+/// A scene of the objects' boxes, exact where an axis of the world is up.
+QueryScene scene_of_boxes(const SearchIndex& index, const Eigen::Vector3f& up_in_world,
+                          const ObjectShapeConfig& config = {});
+
+/// The mean of the cameras: where a recording looks from on the whole. At least one pose.
+GroundViewpoint mean_viewpoint(const Eigen::Matrix3f& ground_from_world,
+                               std::span<const Pose> world_from_camera);
+
+/// How well the objects fit a query with relations.
+struct PhraseMatch {
+  Eigen::VectorXf scores;             ///< [objects] chance in [0, 1] that the whole phrase fits
+  std::vector<bool> holds;            ///< whether it is the thing and its relations are true
+  std::vector<std::string> evidence;  ///< why; empty where the score is 0
+  std::vector<std::string> missing;   ///< things named that are not in the map
+  MatchScores things;                 ///< what the text alone says; no rows for "anything"
+};
+
+/// Judges phrases in a scene. Scores combine as chances: a thing and its anchor and the relation
+/// between them must hold, and "the nearest" or "the largest" is one that no better one beats. The
+/// references must outlive it. Thread-safe.
+class PhraseSearch {
+ public:
+  /// `matcher` may be null: then only "anything" can be asked for.
+  PhraseSearch(const SearchIndex& index, const TextMatcher* matcher, const QueryScene& scene,
+               const QueryConfig& config);
+
+  /// `negatives`: what the things looked for must not be. Throws Error when a text needs a matcher.
+  PhraseMatch match(const QueryPhrase& phrase, const std::vector<std::string>& negatives) const;
+
+ private:
+  /// `most_p`: the largest p-value with which an object counts as the thing (PhraseMatch::holds).
+  PhraseMatch match_phrase(const QueryPhrase& phrase, const std::vector<std::string>& negatives,
+                           float most_p) const;
+  PhraseMatch match_things(const QueryPhrase& phrase, const std::vector<std::string>& negatives,
+                           float most_p) const;
+  /// Takes away whatever one of the negatives is found to be.
+  void leave_out(const std::vector<std::string>& negatives, PhraseMatch& result) const;
+  const TextMatcher& needed_matcher(const std::string& what) const;
+  void rate_by_text(const QueryPhrase& phrase, float most_p, PhraseMatch& result) const;
+  void apply_pairs(const QueryPhrase& phrase, const PhraseMatch& anchors,
+                   PhraseMatch& result) const;
+  void apply_order(const QueryPhrase& phrase, const PhraseMatch& anchors,
+                   PhraseMatch& result) const;
+  void apply_between(const PhraseMatch& first, const PhraseMatch& second, bool same_kind,
+                     PhraseMatch& result) const;
+  void apply_superlative(Superlative superlative, PhraseMatch& result) const;
+  std::vector<std::size_t> anchors_of(const PhraseMatch& match) const;
+  InstanceId id_of(std::size_t position) const { return index_.object(position).id; }
+
+  const SearchIndex& index_;
+  const TextMatcher* matcher_;
+  const QueryScene& scene_;
+  const QueryConfig& config_;
+};
+
+}  // namespace ovimap

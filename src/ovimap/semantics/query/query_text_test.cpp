@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/semantics/query/query_text.h"
+
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "ovimap/base/error.h"
+#include "ovimap/semantics/query/query_fixture.h"
+#include "ovimap/semantics/query/word_lists.h"
+
+namespace ovimap {
+namespace {
+
+using Texts = std::vector<std::string>;
+
+TEST(CheckedQueryText, TakesAwayBlanks) {
+  EXPECT_EQ(checked_query_text("  red \t\n chair ", 100), "red chair");
+}
+
+TEST(CheckedQueryText, RefusesNothingAndTooMuch) {
+  EXPECT_THROW(checked_query_text("", 100), Error);
+  EXPECT_THROW(checked_query_text(" \n\t ", 100), Error);
+  EXPECT_EQ(checked_query_text(std::string(2000, 'x'), 2000).size(), 2000u);
+  try {
+    checked_query_text(std::string(10000, 'x'), 2000);
+    FAIL() << "10,000 characters were accepted";
+  } catch (const Error& error) {
+    const std::string message = error.what();
+    EXPECT_NE(message.find("10000 characters"), std::string::npos) << message;
+    EXPECT_NE(message.find("2000"), std::string::npos) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos);
+  }
+}
+
+TEST(CheckedQueryText, CountsCharactersNotBytes) {
+  EXPECT_EQ(checked_query_text("café", 4), "café");
+  EXPECT_THROW(checked_query_text("cafés", 4), Error);
+}
+
+TEST(SplitTerms, SplitsAtCommasOutsideQuotes) {
+  EXPECT_EQ(split_terms("red chair, armchair"), (Texts{"red chair", "armchair"}));
+  EXPECT_EQ(split_terms("\"salt, pepper\" , cup"), (Texts{"salt, pepper", "cup"}));
+  EXPECT_EQ(split_terms("a,,b,"), (Texts{"a", "b"}));
+  EXPECT_TRUE(split_terms(", ,").empty());
+}
+
+TEST(SplitPrompts, WantsASlotInEach) {
+  EXPECT_EQ(split_prompts("a photo of a {}.|{}"), (Texts{"a photo of a {}.", "{}"}));
+  EXPECT_THROW(split_prompts("a photo"), Error);
+  EXPECT_THROW(split_prompts("{}|"), Error);
+  EXPECT_THROW(split_prompts(""), Error);
+}
+
+TEST(EncodePrompted, AveragesTemplates) {
+  WordEncoder encoder;
+  const Texts texts{"cup", "dog"};
+  const Embeddings plain = encode_prompted(encoder, texts, Texts{"{}"});
+  EXPECT_TRUE(plain.row(1).isApprox(encoder.encode_texts(texts).row(1), 1e-6f));
+  const Embeddings both = encode_prompted(encoder, texts, Texts{"big {}", "small {}"});
+  const Embeddings rows = encoder.encode_texts(Texts{"big dog", "small dog"});
+  EXPECT_TRUE(both.row(1).isApprox((rows.row(0) + rows.row(1)).normalized(), 1e-5f));
+}
+
+TEST(WordLists, AreCompiledIn) {
+  EXPECT_TRUE(builtin_word_list("nonsense").empty());
+  const Texts vocabulary = list_entries(builtin_word_list("vocabulary"));
+  EXPECT_GE(vocabulary.size(), 300u);
+  EXPECT_EQ(std::set<std::string>(vocabulary.begin(), vocabulary.end()).size(), vocabulary.size());
+  EXPECT_EQ(list_entries(builtin_word_list("replica51")).size(), 51u);
+  EXPECT_EQ(list_entries(builtin_word_list("scannet200")).size(), 200u);
+  EXPECT_EQ(list_entries(builtin_word_list("scannet20")).size(), 20u);
+  EXPECT_EQ(list_entries("# no\n\n  a b \r\nc"), (Texts{"a b", "c"}));
+}
+
+}  // namespace
+}  // namespace ovimap

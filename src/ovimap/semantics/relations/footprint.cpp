@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/semantics/relations/footprint.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace ovimap {
+
+namespace {
+
+/// Twice the signed area of the triangle a, b, c; positive when c is left of a -> b.
+float turn(const Eigen::Vector2f& a, const Eigen::Vector2f& b, const Eigen::Vector2f& c) {
+  const Eigen::Vector2f u = b - a, v = c - a;
+  return u.x() * v.y() - u.y() * v.x();
+}
+
+const Eigen::Vector2f& next_corner(const Footprint& footprint, std::size_t i) {
+  return footprint[i + 1 < footprint.size() ? i + 1 : 0];
+}
+
+Eigen::Vector2f nearest_on_segment(const Eigen::Vector2f& a, const Eigen::Vector2f& b,
+                                   const Eigen::Vector2f& point) {
+  const Eigen::Vector2f along = b - a;
+  const float length2 = along.squaredNorm();
+  if (length2 == 0.f) return a;
+  return a + std::clamp(along.dot(point - a) / length2, 0.f, 1.f) * along;
+}
+
+/// The part of `polygon` left of the line a -> b (Sutherland and Hodgman 1974).
+Footprint clipped(const Footprint& polygon, const Eigen::Vector2f& a, const Eigen::Vector2f& b) {
+  Footprint kept;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Eigen::Vector2f &p = polygon[i], &q = next_corner(polygon, i);
+    const float side_p = turn(a, b, p), side_q = turn(a, b, q);
+    if (side_p >= 0.f) kept.push_back(p);
+    if ((side_p > 0.f && side_q < 0.f) || (side_p < 0.f && side_q > 0.f))
+      kept.push_back(p + side_p / (side_p - side_q) * (q - p));
+  }
+  return kept;
+}
+
+Footprint overlap_of(const Footprint& a, const Footprint& b) {
+  Footprint shared = a;
+  for (std::size_t i = 0; i < b.size() && !shared.empty(); ++i)
+    shared = clipped(shared, b[i], next_corner(b, i));
+  return shared;
+}
+
+}  // namespace
+
+Footprint convex_hull(std::vector<Eigen::Vector2f> points) {
+  std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) {
+    return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
+  });
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  if (points.size() < 3) return points;
+  Footprint hull;
+  const auto add_chain = [&hull](auto begin, auto end) {
+    const std::size_t base = hull.size();
+    for (auto at = begin; at != end; ++at) {
+      while (hull.size() >= base + 2 && turn(hull[hull.size() - 2], hull.back(), *at) <= 0.f)
+        hull.pop_back();
+      hull.push_back(*at);
+    }
+    hull.pop_back();  // the other chain begins with it
+  };
+  add_chain(points.begin(), points.end());
+  add_chain(points.rbegin(), points.rend());
+  return hull;
+}
+
+float area_m2(const Footprint& footprint) {
+  float twice = 0;
+  for (std::size_t i = 1; i + 1 < footprint.size(); ++i)
+    twice += turn(footprint[0], footprint[i], footprint[i + 1]);
+  return 0.5f * twice;
+}
+
+float perimeter_m(const Footprint& footprint) {
+  float length = 0;
+  for (std::size_t i = 0; i < footprint.size(); ++i)
+    length += (next_corner(footprint, i) - footprint[i]).norm();
+  return length;
+}
+
+float smallest_width_m(const Footprint& footprint) {
+  float smallest = std::numeric_limits<float>::max();
+  for (std::size_t i = 0; i < footprint.size(); ++i) {
+    const Eigen::Vector2f &a = footprint[i], &b = next_corner(footprint, i);
+    float farthest = 0;
+    for (const Eigen::Vector2f& corner : footprint)
+      farthest = std::max(farthest, turn(a, b, corner));
+    smallest = std::min(smallest, farthest / (b - a).norm());
+  }
+  return smallest;
+}
+
+float overlap_m2(const Footprint& a, const Footprint& b) {
+  return area_m2(overlap_of(a, b));
+}
+
+Eigen::Vector2f nearest_point(const Footprint& footprint, const Eigen::Vector2f& point) {
+  bool inside = true;
+  float best = std::numeric_limits<float>::max();
+  Eigen::Vector2f nearest = point;
+  for (std::size_t i = 0; i < footprint.size(); ++i) {
+    const Eigen::Vector2f &a = footprint[i], &b = next_corner(footprint, i);
+    if (turn(a, b, point) >= 0.f) continue;
+    inside = false;
+    const Eigen::Vector2f candidate = nearest_on_segment(a, b, point);
+    const float distance2 = (candidate - point).squaredNorm();
+    if (distance2 >= best) continue;
+    best = distance2;
+    nearest = candidate;
+  }
+  return inside ? point : nearest;
+}
+
+float distance_m(const Footprint& footprint, const Eigen::Vector2f& point) {
+  return (nearest_point(footprint, point) - point).norm();
+}
+
+float distance_m(const Footprint& a, const Footprint& b) {
+  if (!overlap_of(a, b).empty()) return 0.f;
+  float smallest = std::numeric_limits<float>::max();
+  for (const Eigen::Vector2f& corner : a) smallest = std::min(smallest, distance_m(b, corner));
+  for (const Eigen::Vector2f& corner : b) smallest = std::min(smallest, distance_m(a, corner));
+  return smallest;
+}
+
+}  // namespace ovimap

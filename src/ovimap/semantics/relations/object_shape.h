@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "ovimap/semantics/relations/footprint.h"
+
+namespace ovimap {
+
+class ConfigFields;
+
+struct ObjectShapeConfig {
+  float noise_share = 0.005f;       ///< of the points, cut off at the top and at the bottom
+  float point_radius_m = 0.005f;    ///< a surface point is a square of twice this size
+  float surface_spacing_m = 0.02f;  ///< surface points nearer to each other are thinned
+};
+void list_fields(ObjectShapeConfig& config, ConfigFields& fields);
+
+/// The ground frame: x and y in the horizontal plane, z up, the world's origin.
+Eigen::Matrix3f ground_from_world(const Eigen::Vector3f& up_in_world);
+
+/// An object as relations see it: an upright prism, and the surface in it where it is known. All
+/// in the ground frame, metres.
+struct ObjectShape {
+  float bottom_m = 0, top_m = 0;
+  Footprint footprint;
+  Eigen::Vector3f centroid = Eigen::Vector3f::Zero();
+  std::vector<Eigen::Vector3f> surface;  ///< may be empty: then the prism counts as solid
+
+  float height_m() const { return top_m - bottom_m; }
+  float middle_m() const { return 0.5f * (top_m + bottom_m); }
+};
+
+/// From points of the object's surface in the world: the better way, since boxes along the axes of
+/// a tilted world are too large. At least one point.
+ObjectShape shape_of_points(const Eigen::Matrix3f& ground_from_world,
+                            std::span<const Eigen::Vector3f> points_in_world,
+                            const ObjectShapeConfig& config = {});
+
+/// From a box in the world and the object's centroid.
+ObjectShape shape_of_box(const Eigen::Matrix3f& ground_from_world,
+                         const Eigen::AlignedBox3f& box_in_world,
+                         const Eigen::Vector3f& centroid_in_world,
+                         const ObjectShapeConfig& config = {});
+
+/// Distance between the surfaces of two objects; 0 where they touch. Where a surface is known, the
+/// gap to it counts, not that to the convex prism around it.
+float gap_m(const ObjectShape& a, const ObjectShape& b);
+
+/// Height of what the object `below` puts under `above`: its highest surface under the footprint,
+/// widened by `margin_m`, and not higher than the middle of `above`. Lowest float when there is
+/// none.
+float support_height_m(const ObjectShape& above, const ObjectShape& below, float margin_m);
+
+}  // namespace ovimap

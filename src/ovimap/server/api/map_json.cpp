@@ -1,0 +1,239 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/server/api/map_json.h"
+
+#include <cmath>
+#include <span>
+
+#include <nlohmann/json.hpp>
+
+#include "ovimap/base/error.h"
+#include "ovimap/base/version.h"
+#include "ovimap/io/map_tables/map_file_record.h"
+#include "ovimap/io/pictures/palette.h"
+#include "ovimap/server/api/correction_json.h"
+#include "ovimap/server/api/neighbors.h"
+
+namespace ovimap {
+
+namespace {
+
+using nlohmann::json;
+
+/// To a tenth of a millimetre: more digits are noise, and bytes.
+json number(double value) {
+  constexpr double kSteps = 1e4;
+  return std::isfinite(value) ? json(std::round(value * kSteps) / kSteps) : json();
+}
+
+json point(const Eigen::Vector3f& p) {
+  return {number(p.x()), number(p.y()), number(p.z())};
+}
+
+json box(const Eigen::AlignedBox3f& b) {
+  const json nowhere = {nullptr, nullptr, nullptr};
+  if (b.isEmpty()) return {{"min", nowhere}, {"max", nowhere}};
+  return {{"min", point(b.min())}, {"max", point(b.max())}};
+}
+
+json color(Rgb8 c) {
+  return {c.r, c.g, c.b};
+}
+
+json optional_number(const std::optional<double>& value) {
+  return value ? json(*value) : json();
+}
+
+/// Sixteen colours from cold to hot; what lies between is interpolated.
+json heat_ramp() {
+  constexpr int kColors = 16;
+  json ramp = json::array();
+  for (int i = 0; i < kColors; ++i)
+    ramp.push_back(color(heat_color(static_cast<float>(i) / (kColors - 1))));
+  return ramp;
+}
+
+std::span<const ClassGuess> guesses_of(const MapSnapshot& now, InstanceId id) {
+  if (!now.guesses) return {};
+  const auto found = now.guesses->of_object.find(id);
+  if (found == now.guesses->of_object.end()) return {};
+  return found->second;
+}
+
+json guesses_json(const MapSnapshot& now, InstanceId id) {
+  json list = json::array();
+  for (const ClassGuess& guess : guesses_of(now, id))
+    list.push_back(
+        {{"name", now.guesses->set.labels[guess.label].name}, {"cosine", number(guess.score)}});
+  return list;
+}
+
+json class_of(const MapSnapshot& now, InstanceId id) {
+  const auto guesses = guesses_of(now, id);
+  if (guesses.empty()) return nullptr;
+  const ClassLabel& label = now.guesses->set.labels[guesses.front().label];
+  return {{"id", label.id},
+          {"name", label.name},
+          {"color", color(instance_color(static_cast<std::uint32_t>(label.id)))}};
+}
+
+/// Positions of an object's views that keep a crop, as ordinals of /crops/.
+json crops_of(const MapSnapshot& now, const InstanceSummary& instance) {
+  json ordinals = json::array();
+  const Appearance look = appearance_of(now.record->semantics.looks, instance.super_points);
+  for (std::size_t i = 0; i < look.views.size(); ++i)
+    if (!look.views[i]->crop.empty()) ordinals.push_back(i);
+  return ordinals;
+}
+
+json instance_json(const MapSnapshot& now, std::size_t position) {
+  const InstanceSummary& instance = now.record->instances[position];
+  return {{"id", instance.id},
+          {"name", now.name_of(instance.id)},
+          {"guesses", guesses_json(now, instance.id)},
+          {"class", class_of(now, instance.id)},
+          {"color", color(instance_color(instance.id))},
+          {"box", box(instance.box)},
+          {"centroid", point(instance.centroid)},
+          {"points", instance.points},
+          {"views", instance.views},
+          {"locked", now.record->locked.contains(instance.id)},
+          {"crops", crops_of(now, instance)}};
+}
+
+std::size_t position_of(const MapSnapshot& now, InstanceId id) {
+  if (const auto position = now.index().find(id)) return *position;
+  throw Error(concat("the map has no object ", id, "; GET /api/instances lists those it has"));
+}
+
+json match_json(const MapSnapshot& now, const QueryMatch& match) {
+  return {{"id", match.id},
+          {"name", now.name_of(match.id)},
+          {"score", match.score},
+          {"standard_score", match.standard_score},
+          {"p_value", optional_number(match.p_value)},
+          {"probability", optional_number(match.probability)},
+          {"evidence", match.evidence}};
+}
+
+json camera_json(const PinholeCamera& camera) {
+  return {{"width", camera.width}, {"height", camera.height}, {"fx", camera.fx},
+          {"fy", camera.fy},       {"cx", camera.cx},         {"cy", camera.cy}};
+}
+
+}  // namespace
+
+json map_json(const ServedMap& map) {
+  const auto now = map.snapshot();
+  const MapInfo& info = now->objects->info;
+  return {{"title", map.path().stem().string()},
+          {"program", version()},
+          {"version", now->version},
+          {"mesh_version", map.mesh().version()},
+          {"live", now->live},
+          {"frames", info.frames},
+          {"mask_frames", info.mask_frames},
+          {"instances", now->record->instances.size()},
+          {"voxel_size_m", number(info.voxel_size_m)},
+          {"up", point(info.up)},
+          {"blocks", info.blocks},
+          {"size_bytes", info.size_bytes},
+          {"content_hash", hash_text(info.content_hash)},
+          {"encoder", info.encoder.name},
+          {"search", {{"state", search_state_name(now->search)}, {"reason", now->why_no_search}}},
+          {"classes", now->guesses ? json(now->guesses->set.name) : json()},
+          {"heat_ramp", heat_ramp()}};
+}
+
+json instances_json(const ServedMap& map) {
+  const auto now = map.snapshot();
+  json list = json::array();
+  for (std::size_t i = 0; i < now->record->instances.size(); ++i)
+    list.push_back(instance_json(*now, i));
+  return {{"version", now->version}, {"instances", list}};
+}
+
+json labels_json(const ServedMap& map) {
+  const auto now = map.snapshot();
+  json hidden = json::array();
+  for (const InstanceSummary& instance : now->record->hidden) hidden.push_back(instance.id);
+  return {{"version", now->version}, {"instances", now->instance_of_label}, {"hidden", hidden}};
+}
+
+json corrections_json(const ServedMap& map) {
+  const auto now = map.snapshot();
+  json log = json::array();
+  for (const MapEdit& edit : now->record->edits) log.push_back(edit_json(edit));
+  return {{"version", now->version}, {"corrections", log}};
+}
+
+json instance_detail_json(const ServedMap& map, InstanceId id) {
+  const auto now = map.snapshot();
+  const std::size_t position = position_of(*now, id);
+  const QueryScene& scene = now->objects->scene;
+  json detail = instance_json(*now, position);
+  const ObjectShape& shape = scene.shapes[position];
+  detail["super_points"] = now->record->instances[position].super_points;
+  detail["height_m"] = number(shape.height_m());
+  detail["footprint_m2"] = number(area_m2(shape.footprint));
+  detail["neighbors"] = json::array();
+  for (const Neighbor& other : neighbors_of(now->index(), scene, position, map.relations()))
+    detail["neighbors"].push_back({{"id", other.id},
+                                   {"relation", other.relation},
+                                   {"gap_m", number(other.gap_m)},
+                                   {"evidence", other.evidence}});
+  return detail;
+}
+
+json answer_json(const MapAnswer& answered) {
+  const auto& [answer, now] = answered;
+  json matches = json::array();
+  for (const QueryMatch& match : answer.matches) matches.push_back(match_json(*now, match));
+  json result = {{"query", answer.query},
+                 {"verdict", verdict_name(answer.verdict)},
+                 {"reading", answer.reading},
+                 {"reason", answer.reason},
+                 {"matches", matches}};
+  if (answer.relevance.size() > 0) {
+    result["heat"] = json::array();
+    for (std::size_t i = 0; i < now->index().size(); ++i)
+      result["heat"].push_back(
+          {now->index().object(i).id, number(answer.relevance[static_cast<Eigen::Index>(i)])});
+  }
+  return result;
+}
+
+json mesh_json(const ServedMap& map, int level, std::uint64_t since) {
+  const ChunkGrid& grid = map.mesh().grid();
+  json chunks = json::array();
+  for (const ChunkListing& chunk : map.mesh().list(level, since))
+    chunks.push_back({{"x", chunk.index.x()},
+                      {"y", chunk.index.y()},
+                      {"z", chunk.index.z()},
+                      {"version", chunk.version},
+                      {"patches", chunk.patches},
+                      {"vertices", chunk.vertices},
+                      {"triangles", chunk.triangles}});
+  return {{"version", map.mesh().version()},
+          {"level", level},
+          {"chunk_edge_m", grid.edge_m()},
+          {"chunks", chunks}};
+}
+
+json cameras_json(const ServedMap& map) {
+  const auto now = map.snapshot();
+  json frames = json::array();
+  for (const FrameLogEntry& frame : now->record->frames) {
+    json pose = json::array();
+    for (int row = 0; row < 3; ++row)
+      for (int column = 0; column < 4; ++column)
+        pose.push_back(number(frame.world_from_camera.matrix()(row, column)));
+    frames.push_back({{"index", frame.index},
+                      {"timestamp_s", number(frame.timestamp_s)},
+                      {"labelled", frame.labelled},
+                      {"world_from_camera", pose}});
+  }
+  return {{"camera", camera_json(now->record->depth_camera)}, {"frames", frames}};
+}
+
+}  // namespace ovimap

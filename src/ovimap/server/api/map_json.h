@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "ovimap/server/served/served_map.h"
+
+namespace ovimap {
+
+// The JSON objects of docs/http-api.md. Lengths are metres in the world frame; numbers that are not
+// finite become null.
+
+nlohmann::json map_json(const ServedMap& map);
+nlohmann::json instances_json(const ServedMap& map);
+/// To which object each label of the surface belongs.
+nlohmann::json labels_json(const ServedMap& map);
+/// The log, oldest first.
+nlohmann::json corrections_json(const ServedMap& map);
+/// Throws Error where the map has no such object.
+nlohmann::json instance_detail_json(const ServedMap& map, InstanceId id);
+nlohmann::json answer_json(const MapAnswer& answered);
+nlohmann::json mesh_json(const ServedMap& map, int level, std::uint64_t since);
+nlohmann::json cameras_json(const ServedMap& map);
+
+}  // namespace ovimap

@@ -1,0 +1,412 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/server/front/http_server.h"
+
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include "ovimap/io/map_file/map_edits.h"
+#include "ovimap/io/map_file/map_file_fixture.h"
+#include "ovimap/server/api/map_api.h"
+#include "ovimap/server/front/server_fixture.h"
+
+namespace ovimap {
+namespace {
+
+using nlohmann::json;
+
+std::string unpacked_gzip(const std::string& packed) {
+  std::string result(1 << 20, '\0');
+  z_stream stream{};
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));
+  stream.avail_in = static_cast<uInt>(packed.size());
+  stream.next_out = reinterpret_cast<Bytef*>(result.data());
+  stream.avail_out = static_cast<uInt>(result.size());
+  EXPECT_EQ(inflateInit2(&stream, 15 + 16), Z_OK);
+  EXPECT_EQ(inflate(&stream, Z_FINISH), Z_STREAM_END);
+  result.resize(stream.total_out);
+  inflateEnd(&stream);
+  return result;
+}
+
+class HttpServerTest : public MapFolder {
+ protected:
+  HttpServerTest() {
+    MapDocument document = random_document(40, 3);
+    const LabelForest& forest = document.map.labels();
+    std::vector<Label>& own = document.instances[1].super_points;
+    for (Label label = 5; own.size() < 2; ++label)
+      if (forest.root(label) == label) own.push_back(label);
+    save_map(map_, document);
+  }
+
+  fixture::RunningServer& serve(ServerConfig config = {}) {
+    ServedMapConfig served;
+    served.encoder = "none";
+    running_ = std::make_unique<fixture::RunningServer>(map_, std::move(config), served);
+    return *running_;
+  }
+
+  json get(const std::string& path, int status = 200) {
+    const auto reply = running_->client().get(path);
+    EXPECT_TRUE(reply) << path;
+    if (!reply) return {};
+    EXPECT_EQ(reply->status, status) << path << reply->body;
+    return json::parse(reply->body, nullptr, false);
+  }
+
+  json post(const std::string& path, const std::string& body, int status,
+            const std::string& type = "application/json") {
+    const auto reply = running_->client().post(path, body, type);
+    EXPECT_TRUE(reply) << path;
+    if (!reply) return {};
+    EXPECT_EQ(reply->status, status) << body << reply->body;
+    const json parsed = json::parse(reply->body, nullptr, false);
+    if (status >= 400) {
+      EXPECT_FALSE(parsed.value("error", "").empty()) << reply->body;
+    }
+    return parsed;
+  }
+
+  const std::filesystem::path map_ = root_ / "room.ovimap";
+  std::unique_ptr<fixture::RunningServer> running_;
+};
+
+TEST_F(HttpServerTest, DescribesTheMap) {
+  serve();
+  const json map = get("/api/map");
+  EXPECT_EQ(map["title"], "room");
+  EXPECT_EQ(map["instances"], 2);
+  EXPECT_EQ(map["frames"], 3);
+  EXPECT_EQ(map["live"], false);
+  EXPECT_EQ(map["heat_ramp"].size(), 16u);
+  const json cameras = get("/api/cameras");
+  EXPECT_EQ(cameras["frames"].size(), 3u);
+  EXPECT_EQ(cameras["frames"][0]["world_from_camera"].size(), 12u);
+  EXPECT_EQ(get("/api/openapi.json")["info"]["title"], "ovimap");
+}
+
+TEST_F(HttpServerTest, ListsObjects) {
+  serve();
+  const json instances = get("/api/instances")["instances"];
+  ASSERT_EQ(instances.size(), 2u);
+  EXPECT_EQ(instances[0]["id"], 1);
+  EXPECT_EQ(instances[0]["name"], random_document(1, 1).names.at(1));
+  EXPECT_EQ(instances[0]["crops"], json({0}));
+  EXPECT_TRUE(instances[1]["box"]["min"][0].is_null());  // an empty box has no corners
+  const json detail = get("/api/instances/1");
+  EXPECT_GT(detail["height_m"], 0.0);
+  EXPECT_TRUE(detail["neighbors"].is_array());
+}
+
+TEST_F(HttpServerTest, SendsCropsAndChunks) {
+  serve();
+  const auto crop = running_->client().get("/api/instances/1/crops/0");
+  ASSERT_TRUE(crop);
+  EXPECT_EQ(crop->field("content-type"), "image/jpeg");
+  EXPECT_EQ(crop->body, std::string("\x01\x02"));
+  for (const int level : {0, 1}) {
+    const json list = get("/api/mesh?level=" + std::to_string(level));
+    ASSERT_GT(list["chunks"].size(), 0u);
+    for (const json& chunk : list["chunks"]) {
+      const auto reply =
+          running_->client().get("/api/mesh/" + std::to_string(level) + "/" + chunk["x"].dump() +
+                                 "/" + chunk["y"].dump() + "/" + chunk["z"].dump());
+      ASSERT_TRUE(reply);
+      EXPECT_EQ(reply->body.size(), 56 + 28 * chunk["patches"].get<std::size_t>() +
+                                        16 * chunk["vertices"].get<std::size_t>() +
+                                        12 * chunk["triangles"].get<std::size_t>());
+    }
+  }
+  EXPECT_EQ(get("/api/mesh?since=1")["chunks"].size(), 0u);
+}
+
+TEST_F(HttpServerTest, RefusesWhatDoesNotExist) {
+  serve();
+  for (const char* path :
+       {"/api/instances/2", "/api/instances/0", "/api/instances/x", "/api/instances/-1",
+        "/api/instances/99999999999999999999", "/api/instances/1/crops/1",
+        "/api/instances/1/crops/x", "/api/instances/7/crops/0", "/api/mesh/0/500/0/0",
+        "/api/mesh/2/0/0/0", "/api/mesh/0/0/0/x", "/api/nothing", "/../../etc/passwd",
+        "/%2e%2e/%2e%2e/etc/passwd", "/assets/../secret"})
+    EXPECT_FALSE(get(path, 404)["error"].get<std::string>().empty()) << path;
+  for (const char* path : {"/api/mesh?level=x", "/api/mesh?level=5", "/api/mesh?since=-1"})
+    EXPECT_FALSE(get(path, 400)["error"].get<std::string>().empty()) << path;
+}
+
+TEST_F(HttpServerTest, RefusesBadBodies) {
+  serve();
+  for (const char* body :
+       {"", "{", "[]", "7", "{\"text\":7}", "{\"text\":\"a\",\"like\":1}", "{}",
+        "{\"texts\":\"a\"}", "{\"like\":-1}", "{\"like\":1.5}", "{\"like\":99999999999}",
+        "{\"text\":\"a\",\"not\":\"b\"}", "{\"text\":\"a\",\"not\":[7]}",
+        "{\"text\":\"a\",\"heat\":1}", "\xff\xfe", "{\"text\":\"\xff\"}"})
+    post("/api/query", body, 400);
+  post("/api/query", std::string(60000, '['), 400);
+  post("/api/query", "{\"text\":\"a\"}", 415, "text/plain");
+  post("/api/query", std::string(200000, 'x'), 413);
+  post("/api/map", "{}", 405);
+  post("/api/nothing", "{}", 404);
+}
+
+TEST_F(HttpServerTest, SaysWhyItCannotSearch) {
+  serve();
+  EXPECT_NE(
+      post("/api/query", "{\"text\":\"mug\"}", 409)["error"].get<std::string>().find("encoder"),
+      std::string::npos);
+  EXPECT_EQ(get("/api/map")["search"]["state"], "unavailable");
+}
+
+TEST_F(HttpServerTest, KeepsNamesInTheMapFile) {
+  serve();
+  const auto rename = [](const std::string& name) {
+    return json{{"kind", "rename"}, {"instance", 3}, {"name", name}}.dump();
+  };
+  const json before = get("/api/map");
+  const json done = post("/api/corrections", rename("Küchentisch"), 200);
+  EXPECT_GT(done["version"], before["version"]);
+  EXPECT_EQ(get("/api/instances")["instances"][1]["name"], "Küchentisch");
+  EXPECT_EQ(load_corrected_map(map_).names.at(3), "Küchentisch");
+  EXPECT_EQ(load_map(map_).names, random_document(40, 3).names);  // what was there stays
+  post("/api/corrections", rename(""), 200);
+  EXPECT_FALSE(load_corrected_map(map_).names.contains(3));
+  post("/api/corrections", rename("two\nlines"), 409);
+  post("/api/corrections", rename(std::string(300, 'x')), 409);
+  EXPECT_EQ(get("/api/instances")["instances"][1]["name"], "");
+}
+
+TEST_F(HttpServerTest, ShowsAMapAsItWasCorrectedBefore) {
+  MapEdit edit;
+  edit.action = EditAction::kDelete;
+  edit.instances = {1};
+  edit_map(map_, edit);
+  edit.action = EditAction::kRename;
+  edit.instances = {3};
+  edit.name = "table";
+  edit_map(map_, edit);
+  serve();
+  const json instances = get("/api/instances")["instances"];
+  ASSERT_EQ(instances.size(), 1u);  // and the search knows no more
+  EXPECT_EQ(instances[0]["id"], 3);
+  EXPECT_EQ(instances[0]["name"], "table");
+  EXPECT_EQ(get("/api/instances/3")["name"], "table");
+  get("/api/instances/1", 404);
+  const json labels = get("/api/labels");
+  for (const json& id : labels["instances"]) EXPECT_NE(id, 1);
+}
+
+TEST_F(HttpServerTest, MergesHidesDeletesLocksAndUndoes) {
+  serve();
+  const auto correct = [&](json body, int status = 200) {
+    return post("/api/corrections", body.dump(), status);
+  };
+  const auto ids = [&] {
+    json list = json::array();
+    const json reply = get("/api/instances");
+    for (const json& instance : reply["instances"]) list.push_back(instance["id"]);
+    return list;
+  };
+  const auto labels_of = [&](int id) {
+    const json table = get("/api/labels")["instances"];
+    return std::count(table.begin(), table.end(), json(id));
+  };
+  const auto one = labels_of(1), three = labels_of(3);
+  ASSERT_GT(three, 0);
+  EXPECT_EQ(correct({{"kind", "merge"}, {"instance", 3}, {"into", 1}})["edit"], 1);
+  EXPECT_EQ(ids(), json({1}));
+  EXPECT_EQ(labels_of(1), one + three);
+  EXPECT_EQ(correct({{"kind", "undo"}})["edit"], 2);
+  EXPECT_EQ(ids(), json({1, 3}));
+
+  correct({{"kind", "hide"}, {"instance", 3}});
+  EXPECT_EQ(ids(), json({1}));
+  EXPECT_EQ(get("/api/labels")["hidden"], json({3}));
+  correct({{"kind", "hide"}, {"instance", 3}}, 409);
+  correct({{"kind", "undo"}, {"edit", 3}});
+
+  correct({{"kind", "lock"}, {"instance", 1}});
+  EXPECT_EQ(get("/api/instances/1")["locked"], true);
+  EXPECT_NE(correct({{"kind", "delete"}, {"instance", 1}}, 409)["error"].get<std::string>().find(
+                "locked"),
+            std::string::npos);
+  correct({{"kind", "delete"}, {"instance", 3}});
+  EXPECT_EQ(ids(), json({1}));
+  EXPECT_EQ(labels_of(3), 0);
+
+  const json log = get("/api/corrections")["corrections"];
+  ASSERT_EQ(log.size(), 6u);
+  EXPECT_EQ(log[0]["kind"], "merge");
+  EXPECT_EQ(log[0]["instances"], json({1, 3}));
+  EXPECT_EQ(log[0]["undone_by"], 2);
+  EXPECT_TRUE(log[5]["undone_by"].is_null());
+  running_.reset();
+  serve();  // all of it is in the file
+  EXPECT_EQ(ids(), json({1}));
+  EXPECT_EQ(get("/api/corrections")["corrections"], log);
+}
+
+TEST_F(HttpServerTest, TakesObjectsApart) {
+  serve();
+  const json parts = get("/api/instances/3")["super_points"];
+  ASSERT_EQ(parts.size(), 2u);
+  json body = {{"kind", "split"}, {"instance", 3}, {"super_points", parts}};
+  post("/api/corrections", body.dump(), 409);  // something must stay
+  body["super_points"] = json::array({parts[0]});
+  post("/api/corrections", body.dump(), 200);
+  const json instances = get("/api/instances")["instances"];
+  ASSERT_EQ(instances.size(), 3u);
+  EXPECT_EQ(get("/api/labels")["instances"][parts[0].get<std::size_t>()], instances[2]["id"]);
+  EXPECT_EQ(get("/api/labels")["instances"][parts[1].get<std::size_t>()], 3);
+}
+
+TEST_F(HttpServerTest, HandsOutTheSurfaceAsGlb) {
+  serve();
+  const auto whole = running_->client().get("/api/export.glb");
+  ASSERT_TRUE(whole);
+  EXPECT_EQ(whole->status, 200);
+  EXPECT_EQ(whole->field("content-type"), "model/gltf-binary");
+  EXPECT_EQ(whole->body.substr(0, 4), "glTF");
+  post("/api/corrections", R"({"kind":"hide","instance":3})", 200);
+  EXPECT_LT(running_->client().get("/api/export.glb")->body.size(), whole->body.size());
+}
+
+TEST_F(HttpServerTest, WritesAnExportOnceAndCountsItAsWork) {
+  ServerConfig config;
+  config.work_burst = 2;
+  config.work_per_second = 0.001;
+  serve(config);
+  get("/api/export.glb");
+  get("/api/export.glb");
+  get("/api/export.glb", 429);
+
+  FrameApi no_frames(nullptr, {});
+  const Router routes = map_api(running_->map(), no_frames);
+  HttpRequest request;
+  request.method = "GET";
+  request.path = "/api/export.glb";
+  const HttpHandler& write = routes.find(request).route->handler;
+  const auto first = write(request).body;
+  EXPECT_EQ(write(request).body, first);
+  MapEdit hide;
+  hide.action = EditAction::kHide;
+  hide.instances = {3};
+  running_->map().correct(hide);
+  EXPECT_NE(*write(request).body, *first);
+}
+
+TEST_F(HttpServerTest, RefusesBadCorrections) {
+  serve();
+  post("/api/corrections", R"({"kind":"rename","instance":2,"name":"x"})", 404);
+  for (const char* body :
+       {R"({"kind":"rename","instance":1})", R"({"kind":"rename","name":"x"})",
+        R"({"kind":"paint","instance":1})", R"({"kind":"merge","instance":1})",
+        R"({"kind":"rename","instance":1,"name":"x","into":3})", R"({"kind":"undo","instance":1})",
+        R"({"kind":"undo","edit":-1})", R"({"kind":"hide","instance":0})",
+        R"({"kind":"split","instance":3})", R"({"kind":"split","instance":3,"super_points":[]})",
+        R"({"kind":"split","instance":3,"super_points":["a"]})"})
+    post("/api/corrections", body, 400);
+  post("/api/corrections", R"({"kind":"undo"})", 409);
+  post("/api/corrections", R"({"kind":"undo","edit":9})", 409);
+  post("/api/corrections", R"({"kind":"merge","instance":1,"into":1})", 409);
+}
+
+TEST_F(HttpServerTest, GoesOnWhenTheMapIsDeleted) {
+  serve();
+  std::filesystem::remove(map_);
+  EXPECT_EQ(get("/api/instances")["instances"].size(), 2u);
+  EXPECT_GT(get("/api/mesh")["chunks"].size(), 0u);
+  const json refused =
+      post("/api/corrections", R"({"kind":"rename","instance":1,"name":"lost"})", 409);
+  EXPECT_NE(refused["error"].get<std::string>().find("room.ovimap"), std::string::npos);
+  EXPECT_NE(get("/api/instances")["instances"][0]["name"], "lost");
+}
+
+TEST_F(HttpServerTest, SavesTheTripAndBytes) {
+  serve();
+  auto client = running_->client();
+  const auto first = client.get("/api/cameras");
+  ASSERT_TRUE(first);
+  const auto again =
+      client.get("/api/cameras", {{"If-None-Match", first->field("etag")}});
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->status, 304);
+  EXPECT_TRUE(again->body.empty());
+  const auto plain = client.get("/api/openapi.json", {{"Accept-Encoding", "identity"}});
+  const auto zstd = client.get("/api/openapi.json", {{"Accept-Encoding", "zstd"}});
+  EXPECT_EQ(zstd->field("content-encoding"), "zstd");
+  EXPECT_LT(zstd->body.size(), 8000u);
+  const auto gzip = client.get("/api/openapi.json", {{"Accept-Encoding", "gzip"}});
+  EXPECT_EQ(gzip->field("content-encoding"), "gzip");
+  EXPECT_EQ(unpacked_gzip(gzip->body), plain->body);
+  EXPECT_EQ(client.get("/api/openapi.json", {{"Range", "bytes=5-9"}})->status, 200);
+  EXPECT_TRUE(client.head("/api/map")->body.empty());
+}
+
+TEST_F(HttpServerTest, KeepsOtherPagesOut) {
+  serve();
+  auto client = running_->client();
+  EXPECT_EQ(client.get("/api/map", {{"Host", "rebound.example"}})->status, 403);
+  EXPECT_EQ(client.get("/api/map", {{"Origin", "http://evil.example"}})->status, 403);
+  const auto reply = client.get("/api/map");
+  EXPECT_EQ(reply->field("access-control-allow-origin"), "");
+  EXPECT_NE(reply->field("content-security-policy").find("script-src 'self'"),
+            std::string::npos);
+}
+
+TEST_F(HttpServerTest, DemandsTheToken) {
+  ServerConfig config;
+  config.token = "secret";
+  serve(config);
+  auto client = running_->client();
+  EXPECT_EQ(client.get("/api/map")->status, 401);
+  EXPECT_EQ(client.get("/")->status, 401);
+  const auto opened = client.get("/?token=secret");
+  EXPECT_EQ(opened->status, 303);
+  EXPECT_EQ(client.get("/api/map", {{"Cookie", "ovimap_token=secret"}})->status, 200);
+  EXPECT_EQ(client.get("/api/map", {{"Authorization", "Bearer secret"}})->status, 200);
+  EXPECT_NE(running_->server().address().find("?token=secret"), std::string::npos);
+  config.token = "a b&c=%41;d";
+  serve(config);
+  const std::string address = running_->server().address();
+  const auto opened_again = running_->client().get(address.substr(address.find("/?")));
+  const std::string cookie = opened_again->field("set-cookie");
+  const std::string pair = cookie.substr(0, cookie.find(';'));
+  EXPECT_EQ(running_->client().get("/api/map", {{"Cookie", pair}})->status, 200);
+}
+
+TEST_F(HttpServerTest, DoesNotOpenUpWithoutToken) {
+  ServedMapConfig served;
+  served.encoder = "none";
+  ServedMap map(map_, served);
+  ServerConfig config;
+  config.host = "0.0.0.0";
+  config.port = 0;
+  EXPECT_NE(fault_of([&] { HttpServer(map, config); }).find("token"), std::string::npos);
+  config.token = "secret";
+  EXPECT_GT(HttpServer(map, config).port(), 0);
+}
+
+TEST_F(HttpServerTest, SaysWhenThePortIsTaken) {
+  serve();
+  ServedMapConfig served;
+  served.encoder = "none";
+  ServedMap map(map_, served);
+  ServerConfig config;
+  config.port = running_->port();
+  const std::string fault = fault_of([&] { HttpServer(map, config); });
+  EXPECT_NE(fault.find(std::to_string(config.port)), std::string::npos);
+  EXPECT_NE(fault.find("--port 0"), std::string::npos);
+}
+
+TEST_F(HttpServerTest, LimitsHowOftenOneAsks) {
+  ServerConfig config;
+  config.work_burst = 3;
+  config.work_per_second = 0.001;
+  serve(config);
+  for (int i = 0; i < 3; ++i) post("/api/query", "{}", 400);
+  post("/api/query", "{}", 429);
+  get("/api/map");
+}
+
+}  // namespace
+}  // namespace ovimap

@@ -1,0 +1,185 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/server/served/live_feed.h"
+
+#include <gtest/gtest.h>
+
+#include "ovimap/io/map_file/map_file_fixture.h"
+#include "ovimap/map/surface/mesh_extraction.h"
+#include "ovimap/pipeline/mapping/desk_fixture.h"
+#include "ovimap/pipeline/sequence/sequence_run.h"
+
+namespace ovimap {
+namespace {
+
+/// A desk that is mapped frame by frame, and shown meanwhile.
+class LiveFeedTest : public MapFolder {
+ protected:
+  LiveFeedTest() {
+    MapperConfig config;
+    config.mask_interval = 1;
+    mapper_ = std::make_unique<Mapper>(config, std::make_shared<DeskMasks>());
+    FoundMap begun;
+    begun.info.voxel_size_m = config.map.voxel_size_m;
+    begun.record.names = {{77, "of an earlier run"}};
+    ServedMapConfig served;
+    served.encoder = "none";
+    map_ = std::make_unique<ServedMap>(path_, begun, served);
+    LiveFeedConfig quick;
+    quick.surface_share = quick.objects_share = quick.spare_share = 1e6;
+    quick.vertices_per_s = 1e9;
+    quick.mesh_interval = quick.objects_interval = quick.pose_interval = {};
+    feed_ = std::make_unique<LiveFeed>(*map_, quick);
+  }
+
+  void map_frames(std::int64_t first, std::int64_t last) {
+    for (std::int64_t i = first; i < last; ++i) {
+      const Frame frame = *scene_.read(i).frame;
+      mapper_->process(frame);
+      sequence_.depth_camera = frame.depth_camera;
+      sequence_.frames.push_back({i, 0, frame.name, frame.world_from_camera, true});
+      after_frame();
+    }
+  }
+  void after_frame() { feed_->after_frame(*mapper_, sequence_.frames, sequence_.depth_camera); }
+  /// As long as it takes: what is seen is decided by other threads.
+  template <class Condition>
+  void wait_until(Condition&& holds) {
+    while (!holds()) {
+      after_frame();
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+  }
+  std::size_t objects() const { return map_->snapshot()->record->instances.size(); }
+  MapDocument end() {
+    feed_.reset();
+    MapDocument document = make_document(std::move(*mapper_), sequence_, MapHeader{"desk", "", {}, {}});
+    document.edits = map_->close_log();
+    save_map(path_, document);
+    return document;
+  }
+  MapEdit rename(InstanceId id, const std::string& name) {
+    MapEdit edit;
+    edit.instances = {id};
+    edit.name = name;
+    return map_->correct(edit);
+  }
+
+  const DeskScene scene_;
+  const std::filesystem::path path_ = root_ / "desk.ovimap";
+  SequenceResult sequence_;
+  std::unique_ptr<Mapper> mapper_;
+  std::unique_ptr<ServedMap> map_;
+  std::unique_ptr<LiveFeed> feed_;
+};
+
+TEST_F(LiveFeedTest, ShowsSurfaceObjectsAndCamera) {
+  EXPECT_EQ(objects(), 0u);
+  map_frames(0, scene_.size());
+  const Mesh whole = extract_mesh(mapper_->map());
+  wait_until(
+      [&] { return joined_surface(map_->mesh()).triangles.size() == whole.triangles.size(); });
+  wait_until([&] { return map_->snapshot()->record->frames.size() == 12 && objects() == 3; });
+  const auto now = map_->snapshot();
+  EXPECT_TRUE(now->live);
+  EXPECT_GT(now->record->up.z(), 0.9f);
+  for (const InstanceSummary& found :
+       summarize_instances(mapper_->map(), mapper_->registry(), InstanceSummaryConfig{})) {
+    const auto position = now->index().find(found.id);
+    ASSERT_TRUE(position);
+    const InstanceSummary& shown = now->record->instances[*position];
+    const float slack = 4 * mapper_->config().map.voxel_size_m;
+    EXPECT_LT((shown.box.min() - found.box.min()).norm(), slack);
+    EXPECT_LT((shown.box.max() - found.box.max()).norm(), slack);
+    EXPECT_EQ(shown.views, found.views);
+    for (const Label root : found.super_points) EXPECT_EQ(now->instance_of_label[root], found.id);
+  }
+  std::set<std::string> heard;
+  for (std::uint64_t i = 0; i < map_->events().last(); ++i)
+    if (const auto event = map_->events().next(i)) heard.insert(event->type);
+  EXPECT_TRUE(heard.contains("frame") && heard.contains("mesh") && heard.contains("map"));
+}
+
+TEST_F(LiveFeedTest, CorrectionsSurviveMoreMappingAndTheEnd) {
+  map_frames(0, 6);
+  wait_until([&] { return objects() == 3; });
+  const InstanceId table = map_->snapshot()->record->instances[0].id;
+  const InstanceId ball = map_->snapshot()->record->instances[1].id;
+  const InstanceId other = map_->snapshot()->record->instances[2].id;
+  rename(table, "desk");
+  MapEdit merge;
+  merge.action = EditAction::kMerge;
+  merge.instances = {ball, other};
+  EXPECT_EQ(map_->correct(merge).id, 2);
+  EXPECT_EQ(objects(), 2u);
+  EXPECT_THROW(map_->correct(merge), Error);
+
+  const std::uint64_t before = map_->snapshot()->version;
+  map_frames(6, scene_.size());
+  wait_until([&] { return map_->snapshot()->record->frames.size() == 12 && objects() == 2; });
+  EXPECT_GT(map_->snapshot()->version, before);
+  EXPECT_EQ(objects(), 2u);
+  EXPECT_EQ(map_->snapshot()->name_of(table), "desk");
+  EXPECT_EQ(map_->snapshot()->name_of(77), "of an earlier run");
+
+  MapDocument document = end();
+  EXPECT_THROW(rename(table, "too late"), Error);
+  EXPECT_EQ(load_corrected_map(path_).instances.size(), 2u);
+  map_->saved(std::move(document));
+  EXPECT_FALSE(map_->snapshot()->live);
+  EXPECT_EQ(objects(), 2u);
+  EXPECT_EQ(map_->snapshot()->name_of(table), "desk");
+  rename(table, "in the file");
+  EXPECT_EQ(load_corrected_map(path_).names.at(table), "in the file");
+}
+
+TEST_F(LiveFeedTest, SavedSurfaceReplacesTheOneBefore) {
+  map_frames(0, 4);
+  wait_until([&] { return objects() == 3; });
+  const std::uint64_t seen = map_->mesh().version();
+  const std::size_t triangles = extract_mesh(mapper_->map()).triangles.size();
+  map_->saved(end());
+  EXPECT_EQ(joined_surface(map_->mesh()).triangles.size(), triangles);
+  EXPECT_GT(map_->mesh().version(), seen);
+  for (const int level : {0, 1}) EXPECT_FALSE(map_->mesh().list(level, seen).empty());
+}
+
+TEST_F(LiveFeedTest, SendsNoMoreThanItsAllowance) {
+  feed_.reset();
+  LiveFeedConfig slow;
+  slow.mesh_interval = {};
+  slow.surface_share = 1e6;
+  slow.vertices_per_s = 100;
+  feed_ = std::make_unique<LiveFeed>(*map_, slow);
+  map_frames(0, scene_.size());
+  EXPECT_LT(joined_surface(map_->mesh()).vertices.size(), 5000u);  // of 11,000
+}
+
+TEST(MeshStoreTest, ChangesPatchesAndTellsWhichWereLost) {
+  MeshStore store(ChunkGrid{0.01f});
+  const auto triangle = [](float x) {
+    Mesh mesh;
+    mesh.vertices = {{x, 0.01f, 0.01f}, {x + 0.01f, 0.01f, 0.01f}, {x, 0.02f, 0.01f}};
+    mesh.labels = {1, 1, 1};
+    mesh.triangles = {{0, 1, 2}};
+    return std::make_shared<Mesh>(mesh);
+  };
+  store.update({{{0, 0, 0}, 0, triangle(0.01f)}, {{20, 0, 0}, 0, triangle(1.61f)}});
+  EXPECT_EQ(store.version(), 1u);
+  EXPECT_EQ(store.list(0).size(), 2u);
+  store.update({{{1, 0, 0}, 0, triangle(0.09f)}, {{0, 0, 0}, 0, nullptr}});
+  ASSERT_EQ(store.list(0, 1).size(), 1u);
+  const auto chunk = store.find(0, {0, 0, 0});
+  ASSERT_EQ(chunk->patches.size(), 2u);
+  EXPECT_TRUE(chunk->patches[0].mesh->triangles.empty());  // said, so that clients drop it
+  EXPECT_EQ(chunk->patches[1].version, 2u);
+  store.replace(*triangle(0.09f));
+  EXPECT_EQ(joined_surface(store).triangles.size(), 1u);
+  const auto lost = store.find(0, {1, 0, 0});
+  ASSERT_TRUE(lost);
+  EXPECT_EQ(lost->version, 3u);
+  EXPECT_TRUE(store.find(1, {1, 0, 0})->patches[0].mesh->triangles.empty());
+}
+
+}  // namespace
+}  // namespace ovimap

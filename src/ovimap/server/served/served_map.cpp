@@ -1,0 +1,236 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/server/served/served_map.h"
+
+#include "ovimap/base/thread_priority.h"
+#include "ovimap/io/corrections/map_corrections.h"
+#include "ovimap/io/corrections/map_edit_desk.h"
+#include "ovimap/io/map_file/map_file.h"
+#include "ovimap/map/surface/mesh_extraction.h"
+#include "ovimap/semantics/query/query_text.h"
+
+namespace ovimap {
+
+namespace {
+
+/// The voxels of a map file, read when they are needed: where an object was taken apart.
+VoxelSource voxels_of(const std::filesystem::path& path, std::optional<VoxelMap>& place) {
+  return [&]() -> const VoxelMap& {
+    if (!place) place = std::move(load_map(path).map);
+    return *place;
+  };
+}
+
+/// Parts of what was taken apart are measured on the surface, so that no voxels are needed.
+VoxelSource no_voxels(std::optional<VoxelMap>& place) {
+  return [&]() -> const VoxelMap& {
+    if (!place) place.emplace();
+    return *place;
+  };
+}
+
+}  // namespace
+
+ServedMap::ServedMap(const std::filesystem::path& map, const ServedMapConfig& config)
+    : path_(map), config_(config) {
+  MapDocument document = load_map(map);
+  mesh_ = std::make_unique<MeshStore>(ChunkGrid{document.map.config().voxel_size_m}, config.levels);
+  take_document(std::move(document));
+  preparation_ = std::thread([this] { prepare_search(); });
+}
+
+ServedMap::ServedMap(const std::filesystem::path& map, FoundMap begun,
+                     const ServedMapConfig& config)
+    : path_(map), config_(config), log_(begun.record.edits) {
+  mesh_ = std::make_unique<MeshStore>(ChunkGrid{begun.info.voxel_size_m}, config.levels);
+  begun.live = true;
+  found_ = std::make_shared<FoundMap>(std::move(begun));
+  rebuild();
+  preparation_ = std::thread([this] { prepare_search(); });
+}
+
+ServedMap::~ServedMap() {
+  events_.close();
+  preparation_.join();
+}
+
+std::shared_ptr<const MapSnapshot> ServedMap::snapshot() const {
+  const std::lock_guard lock(mutex_);
+  return snapshot_;
+}
+
+// ------------------------------------------------------------------------------------ new states
+
+void ServedMap::take_document(MapDocument&& document) {
+  auto found = std::make_shared<FoundMap>();
+  found->info = read_map_info(path_);
+  found->forest = document.map.labels();
+  mesh_->replace(extract_mesh(document.map));
+  found->record = std::move(static_cast<MapRecord&>(document));
+  log_ = found->record.edits;
+  found_ = std::move(found);
+  rebuild();
+}
+
+MapRecord ServedMap::corrected() const {
+  MapRecord record = found_->record;
+  record.edits = log_;
+  std::optional<VoxelMap> place;
+  apply_edits(record, found_->forest, found_->live ? no_voxels(place) : voxels_of(path_, place));
+  return record;
+}
+
+/// Makes the snapshot of what is found and corrected by now. `changing_` is held, or nobody else
+/// knows this map yet.
+void ServedMap::rebuild() {
+  auto next = std::make_shared<MapSnapshot>();
+  MapRecord record = corrected();
+  next->live = found_->live;
+  next->instance_of_label = label_table(record, found_->forest);
+  if (found_->live)
+    measure_on_surface(labelled_surface(*mesh_, next->instance_of_label, {}),
+                       found_->surface_spacing_m, record);
+  next->objects =
+      std::make_shared<MapSearch>(make_map_search(record, found_->info, config_.query.shapes));
+  next->record = std::make_shared<MapRecord>(std::move(record));
+  set_search(*next);
+  std::uint64_t version = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    version = next->version = snapshot_ ? snapshot_->version + 1 : 1;
+    snapshot_ = std::move(next);
+  }
+  prepared_.notify_all();
+  if (version > 1) events_.publish("map", concat("{\"version\":", version, "}"));
+}
+
+void ServedMap::set_search(MapSnapshot& next) const {
+  const bool none_embedded = next.index().embedded() == 0;
+  if (!why_no_encoder_.empty())
+    next.why_no_search = why_no_encoder_;
+  else if (none_embedded && next.live)
+    next.why_no_search = "no object has an embedding yet; mapping goes on";
+  if (!next.why_no_search.empty()) {
+    next.search = SearchState::kUnavailable;
+    return;
+  }
+  if (!encoder_) return;
+  try {
+    next.engine = std::make_shared<const QueryEngine>(next.index(), encoder_.get(), config_.query,
+                                                      Embeddings{}, next.objects->scene);
+    next.search = SearchState::kReady;
+  } catch (const Error& error) {
+    next.search = SearchState::kUnavailable;
+    next.why_no_search = error.what();
+    return;
+  }
+  if (!classes_) return;
+  auto guesses = std::make_shared<ObjectGuesses>();
+  guesses->set = *classes_;
+  auto all = project_classes(next.index(), *encoder_, *classes_,
+                             static_cast<std::size_t>(config_.guesses));
+  for (std::size_t i = 0; i < all.size(); ++i)
+    guesses->of_object[next.index().object(i).id] = std::move(all[i]);
+  next.guesses = std::move(guesses);
+}
+
+// ---------------------------------------------------------------------------------------- search
+
+/// What takes long is done before a new snapshot is made: opening the encoder, and encoding the
+/// lists of words, which it then remembers.
+void ServedMap::prepare_search() {
+  const auto now = snapshot();
+  if (now->live) lower_thread_priority();  // mapping goes first
+  try {
+    open_encoder(*now);
+    const LabelSet set = read_label_set(config_.classes);
+    encode_labels(*encoder_, set);
+    const std::lock_guard lock(changing_);
+    classes_ = set;
+    rebuild();
+  } catch (const std::exception& error) {
+    const std::lock_guard lock(changing_);
+    if (encoder_) return;  // only names are lacking
+    why_no_encoder_ = error.what();
+    rebuild();
+  }
+}
+
+void ServedMap::open_encoder(const MapSnapshot& now) {
+  if (!now.live) require_embeddings(now.index());
+  const EncoderIdentity& wanted = now.objects->info.encoder;
+  if (now.live && wanted.name.empty())
+    throw Error("the map is made without an encoder; map with --encoder");
+  RuntimeConfig runtime;
+  runtime.threads = config_.threads;
+  auto encoder = needed_encoder_of_map(wanted, config_.encoder, runtime, config_.model_dirs);
+  TextMatcher::encode_vocabulary(*encoder, config_.query);
+  const std::lock_guard lock(changing_);
+  encoder_ = std::move(encoder);
+  rebuild();
+}
+
+MapAnswer ServedMap::ask(const MapQuestion& question) const {
+  std::shared_ptr<const MapSnapshot> now;
+  {
+    std::unique_lock lock(mutex_);
+    prepared_.wait(lock, [&] { return snapshot_->search != SearchState::kPreparing; });
+    now = snapshot_;
+  }
+  if (!now->engine) throw SearchUnavailable(now->why_no_search);
+  const bool relevance = question.query.relevance;
+  return {question.like ? now->engine->find_like(*question.like, relevance)
+                        : now->engine->find(question.query),
+          now};
+}
+
+// ----------------------------------------------------------------------------------- corrections
+
+MapEdit ServedMap::correct(MapEdit edit) {
+  const std::lock_guard lock(changing_);
+  for (Label& label : edit.super_points) label = found_->forest.root(label);
+  if (log_closed_) throw Error("the map is being saved; try again in a moment");
+  if (found_->live) {
+    MapRecord record = found_->record;
+    record.edits = log_;
+    std::optional<VoxelMap> place;
+    edit = append_edit(record, found_->forest, no_voxels(place), std::move(edit));
+    log_ = std::move(record.edits);
+  } else {
+    edit = edit_map(path_, std::move(edit));
+    log_ = read_edits(path_);  // with what other programs wrote
+  }
+  rebuild();
+  return edit;
+}
+
+// ---------------------------------------------------------------------------- while it is being
+// made
+
+void ServedMap::show(FoundMap found) {
+  const std::lock_guard lock(changing_);
+  if (!found_->live) return;
+  found.live = true;
+  found_ = std::make_shared<FoundMap>(std::move(found));
+  rebuild();
+}
+
+void ServedMap::show(std::vector<SurfacePatch> patches) {
+  mesh_->update(std::move(patches));
+  events_.publish("mesh", concat("{\"version\":", mesh_->version(), "}"));
+}
+
+MapEdits ServedMap::close_log() {
+  const std::lock_guard lock(changing_);
+  log_closed_ = true;
+  return log_;
+}
+
+void ServedMap::saved(MapDocument&& document) {
+  const std::lock_guard lock(changing_);
+  take_document(std::move(document));
+  log_closed_ = false;
+  events_.publish("mesh", concat("{\"version\":", mesh_->version(), "}"));
+}
+
+}  // namespace ovimap

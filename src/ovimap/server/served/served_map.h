@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "ovimap/base/error.h"
+#include "ovimap/io/map_file/map_edits.h"
+#include "ovimap/server/served/event_hub.h"
+#include "ovimap/server/served/map_snapshot.h"
+#include "ovimap/server/surface/mesh_store.h"
+
+namespace ovimap {
+
+struct ServedMapConfig {
+  std::string encoder = "auto";  ///< as encoder_of_map takes it
+  std::vector<std::filesystem::path> model_dirs;
+  std::string classes = "scannet200";  ///< the names that objects are given by guess
+  int guesses = 3;                     ///< names an object is given
+  int threads = 0;
+  QueryConfig query;
+  MeshLevelConfig levels;
+};
+
+/// This map cannot be searched, whatever is asked.
+class SearchUnavailable : public Error {
+ public:
+  using Error::Error;
+};
+
+struct MapQuestion {
+  Query query;                     ///< what to look for in words
+  std::optional<InstanceId> like;  ///< instead: what looks like this object
+};
+
+/// An answer, and the state of the map that it speaks of.
+struct MapAnswer {
+  QueryAnswer answer;
+  std::shared_ptr<const MapSnapshot> map;
+};
+
+/// One map as clients see it: its surface, its objects, answers to queries, corrections. Whoever
+/// serves it over a network only reads it. A saved map, or one that is still being made, of which
+/// it is told what is found. Thread-safe.
+class ServedMap {
+ public:
+  /// Reads the map and makes its surface ready; search and names follow in the background, since
+  /// they need the encoder. Throws what load_map throws.
+  ServedMap(const std::filesystem::path& map, const ServedMapConfig& config = {});
+  /// A map that is being made and will be saved at `map`, as yet with its log of corrections, its
+  /// encoder and its voxel size (`begun.info`).
+  ServedMap(const std::filesystem::path& map, FoundMap begun, const ServedMapConfig& config);
+  ~ServedMap();
+  ServedMap(const ServedMap&) = delete;
+  ServedMap& operator=(const ServedMap&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  const MeshStore& mesh() const { return *mesh_; }
+  const RelationConfig& relations() const { return config_.query.relations; }
+  EventHub& events() const { return events_; }
+  std::shared_ptr<const MapSnapshot> snapshot() const;
+
+  /// Waits until search is ready. Throws Error for what the asker can mend, SearchUnavailable where
+  /// this map cannot be searched.
+  MapAnswer ask(const MapQuestion& question) const;
+
+  /// Keeps a correction: in the map file, or while the map is being made in its log, which goes
+  /// into the file with it. Returns it as it is kept. Throws Error when it makes no sense in this
+  /// map or could not be kept; then nothing changed.
+  MapEdit correct(MapEdit edit);
+
+  // Of a map that is being made.
+
+  /// Takes what mapping has found by now; corrections stay.
+  void show(FoundMap found);
+  /// Takes changed pieces of the surface.
+  void show(std::vector<SurfacePatch> patches);
+  /// The log as it goes into the file. From now on corrections are refused, until the map is saved.
+  MapEdits close_log();
+  /// The map is saved: from now on it is one like any other.
+  void saved(MapDocument&& document);
+
+ private:
+  void prepare_search();
+  void open_encoder(const MapSnapshot& now);
+  void rebuild();
+  void take_document(MapDocument&& document);
+  MapRecord corrected() const;
+  void set_search(MapSnapshot& next) const;
+
+  const std::filesystem::path path_;
+  const ServedMapConfig config_;
+  std::unique_ptr<MeshStore> mesh_;
+  mutable EventHub events_;
+
+  std::mutex changing_;  ///< guards what follows, for whoever makes a new snapshot
+  std::shared_ptr<const FoundMap> found_;
+  MapEdits log_;
+  bool log_closed_ = false;
+  std::unique_ptr<ImageTextEncoder> encoder_;  ///< engines of snapshots use it
+  std::string why_no_encoder_;                 ///< empty: there is one, or it is being opened
+  std::optional<LabelSet> classes_;            ///< once their names are encoded
+
+  mutable std::mutex mutex_;  ///< held for a moment only
+  mutable std::condition_variable prepared_;
+  std::shared_ptr<const MapSnapshot> snapshot_;
+  std::thread preparation_;
+};
+
+}  // namespace ovimap

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <set>
+#include <vector>
+
+#include "ovimap/instance/instance_summary.h"
+#include "ovimap/io/map_tables/map_document.h"
+#include "ovimap/server/surface/mesh_store.h"
+
+namespace ovimap {
+
+/// The object that each label of a map belongs to, by label; 0: to none. Labels that were merged
+/// away are translated as well, since the surface may still show them.
+using LabelTable = std::vector<InstanceId>;
+LabelTable label_table(const MapRecord& corrected, const LabelForest& forest);
+
+/// The whole surface, its labels as the map has them.
+Mesh joined_surface(const MeshStore& store);
+
+/// The same with ids of objects as labels, and without what belongs to `hidden` ones.
+Mesh labelled_surface(const MeshStore& store, const LabelTable& table,
+                      const std::set<InstanceId>& hidden);
+
+/// Replaces every label by its object.
+void relabel(Mesh& mesh, const LabelTable& table);
+
+/// Which objects a map has while it is being made, as summarize_instances finds them in voxels,
+/// here from the surface: `points` counts its vertices. `mesh`: joined_surface.
+std::vector<InstanceSummary> find_instances(const Mesh& mesh, const LabelForest& forest,
+                                            const InstanceRegistry& registry,
+                                            const InstanceSummaryConfig& config);
+
+/// Boxes, centroids, counts and surfaces of all objects of the record. `mesh`: with ids as labels.
+void measure_on_surface(const Mesh& mesh, float spacing_m, MapRecord& record);
+
+}  // namespace ovimap

@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/synth/camera/sensor_noise.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "ovimap/base/config.h"
+#include "ovimap/base/parallel.h"
+#include "ovimap/synth/shapes/random.h"
+
+namespace ovimap {
+namespace {
+
+constexpr std::size_t kRowsPerTask = 8;
+enum NoiseStream : std::uint64_t {
+  kDepthStream = 1ull << 40,
+  kColorStream = 2ull << 40,
+  kPoseStream = 3ull << 40
+};
+
+/// Whether depth jumps between the pixel and one of its eight neighbours.
+bool on_depth_edge(const DepthImage& depth, int x, int y, float jump) {
+  const float center = depth.at(x, y);
+  for (int v = std::max(0, y - 1); v <= std::min(depth.height() - 1, y + 1); ++v)
+    for (int u = std::max(0, x - 1); u <= std::min(depth.width() - 1, x + 1); ++u)
+      if (std::abs(depth.at(u, v) - center) > jump * center) return true;
+  return false;
+}
+
+float measured(const RenderedView& view, const SensorNoiseConfig& config, int x, int y,
+               Random& random) {
+  const auto shifted = [&](int position, int size) {
+    const float shift = config.lateral_sigma_px * random.normal();
+    return std::clamp(position + static_cast<int>(std::lround(shift)), 0, size - 1);
+  };
+  const int u = shifted(x, view.depth.width()), v = shifted(y, view.depth.height());
+  const float normal = random.normal(), edge = random.uniform(), grazing = random.uniform();
+  const float loss = random.uniform(), depth = view.depth.at(u, v);
+  if (depth <= 0 || loss < config.random_loss) return 0;
+  if (edge < config.edge_loss && on_depth_edge(view.depth, u, v, config.edge_jump)) return 0;
+  const float answers = (view.incidence_cos.at(u, v) - config.grazing_end_cos) /
+                        std::max(config.grazing_start_cos - config.grazing_end_cos, 1e-6f);
+  if (grazing >= answers) return 0;
+  const float offset = depth - config.sigma_nearest_m;
+  const float sigma = config.sigma_base_m + config.sigma_growth_per_m * offset * offset;
+  const float steps =
+      std::round(config.focal_baseline_px_m / (depth + sigma * normal) / config.disparity_step_px);
+  const float answer = config.focal_baseline_px_m / (steps * config.disparity_step_px);
+  return answer >= config.min_depth_m && answer <= config.max_depth_m ? answer : 0;
+}
+
+/// Calls body(x, y, random) for all pixels, each with numbers of its own.
+template <class Body>
+void for_each_pixel(int width, int height, std::uint64_t seed, std::uint64_t stream,
+                    const Body& body) {
+  parallel_for(static_cast<std::size_t>(height), kRowsPerTask, [&](std::size_t row) {
+    for (int x = 0; x < width; ++x) {
+      Random random(seed,
+                    stream + row * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
+      body(x, static_cast<int>(row), random);
+    }
+  });
+}
+
+}  // namespace
+
+void list_fields(SensorNoiseConfig& config, ConfigFields& fields) {
+  fields.add("sigma_base_m", config.sigma_base_m, 0.f, 1.f,
+             "depth noise at the nearest depth, metres");
+  fields.add("sigma_growth_per_m", config.sigma_growth_per_m, 0.f, 1.f,
+             "depth noise added per squared metre beyond it");
+  fields.add("sigma_nearest_m", config.sigma_nearest_m, 0.f, 10.f, "the nearest depth, metres");
+  fields.add("lateral_sigma_px", config.lateral_sigma_px, 0.f, 10.f, "sideways jitter, pixels");
+  fields.add("focal_baseline_px_m", config.focal_baseline_px_m, 1.f, 10000.f,
+             "focal length times baseline: disparity is this over depth");
+  fields.add("disparity_step_px", config.disparity_step_px, 1e-4f, 1.f,
+             "step of disparities, pixels");
+  fields.add("edge_jump", config.edge_jump, 0.f, 1.f,
+             "share of depth between neighbours that is an edge");
+  fields.add("edge_loss", config.edge_loss, 0.f, 1.f, "share of edge pixels without an answer");
+  fields.add("grazing_start_cos", config.grazing_start_cos, 0.f, 1.f,
+             "from here answers get rarer");
+  fields.add("grazing_end_cos", config.grazing_end_cos, -1.f, 1.f,
+             "from here there are no answers");
+  fields.add("random_loss", config.random_loss, 0.f, 1.f,
+             "share of other pixels without an answer");
+  fields.add("min_depth_m", config.min_depth_m, 0.f, 100.f, "nearest answer, metres");
+  fields.add("max_depth_m", config.max_depth_m, 0.f, 100.f, "farthest answer, metres");
+  fields.add("color_sigma", config.color_sigma, 0.f, 255.f, "colour noise, of 255");
+  fields.add("position_sigma_m", config.position_sigma_m, 0.f, 1.f,
+             "pose noise along each axis, metres");
+  fields.add("rotation_sigma_rad", config.rotation_sigma_rad, 0.f, 1.f,
+             "pose noise about each axis, radians");
+}
+
+DepthImage noisy_depth(const RenderedView& view, const SensorNoiseConfig& config,
+                       std::uint64_t seed) {
+  DepthImage noisy(view.depth.width(), view.depth.height());
+  for_each_pixel(
+      noisy.width(), noisy.height(), seed, kDepthStream,
+      [&](int x, int y, Random& random) { noisy.at(x, y) = measured(view, config, x, y, random); });
+  return noisy;
+}
+
+RgbImage noisy_color(const RgbImage& color, const SensorNoiseConfig& config, std::uint64_t seed) {
+  RgbImage noisy = color;
+  for_each_pixel(
+      noisy.width(), noisy.height(), seed, kColorStream, [&](int x, int y, Random& random) {
+        Rgb8& pixel = noisy.at(x, y);
+        for (std::uint8_t* value : {&pixel.r, &pixel.g, &pixel.b}) {
+          const float moved = static_cast<float>(*value) + config.color_sigma * random.normal();
+          *value = static_cast<std::uint8_t>(std::clamp(moved + 0.5f, 0.f, 255.f));
+        }
+      });
+  return noisy;
+}
+
+Pose noisy_pose(const Pose& pose, const SensorNoiseConfig& config, std::uint64_t seed) {
+  if (config.position_sigma_m <= 0 && config.rotation_sigma_rad <= 0) return pose;
+  Random random(seed, kPoseStream);
+  Eigen::Vector3d shift, turn;
+  for (int i = 0; i < 3; ++i) shift[i] = config.position_sigma_m * random.normal();
+  for (int i = 0; i < 3; ++i) turn[i] = config.rotation_sigma_rad * random.normal();
+  Pose noisy = pose;
+  noisy.translation() += shift;
+  if (turn.norm() > 0) noisy.rotate(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
+  return noisy;
+}
+
+}  // namespace ovimap

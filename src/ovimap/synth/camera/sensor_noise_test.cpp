@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/synth/camera/sensor_noise.h"
+
+#include <cmath>
+#include <set>
+
+#include <gtest/gtest.h>
+
+namespace ovimap {
+namespace {
+
+RenderedView flat_wall(float depth_m, float incidence_cos = 1) {
+  RenderedView view;
+  view.depth = DepthImage(160, 120, depth_m);
+  view.ids = IdImage(160, 120, 1);
+  view.incidence_cos = Image<float>(160, 120, incidence_cos);
+  return view;
+}
+
+struct Spread {
+  double mean = 0, sigma = 0, lost = 0;
+};
+Spread spread_of(const DepthImage& depth) {
+  double sum = 0, squares = 0, valid = 0;
+  for (const float value : depth)
+    if (value > 0) sum += value, squares += value * value, ++valid;
+  const double mean = sum / valid;
+  return {mean, std::sqrt(squares / valid - mean * mean),
+          1 - valid / static_cast<double>(depth.size())};
+}
+
+TEST(SensorNoise, SpreadGrowsAsTheModelSays) {
+  SensorNoiseConfig config;
+  config.disparity_step_px = 1e-4f;
+  for (const float depth : {0.8f, 2.f, 4.f}) {
+    const Spread spread = spread_of(noisy_depth(flat_wall(depth), config, 3));
+    const double expected = 0.0012 + 0.0019 * (depth - 0.4) * (depth - 0.4);
+    EXPECT_NEAR(spread.mean, depth, expected * 0.05) << depth;
+    EXPECT_NEAR(spread.sigma, expected, expected * 0.05) << depth;
+    EXPECT_NEAR(spread.lost, 0.001, 0.001) << depth;
+  }
+}
+
+TEST(SensorNoise, AnswersComeInStepsOfDisparity) {
+  std::set<float> values;
+  for (const float value : noisy_depth(flat_wall(3), {}, 3))
+    if (value > 0) values.insert(value);
+  EXPECT_LT(values.size(), 12u);
+  for (const float value : values) {
+    const double steps = 43.5 / value / 0.125;
+    EXPECT_NEAR(steps, std::round(steps), 1e-3);
+  }
+}
+
+TEST(SensorNoise, GrazingAndFarSurfacesGiveNoAnswer) {
+  EXPECT_EQ(spread_of(noisy_depth(flat_wall(2, 0.05f), {}, 1)).lost, 1);
+  const SensorNoiseConfig config;
+  const float halfway = (config.grazing_start_cos + config.grazing_end_cos) / 2;
+  EXPECT_NEAR(spread_of(noisy_depth(flat_wall(2, halfway), config, 1)).lost, 0.5, 0.03);
+  EXPECT_EQ(spread_of(noisy_depth(flat_wall(6.5f), config, 1)).lost, 1);
+  EXPECT_EQ(spread_of(noisy_depth(flat_wall(0), config, 1)).lost, 1);
+}
+
+TEST(SensorNoise, DepthEdgesHaveHoles) {
+  RenderedView view = flat_wall(2);
+  for (int y = 0; y < 120; ++y)
+    for (int x = 80; x < 160; ++x) view.depth.at(x, y) = 3;
+  SensorNoiseConfig config;
+  config.lateral_sigma_px = 0;
+  const DepthImage noisy = noisy_depth(view, config, 9);
+  int edge_lost = 0, other_lost = 0;
+  for (int y = 0; y < 120; ++y)
+    for (int x = 0; x < 160; ++x)
+      if (noisy.at(x, y) == 0) ++(x == 79 || x == 80 ? edge_lost : other_lost);
+  EXPECT_NEAR(edge_lost / 240., config.edge_loss, 0.12);
+  EXPECT_LT(other_lost, 60);
+}
+
+TEST(SensorNoise, SameSeedSameBytes) {
+  const RenderedView view = flat_wall(2);
+  EXPECT_EQ(noisy_depth(view, {}, 4), noisy_depth(view, {}, 4));
+  EXPECT_NE(noisy_depth(view, {}, 4), noisy_depth(view, {}, 5));
+  const RgbImage grey(40, 30, {100, 100, 100});
+  EXPECT_EQ(noisy_color(grey, {}, 4), noisy_color(grey, {}, 4));
+  EXPECT_NE(noisy_color(grey, {}, 4), grey);
+}
+
+TEST(SensorNoise, PosesMoveOnlyWhenAsked) {
+  Pose pose = Pose::Identity();
+  pose.translation() = Eigen::Vector3d(1, 2, 3);
+  EXPECT_TRUE(noisy_pose(pose, {}, 1).isApprox(pose, 0));
+  SensorNoiseConfig config;
+  config.position_sigma_m = 0.01f;
+  config.rotation_sigma_rad = 0.01f;
+  const Pose moved = noisy_pose(pose, config, 1);
+  EXPECT_TRUE(pose_fault(moved.matrix()).empty());
+  EXPECT_GT((moved.translation() - pose.translation()).norm(), 1e-4);
+  EXPECT_LT((moved.translation() - pose.translation()).norm(), 0.08);
+}
+
+}  // namespace
+}  // namespace ovimap
