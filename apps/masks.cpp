@@ -4,7 +4,7 @@
 
 #include "command.h"
 #include "ovimap/base/parallel.h"
-#include "ovimap/eval/standard_scores.h"
+#include "ovimap/eval/scores/standard_scores.h"
 #include "ovimap/inference/masks/id_mask_sources.h"
 #include "ovimap/pipeline/mapping/prepared_frame.h"
 

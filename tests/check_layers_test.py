@@ -17,6 +17,11 @@ TABLE = """
 | 1 | image | pictures | spng |
 | 1 | geometry | shapes | Eigen |
 | 9 | apps | program | CLI |
+
+| room | what is in it |
+| --- | --- |
+| image/pixels | the lower room |
+| image/files | the upper room |
 """
 
 
@@ -51,6 +56,25 @@ class CheckLayersTest(unittest.TestCase):
 
     def test_refuses_a_folder_without_a_row(self):
         self.assertEqual(len(self.offences("src/ovimap/utils/a.h", "\n")), 1)
+
+    def test_a_room_uses_rooms_above_it_in_the_table_alone(self):
+        upper, lower = '#include "ovimap/image/files/png.h"\n', '#include "ovimap/image/pixels/a.h"\n'
+        self.assertEqual(self.offences("src/ovimap/image/files/b.cpp", lower), [])
+        self.assertIn("listed later", self.offences("src/ovimap/image/pixels/b.cpp", upper)[0])
+        self.assertIn("listed later", self.offences("src/ovimap/image/pixels/b.cpp", '#include "ovimap/image/front.h"\n')[0])
+        self.assertEqual(self.offences("src/ovimap/image/front.cpp", upper + lower), [])
+        self.assertEqual(self.offences("src/ovimap/image/pixels/b_test.cpp", upper), [])
+
+    def test_refuses_a_room_without_a_row_and_a_full_folder(self):
+        self.assertIn("no row", self.offences("src/ovimap/image/attic/a.h", "\n")[0])
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            (root / "ARCHITECTURE.md").write_text(TABLE)
+            (root / "apps").mkdir()
+            (root / "src/ovimap/base").mkdir(parents=True)
+            for number in range(check_layers.MOST_SOURCES + 1):
+                (root / f"src/ovimap/base/s{number}.h").write_text("\n")
+            self.assertIn("give them rooms", check_layers.check(root)[0])
 
     def test_tests_may_use_googletest_and_sources_may_not(self):
         self.assertEqual(self.offences("src/ovimap/image/a_test.cpp", "#include <gtest/gtest.h>\n"), [])

@@ -13,8 +13,8 @@
 #include <sstream>
 #include <string>
 
-#include "ovimap/eval/semantic_scores.h"
-#include "ovimap/eval/standard_scores.h"
+#include "ovimap/eval/scores/semantic_scores.h"
+#include "ovimap/eval/scores/standard_scores.h"
 
 namespace ovimap {
 namespace {

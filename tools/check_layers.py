@@ -7,15 +7,54 @@ import re
 import sys
 
 ROW = re.compile(r"^\| (\d+) \| (\w+) \| [^|]* \| ([^|]*) \|$")
+ROOM = re.compile(r"^\| (\w+)/(\w+) \| [^|]* \|$")
+MOST_SOURCES = 24  # in one folder, tests and fixtures aside: what a newcomer can still look over
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]')
 HEADERS = {"unzip": "minizip", "sentencepiece_processor": "sentencepiece"}  # where it is not the library's name
 TEST_LIBRARIES = {"gtest"}
+FLAT = {"apps", "python"}  # one file per subcommand or binding
 SYSTEM = {"unistd.h", "sys", "fcntl.h", "dirent.h", "arpa", "netinet"}  # POSIX
 
 
 def read_table(text):
     rows = (ROW.match(line) for line in text.splitlines())
     return {r[2]: (int(r[1]), {name.strip() for name in r[3].split(",")}) for r in rows if r}
+
+
+def read_rooms(text):
+    """The rooms of each module, lowest first."""
+    rooms = {}
+    for row in filter(None, map(ROOM.match, text.splitlines())):
+        rooms.setdefault(row[1], []).append(row[2])
+    return rooms
+
+
+def room_offence(module, room, include, rooms):
+    """Why a file of `room` ("" for the module's own folder) must not include a file of its module; None when it may."""
+    parts = include.split("/")
+    if parts[0] != "ovimap" or parts[1] != module or not room:
+        return None  # the module's own folder is its front: it may use every room
+    other = parts[2] if len(parts) > 3 else ""
+    order = rooms.get(module, [])
+    if other == room or (other in order and order.index(other) < order.index(room)):
+        return None
+    return f"room {module}/{room} may not include {include}: it is listed later"
+
+
+def folder_offences(root, module, folder, rooms):
+    """Rooms without a row, and folders too full to find a thing in by walking."""
+    found = []
+    for place in [folder, *sorted(p for p in folder.iterdir() if p.is_dir())]:
+        sources = [f for f in [*place.glob("*.h"), *place.glob("*.cpp")] if not is_test_source(f)]
+        if place != folder and sources and place.name not in rooms.get(module, []):
+            found.append(f"{place.relative_to(root)}: no row in ARCHITECTURE.md")
+        if len(sources) > MOST_SOURCES:
+            found.append(f"{place.relative_to(root)}: {len(sources)} sources; give them rooms of at most {MOST_SOURCES}")
+    return found
+
+
+def is_test_source(file):
+    return bool(re.search(r"(_test\.cpp|_fixture\.h|_fixture\.cpp|test_support\.h)$", file.name))
 
 
 def offence(module, include, table, is_test):
@@ -38,7 +77,8 @@ def offence(module, include, table, is_test):
 
 
 def check(root):
-    table = read_table((root / "ARCHITECTURE.md").read_text())
+    text = (root / "ARCHITECTURE.md").read_text()
+    table, rooms = read_table(text), read_rooms(text)
     if not table:
         return ["ARCHITECTURE.md has no module table"]
     found = []
@@ -49,13 +89,18 @@ def check(root):
         if module not in table:
             found.append(f"{folder.relative_to(root)}: no row in ARCHITECTURE.md")
             continue
+        if module not in FLAT:
+            found += folder_offences(root, module, folder, rooms)
         for file in sorted(folder.rglob("*.h")) + sorted(folder.rglob("*.cpp")):
-            is_test = bool(re.search(r"(_test\.cpp|_fixture\.h|test_support\.h)$", file.name))
+            is_test = is_test_source(file)
+            room = "" if file.parent == folder else file.relative_to(folder).parts[0]
             for number, line in enumerate(file.read_text().splitlines(), 1):
                 match = INCLUDE.match(line)
                 if not match or (match[1] == '"' and "/" not in match[2]):
                     continue  # a quoted plain name is a header of the same folder
                 reason = offence(module, match[2], table, is_test)
+                if reason is None and not is_test:  # tests may look at whatever they hold theirs against
+                    reason = room_offence(module, room, match[2], rooms)
                 if reason:
                     found.append(f"{file.relative_to(root)}:{number}: {reason}")
     return found

@@ -7,7 +7,6 @@
 
 #include "ovimap/base/error.h"
 #include "ovimap/io/corrections/map_edit_log.h"
-#include "ovimap/io/map_file/map_file_parts.h"
 
 namespace ovimap {
 

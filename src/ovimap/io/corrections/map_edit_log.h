@@ -4,13 +4,20 @@
 
 #include <string>
 
-#include "ovimap/io/map_file/map_edits.h"
+#include "ovimap/io/map_tables/map_edit.h"
 
 namespace SQLite {
 class Database;
 }
 
 namespace ovimap {
+
+/// "rename", "merge", "split", "lock", "delete", "hide", "undo".
+const char* edit_action_name(EditAction action);
+
+/// What an edit speaks of as a JSON object: {"instances", "name", ...}, keys that say nothing left
+/// out.
+std::string edit_arguments_json(const MapEdit& edit);
 
 /// Which edits have an effect, undone ones and undos left out, oldest first.
 MapEdits effective_edits(const MapEdits& log);

@@ -200,12 +200,6 @@ MapMeta read_found(SQLite::Database& database, int schema, LabelForest& forest, 
   return meta;
 }
 
-InstanceId last_instance(const MapRecord& record) {
-  InstanceId last = record.registry.last_id;
-  for (const MapEdit& edit : record.edits) last = std::max(last, edit.new_instance);
-  return last;
-}
-
 void save_map(const std::filesystem::path& path, const VoxelMap& map, const MapRecord& record) {
   PendingMap pending(path);
   const MapMeta meta{map.config(), static_cast<std::int64_t>(record.frames.size()),

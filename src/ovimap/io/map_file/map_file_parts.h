@@ -14,7 +14,4 @@ MapMeta read_found(SQLite::Database& database, int schema, LabelForest& forest, 
 /// The voxels, verified.
 VoxelMap read_voxels(SQLite::Database& database, const MapMeta& meta, const LabelForest& forest);
 
-/// The highest instance id ever given, by mapping or by people.
-InstanceId last_instance(const MapRecord& record);
-
 }  // namespace ovimap

@@ -2,7 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/io/map_tables/map_document.h"
 
+#include <algorithm>
+
 namespace ovimap {
+
+InstanceId last_instance(const MapRecord& record) {
+  InstanceId last = record.registry.last_id;
+  for (const MapEdit& edit : record.edits) last = std::max(last, edit.new_instance);
+  return last;
+}
 
 Appearance appearance_of(const MapRecord& record, InstanceId id) {
   for (const auto* list : {&record.instances, &record.hidden})

@@ -15,7 +15,7 @@
 #include "ovimap/instance/instance_mesh.h"
 #include "ovimap/instance/instance_registry.h"
 #include "ovimap/instance/instance_summary.h"
-#include "ovimap/io/map_file/map_edits.h"
+#include "ovimap/io/map_tables/map_edit.h"
 #include "ovimap/map/voxels/voxel_map.h"
 #include "ovimap/semantics/views/view_selection.h"
 
@@ -77,6 +77,9 @@ struct MapRecord : MapHeader {
   std::string version;      ///< of the program that wrote the map
   std::uint64_t content_hash = 0;  ///< VoxelMap::content_hash; set by load_map, ignored by save_map
 };
+
+/// The highest instance id ever given, by mapping or by people.
+InstanceId last_instance(const MapRecord& record);
 
 /// What one of the objects or hidden objects of a record looks like; nothing for any other id.
 Appearance appearance_of(const MapRecord& record, InstanceId id);

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "ovimap/eval/frame_check.h"
-#include "ovimap/eval/geometry_scores.h"
-#include "ovimap/eval/reference_scores.h"
-#include "ovimap/eval/semantic_scores.h"
-#include "ovimap/eval/standard_scores.h"
+#include "ovimap/eval/geometry/frame_check.h"
+#include "ovimap/eval/geometry/geometry_scores.h"
+#include "ovimap/eval/scores/reference_scores.h"
+#include "ovimap/eval/scores/semantic_scores.h"
+#include "ovimap/eval/scores/standard_scores.h"
 #include "ovimap/inference/models/onnx_session.h"
 #include "ovimap/semantics/classes/class_names.h"
 

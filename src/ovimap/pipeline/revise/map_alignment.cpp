@@ -8,7 +8,7 @@
 
 #include "ovimap/base/config.h"
 #include "ovimap/base/parallel.h"
-#include "ovimap/eval/nearest.h"
+#include "ovimap/eval/geometry/nearest.h"
 #include "ovimap/map/surface/mesh_extraction.h"
 #include "ovimap/pipeline/revise/object_overlap.h"
 

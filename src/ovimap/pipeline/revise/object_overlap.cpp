@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "ovimap/eval/nearest.h"
+#include "ovimap/eval/geometry/nearest.h"
 
 namespace ovimap {
 
