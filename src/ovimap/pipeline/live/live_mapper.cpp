@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/pipeline/live/live_mapper.h"
 
-#include <ranges>
+#include <algorithm>
 #include <utility>
 
 #include "ovimap/base/config.h"
@@ -207,11 +207,10 @@ void LiveMapper::apply_masks(Prepared late) {
   if (!late.cut) return schedule_.went_without();
   begin("apply_masks");
   mapper_->label(*late.frame, *late.cut);
-  for (FrameLogEntry& entry : std::views::reverse(frames_))
-    if (entry.index == late.frame->frame->index) {
-      entry.labelled = true;
-      break;
-    }
+  const auto entry = std::find_if(frames_.rbegin(), frames_.rend(), [&](const FrameLogEntry& e) {
+    return e.index == late.frame->frame->index;
+  });
+  if (entry != frames_.rend()) entry->labelled = true;
   if (after_frame) after_frame(*mapper_, frames_, late.frame->frame->depth_camera);
   const std::lock_guard lock(mutex_);
   ++statistics_.mask_frames;
