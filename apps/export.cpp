@@ -10,6 +10,7 @@
 #include "ovimap/io/exports/instance_csv.h"
 #include "ovimap/io/exports/instance_json.h"
 #include "ovimap/io/exports/object_folder.h"
+#include "ovimap/io/map_file/map_edits.h"
 #include "ovimap/io/map_file/map_file.h"
 #include "ovimap/io/mesh/ply.h"
 #include "ovimap/io/pictures/palette.h"

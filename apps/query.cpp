@@ -7,6 +7,7 @@
 #include "ovimap/base/parallel.h"
 #include "ovimap/image/codec.h"
 #include "ovimap/instance/instance_mesh.h"
+#include "ovimap/io/map_file/map_edits.h"
 #include "ovimap/io/mesh/ply.h"
 #include "ovimap/io/pictures/pictures.h"
 #include "ovimap/pipeline/search/map_search.h"

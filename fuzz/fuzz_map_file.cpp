@@ -5,6 +5,7 @@
 #include "input_file.h"
 #include "ovimap/base/error.h"
 #include "ovimap/io/map_file/map_check.h"
+#include "ovimap/io/map_file/map_edits.h"
 #include "ovimap/io/map_file/map_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -15,6 +15,7 @@
 #include "ovimap/io/exports/glb.h"
 #include "ovimap/io/exports/instance_csv.h"
 #include "ovimap/io/exports/instance_json.h"
+#include "ovimap/io/map_file/map_edits.h"
 #include "ovimap/io/map_tables/map_file_record.h"
 #include "ovimap/io/mesh/map_mesh.h"
 #include "ovimap/io/mesh/ply.h"

@@ -5,6 +5,7 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 
 #include "ovimap/image/codec.h"
+#include "ovimap/io/map_file/map_edits.h"
 #include "ovimap/io/map_file/map_file_fixture.h"
 
 namespace ovimap {

@@ -8,6 +8,7 @@
 
 #include "ovimap/base/config.h"
 #include "ovimap/instance/instance_mesh.h"
+#include "ovimap/io/map_file/map_edits.h"
 #include "ovimap/io/truth/truth.h"
 #include "ovimap/pipeline/evaluation/truth_classes.h"
 #include "ovimap/pipeline/search/map_search.h"

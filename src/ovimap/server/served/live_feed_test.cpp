@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ovimap/io/map_file/map_edits.h"
 #include "ovimap/io/map_file/map_file_fixture.h"
 #include "ovimap/map/surface/mesh_extraction.h"
 #include "ovimap/pipeline/mapping/desk_fixture.h"

@@ -5,6 +5,7 @@
 #include "ovimap/base/thread_priority.h"
 #include "ovimap/io/corrections/map_corrections.h"
 #include "ovimap/io/corrections/map_edit_desk.h"
+#include "ovimap/io/map_file/map_edits.h"
 #include "ovimap/io/map_file/map_file.h"
 #include "ovimap/map/surface/mesh_extraction.h"
 #include "ovimap/semantics/query/query_text.h"
