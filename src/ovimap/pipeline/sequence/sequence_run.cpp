@@ -97,7 +97,7 @@ SequenceResult run_sequence(const FrameSource& source, const std::vector<std::in
 MapDocument make_document(Mapper&& mapper, const SequenceResult& sequence, MapHeader header) {
   SuperPointLooks looks = mapper.take_looks();
   MapDocument document{mapper.record(std::move(header), sequence.frames, sequence.depth_camera),
-                       {}};
+                       VoxelMap()};
   document.semantics.looks = std::move(looks);
   describe_map(mapper.map(), mapper.registry(), mapper.config().summary, document);
   document.timings = timings_text(mapper.timers().summary());
