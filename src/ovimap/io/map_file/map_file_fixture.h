@@ -97,7 +97,7 @@ inline MapDocument random_document(int block_count, std::uint32_t seed) {
   document.instance_config.merging.merge_min_count = 23;
   document.registry.super_points = {
       {1, {7, {{1, 3}, {2, 5}}, FrameRuns({{0, 2}, {5, 6}}), 0, 70}},
-      {4, {1, {}}},
+      {4, {1, {}, {}, 0, 0}},
       {20, {900, {{3, 800}}, FrameRuns({{3, 803}}), -5, std::int64_t{1} << 40}}};
   document.registry.frames = 900;
   document.registry.aliases = {{2, 1}};

@@ -6,9 +6,8 @@
 #include <zlib.h>
 
 #include "ovimap/io/map_file/map_edits.h"
-#include "ovimap/io/map_file/map_file_fixture.h"
 #include "ovimap/server/api/map_api.h"
-#include "ovimap/server/front/server_fixture.h"
+#include "ovimap/server/front/http_server_fixture.h"
 
 namespace ovimap {
 namespace {
@@ -28,49 +27,6 @@ std::string unpacked_gzip(const std::string& packed) {
   inflateEnd(&stream);
   return result;
 }
-
-class HttpServerTest : public MapFolder {
- protected:
-  HttpServerTest() {
-    MapDocument document = random_document(40, 3);
-    const LabelForest& forest = document.map.labels();
-    std::vector<Label>& own = document.instances[1].super_points;
-    for (Label label = 5; own.size() < 2; ++label)
-      if (forest.root(label) == label) own.push_back(label);
-    save_map(map_, document);
-  }
-
-  fixture::RunningServer& serve(ServerConfig config = {}) {
-    ServedMapConfig served;
-    served.encoder = "none";
-    running_ = std::make_unique<fixture::RunningServer>(map_, std::move(config), served);
-    return *running_;
-  }
-
-  json get(const std::string& path, int status = 200) {
-    const auto reply = running_->client().get(path);
-    EXPECT_TRUE(reply) << path;
-    if (!reply) return {};
-    EXPECT_EQ(reply->status, status) << path << reply->body;
-    return json::parse(reply->body, nullptr, false);
-  }
-
-  json post(const std::string& path, const std::string& body, int status,
-            const std::string& type = "application/json") {
-    const auto reply = running_->client().post(path, body, type);
-    EXPECT_TRUE(reply) << path;
-    if (!reply) return {};
-    EXPECT_EQ(reply->status, status) << body << reply->body;
-    const json parsed = json::parse(reply->body, nullptr, false);
-    if (status >= 400) {
-      EXPECT_FALSE(parsed.value("error", "").empty()) << reply->body;
-    }
-    return parsed;
-  }
-
-  const std::filesystem::path map_ = root_ / "room.ovimap";
-  std::unique_ptr<fixture::RunningServer> running_;
-};
 
 TEST_F(HttpServerTest, DescribesTheMap) {
   serve();
@@ -340,72 +296,6 @@ TEST_F(HttpServerTest, SavesTheTripAndBytes) {
   EXPECT_EQ(unpacked_gzip(gzip->body), plain->body);
   EXPECT_EQ(client.get("/api/openapi.json", {{"Range", "bytes=5-9"}})->status, 200);
   EXPECT_TRUE(client.head("/api/map")->body.empty());
-}
-
-TEST_F(HttpServerTest, KeepsOtherPagesOut) {
-  serve();
-  auto client = running_->client();
-  EXPECT_EQ(client.get("/api/map", {{"Host", "rebound.example"}})->status, 403);
-  EXPECT_EQ(client.get("/api/map", {{"Origin", "http://evil.example"}})->status, 403);
-  const auto reply = client.get("/api/map");
-  EXPECT_EQ(reply->field("access-control-allow-origin"), "");
-  EXPECT_NE(reply->field("content-security-policy").find("script-src 'self'"),
-            std::string::npos);
-}
-
-TEST_F(HttpServerTest, DemandsTheToken) {
-  ServerConfig config;
-  config.token = "secret";
-  serve(config);
-  auto client = running_->client();
-  EXPECT_EQ(client.get("/api/map")->status, 401);
-  EXPECT_EQ(client.get("/")->status, 401);
-  const auto opened = client.get("/?token=secret");
-  EXPECT_EQ(opened->status, 303);
-  EXPECT_EQ(client.get("/api/map", {{"Cookie", "ovimap_token=secret"}})->status, 200);
-  EXPECT_EQ(client.get("/api/map", {{"Authorization", "Bearer secret"}})->status, 200);
-  EXPECT_NE(running_->server().address().find("?token=secret"), std::string::npos);
-  config.token = "a b&c=%41;d";
-  serve(config);
-  const std::string address = running_->server().address();
-  const auto opened_again = running_->client().get(address.substr(address.find("/?")));
-  const std::string cookie = opened_again->field("set-cookie");
-  const std::string pair = cookie.substr(0, cookie.find(';'));
-  EXPECT_EQ(running_->client().get("/api/map", {{"Cookie", pair}})->status, 200);
-}
-
-TEST_F(HttpServerTest, DoesNotOpenUpWithoutToken) {
-  ServedMapConfig served;
-  served.encoder = "none";
-  ServedMap map(map_, served);
-  ServerConfig config;
-  config.host = "0.0.0.0";
-  config.port = 0;
-  EXPECT_NE(fault_of([&] { HttpServer(map, config); }).find("token"), std::string::npos);
-  config.token = "secret";
-  EXPECT_GT(HttpServer(map, config).port(), 0);
-}
-
-TEST_F(HttpServerTest, SaysWhenThePortIsTaken) {
-  serve();
-  ServedMapConfig served;
-  served.encoder = "none";
-  ServedMap map(map_, served);
-  ServerConfig config;
-  config.port = running_->port();
-  const std::string fault = fault_of([&] { HttpServer(map, config); });
-  EXPECT_NE(fault.find(std::to_string(config.port)), std::string::npos);
-  EXPECT_NE(fault.find("--port 0"), std::string::npos);
-}
-
-TEST_F(HttpServerTest, LimitsHowOftenOneAsks) {
-  ServerConfig config;
-  config.work_burst = 3;
-  config.work_per_second = 0.001;
-  serve(config);
-  for (int i = 0; i < 3; ++i) post("/api/query", "{}", 400);
-  post("/api/query", "{}", 429);
-  get("/api/map");
 }
 
 }  // namespace
