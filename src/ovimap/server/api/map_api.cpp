@@ -181,6 +181,9 @@ Router map_api(ServedMap& map, FrameApi& frames) {
   const auto get = [&](const char* pattern, HttpHandler handler) {
     add("GET", pattern, BodyType::kNone, RouteCost::kLittle, std::move(handler));
   };
+  const auto get_large = [&](const char* pattern, HttpHandler handler) {
+    add("GET", pattern, BodyType::kNone, RouteCost::kLarge, std::move(handler));
+  };
   const auto work = [&](const char* pattern, HttpHandler handler) {
     add("POST", pattern, BodyType::kJson, RouteCost::kWork, std::move(handler));
   };
@@ -190,9 +193,10 @@ Router map_api(ServedMap& map, FrameApi& frames) {
   get("/api/map", [&map](Request) { return json_reply(map_json(map)); });
   get("/api/instances", [&map](Request) { return json_reply(instances_json(map)); });
   get("/api/instances/{id}", [&map](Request r) { return show_instance(map, r); });
-  get("/api/instances/{id}/crops/{ordinal}", [&map](Request r) { return show_crop(map, r); });
+  get_large("/api/instances/{id}/crops/{ordinal}",
+            [&map](Request r) { return show_crop(map, r); });
   get("/api/mesh", [&map](Request r) { return list_chunks(map, r); });
-  get("/api/mesh/{level}/{x}/{y}/{z}", [&map](Request r) { return show_chunk(map, r); });
+  get_large("/api/mesh/{level}/{x}/{y}/{z}", [&map](Request r) { return show_chunk(map, r); });
   get("/api/cameras", [&map](Request) { return json_reply(cameras_json(map)); });
   get("/api/events", [&map](Request r) { return event_stream(map.events(), r); });
   get("/api/labels", [&map](Request) { return json_reply(labels_json(map)); });

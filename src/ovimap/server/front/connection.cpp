@@ -150,7 +150,7 @@ void Connection::more_body(std::size_t bytes) {
 void Connection::work() {
   enter(State::kWorking);
   wire_->clear_deadline();
-  const bool begun = host_.work(decision_.cost, [self = shared_from_this()] {
+  const bool begun = host_.work(decision_.cost, client_, [self = shared_from_this()] {
     HttpReply reply;
     try {
       reply = self->host_.desk().answer(self->request_);

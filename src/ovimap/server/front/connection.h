@@ -28,8 +28,8 @@ class ConnectionHost {
   virtual ~ConnectionHost() = default;
   virtual const ConnectionConfig& connection_config() const = 0;
   virtual RequestDesk& desk() = 0;
-  /// Has a worker call `job`; false when too many wait.
-  virtual bool work(RouteCost cost, std::function<void()> job) = 0;
+  /// Has a worker call `job`, for that client; false when too many wait.
+  virtual bool work(RouteCost cost, const std::string& client, std::function<void()> job) = 0;
   /// Has the loop's thread call `job`. From any thread.
   virtual void post(std::function<void()> job) = 0;
   virtual void closed(Connection& connection) = 0;
@@ -40,7 +40,7 @@ class ConnectionHost {
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
   using Clock = std::chrono::steady_clock;
-  /// In the order in which connections are given up for new ones; none from kWorking on.
+  /// From kWorking on a connection is not given up for a new one.
   enum class State { kIdle, kHead, kBody, kWriting, kWorking, kStreaming, kClosed };
 
   Connection(std::unique_ptr<Wire> wire, ConnectionHost& host);

@@ -10,9 +10,10 @@ namespace ovimap {
 
 namespace {
 
-// Threads for each cost. What costs little must not stand behind what costs much; frames are
-// decoded one at a time; a query may have to wait for its encoder, a correction not for queries.
-constexpr int kLittleThreads = 2, kWorkThreads = 4, kFrameThreads = 1;
+// Threads for each cost. What costs little must not stand behind what costs more, be it a piece of
+// surface that is packed; frames are decoded one at a time; a query may have to wait for its
+// encoder, a correction not for queries.
+constexpr int kLittleThreads = 2, kLargeThreads = 2, kWorkThreads = 4, kFrameThreads = 1;
 constexpr std::size_t kMostWaiting = 64;  // requests, for work and frames each
 
 ConnectionConfig connection_config_of(const ServerConfig& config) {
@@ -44,16 +45,23 @@ struct HttpServer::Parts : ConnectionHost {
               static_cast<std::size_t>(given.max_connections_of_one)),
         // Each connection asks for one thing at a time.
         little(kLittleThreads, static_cast<std::size_t>(given.max_connections)),
+        large(kLargeThreads, static_cast<std::size_t>(given.max_connections)),
         much(kWorkThreads, kMostWaiting),
         frames(kFrameThreads, kMostWaiting) {}
 
   const ConnectionConfig& connection_config() const override { return connection; }
   RequestDesk& desk() override { return requests; }
-  bool work(RouteCost cost, std::function<void()> job) override {
-    WorkerPool& pool = cost == RouteCost::kLittle ? little
-                       : cost == RouteCost::kWork ? much
-                                                  : frames;
-    return pool.offer([job = std::move(job), stay = loop.stay()] { job(); });
+  bool work(RouteCost cost, const std::string& client, std::function<void()> job) override {
+    return pool_of(cost).offer(client, [job = std::move(job), stay = loop.stay()] { job(); });
+  }
+  WorkerPool& pool_of(RouteCost cost) {
+    switch (cost) {
+      case RouteCost::kLittle: return little;
+      case RouteCost::kLarge: return large;
+      case RouteCost::kWork: return much;
+      case RouteCost::kFrame: break;
+    }
+    return frames;
   }
   void post(std::function<void()> job) override { loop.post(std::move(job)); }
   void closed(Connection& gone) override { table.remove(gone); }
@@ -73,7 +81,7 @@ struct HttpServer::Parts : ConnectionHost {
   RequestDesk requests;
   IoLoop loop;
   ConnectionTable table;
-  WorkerPool little, much, frames;
+  WorkerPool little, large, much, frames;
 };
 
 HttpServer::HttpServer(ServedMap& map, const ServerConfig& config, FrameIntake* intake)

@@ -64,7 +64,7 @@ using HttpHandler = std::function<HttpReply(const HttpRequest&)>;
 enum class BodyType { kNone, kJson, kFrame };
 
 /// What a route costs: who works on it, and how often one may ask.
-enum class RouteCost { kLittle, kWork, kFrame };
+enum class RouteCost { kLittle, kLarge, kWork, kFrame };
 
 struct Route {
   std::string method, pattern;  ///< pattern: a path in which {...} stands for one segment

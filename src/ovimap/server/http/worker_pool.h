@@ -5,13 +5,16 @@
 #include <condition_variable>
 #include <deque>
 #include <functional>
+#include <map>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
 
 namespace ovimap {
 
-/// A few threads that do what must not hold up the sockets. Thread-safe.
+/// A few threads that do what must not hold up the sockets. Clients take turns, a job a turn, so that
+/// nobody waits for more than one job of each other client. Thread-safe.
 class WorkerPool {
  public:
   WorkerPool(int threads, std::size_t most_waiting);
@@ -21,15 +24,20 @@ class WorkerPool {
   WorkerPool& operator=(const WorkerPool&) = delete;
 
   /// False, and nothing happens, when too many jobs wait. A job must not throw.
-  bool offer(std::function<void()> job);
+  bool offer(const std::string& client, std::function<void()> job);
 
  private:
+  using Job = std::function<void()>;
+
   void work();
+  Job take_next();
 
   const std::size_t most_waiting_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<std::function<void()>> jobs_;
+  std::map<std::string, std::deque<Job>> jobs_of_;  ///< of the clients that have any
+  std::deque<std::string> turns_;                   ///< these clients, the next one first
+  std::size_t waiting_ = 0;                         ///< jobs of all
   bool ending_ = false;
   std::vector<std::thread> threads_;
 };

@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <future>
+#include <string>
 
 namespace ovimap {
 namespace {
@@ -15,18 +16,35 @@ TEST(WorkerPoolTest, RefusesWhatWouldWaitTooLong) {
   std::atomic<int> done = 0;
   {
     WorkerPool pool(1, 2);
-    EXPECT_TRUE(pool.offer([&] {
+    EXPECT_TRUE(pool.offer("a", [&] {
       begun.set_value();
       go.get_future().wait();
       ++done;
     }));
     begun.get_future().wait();
-    for (int i = 0; i < 2; ++i) EXPECT_TRUE(pool.offer([&] { ++done; }));
-    EXPECT_FALSE(pool.offer([&] { ++done; }));
+    for (int i = 0; i < 2; ++i) EXPECT_TRUE(pool.offer("a", [&] { ++done; }));
+    EXPECT_FALSE(pool.offer("b", [&] { ++done; }));
     go.set_value();
     while (done < 3) std::this_thread::yield();
   }
   EXPECT_EQ(done, 3);
+}
+
+TEST(WorkerPoolTest, ClientsTakeTurns) {
+  std::promise<void> begun, go, all;
+  std::string order;
+  WorkerPool pool(1, 10);
+  EXPECT_TRUE(pool.offer("busy", [&] {
+    begun.set_value();
+    go.get_future().wait();
+  }));
+  begun.get_future().wait();
+  for (int i = 0; i < 4; ++i) EXPECT_TRUE(pool.offer("busy", [&] { order += 'b'; }));
+  EXPECT_TRUE(pool.offer("other", [&] { order += 'o'; }));
+  EXPECT_TRUE(pool.offer("busy", [&] { all.set_value(); }));
+  go.set_value();
+  all.get_future().wait();
+  EXPECT_EQ(order, "bobbb");
 }
 
 }  // namespace
