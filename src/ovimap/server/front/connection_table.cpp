@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/server/front/connection_table.h"
 
-#include <tuple>
+#include <utility>
 #include <vector>
 
 namespace ovimap {
@@ -12,10 +12,9 @@ bool ConnectionTable::add(std::shared_ptr<Connection> connection) {
   const auto own = of_client_.find(client);
   if (own != of_client_.end() && own->second >= of_one_ && !give_up_one(&client)) return false;
   if (connections_.size() >= all_ && !give_up_one(nullptr)) return false;
-  std::size_t& count = of_client_[client];
-  ++count;
+  ++of_client_[client];
   const Connection* key = connection.get();
-  connections_.emplace(key, Entry{std::move(connection), &count});
+  connections_.emplace(key, std::move(connection));
   return true;
 }
 
@@ -26,24 +25,24 @@ void ConnectionTable::remove(const Connection& connection) {
 
 void ConnectionTable::end_all() {
   std::vector<std::shared_ptr<Connection>> all;
-  for (const auto& [key, entry] : connections_) all.push_back(entry.connection);
+  for (const auto& [key, connection] : connections_) all.push_back(connection);
   for (const auto& connection : all) connection->end();
 }
 
 bool ConnectionTable::give_up_one(const std::string* client) {
-  // The one that does the least; of these one of the client that has the most; of these the oldest.
-  const auto order = [this](const Entry& entry) {
-    const Connection& connection = *entry.connection;
-    return std::tuple(connection.state(), all_ - *entry.of_its_client, connection.since());
+  // One that asks for nothing, which its client takes for usual; else the one whose client has kept
+  // us waiting the longest: who has just come is served before who does not read.
+  const auto order = [](const Connection& connection) {
+    return std::pair(connection.state() != Connection::State::kIdle, connection.since());
   };
-  const Entry* least = nullptr;
-  for (const auto& [key, entry] : connections_) {
-    if (client && entry.connection->client() != *client) continue;
-    if (!least || order(entry) < order(*least)) least = &entry;
+  std::shared_ptr<Connection> least;
+  for (const auto& [key, connection] : connections_) {
+    if (connection->state() >= Connection::State::kWorking) continue;
+    if (client && connection->client() != *client) continue;
+    if (!least || order(*connection) < order(*least)) least = connection;
   }
-  if (!least || least->connection->state() >= Connection::State::kWorking) return false;
-  const auto given_up = least->connection;  // close() takes the entry away
-  given_up->close();
+  if (!least) return false;
+  least->close();
   return true;
 }
 

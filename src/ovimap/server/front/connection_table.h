@@ -11,7 +11,7 @@
 namespace ovimap {
 
 /// The open connections: so many in all, so many of one client. Where there is no place the one
-/// goes that does the least, so that nobody can keep others out by being slow.
+/// goes that keeps us waiting, so that nobody can keep others out by being slow.
 class ConnectionTable {
  public:
   ConnectionTable(std::size_t all, std::size_t of_one) : all_(all), of_one_(of_one) {}
@@ -26,11 +26,7 @@ class ConnectionTable {
   bool give_up_one(const std::string* client);
 
   const std::size_t all_, of_one_;
-  struct Entry {
-    std::shared_ptr<Connection> connection;
-    std::size_t* of_its_client;  ///< in of_client_
-  };
-  std::unordered_map<const Connection*, Entry> connections_;
+  std::unordered_map<const Connection*, std::shared_ptr<Connection>> connections_;
   std::unordered_map<std::string, std::size_t> of_client_;
 };
 
