@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
 # Headers that nearly every file reads, parsed once: a third of the time of a cold build.
-# Sources still include what they use; the presets dev, asan and tsan build without this and would show a lapse.
+# Sources still include what they use; the preset dev builds without this and would show a lapse.
 option(OVIMAP_PCH "Precompile the headers of the standard library, Eigen and GoogleTest" ON)
 
 set(OVIMAP_COMMON_HEADERS <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map> <memory> <optional> <set>
