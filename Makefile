@@ -1,18 +1,19 @@
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
-# The whole project from one place. `make demo` and `make test` set up what is missing first.
+# The whole project from one place. Each target sets up what is missing first: `make demo` what the program needs,
+# `make test` what tests, benchmarks and the Python package need as well. Both build into one folder.
 BUILD := build/release
 OVIMAP := $(BUILD)/bin/ovimap
 JOBS ?= $(shell nproc)
 SOURCE ?= demo/tiny/room
 
-.PHONY: help setup build demo demo-lasting test test-setup asan tsan fuzz bench rivals benchmarks viewer-speed live-speed wheel clean
+.PHONY: help setup build build-all demo demo-lasting test test-setup asan tsan fuzz bench rivals benchmarks viewer-speed live-speed wheel clean
 
 help:
 	@echo "make demo    set up, build, render a room, map it, show the objects; VIEW=1: then in a browser"
 	@echo "make demo-lasting [SOURCE=..]  map half of it, kill that, resume, compare and merge with the other half, export"
-	@echo "make test    set up, build, run every test"
-	@echo "make build   build the program: $(OVIMAP)"
+	@echo "make test    set up and build the rest, run every test"
+	@echo "make build   build the program and its web page: $(OVIMAP); make build-all: all there is"
 	@echo "make bench   measure speed and memory on SOURCE (default: the demo room), beside their targets"
 	@echo "make rivals  install Open3D (1.3 GB) into build/rivals, for make bench to compare with"
 	@echo "make benchmarks KITCHEN=FOLDER [ONLY='tiny rooms']   write docs/benchmarks.md, or these parts of it"
@@ -25,10 +26,20 @@ help:
 setup:
 	@tools/setup.sh
 
+# What was once built in whole stays so: a configuration without tests would only be undone by the next `make test`.
+PRESET = $(if $(wildcard $(BUILD)/tests/CTestTestfile.cmake),release,program)
+
 build: setup
-	@cmake --preset release > build-configure.log 2>&1 || { cat build-configure.log; exit 1; }
-	@rm -f build-configure.log
-	@cmake --build --preset release -j $(JOBS)
+	@$(call build-preset,$(PRESET))
+
+build-all: test-setup
+	@$(call build-preset,release)
+
+define build-preset
+cmake --preset $(1) > build-configure.log 2>&1 || { cat build-configure.log; exit 1; }; \
+rm -f build-configure.log; \
+cmake --build --preset $(1) -j $(JOBS)
+endef
 
 demo: build
 	@VIEW=$(VIEW) tools/demo.sh $(OVIMAP)
@@ -37,7 +48,7 @@ demo-lasting: build
 	@test -d "$(SOURCE)" || $(OVIMAP) synth demo/tiny --room tiny
 	@tools/demo_lasting.sh $(OVIMAP) "$(SOURCE)" demo/lasting --masks none --encoder none
 
-test: build test-setup
+test: build-all
 	@tools/run_tests.sh $(BUILD)
 
 test-setup:
@@ -55,7 +66,7 @@ fuzz:
 	@cmake --build --preset fuzz -j $(JOBS)
 	@tools/fuzz.sh build/fuzz $(FUZZ_SECONDS) $(JOBS)
 
-bench: build
+bench: build-all
 	@test -d "$(SOURCE)" || $(OVIMAP) synth demo/tiny --room tiny
 	@python3 tools/speed.py $(OVIMAP) "$(SOURCE)"
 	@$(BUILD)/bin/ovimap_micro_bench --benchmark_min_time=0.2
@@ -66,14 +77,14 @@ rivals:
 benchmarks: build
 	@python3 tools/benchmarks.py $(OVIMAP) $(if $(KITCHEN),--kitchen "$(KITCHEN)") $(if $(ONLY),--only $(ONLY))
 
-wheel: setup
+wheel: test-setup
 	@tools/wheel_test.sh $(if $(SOURCE),"$(SOURCE)")
 
-viewer-speed: build
+viewer-speed: build test-setup
 	@test -f "$(MAP)" || { echo "name a map: make viewer-speed MAP=room.ovimap"; exit 1; }
 	@cd viewer && node e2e/speed.mjs "$(abspath $(OVIMAP))" "$(abspath $(MAP))"
 
-live-speed: build
+live-speed: build test-setup
 	@test -d "$(SOURCE)" || $(OVIMAP) synth demo/tiny --room tiny
 	@cd viewer && node e2e/live-speed.mjs "$(abspath $(OVIMAP))" "$(abspath $(SOURCE))"
 

@@ -1,16 +1,29 @@
 #!/usr/bin/env bash
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
-# Runs every test of a build folder and closes with "N passed, N failed, N skipped".
+# Runs every test of a build folder, says how far it is now and then, and closes with "N passed, N failed, N skipped".
 # Usage: tools/run_tests.sh BUILD_FOLDER [ctest options]
 set -u
 build=$1
 shift
 report="$build/test-report.xml"
-ctest --test-dir "$build" -j "$(nproc)" --output-on-failure --output-junit "$(realpath "$build")/test-report.xml" "$@" > "$build/test-output.log" 2>&1
-status=$?
+log="$build/test-output.log"
+rm -f "$report"  # one of an earlier run would be counted
+
+# Of ctest's lines: each failure as it happens, and every 100th test.
+show_progress() {
+  awk '/^ *[0-9]+\/[0-9]+ Test +#/ {
+         split($1, of, "/")
+         if (/\*\*\*(Failed|Timeout|Exception)/) print "tests: " $1 " " $4 " failed"
+         else if (of[1] % 100 == 0) print "tests: " $1
+         fflush()
+       }'
+}
+
+ctest --test-dir "$build" -j "$(nproc)" --output-on-failure --output-junit "$(realpath "$build")/test-report.xml" "$@" 2>&1 | tee "$log" | show_progress
+status=${PIPESTATUS[0]}
 if [ ! -s "$report" ]; then
-  cat "$build/test-output.log"
+  cat "$log"
   echo "0 passed, 1 failed"
   exit 1
 fi

@@ -1,11 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
-# Sets up what a build of ovimap needs and does not find: Debian packages, .venv, ONNX Runtime in
-# .deps, the glTF validator of the tests there, the packages of the viewer, the default mask model and the default image-text
-# encoder in .models. Does nothing for what is there already.
+# Sets up what the program needs and does not find: Debian packages, .venv, ONNX Runtime in .deps, the packages of the
+# viewer, the default mask model and the default image-text encoder in .models. Does nothing for what is there already.
 # Usage: tools/setup.sh [--no-models] [--tests] [--fuzz]
-#   --no-models: without them; --tests: also what the tests need beside a build; --fuzz: also clang with libFuzzer
+#   --no-models: without them; --tests: also what tests, benchmarks and the Python package need; --fuzz: also clang with libFuzzer
 set -euo pipefail
 
 ROOT="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
@@ -296,7 +295,7 @@ TESTS=no
 for argument in "$@"; do
   case "$argument" in
     --no-models) MODELS=no ;;
-    --tests) TESTS=yes ;;
+    --tests) TESTS=yes; PACKAGE_LISTS+=("$TOOLS/debian-packages-tests.txt") ;;
     --fuzz) PACKAGE_LISTS+=("$TOOLS/debian-packages-fuzz.txt") ;;
     *) fail "unknown argument '$argument'; accepted are --no-models, --tests and --fuzz" ;;
   esac
@@ -304,7 +303,7 @@ done
 set_up_packages
 set_up_venv
 set_up_runtime
-set_up_validator
+[ "$TESTS" = no ] || set_up_validator
 set_up_viewer
 if [ "$MODELS" = yes ]; then
   set_up_model
