@@ -7,7 +7,7 @@ OVIMAP := $(BUILD)/bin/ovimap
 JOBS ?= $(shell nproc)
 SOURCE ?= demo/tiny/room
 
-.PHONY: help setup build build-all demo demo-lasting test test-setup asan tsan fuzz bench rivals benchmarks viewer-speed live-speed wheel clean
+.PHONY: site help setup build build-all demo demo-lasting test test-setup asan tsan fuzz bench rivals benchmarks viewer-speed live-speed wheel clean
 
 help:
 	@echo "make demo    set up, build, render a room, map it, show the objects; VIEW=1: then in a browser"
@@ -19,6 +19,7 @@ help:
 	@echo "make benchmarks KITCHEN=FOLDER [ONLY='tiny rooms']   write docs/benchmarks.md, or these parts of it"
 	@echo "make fuzz    feed the readers with odd bytes, FUZZ_SECONDS (60) each; installs clang"
 	@echo "make live-speed SOURCE=RECORDING   what serving a map costs while it is made"
+	@echo "make site    the documentation as pages, its links checked"
 	@echo "make wheel   build a Python wheel that carries its libraries, and try it in a clean environment"
 	@echo "make viewer-speed MAP=FILE   when the viewer shows its first picture, and how fast it answers"
 	@echo "make asan    run the tests under AddressSanitizer and UBSan;  make tsan: ThreadSanitizer"
@@ -87,6 +88,13 @@ viewer-speed: build test-setup
 live-speed: build test-setup
 	@test -d "$(SOURCE)" || $(OVIMAP) synth demo/tiny --room tiny
 	@cd viewer && node e2e/live-speed.mjs "$(abspath $(OVIMAP))" "$(abspath $(SOURCE))"
+
+# The documentation as pages; the packages it is made with are not those of the build.
+site: build/site-env/.complete
+	@NO_MKDOCS_2_WARNING=1 build/site-env/bin/mkdocs build --strict -q && echo "open build/site/index.html"
+
+build/site-env/.complete: tools/requirements-site.txt
+	@python3 -m venv build/site-env && build/site-env/bin/pip install -q --disable-pip-version-check -r $< && touch $@
 
 clean:
 	rm -rf build demo
