@@ -10,7 +10,7 @@ SOURCE ?= demo/tiny/room
 .PHONY: site help setup build build-all demo demo-lasting test test-setup asan tsan fuzz bench rivals benchmarks viewer-speed live-speed wheel clean
 
 help:
-	@echo "make demo    set up, build, render a room, map it, show the objects; VIEW=1: then in a browser"
+	@echo "make demo    set up, build, show what ovimap does (ovimap demo); VIEW=1: then in a browser"
 	@echo "make demo-lasting [SOURCE=..]  map half of it, kill that, resume, compare and merge with the other half, export"
 	@echo "make test    set up and build the rest, run every test"
 	@echo "make build   build the program and its web page: $(OVIMAP); make build-all: all there is"
@@ -43,7 +43,7 @@ cmake --build --preset $(1) -j $(JOBS)
 endef
 
 demo: build
-	@VIEW=$(VIEW) tools/demo.sh $(OVIMAP)
+	@$(OVIMAP) demo $(if $(filter 1,$(VIEW)),--view)
 
 demo-lasting: build
 	@test -d "$(SOURCE)" || $(OVIMAP) synth demo/tiny --room tiny

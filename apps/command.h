@@ -47,6 +47,8 @@ Action add_ablate(CLI::App& command);
 Action add_reproduce(CLI::App& command);
 Action add_serve(CLI::App& command);
 Action add_config(CLI::App& command);
+Action add_demo(CLI::App& command);
+Action add_manual(CLI::App& command);
 
 /// Options that several commands share.
 struct MappingOptions {

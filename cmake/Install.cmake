@@ -12,6 +12,10 @@ cmake_path(IS_PREFIX PROJECT_SOURCE_DIR "${onnxruntime_file}" NORMALIZE onnxrunt
 if(onnxruntime_is_ours)
   install(FILES "${onnxruntime_file}" DESTINATION ${CMAKE_INSTALL_LIBDIR} RENAME libonnxruntime.so.1)
 endif()
+if(TARGET ovimap)
+  install(CODE "execute_process(COMMAND \"$<TARGET_FILE:ovimap>\" manual
+    \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}\" COMMAND_ERROR_IS_FATAL ANY)")
+endif()
 install(EXPORT ovimapTargets NAMESPACE ovimap:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/ovimap)
 configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/ovimapConfig.cmake.in"
   "${PROJECT_BINARY_DIR}/ovimapConfig.cmake" INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/ovimap)
