@@ -23,7 +23,7 @@ struct CommandEntry {
 
 constexpr CommandEntry kCommands[] = {
     {"run", "map a recording: SOURCE in, MAP out",
-     "run demo/tiny/room --masks sam -o room.ovimap", add_run},
+     "run demo/tiny/room -o room.ovimap", add_run},
     {"check", "look for what commonly is wrong with a recording",
      "check demo/tiny/room", add_check},
     {"calibrate", "find where the colour camera is, from edges of depth and colour",
@@ -45,7 +45,7 @@ constexpr CommandEntry kCommands[] = {
     {"eval", "score maps against the truth",
      "eval demo/tiny.ovimap --gt demo/tiny/room", add_eval},
     {"ablate", "vary one choice and score the maps, beside published figures",
-     "ablate fusion demo/tiny/room --masks gt -o tables", add_ablate},
+     "ablate fusion demo/tiny/room --masks gt --frames ::4 -o tables", add_ablate},
     {"reproduce", "make the paper's tables from your own copy of its data",
      nullptr, add_reproduce},
     {"bench", "measure speed and memory on a recording",
