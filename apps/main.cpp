@@ -43,7 +43,7 @@ constexpr Entry kCommands[] = {
     {"report", "write a map as one HTML page: pictures, objects, timings", add_report},
     {"masks", "write the 2D entities of frames, or score them against the truth", add_masks},
     {"serve", "show a map in a browser, and to programs over HTTP", add_serve},
-    {"models", "list, verify and find networks", add_models},
+    {"models", "list, fetch, verify and find networks", add_models},
     {"config", "list every setting with its default", add_config},
 };
 

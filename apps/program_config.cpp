@@ -20,8 +20,8 @@ void add_mapping_settings(CLI::App& command, MappingOptions& options) {
       ->capture_default_str();
   command
       .add_option("--encoder", options.encoder,
-                  "what makes objects searchable: none, default, a model, or auto (default where "
-                  "there are 2D masks)")
+                  "what makes objects searchable: none, default, a model, or auto (where there are 2D "
+                  "masks the best that is installed)")
       ->capture_default_str();
   command
       .add_option("--preset", options.preset,
@@ -102,7 +102,9 @@ int network_threads(const ProgramConfig& config, const MappingOptions& options) 
 std::shared_ptr<ImageTextEncoder> make_encoder(const MappingOptions& options,
                                                const ProgramConfig& config) {
   const bool masks = options.masks != "none";
-  const std::string spec = options.encoder != "auto" ? options.encoder : masks ? "default" : "none";
+  const std::string spec = options.encoder != "auto" ? options.encoder
+                           : masks                   ? preferred_encoder(options.model_dirs)
+                                                     : "none";
   RuntimeConfig runtime = config.encoder;
   if (runtime.threads == 0) runtime.threads = options.threads;
   return make_image_text_encoder(spec, runtime, options.model_dirs, EncoderUse::kImages);

@@ -4,6 +4,9 @@
 
 #include <cstdio>
 
+#include "ovimap/hub/catalogue/catalogue.h"
+#include "ovimap/inference/models/model_folder.h"
+
 namespace ovimap::apps {
 
 namespace {
@@ -132,6 +135,18 @@ void advise_on_objects(const MappingRun& run) {
                "ovimap: no object was seen often enough to be kept; map more frames, or --set %s=1 "
                "where masks are slow\n",
                run.live ? "live.masks.min_gap" : "mask_interval");
+}
+
+void advise_on_encoder(const MappingRun& run,
+                       const std::vector<std::filesystem::path>& model_dirs) {
+  const std::string& used = run.document.semantics.encoder.name;
+  for (const ModelListing& model : list_models(model_search_path(model_dirs)))
+    if (!used.empty() && model.name == kDefaultEncoder && model.fault.empty() &&
+        read_model_folder(model.folder).name == used)
+      std::fprintf(stderr,
+                   "ovimap: words go by the small default encoder; a better one: ovimap models "
+                   "fetch %s\n",
+                   kFirstEncoder);
 }
 
 }  // namespace ovimap::apps
