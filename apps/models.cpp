@@ -116,6 +116,23 @@ void add_fetch(CLI::App& command, FetchOptions& options, std::function<void()> c
   fetch_command->callback(std::move(chosen));
 }
 
+void add_try(CLI::App& command, const std::shared_ptr<FetchOptions>& shared,
+             const std::shared_ptr<Action>& action) {
+  auto options = std::make_shared<TryOptions>();
+  CLI::App* try_command =
+      command.add_subcommand("try", "how near a picture is to texts")->fallthrough();
+  try_command->add_option("MODEL", options->model, "an encoder")->required();
+  try_command->add_option("PICTURE", options->picture, "PNG or JPEG")->required();
+  try_command->add_option("TEXT", options->texts, "texts, as they are")->required();
+  try_command->callback([=] {
+    *action = [=] {
+      options->model_dirs = shared->model_dirs;
+      options->json = shared->json;
+      return try_model(*options);
+    };
+  });
+}
+
 }  // namespace
 
 Action add_models(CLI::App& command) {
@@ -131,6 +148,7 @@ Action add_models(CLI::App& command) {
     *action = [=] { return list(*options); };
   });
   add_fetch(command, *options, [=] { *action = [=] { return fetch(*options); }; });
+  add_try(command, options, action);
   command.add_subcommand("hub", "whether the model hub answers")->fallthrough()->callback([=] {
     *action = [=] { return hub_answers(*options); };
   });

@@ -24,6 +24,17 @@ int fetch(const FetchOptions& options);
 /// `ovimap models hub`: whether there is one to fetch from.
 int hub_answers(const FetchOptions& options);
 
+struct TryOptions {
+  std::string model;
+  std::filesystem::path picture;
+  std::vector<std::string> texts;  ///< as they are, without the model's template
+  std::vector<std::filesystem::path> model_dirs;
+  bool json = false;
+};
+
+/// `ovimap models try`: how near a picture is to texts.
+int try_model(const TryOptions& options);
+
 /// The line that says how to get `entry`.
 std::string fetch_line(const CatalogueEntry& entry);
 

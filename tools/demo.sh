@@ -28,4 +28,6 @@ Go on     $ovimap run YOUR_RECORDING -o my.ovimap        depth alone, real time
           $ovimap run YOUR_RECORDING --masks sam -o my.ovimap --pictures pictures
           $ovimap check YOUR_RECORDING                   what is wrong with a recording
 EOT
+better="$("$ovimap" models hub --set hub.connect_timeout_s=3 --set hub.stall_timeout_s=3 2>/dev/null)" &&
+  echo "Better    ${better#*better words: }"
 [ "${VIEW:-0}" != 1 ] || exec "$ovimap" serve demo/tiny.ovimap

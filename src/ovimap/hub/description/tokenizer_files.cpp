@@ -123,8 +123,9 @@ void check_unigram(const fs::path& folder, const Backend& backend) {
   if (!pieces.Load(file.string()).ok()) fault(file, "it is no SentencePiece model");
   const Json& vocabulary = backend.model().at("vocab");
   for (int id = 0; id < pieces.GetPieceSize(); ++id)
-    if (static_cast<std::size_t>(id) >= vocabulary.size() ||
-        vocabulary[static_cast<std::size_t>(id)].at(0) != pieces.IdToPiece(id))
+    if (!pieces.IsControl(id) && !pieces.IsUnknown(id) &&
+        (static_cast<std::size_t>(id) >= vocabulary.size() ||
+         vocabulary[static_cast<std::size_t>(id)].at(0) != pieces.IdToPiece(id)))
       fault(file, concat("its piece ", id, " is '", pieces.IdToPiece(id),
                          "', while tokenizer.json has another"));
 }
