@@ -3,6 +3,7 @@
 #include "models_fetch.h"
 
 #include <cstdio>
+#include <utility>
 
 #include "ovimap/base/config.h"
 #include "ovimap/hub/model_fetch.h"
@@ -86,9 +87,11 @@ int fetch(const FetchOptions& options) {
   {
     Progress progress("fetching " + name + ", MB:");
     const std::uint64_t total = bytes_of(target);
+    std::uint64_t shown = total;
     fetched = fetch_model(hub, target, fetch_place(options.model_dirs), name,
                           [&](std::uint64_t bytes, const std::string& file) {
-                            progress.show(bytes / kBytesPerMb, total / kBytesPerMb, file);
+                            if (bytes / kBytesPerMb != std::exchange(shown, bytes / kBytesPerMb))
+                              progress.show(bytes / kBytesPerMb, total / kBytesPerMb, file);
                             return !interrupted();
                           });
   }

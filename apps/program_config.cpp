@@ -33,6 +33,13 @@ void add_mapping_settings(CLI::App& command, MappingOptions& options) {
                   "random or all; not given: as the preset has them");
   command.add_option("--config", options.config_file, "YAML file of settings");
   one_value(command.add_option("--set", options.settings, "one setting, a.b=c; may be repeated"));
+  command.add_option_function<std::string>(
+      "--device",
+      [&options](const std::string& device) {
+        for (const char* networks : {"masks", "encoder"})
+          options.settings.push_back(concat(networks, ".runtime.execution_provider=", device));
+      },
+      "what runs the networks: cpu, or cuda and others where ONNX Runtime was built with them");
   add_model_dirs(command, options.model_dirs);
   add_frame_range(command, options.frames);
   command.add_option("--threads", options.threads, "threads to use; 0: all cores")

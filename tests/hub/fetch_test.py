@@ -362,6 +362,10 @@ class Refusals(Fetches):
         files["../outside"] = b"x"
         self.assertIn("leaves the folder", self.refusal("tiny-clip"))
 
+    def test_a_commit_that_is_none(self):
+        self.hub.repositories["tests/clip"].commit = "../../elsewhere"
+        self.assertIn("as the commit of tests/clip", self.refusal("tiny-clip"))
+
     def test_an_answer_that_is_no_list(self):
         self.hub.repositories["tests/clip"].entry = lambda path: {"type": "file"}
         self.assertIn("is HF_ENDPOINT a model hub?", self.refusal("tiny-clip"))

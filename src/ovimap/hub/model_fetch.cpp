@@ -3,8 +3,10 @@
 #include "ovimap/hub/model_fetch.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <optional>
+#include <set>
 
 #include "ovimap/base/error.h"
 #include "ovimap/hub/transfer/folder_lock.h"
@@ -28,7 +30,9 @@ const std::vector<std::string>& needed_files(const std::string& kind) {
 }
 
 bool is_optional(const std::string& path) {
-  return path == "spiece.model" || path.starts_with("LICENSE") || path.starts_with("NOTICE");
+  static const std::set<std::string> optional = {"spiece.model", "LICENSE", "LICENSE.md",
+                                                 "LICENSE.txt", "NOTICE"};
+  return optional.contains(path);
 }
 
 std::string network_path(const std::string& stem, const std::string& ending) {

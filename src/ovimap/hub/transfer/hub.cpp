@@ -60,6 +60,13 @@ bool may_pass(const HttpReply& reply) {
   throw Error(concat("the model hub answers ", status, " for ", url, tried, "; try again later"));
 }
 
+/// It becomes part of paths, so nothing else will do.
+bool is_commit(const std::string& text) {
+  constexpr std::size_t kDigits = 40;
+  return text.size() == kDigits &&
+         text.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
 HubFile read_entry(const nlohmann::json& entry) {
   HubFile file;
   file.path = entry.at("path").get<std::string>();
@@ -136,6 +143,9 @@ HubListing Hub::list(const std::string& repository, const std::string& revision)
     listing.repository = repository;
     listing.commit =
         parse_json(get_text(url, nullptr), url, kLargeDocument).at("sha").get<std::string>();
+    if (!is_commit(listing.commit))
+      throw Error(concat("the model hub gives '", listing.commit, "' as the commit of ", repository,
+                         "; is HF_ENDPOINT a model hub?"));
     url = concat(api, "/tree/", listing.commit, "?recursive=true");
     for (int page = 0; !url.empty() && page < kMostPages; ++page) {
       std::string next;
