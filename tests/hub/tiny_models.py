@@ -76,19 +76,22 @@ def model_bytes(nodes, inputs, outputs, constants=()):
 def image_tower(output, batch_mixes=False, half_inside=False, half_outside=False, side=("height", "width")):
     """`batch_mixes`: what stands beside a picture changes its answer, as in networks quantised while they run."""
     kind = TensorProto.FLOAT16 if half_outside else TensorProto.FLOAT
-    nodes, constants, last = [], [], "pixel_values"
+    nodes, last = [], "pixel_values"
+    constants = [constant("least", np.float32(-1)), constant("most", np.float32(1))]
     if half_inside or half_outside:
         nodes += [helper.make_node("Cast", [last], ["half"], to=TensorProto.FLOAT16)]
         nodes += [helper.make_node("Cast", ["half"], ["whole"], to=TensorProto.FLOAT)]
         last = "whole"
     pool = SIDE // CELLS
-    nodes += [helper.make_node("AveragePool", [last], ["cells"], kernel_shape=[pool] * 2, strides=[pool] * 2)]
+    # Cut to what a right normalisation gives: another one is noticed.
+    nodes += [helper.make_node("Clip", [last, "least", "most"], ["cut"])]
+    nodes += [helper.make_node("AveragePool", ["cut"], ["cells"], kernel_shape=[pool] * 2, strides=[pool] * 2)]
     nodes += [helper.make_node("Flatten", ["cells"], ["flat"], axis=1)]
     if batch_mixes:
         nodes += [helper.make_node("ReduceMean", ["flat"], ["mean"], axes=[0], keepdims=1)]
         nodes += [helper.make_node("Mul", ["mean", "little"], ["share"])]
         nodes += [helper.make_node("Sub", ["flat", "share"], ["mixed"])]
-        constants = [constant("little", np.float32(0.2))]
+        constants += [constant("little", np.float32(0.2))]
     nodes += [helper.make_node("Identity", ["mixed" if batch_mixes else "flat"], [output])]
     nodes += [helper.make_node("Identity", [last], ["last_hidden_state"])]
     outputs = [value("last_hidden_state", ["batch", 3, "h", "w"]), value(output, ["batch", WIDTH])]
@@ -132,7 +135,7 @@ def mask_networks(boxes):
     encoder = model_bytes(
         [helper.make_node("AveragePool", ["pixel_values"], ["image_embeddings"], kernel_shape=[4, 4], strides=[4, 4])],
         [value("pixel_values", ["batch", 3, 64, 64])], [value("image_embeddings", ["batch", 3, 16, 16])])
-    nodes = [helper.make_node("Conv", ["image_embeddings", "red"], ["logits"])]
+    nodes = [helper.make_node("Conv", ["image_embeddings", "red", "half"], ["logits"])]  # cells that are red for the most part
     nodes += [helper.make_node("Cast", ["input_labels"], ["labels"], to=TensorProto.FLOAT)]
     takes = ["input_points", "labels", *(["input_boxes"] if boxes else [])]
     nodes += [helper.make_node("ReduceSum", [name], [f"sum_{name}"], keepdims=0) for name in takes]
@@ -140,14 +143,13 @@ def mask_networks(boxes):
     nodes += [helper.make_node("Mul", ["sum", "nothing"], ["zero"])]
     nodes += [helper.make_node("Add", ["logits", "zero"], ["shifted"])]
     nodes += [helper.make_node("Unsqueeze", ["shifted", "first_axis"], ["pred_masks"])]
-    # The score is the number of points, so that a test sees what was asked.
     nodes += [helper.make_node("ReduceMax", ["pred_masks"], ["best"], axes=[3, 4], keepdims=0)]
     nodes += [helper.make_node("Identity", ["best"], ["iou_scores"])]
     inputs = [value("input_points", ["batch", 1, "points", 2]), value("input_labels", ["batch", 1, "points"], TensorProto.INT64)]
     inputs += [value("input_boxes", ["batch", "boxes", 4])] if boxes else []
     inputs += [value("image_embeddings", ["batch", 3, 16, 16])]
     red = np.array([1, -1, 0], np.float32).reshape(1, 3, 1, 1)
-    constants = [constant("red", red), constant("nothing", np.float32(0)), constant("first_axis", np.array([1]))]
+    constants = [constant("red", red), constant("half", np.array([-0.82], np.float32)), constant("nothing", np.float32(0)), constant("first_axis", np.array([1]))]
     outputs = [value("iou_scores", ["batch", 1, 1]), value("pred_masks", ["batch", 1, 1, 16, 16])]
     return encoder, model_bytes(nodes, inputs, outputs, constants)
 

@@ -12,24 +12,30 @@
 namespace ovimap {
 namespace {
 
+/// Bytes that have no piece are 256 pieces of their own, from the id 11 on.
 nlohmann::json tokenizer() {
-  return nlohmann::json::parse(R"({
+  nlohmann::json tokenizer = nlohmann::json::parse(R"({
     "added_tokens": [{"id": 0, "content": "<pad>", "special": true}, {"id": 1, "content": "<eos>", "special": true},
                      {"id": 2, "content": "<unk>", "special": true}, {"id": 3, "content": "<tag>", "special": false}],
     "model": {"type": "BPE", "unk_token": "<unk>", "byte_fallback": true,
-      "vocab": {"<pad>": 0, "<eos>": 1, "<unk>": 2, "<tag>": 3, "<0x41>": 4, "a": 5, "b": 6, "c": 7, "ab": 8, "bc": 9,
+      "vocab": {"<pad>": 0, "<eos>": 1, "<unk>": 2, "<tag>": 3, "x": 4, "a": 5, "b": 6, "c": 7, "ab": 8, "bc": 9,
                 "abc": 10},
       "merges": [["b", "c"], ["a", "b"], "ab c"]}})");
+  constexpr const char* kDigits = "0123456789ABCDEF";
+  for (int byte = 0; byte < 256; ++byte)
+    tokenizer["model"]["vocab"][concat("<0x", kDigits[byte / 16], kDigits[byte % 16], ">")] =
+        11 + byte;
+  return tokenizer;
 }
 
 TEST(PieceModel, MergesInTheOrderOfTheList) {
   sentencepiece::SentencePieceProcessor pieces;
   ASSERT_TRUE(pieces.LoadFromSerializedProto(piece_model(tokenizer())).ok());
-  EXPECT_EQ(pieces.GetPieceSize(), 11);
+  EXPECT_EQ(pieces.GetPieceSize(), 11 + 256);
   // "b c" is merged first, so that "ab" never comes to be; then no merge joins "a" and "bc".
   EXPECT_EQ(pieces.EncodeAsIds("abc"), (std::vector<int>{5, 9}));
   EXPECT_EQ(pieces.EncodeAsIds("ab"), (std::vector<int>{8}));
-  EXPECT_EQ(pieces.EncodeAsIds("a<tag>A"), (std::vector<int>{5, 3, 4}));  // listed; by its byte
+  EXPECT_EQ(pieces.EncodeAsIds("a<tag>A"), (std::vector<int>{5, 3, 11 + 'A'}));  // listed; by its byte
   EXPECT_EQ(pieces.PieceToId("<eos>"), 1);
   EXPECT_TRUE(pieces.IsControl(1));
   EXPECT_TRUE(pieces.IsUnknown(2));
@@ -37,7 +43,7 @@ TEST(PieceModel, MergesInTheOrderOfTheList) {
 
 TEST(PieceModel, RefusesGaps) {
   nlohmann::json gap = tokenizer();
-  gap["model"]["vocab"]["abc"] = 12;
+  gap["model"]["vocab"]["abc"] = 500;
   EXPECT_TRUE(contains(error_of([&] { piece_model(gap); }), "without a gap"));
 }
 
