@@ -144,9 +144,9 @@ Action add_models(CLI::App& command) {
   command.add_option("--catalogue", options->catalogue, "YAML file instead of the built-in one");
   one_value(command.add_option("--set", options->settings,
                                "patience with the network, such as hub.attempts=10"));
-  command.add_subcommand("list", "models that are there, and those that can be fetched")->fallthrough()->callback([=] {
-    *action = [=] { return list(*options); };
-  });
+  command.add_subcommand("list", "models that are there, and those that can be fetched")
+      ->fallthrough()
+      ->callback([=] { *action = [=] { return list(*options); }; });
   add_fetch(command, *options, [=] { *action = [=] { return fetch(*options); }; });
   add_try(command, options, action);
   command.add_subcommand("hub", "whether the model hub answers")->fallthrough()->callback([=] {

@@ -28,9 +28,9 @@ HubConfig read_hub_config(const std::vector<std::string>& settings) {
 }
 
 std::string folder_name(const FetchOptions& options) {
-  const std::string name = !options.as.empty()           ? options.as
+  const std::string name = !options.as.empty()         ? options.as
                            : options.variant == "full" ? options.name
-                                                         : options.name + "-" + options.variant;
+                                                       : options.name + "-" + options.variant;
   if (name.find('/') != std::string::npos || name.starts_with('.'))
     throw Error(concat("--as is '", name, "'; a name without slash or dot in front is accepted"));
   return name;
@@ -63,9 +63,10 @@ void print_fetched(const FetchOptions& options, const FetchTarget& target,
   if (target.entry.kind == "sam")
     std::printf("use it: ovimap run RECORDING --masks %s -o MAP\n", name.c_str());
   else
-    std::printf("use it: ovimap run RECORDING --masks sam --encoder %s -o MAP; or for a map that "
-                "there is: ovimap reembed MAP --encoder %s\n",
-                name.c_str(), name.c_str());
+    std::printf(
+        "use it: ovimap run RECORDING --masks sam --encoder %s -o MAP; or for a map that "
+        "there is: ovimap reembed MAP --encoder %s\n",
+        name.c_str(), name.c_str());
 }
 
 }  // namespace

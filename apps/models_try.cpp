@@ -35,9 +35,8 @@ int try_model(const TryOptions& options) {
     if (!options.json) std::printf("%8.4f  %s\n", cosines[i], text.c_str());
   }
   if (options.json)
-    print_json({{"model", encoder->identity().name},
-                {"embedding", numbers(image, 0)},
-                {"texts", rows}});
+    print_json(
+        {{"model", encoder->identity().name}, {"embedding", numbers(image, 0)}, {"texts", rows}});
   return kDone;
 }
 

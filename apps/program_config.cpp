@@ -19,18 +19,19 @@ void add_mapping_settings(CLI::App& command, MappingOptions& options) {
       .add_option("--masks", options.masks, "2D masks: none, sam, gt, a folder of PNGs or a model")
       ->capture_default_str();
   command
-      .add_option("--encoder", options.encoder,
-                  "what makes objects searchable: none, default, a model, or auto (where there are 2D "
-                  "masks the best that is installed)")
+      .add_option(
+          "--encoder", options.encoder,
+          "what makes objects searchable: none, default, a model, or auto (where there are 2D "
+          "masks the best that is installed)")
       ->capture_default_str();
   command
       .add_option("--preset", options.preset,
                   "default or reference (as the paper's code does it; docs/reference-preset.md)")
       ->capture_default_str();
-  command
-      .add_option("--views", options.views,
-                  "which views of an object are embedded: default, paper, viewcov, combine, vis, "
-                  "random or all; not given: as the preset has them");
+  command.add_option(
+      "--views", options.views,
+      "which views of an object are embedded: default, paper, viewcov, combine, vis, "
+      "random or all; not given: as the preset has them");
   command.add_option("--config", options.config_file, "YAML file of settings");
   one_value(command.add_option("--set", options.settings, "one setting, a.b=c; may be repeated"));
   command.add_option_function<std::string>(

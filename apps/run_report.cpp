@@ -28,10 +28,11 @@ void report_bad_masks(const LiveStatistics& done) {
 
 void report_encoder(const LiveStatistics& done) {
   if (done.views_failed > 0)
-    std::fprintf(stderr,
-                 "ovimap: the encoder failed on %lld view(s), the first: %s; `ovimap reembed` gives "
-                 "their objects embeddings\n",
-                 static_cast<long long>(done.views_failed), done.encoder_fault.c_str());
+    std::fprintf(
+        stderr,
+        "ovimap: the encoder failed on %lld view(s), the first: %s; `ovimap reembed` gives "
+        "their objects embeddings\n",
+        static_cast<long long>(done.views_failed), done.encoder_fault.c_str());
 }
 
 nlohmann::json lag_json(const StageSummary& lag) {

@@ -32,8 +32,9 @@ TEST_F(EmbeddingProgramTest, AutoTakesThePreferredEncoderAndSaysWhereItIsTheSmal
     std::ofstream(folder / "model.yaml", std::ios::app) << "\n" << keys;
   };
   const auto encoder_of_run = [this] {
-    const ProgramResult result = run(
-        std::string("run replica/scene --masks gt -o room.ovimap --model-dir models") + kSmallViews);
+    const ProgramResult result =
+        run(std::string("run replica/scene --masks gt -o room.ovimap --model-dir models") +
+            kSmallViews);
     EXPECT_EQ(result.code, 0) << result.err;
     const bool advised = result.err.find("ovimap models fetch") != std::string::npos;
     return read_map_info(path("room.ovimap")).encoder.name + (advised ? " advised" : "");

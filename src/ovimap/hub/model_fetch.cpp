@@ -55,8 +55,7 @@ std::string ending_of(const FetchTarget& target) {
       there += (there.empty() ? "" : ", ") + variant.name;
     if (variant.name == target.variant) ending = variant.ending;
   }
-  if (!ending)
-    throw Error(concat("--variant is '", target.variant, "'; accepted is ", all));
+  if (!ending) throw Error(concat("--variant is '", target.variant, "'; accepted is ", all));
   if (!has_variant(target.listing, target.entry, *ending))
     throw Error(concat("repository ", target.listing.repository, " has no variant '",
                        target.variant, "'; it has ", there.empty() ? "none that fits" : there));
@@ -83,9 +82,10 @@ void check_room(const FetchTarget& target, const fs::path& folder) {
   const std::uint64_t missing = bytes_of(target) - bytes_there(target, folder);
   const std::uint64_t room = fs::space(folder).available;
   if (missing > room)
-    throw Error(concat("no room for ", target.entry.name, " in ", folder.parent_path().parent_path().string(),
-                       ": it needs ", std::llround(static_cast<double>(missing) / kBytesPerMb),
-                       " MB more, ", std::llround(static_cast<double>(room) / kBytesPerMb),
+    throw Error(concat("no room for ", target.entry.name, " in ",
+                       folder.parent_path().parent_path().string(), ": it needs ",
+                       std::llround(static_cast<double>(missing) / kBytesPerMb), " MB more, ",
+                       std::llround(static_cast<double>(room) / kBytesPerMb),
                        " MB are free; make room, name another folder with --model-dir, or take "
                        "--variant quantized"));
 }
@@ -175,8 +175,9 @@ FetchTarget find_target(const Hub& hub, const CatalogueEntry& entry, const std::
                          ", which says how the model is used"));
   const std::vector<std::string>& needed = needed_files(entry.kind);
   for (const HubFile& file : target.listing.files) {
-    const bool network = std::any_of(target.files.begin(), target.files.end(),
-                                     [&](const auto& part) { return belongs_to(file, part.second); });
+    const bool network =
+        std::any_of(target.files.begin(), target.files.end(),
+                    [&](const auto& part) { return belongs_to(file, part.second); });
     if (network || is_optional(file.path) ||
         std::find(needed.begin(), needed.end(), file.path) != needed.end())
       target.wanted.push_back(file);

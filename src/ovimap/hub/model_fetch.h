@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "ovimap/hub/catalogue/catalogue.h"
-#include "ovimap/hub/transfer/hub.h"
 #include "ovimap/hub/description/model_description.h"
+#include "ovimap/hub/transfer/hub.h"
 #include "ovimap/hub/trial/self_test.h"
 
 namespace ovimap {

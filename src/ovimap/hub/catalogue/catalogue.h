@@ -14,8 +14,8 @@ namespace ovimap {
 struct CatalogueEntry {
   std::string name, kind;
   std::string repository, revision;
-  std::map<std::string, std::string> files;    ///< network: path, without variant and ".onnx"
-  std::map<std::string, double> size_mb;       ///< variant: about, in 10^6 bytes
+  std::map<std::string, std::string> files;  ///< network: path, without variant and ".onnx"
+  std::map<std::string, double> size_mb;     ///< variant: about, in 10^6 bytes
   std::string license, good_for, documentation;
   int preference = 0;  ///< of encoders, for `auto`
   bool tried = false;  ///< by this project

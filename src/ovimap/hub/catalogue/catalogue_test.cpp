@@ -27,8 +27,9 @@ TEST(Catalogue, BuiltInOneIsWhole) {
       EXPECT_TRUE(entry.files.contains("encoder") && entry.files.contains("decoder")) << entry.name;
     }
   }
-  for (const char* name : {"siglip-base-224", "siglip-base-384", "siglip-large-384", "siglip2-base-224",
-                           "siglip2-large-384", "clip-b32", "tinyclip", "sam2.1-small", "slimsam-77"})
+  for (const char* name :
+       {"siglip-base-224", "siglip-base-384", "siglip-large-384", "siglip2-base-224",
+        "siglip2-large-384", "clip-b32", "tinyclip", "sam2.1-small", "slimsam-77"})
     EXPECT_TRUE(names.contains(name)) << name;
   EXPECT_EQ(find_entry(catalogue, kFirstEncoder).kind, "dual_encoder");
 }
@@ -37,7 +38,8 @@ TEST(Catalogue, SaysWhatIsMeant) {
   const std::vector<CatalogueEntry> catalogue = read_catalogue({});
   EXPECT_TRUE(contains(error_of([&] { find_entry(catalogue, "siglip-base-225"); }),
                        "did you mean 'siglip-base-224'?"));
-  EXPECT_TRUE(contains(error_of([&] { find_entry(catalogue, "resnet"); }), "there are siglip-large-384"));
+  EXPECT_TRUE(
+      contains(error_of([&] { find_entry(catalogue, "resnet"); }), "there are siglip-large-384"));
 }
 
 TEST(Catalogue, RefusesWhatIsNotWhole) {

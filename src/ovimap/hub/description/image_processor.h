@@ -8,8 +8,8 @@
 
 namespace ovimap {
 
-/// What `file`, a preprocessor_config.json as transformers writes it, does to an image. Throws Error
-/// when it does something that ovimap cannot: another filter, a crop of another size than the
+/// What `file`, a preprocessor_config.json as transformers writes it, does to an image. Throws
+/// Error when it does something that ovimap cannot: another filter, a crop of another size than the
 /// resize, no square.
 ImageInputSpec read_image_processor(const std::filesystem::path& file);
 

@@ -27,10 +27,12 @@ TEST(ImageProcessor, ReadsSiglips) {
 }
 
 TEST(ImageProcessor, ReadsClipsOldAndNewForm) {
-  const std::string rest = R"("do_center_crop": true, "do_normalize": true, "do_resize": true, "resample": 3,
+  const std::string rest =
+      R"("do_center_crop": true, "do_normalize": true, "do_resize": true, "resample": 3,
     "image_mean": [0.48145466, 0.4578275, 0.40821073], "image_std": [0.26862954, 0.26130258, 0.27577711]})";
-  for (const std::string size : {R"("size": 224, "crop_size": 224, )",
-                                 R"("size": {"shortest_edge": 224}, "crop_size": {"height": 224, "width": 224}, )"}) {
+  for (const std::string size :
+       {R"("size": 224, "crop_size": 224, )",
+        R"("size": {"shortest_edge": 224}, "crop_size": {"height": 224, "width": 224}, )"}) {
     const ImageInputSpec spec = read("{" + size + rest);
     EXPECT_EQ(spec.size_px, 224);
     EXPECT_EQ(spec.resize, ResizeRule::kShortSide);
@@ -63,8 +65,10 @@ TEST(ImageProcessor, RefusesWhatOvimapCannotDo) {
   EXPECT_TRUE(contains(fault(R"("size": {"height": 8, "width": 8}, "resample": 1)"), "filter 1"));
   EXPECT_TRUE(contains(fault(R"("size": {"height": 8, "width": 9}, "resample": 2)"), "no square"));
   EXPECT_TRUE(contains(fault(R"("size": {"shortest_edge": 8}, "resample": 2)"), "aspect ratio"));
-  EXPECT_TRUE(contains(fault(R"("size": {"shortest_edge": 9}, "do_center_crop": true, "crop_size": 8, "resample": 2)"),
-                       "crops another size"));
+  EXPECT_TRUE(contains(
+      fault(
+          R"("size": {"shortest_edge": 9}, "do_center_crop": true, "crop_size": 8, "resample": 2)"),
+      "crops another size"));
   EXPECT_TRUE(contains(fault(R"("size": {"height": 8, "width": 8})"), "resample"));
 }
 

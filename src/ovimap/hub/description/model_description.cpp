@@ -133,13 +133,13 @@ ModelDescription describe_encoder(const fs::path& folder, const FetchTarget& tar
   }
   const OnnxSession text(folder / text_file, {});
   // SigLIP was trained to read the padding too, so where its export asks, nothing is masked.
-  model.networks["text"] = network_spec(
-      folder, text_file, text,
-      {{"input_ids", "ids"}, {"attention_mask", family == "clip" ? "mask" : "ones"}},
-      {{"text_embeds", "embedding"}, {"pooler_output", "embedding"}});
+  model.networks["text"] =
+      network_spec(folder, text_file, text,
+                   {{"input_ids", "ids"}, {"attention_mask", family == "clip" ? "mask" : "ones"}},
+                   {{"text_embeds", "embedding"}, {"pooler_output", "embedding"}});
   add_tokenizer_keys(prepare_tokenizer(folder), context_length(config, family), model);
-  model.keys.emplace_back("prompt_template", family == "clip" ? "a photo of a {}."
-                                                              : "This is a photo of {}.");
+  model.keys.emplace_back("prompt_template",
+                          family == "clip" ? "a photo of a {}." : "This is a photo of {}.");
   return model;
 }
 
@@ -156,15 +156,15 @@ ModelDescription describe_sam(const fs::path& folder, const FetchTarget& target)
     if (has(decoder.inputs(), output.name)) features.emplace_back(output.name, output.name);
   if (features.empty())
     throw Error(concat("network ", (folder / decoder_file).string(),
-                       " takes nothing that the encoder gives (", names_of(encoder.outputs()), ")"));
+                       " takes nothing that the encoder gives (", names_of(encoder.outputs()),
+                       ")"));
   model.networks["encoder"] =
       network_spec(folder, encoder_file, encoder, {{"pixel_values", "image"}}, features);
   check_side(folder / encoder_file, encoder.input("pixel_values"), model.input.size_px);
   Roles inputs = {{"input_points", "points"}, {"input_labels", "labels"}, {"input_boxes", "boxes"}};
   inputs.insert(inputs.end(), features.begin(), features.end());
-  model.networks["decoder"] =
-      network_spec(folder, decoder_file, decoder, inputs,
-                   {{"pred_masks", "masks"}, {"iou_scores", "scores"}});
+  model.networks["decoder"] = network_spec(folder, decoder_file, decoder, inputs,
+                                           {{"pred_masks", "masks"}, {"iou_scores", "scores"}});
   if (!model.networks["decoder"].inputs.contains("boxes")) {
     model.keys.emplace_back("box_corners", "false");
     model.keys.emplace_back("adds_padding", "true");
@@ -179,8 +179,8 @@ ModelDescription describe_model(const fs::path& folder, const FetchTarget& targe
     return target.entry.kind == "sam" ? describe_sam(folder, target)
                                       : describe_encoder(folder, target);
   } catch (const Json::exception& error) {
-    throw Error(concat((folder / "config.json").string(),
-                       ": it is not what transformers writes (", error.what(), ")"));
+    throw Error(concat((folder / "config.json").string(), ": it is not what transformers writes (",
+                       error.what(), ")"));
   }
 }
 

@@ -10,8 +10,8 @@ namespace ovimap {
 
 /// A tokenizer.json of byte-pair encoding with byte fallback (Gemma's) as a SentencePiece model
 /// (sentencepiece_model.proto): a piece's score is the rank of the first merge that makes it, so
-/// that the best-scored pair is the next merge in the list. Throws Error when its ids have gaps, and
-/// nlohmann::json::exception when it has another form.
+/// that the best-scored pair is the next merge in the list. Throws Error when its ids have gaps,
+/// and nlohmann::json::exception when it has another form.
 std::string piece_model(const nlohmann::json& tokenizer);
 
 }  // namespace ovimap

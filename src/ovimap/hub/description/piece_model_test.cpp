@@ -35,7 +35,8 @@ TEST(PieceModel, MergesInTheOrderOfTheList) {
   // "b c" is merged first, so that "ab" never comes to be; then no merge joins "a" and "bc".
   EXPECT_EQ(pieces.EncodeAsIds("abc"), (std::vector<int>{5, 9}));
   EXPECT_EQ(pieces.EncodeAsIds("ab"), (std::vector<int>{8}));
-  EXPECT_EQ(pieces.EncodeAsIds("a<tag>A"), (std::vector<int>{5, 3, 11 + 'A'}));  // listed; by its byte
+  EXPECT_EQ(pieces.EncodeAsIds("a<tag>A"),
+            (std::vector<int>{5, 3, 11 + 'A'}));  // listed; by its byte
   EXPECT_EQ(pieces.PieceToId("<eos>"), 1);
   EXPECT_TRUE(pieces.IsControl(1));
   EXPECT_TRUE(pieces.IsUnknown(2));

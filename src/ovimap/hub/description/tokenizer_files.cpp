@@ -107,10 +107,10 @@ void read_gemma_ends(const Json& settings, const Backend& backend, TokenizerFile
 void write_clip(const fs::path& folder, const Backend& backend) {
   std::string merges = "#version: 0.2\n";
   for (const Json& pair : backend.model().at("merges"))
-    merges += (pair.is_string() ? pair.get<std::string>()
-                                : pair.at(0).get<std::string>() + " " +
-                                      pair.at(1).get<std::string>()) +
-              "\n";
+    merges +=
+        (pair.is_string() ? pair.get<std::string>()
+                          : pair.at(0).get<std::string>() + " " + pair.at(1).get<std::string>()) +
+        "\n";
   write_text(folder / kMerges, merges);
   write_text(folder / kVocabulary, backend.model().at("vocab").dump());
 }
@@ -146,7 +146,8 @@ void read_kind(const fs::path& folder, const Backend& backend, const Json& setti
     tokens.kind = "clip_bpe", tokens.text_rule = "clip", tokens.files = {kVocabulary, kMerges};
     write_clip(folder, backend);
   } else {
-    fault(backend.file, concat("its tokenizer, ", type, ", is none of SigLIP's, SigLIP 2's and "
+    fault(backend.file, concat("its tokenizer, ", type,
+                               ", is none of SigLIP's, SigLIP 2's and "
                                "CLIP's"));
   }
 }

@@ -23,6 +23,8 @@ FolderLock::FolderLock(const std::filesystem::path& file, const std::string& wor
   throw Error(concat(work, " is under way already; wait for it to end"));
 }
 
-FolderLock::~FolderLock() { close(descriptor_); }
+FolderLock::~FolderLock() {
+  close(descriptor_);
+}
 
 }  // namespace ovimap

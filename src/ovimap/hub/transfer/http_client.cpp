@@ -32,7 +32,7 @@ std::string part_of(CURLU* url, CURLUPart part, unsigned flags) {
 std::string header(CURL* handle, const char* name) {
   curl_header* found = nullptr;
   return curl_easy_header(handle, name, 0, CURLH_HEADER, -1, &found) == CURLHE_OK ? found->value
-                                                                                   : "";
+                                                                                  : "";
 }
 
 /// The address of the next page, as `Link: <URL>; rel="next"` gives it (RFC 8288).
@@ -143,8 +143,7 @@ HttpReply HttpClient::request(const std::string& url, std::uint64_t first_byte,
   CURL* handle = handle_.get();
   Transfer transfer{handle, sink, keep_going, {}, false};
   set_up(handle, config_, url, transfer);
-  if (first_byte > 0)
-    curl_easy_setopt(handle, CURLOPT_RANGE, concat(first_byte, "-").c_str());
+  if (first_byte > 0) curl_easy_setopt(handle, CURLOPT_RANGE, concat(first_byte, "-").c_str());
   if (!token_.empty() && origin_of(url) == token_origin_) {
     curl_easy_setopt(handle, CURLOPT_HTTPAUTH, CURLAUTH_BEARER);
     curl_easy_setopt(handle, CURLOPT_XOAUTH2_BEARER, token_.c_str());

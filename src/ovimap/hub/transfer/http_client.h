@@ -42,8 +42,9 @@ class HttpClient {
 
   /// Asks for the bytes of `url` from `first_byte` on. `keep_going` is asked about once a second;
   /// false ends the transfer.
-  HttpReply get(const std::string& url, std::uint64_t first_byte, const ByteSink& sink,
-                const std::function<bool()>& keep_going = [] { return true; }) const;
+  HttpReply get(
+      const std::string& url, std::uint64_t first_byte, const ByteSink& sink,
+      const std::function<bool()>& keep_going = [] { return true; }) const;
 
  private:
   HttpReply request(const std::string& url, std::uint64_t first_byte, const ByteSink& sink,

@@ -14,7 +14,8 @@ TEST(HttpClient, KnowsOrigins) {
   EXPECT_NE(origin_of("http://hub.example:81"), origin_of("http://hub.example"));
   EXPECT_NE(origin_of("https://hub.example.evil.test"), origin_of("https://hub.example"));
   EXPECT_EQ(origin_of("https://hub.example@evil.test/"), "https://evil.test:443");
-  for (const char* none : {"", "file:///etc/passwd", "ftp://hub.example", "hub.example", "https://"})
+  for (const char* none :
+       {"", "file:///etc/passwd", "ftp://hub.example", "hub.example", "https://"})
     EXPECT_EQ(origin_of(none), "") << none;
 }
 

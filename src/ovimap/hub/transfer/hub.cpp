@@ -26,7 +26,9 @@ constexpr int kMostPages = 100;  // of a list of files; a hub that never ends it
 constexpr long kUnauthorised = 401, kForbidden = 403, kNotFound = 404, kRangeWrong = 416,
                kTimedOut = 408, kTooMany = 429;
 
-bool is_good(const HttpReply& reply) { return reply.fault.empty() && reply.head.status / 100 == 2; }
+bool is_good(const HttpReply& reply) {
+  return reply.fault.empty() && reply.head.status / 100 == 2;
+}
 
 /// Whether another try may go better.
 bool may_pass(const HttpReply& reply) {
@@ -63,8 +65,7 @@ bool may_pass(const HttpReply& reply) {
 /// It becomes part of paths, so nothing else will do.
 bool is_commit(const std::string& text) {
   constexpr std::size_t kDigits = 40;
-  return text.size() == kDigits &&
-         text.find_first_not_of("0123456789abcdef") == std::string::npos;
+  return text.size() == kDigits && text.find_first_not_of("0123456789abcdef") == std::string::npos;
 }
 
 HubFile read_entry(const nlohmann::json& entry) {
@@ -174,7 +175,8 @@ void Hub::transfer(const std::string& url, const HubFile& file, const fs::path& 
     if (!partial.fault().empty()) throw Error(partial.fault());
     if (reply.head.status == kRangeWrong) partial.restart();
     if (is_good(reply) && partial.bytes() != file.bytes)
-      return HttpReply{reply.head, concat("only ", partial.bytes(), " of ", file.bytes, " bytes came"), {}, ""};
+      return HttpReply{
+          reply.head, concat("only ", partial.bytes(), " of ", file.bytes, " bytes came"), {}, ""};
     return reply;
   };
   ask(url, request);

@@ -10,9 +10,10 @@ class ConfigFields;
 
 /// How patient a fetch is with the network.
 struct HubConfig {
-  int attempts = 5;              ///< tries of one request, before a fetch gives up
-  float first_wait_s = 1.f;      ///< before the second try; doubled for each one after
-  float longest_wait_s = 120.f;  ///< a hub that asks for a longer one (Retry-After) is not waited for
+  int attempts = 5;          ///< tries of one request, before a fetch gives up
+  float first_wait_s = 1.f;  ///< before the second try; doubled for each one after
+  float longest_wait_s =
+      120.f;  ///< a hub that asks for a longer one (Retry-After) is not waited for
   int connect_timeout_s = 20;
   int stall_timeout_s = 30;  ///< a transfer without a byte for so long is broken
 };

@@ -30,10 +30,14 @@ RgbImage shape(const std::function<bool(float x, float y)>& inside) {
 }  // namespace
 
 std::vector<Drawing> drawn_colours() {
-  const std::vector<std::pair<const char*, Rgb8>> colours = {
-      {"red", kRed},           {"green", {20, 160, 40}},  {"blue", {20, 50, 220}},
-      {"yellow", {250, 220, 20}}, {"orange", {250, 130, 10}}, {"purple", {130, 20, 150}},
-      {"black", kBlack},       {"white", kWhite}};
+  const std::vector<std::pair<const char*, Rgb8>> colours = {{"red", kRed},
+                                                             {"green", {20, 160, 40}},
+                                                             {"blue", {20, 50, 220}},
+                                                             {"yellow", {250, 220, 20}},
+                                                             {"orange", {250, 130, 10}},
+                                                             {"purple", {130, 20, 150}},
+                                                             {"black", kBlack},
+                                                             {"white", kWhite}};
   std::vector<Drawing> drawings;
   for (const auto& [name, colour] : colours)
     drawings.push_back({name, RgbImage(kSidePx, kSidePx, colour)});

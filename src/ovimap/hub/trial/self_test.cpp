@@ -23,7 +23,8 @@ constexpr float kFewestIou = 0.7f;  // of the disc and the mask that a point in 
 void require_finite(const Embeddings& rows, const char* what) {
   for (Eigen::Index i = 0; i < rows.rows(); ++i)
     if (!(rows.row(i).squaredNorm() > 0))
-      throw Error(concat("self-test: an embedding of ", what, " is not finite or zero; fetch the "
+      throw Error(concat("self-test: an embedding of ", what,
+                         " is not finite or zero; fetch the "
                          "model again, or another variant"));
 }
 
@@ -95,16 +96,17 @@ SelfTest test_encoder(const ModelFolder& model) {
   test.batch_agrees = colour.batch_agrees && shape.batch_agrees;
   test.right = colour.right + shape.right;
   test.asked = static_cast<int>(colours.size() + shapes.size());
-  test.summary = concat(encoder.identity().dimension, " numbers; ", colour.right, " of ",
-                        colours.size(), " plain colours and ", shape.right, " of ", shapes.size(),
-                        " drawn shapes told right",
-                        test.batch_agrees ? "" : "; several at once differ from one alone, so it "
-                                                 "runs one by one");
+  test.summary =
+      concat(encoder.identity().dimension, " numbers; ", colour.right, " of ", colours.size(),
+             " plain colours and ", shape.right, " of ", shapes.size(), " drawn shapes told right",
+             test.batch_agrees ? ""
+                               : "; several at once differ from one alone, so it "
+                                 "runs one by one");
   if (colour.right < kFewestColours || shape.right < kFewestShapes)
-    test.warnings.push_back(concat(
-        "of drawn colours and shapes it tells ", colour.right, " of ", colours.size(), " and ",
-        shape.right, " of ", shapes.size(), " right, fewer than ", kFewestColours, " and ",
-        kFewestShapes, ": its words will be wrong; another variant may do"));
+    test.warnings.push_back(concat("of drawn colours and shapes it tells ", colour.right, " of ",
+                                   colours.size(), " and ", shape.right, " of ", shapes.size(),
+                                   " right, fewer than ", kFewestColours, " and ", kFewestShapes,
+                                   ": its words will be wrong; another variant may do"));
   return test;
 }
 
@@ -113,13 +115,16 @@ float iou_with_disc(const MaskProposals& proposals, int token, const InputFrame&
   const RgbImage background(1, 1, picture.at(0, 0));
   const auto is_disc = [&](int x, int y) { return !(picture.at(x, y) == background.at(0, 0)); };
   int both = 0, either = 0;
-  const std::size_t start = static_cast<std::size_t>(token) * proposals.grid_size * proposals.grid_size;
+  const std::size_t start =
+      static_cast<std::size_t>(token) * proposals.grid_size * proposals.grid_size;
   for (int y = 0; y < picture.height(); ++y)
     for (int x = 0; x < picture.width(); ++x) {
       const auto at = [&](int pixel, float scale) {
-        return static_cast<std::size_t>((static_cast<float>(pixel) + 0.5f) * scale / input_per_grid);
+        return static_cast<std::size_t>((static_cast<float>(pixel) + 0.5f) * scale /
+                                        input_per_grid);
       };
-      const std::size_t cell = at(y, frame.scale.y()) * proposals.grid_size + at(x, frame.scale.x());
+      const std::size_t cell =
+          at(y, frame.scale.y()) * proposals.grid_size + at(x, frame.scale.x());
       const bool masked = proposals.logits[start + cell] > 0, disc = is_disc(x, y);
       both += masked && disc;
       either += masked || disc;
@@ -145,10 +150,12 @@ SelfTest test_sam(const ModelFolder& model) {
   SelfTest test;
   test.asked = 1;
   test.right = best >= kFewestIou;
-  test.summary = concat("a point in a drawn disc gives a mask with IoU ", std::round(best * 100) / 100);
+  test.summary =
+      concat("a point in a drawn disc gives a mask with IoU ", std::round(best * 100) / 100);
   if (!test.right)
-    test.warnings.push_back(concat("the mask of a drawn disc has IoU ", std::round(best * 100) / 100, ", less than ",
-                                   kFewestIou, ": its masks will be wrong; another variant may do"));
+    test.warnings.push_back(concat("the mask of a drawn disc has IoU ",
+                                   std::round(best * 100) / 100, ", less than ", kFewestIou,
+                                   ": its masks will be wrong; another variant may do"));
   return test;
 }
 

@@ -95,8 +95,8 @@ void SamNetwork::read_prompt_rules(const ModelFolder& model) {
     const auto found = model.extras.find(key);
     if (found == model.extras.end()) return otherwise;
     if (found->second != "true" && found->second != "false")
-      throw Error(concat("model file ", (model.folder / "model.yaml").string(), ": '", key, "' is '",
-                         found->second, "'; accepted is true or false"));
+      throw Error(concat("model file ", (model.folder / "model.yaml").string(), ": '", key,
+                         "' is '", found->second, "'; accepted is true or false"));
     return found->second == "true";
   };
   box_corners_ = flag("box_corners", true);
@@ -181,8 +181,8 @@ class ConstantInputs {
       add_size(decoder.input(found->second));
     constexpr std::int64_t kBoxNumbers = 4;  // boxes are given as points: here there is none
     if (const auto found = spec.inputs.find(kBoxes); found != spec.inputs.end())
-      inputs_.push_back({found->second, {1, 0, kBoxNumbers}, std::span<const float>(size_float_)
-                                                                 .first(0)});
+      inputs_.push_back(
+          {found->second, {1, 0, kBoxNumbers}, std::span<const float>(size_float_).first(0)});
   }
   const std::vector<TensorInput>& inputs() const { return inputs_; }
 

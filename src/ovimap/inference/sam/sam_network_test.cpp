@@ -40,17 +40,18 @@ class LabelSum {
     scratch_.write("decoder.onnx", decoder.file());
     scratch_.write(
         "model.yaml",
-        concat("kind: sam\nname: n\nlicense: l\nsource: s\n"
-               "input: {size: 8, resize: stretch, mean: [0, 0, 0], std: [1, 1, 1]}\n"
-               "networks:\n"
-               "  encoder: {file: encoder.onnx, inputs: {image: pixel_values}, outputs: {embedding: "
-               "image_embeddings}}\n"
-               "  decoder:\n    file: decoder.onnx\n"
-               "    inputs: {embedding: image_embeddings, points: input_points, labels: input_labels, "
-               "boxes: input_boxes}\n"
-               "    outputs: {masks: pred_masks, scores: iou_scores}\n",
-               keys, "sha256:\n  encoder.onnx: ", sha256_of_file(scratch_.path() / "encoder.onnx"),
-               "\n  decoder.onnx: ", sha256_of_file(scratch_.path() / "decoder.onnx"), "\n"));
+        concat(
+            "kind: sam\nname: n\nlicense: l\nsource: s\n"
+            "input: {size: 8, resize: stretch, mean: [0, 0, 0], std: [1, 1, 1]}\n"
+            "networks:\n"
+            "  encoder: {file: encoder.onnx, inputs: {image: pixel_values}, outputs: {embedding: "
+            "image_embeddings}}\n"
+            "  decoder:\n    file: decoder.onnx\n"
+            "    inputs: {embedding: image_embeddings, points: input_points, labels: input_labels, "
+            "boxes: input_boxes}\n"
+            "    outputs: {masks: pred_masks, scores: iou_scores}\n",
+            keys, "sha256:\n  encoder.onnx: ", sha256_of_file(scratch_.path() / "encoder.onnx"),
+            "\n  decoder.onnx: ", sha256_of_file(scratch_.path() / "decoder.onnx"), "\n"));
   }
 
   float score(const PromptPoints& prompt) const {
