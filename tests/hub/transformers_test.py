@@ -17,8 +17,11 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 NEEDED = ("torch", "transformers", "onnx", "onnxruntime", "sentencepiece", "PIL", "yaml", "scipy")
 SKIPPED = 77
-TOLERANCE = 1e-3  # of any number of an embedding of length 1
-HALF_TOLERANCE = 2e-2  # of half precision against transformers' whole one
+# Of any number of an embedding of length 1, against ONNX Runtime's answer to transformers' tensors. That is another release than
+# ours, which may round halves and levels of quantised networks otherwise.
+TOLERANCE = {"full": 1e-3, "fp16": 5e-3, "quantized": 1e-2}
+# And against transformers itself; what quantising loses is the network's own.
+TORCH_TOLERANCE = {"full": 1e-3, "fp16": 5e-3}
 TEXTS = ("a photo of a wooden chair.", "Red MUG, 24 cm; ça va?", "  two  blanks\tand\na line ", "机 デスク стол", "")
 
 
@@ -178,7 +181,7 @@ class Parity(unittest.TestCase):
     def program(self, *arguments):
         command = [PROGRAM, "models", "--model-dir", "models", "--catalogue", "catalogue.yaml", "--json", *arguments]
         done = subprocess.run(command, capture_output=True, text=True, cwd=self.scratch, timeout=300,
-                              env=os.environ | {"HF_ENDPOINT": self.hub.address, "HF_TOKEN": ""})
+                              env=os.environ | {"HF_ENDPOINT": self.hub.address, "HF_TOKEN": "", "no_proxy": "127.0.0.1"})
         self.assertEqual(done.returncode, 0, done.stderr)
         return json.loads(done.stdout)
 
@@ -193,14 +196,13 @@ class Parity(unittest.TestCase):
             for text in TEXTS:
                 with self.subTest(kind=kind, variant=variant, text=text):
                     image, read = answers.of_networks(checkpoint / "onnx", ending, picture, text)
-                    np.testing.assert_allclose(found["embedding"], image, atol=TOLERANCE)
-                    np.testing.assert_allclose(words[text], read, atol=TOLERANCE)
-                    if variant == "quantized":
+                    np.testing.assert_allclose(found["embedding"], image, atol=TOLERANCE[variant])
+                    np.testing.assert_allclose(words[text], read, atol=TOLERANCE[variant])
+                    if variant not in TORCH_TOLERANCE:
                         continue
                     image, read = answers.of_transformers(picture, text)
-                    near = TOLERANCE if variant == "full" else HALF_TOLERANCE
-                    np.testing.assert_allclose(found["embedding"], image, atol=near)
-                    np.testing.assert_allclose(words[text], read, atol=near)
+                    np.testing.assert_allclose(found["embedding"], image, atol=TORCH_TOLERANCE[variant])
+                    np.testing.assert_allclose(words[text], read, atol=TORCH_TOLERANCE[variant])
 
     def test_siglip(self):
         self.check("siglip")
