@@ -244,6 +244,20 @@ class Transfers(Fetches):
         self.fetch("tiny-clip")
         self.assertEqual(self.downloads(NETWORK)[-1].get("Range"), "bytes=50000-")
 
+    def test_an_interrupted_fetch_says_how_to_go_on(self):
+        self.hub.faults.where, self.hub.faults.cut_after = NETWORK, [50000]
+        command = [PROGRAM, "models", "fetch", "tiny-clip", "--model-dir", str(self.models), "--catalogue", str(self.catalogue),
+                   "--set", "hub.first_wait_s=60"]
+        running = subprocess.Popen(command, env=self.environment(), cwd=self.scratch, stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.PIPE, text=True)
+        while not self.downloads(NETWORK):
+            time.sleep(0.01)
+        time.sleep(0.2)  # it now waits to try again
+        running.send_signal(signal.SIGINT)
+        self.assertIn("the fetch was stopped; run it again", running.communicate(timeout=30)[1])
+        self.assertEqual(running.returncode, 2)
+        self.assertEqual(self.installed(), {})
+
     def test_what_lay_there_and_is_no_part_of_it_is_thrown_away(self):
         place = self.models / ".partial" / f"tiny-clip.full.{standin.COMMIT}" / "onnx"
         place.mkdir(parents=True)

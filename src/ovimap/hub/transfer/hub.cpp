@@ -20,6 +20,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr const char* kStopped = "it was stopped";  // what HttpClient says of a user's wish
 constexpr int kMostPages = 100;  // of a list of files; a hub that never ends it is broken
 
 // HTTP statuses that mean something here (RFC 9110).
@@ -32,7 +33,7 @@ bool is_good(const HttpReply& reply) {
 
 /// Whether another try may go better.
 bool may_pass(const HttpReply& reply) {
-  if (reply.fault == "it was stopped") return false;
+  if (reply.fault == kStopped) return false;
   const long status = reply.head.status;
   return !reply.fault.empty() || status == kTimedOut || status == kTooMany || status / 100 == 5;
 }
@@ -40,7 +41,7 @@ bool may_pass(const HttpReply& reply) {
 [[noreturn]] void refuse(const std::string& url, const HttpReply& reply, int tries, bool token) {
   const long status = reply.head.status;
   const std::string tried = tries > 1 ? concat(" (tried ", tries, " times)") : "";
-  if (reply.fault == "it was stopped")
+  if (reply.fault == kStopped)
     throw Error("the fetch was stopped; run it again, and it goes on where it was");
   if (!reply.fault.empty() && status == 0)
     throw Error(concat("the model hub cannot be reached at ", url, ": ", reply.fault, tried,
@@ -66,6 +67,19 @@ bool may_pass(const HttpReply& reply) {
 bool is_commit(const std::string& text) {
   constexpr std::size_t kDigits = 40;
   return text.size() == kDigits && text.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
+/// False when the user stopped it.
+bool wait(double seconds, const std::function<bool()>& keep_going) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::milliseconds kPiece(100);  // a user's Ctrl-C is heard so soon
+  const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+  while (Clock::now() < end) {
+    if (!keep_going()) return false;
+    std::this_thread::sleep_for(
+        std::min<std::chrono::duration<double>>(kPiece, end - Clock::now()));
+  }
+  return true;
 }
 
 HubFile read_entry(const nlohmann::json& entry) {
@@ -110,7 +124,8 @@ bool Hub::answers() const {
   return reply.head.status != 0;
 }
 
-HttpReply Hub::ask(const std::string& url, const std::function<HttpReply()>& request) const {
+HttpReply Hub::ask(const std::string& url, const std::function<HttpReply()>& request,
+                   const std::function<bool()>& keep_going) const {
   double wait_s = config_.first_wait_s;
   for (int tries = 1;; ++tries, wait_s *= 2) {
     const HttpReply reply = request();
@@ -118,7 +133,8 @@ HttpReply Hub::ask(const std::string& url, const std::function<HttpReply()>& req
     const double asked_s = reply.retry_after_s.value_or(0);
     if (!may_pass(reply) || tries >= config_.attempts || asked_s > config_.longest_wait_s)
       refuse(url, reply, tries, !access_.token.empty());
-    std::this_thread::sleep_for(std::chrono::duration<double>(std::max(wait_s, asked_s)));
+    if (!wait(std::max(wait_s, asked_s), keep_going))
+      refuse(url, {reply.head, kStopped, {}, ""}, tries, !access_.token.empty());
   }
 }
 
@@ -131,7 +147,7 @@ std::string Hub::get_text(const std::string& url, std::string* next_url) const {
       return text.size() <= kLargeDocument;
     });
   };
-  const HttpReply reply = ask(url, request);
+  const HttpReply reply = ask(url, request, [] { return true; });
   if (next_url) *next_url = reply.next_url;
   return text;
 }
@@ -163,6 +179,7 @@ HubListing Hub::list(const std::string& repository, const std::string& revision)
 
 void Hub::transfer(const std::string& url, const HubFile& file, const fs::path& target,
                    const FetchProgress& progress) const {
+  std::uint64_t there = 0;
   const auto request = [&] {
     PartialFile partial(target, file.bytes);
     if (partial.bytes() == file.bytes) return HttpReply{{200, 0}, "", {}, ""};
@@ -172,6 +189,7 @@ void Hub::transfer(const std::string& url, const HubFile& file, const fs::path& 
           return partial.write(head.from, bytes) && progress(file, partial.bytes());
         },
         [&] { return progress(file, partial.bytes()); });
+    there = partial.bytes();
     if (!partial.fault().empty()) throw Error(partial.fault());
     if (reply.head.status == kRangeWrong) partial.restart();
     if (is_good(reply) && partial.bytes() != file.bytes)
@@ -179,7 +197,7 @@ void Hub::transfer(const std::string& url, const HubFile& file, const fs::path& 
           reply.head, concat("only ", partial.bytes(), " of ", file.bytes, " bytes came"), {}, ""};
     return reply;
   };
-  ask(url, request);
+  ask(url, request, [&] { return progress(file, there); });
 }
 
 void Hub::fetch(const HubListing& listing, const HubFile& file, const fs::path& target,

@@ -53,7 +53,8 @@ class Hub {
 
  private:
   std::string get_text(const std::string& url, std::string* next_url) const;
-  HttpReply ask(const std::string& url, const std::function<HttpReply()>& request) const;
+  HttpReply ask(const std::string& url, const std::function<HttpReply()>& request,
+                const std::function<bool()>& keep_going) const;
   void transfer(const std::string& url, const HubFile& file, const std::filesystem::path& target,
                 const FetchProgress& progress) const;
 
