@@ -86,7 +86,7 @@ void list_fields(ProgramConfig& config, ConfigFields& fields);
 /// Preset, then file, then settings. Throws Error for what is unknown.
 ProgramConfig read_program_config(const MappingOptions& options);
 
-/// The encoder that --encoder names; "auto" is the default one where there are 2D masks. Null:
+/// The encoder that --encoder names; "auto" is the best installed one where there are 2D masks. Null:
 /// none.
 std::shared_ptr<ImageTextEncoder> make_encoder(const MappingOptions& options,
                                                const ProgramConfig& config);

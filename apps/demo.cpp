@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "ovimap/base/error.h"
+#include "models_fetch.h"
 #include "program.h"
 
 namespace ovimap::apps {
@@ -45,6 +46,8 @@ void say_how_to_go_on(const std::string& folder, const std::string& map) {
       "          ovimap run YOUR_RECORDING -o my.ovimap   depth alone, real time\n"
       "          ovimap run YOUR_RECORDING --masks sam -o my.ovimap\n",
       folder.c_str(), folder.c_str(), map.c_str(), map.c_str());
+  if (const std::string better = better_encoder(); !better.empty())
+    std::printf("Better    words: %s\n", better.c_str());
 }
 
 int demo(const DemoOptions& options) {

@@ -66,7 +66,7 @@ constexpr CommandEntry kCommands[] = {
      "masks demo/tiny/room --frames ::20 --score", add_masks},
     {"serve", "show a map in a browser, and to programs over HTTP",
      "serve demo/tiny.ovimap", add_serve},
-    {"models", "list, verify and find networks",
+    {"models", "list, fetch, verify and find networks",
      "models list", add_models},
     {"manual", "write man pages and completions for shells",
      "manual ~/.local/share", add_manual},

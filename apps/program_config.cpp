@@ -19,20 +19,28 @@ void add_mapping_settings(CLI::App& command, MappingOptions& options) {
       .add_option("--masks", options.masks, "2D masks: none, sam, gt, a folder of PNGs or a model")
       ->capture_default_str();
   command
-      .add_option("--encoder", options.encoder,
-                  "what makes objects searchable: none, default, a model, or auto (default where "
-                  "there are 2D masks)")
+      .add_option(
+          "--encoder", options.encoder,
+          "what makes objects searchable: none, default, a model, or auto (where there are 2D "
+          "masks the best that is installed)")
       ->capture_default_str();
   command
       .add_option("--preset", options.preset,
                   "default or reference (as the paper's code does it; docs/reference-preset.md)")
       ->capture_default_str();
-  command
-      .add_option("--views", options.views,
-                  "which views of an object are embedded: default, paper, viewcov, combine, vis, "
-                  "random or all; not given: as the preset has them");
+  command.add_option(
+      "--views", options.views,
+      "which views of an object are embedded: default, paper, viewcov, combine, vis, "
+      "random or all; not given: as the preset has them");
   command.add_option("--config", options.config_file, "YAML file of settings");
   one_value(command.add_option("--set", options.settings, "one setting, a.b=c; may be repeated"));
+  command.add_option_function<std::string>(
+      "--device",
+      [&options](const std::string& device) {
+        for (const char* networks : {"masks", "encoder"})
+          options.settings.push_back(concat(networks, ".runtime.execution_provider=", device));
+      },
+      "what runs the networks: cpu, or cuda and others where ONNX Runtime was built with them");
   add_model_dirs(command, options.model_dirs);
   add_frame_range(command, options.frames);
   command.add_option("--threads", options.threads, "threads to use; 0: all cores")
@@ -102,7 +110,9 @@ int network_threads(const ProgramConfig& config, const MappingOptions& options) 
 std::shared_ptr<ImageTextEncoder> make_encoder(const MappingOptions& options,
                                                const ProgramConfig& config) {
   const bool masks = options.masks != "none";
-  const std::string spec = options.encoder != "auto" ? options.encoder : masks ? "default" : "none";
+  const std::string spec = options.encoder != "auto" ? options.encoder
+                           : masks                   ? preferred_encoder(options.model_dirs)
+                                                     : "none";
   RuntimeConfig runtime = config.encoder;
   if (runtime.threads == 0) runtime.threads = options.threads;
   return make_image_text_encoder(spec, runtime, options.model_dirs, EncoderUse::kImages);

@@ -37,6 +37,7 @@ int run(const RunOptions& options) {
   else
     print_run(options.map, mapped, options.fps);
   advise_on_objects(mapped);
+  advise_on_encoder(mapped, options.mapping.model_dirs);
   return kDone;
 }
 

@@ -4,6 +4,9 @@
 
 #include <cstdio>
 
+#include "ovimap/hub/catalogue/catalogue.h"
+#include "ovimap/inference/models/model_folder.h"
+
 namespace ovimap::apps {
 
 namespace {
@@ -25,10 +28,11 @@ void report_bad_masks(const LiveStatistics& done) {
 
 void report_encoder(const LiveStatistics& done) {
   if (done.views_failed > 0)
-    std::fprintf(stderr,
-                 "ovimap: the encoder failed on %lld view(s), the first: %s; `ovimap reembed` gives "
-                 "their objects embeddings\n",
-                 static_cast<long long>(done.views_failed), done.encoder_fault.c_str());
+    std::fprintf(
+        stderr,
+        "ovimap: the encoder failed on %lld view(s), the first: %s; `ovimap reembed` gives "
+        "their objects embeddings\n",
+        static_cast<long long>(done.views_failed), done.encoder_fault.c_str());
 }
 
 nlohmann::json lag_json(const StageSummary& lag) {
@@ -132,6 +136,18 @@ void advise_on_objects(const MappingRun& run) {
                "ovimap: no object was seen often enough to be kept; map more frames, or --set %s=1 "
                "where masks are slow\n",
                run.live ? "live.masks.min_gap" : "mask_interval");
+}
+
+void advise_on_encoder(const MappingRun& run,
+                       const std::vector<std::filesystem::path>& model_dirs) {
+  const std::string& used = run.document.semantics.encoder.name;
+  for (const ModelListing& model : list_models(model_search_path(model_dirs)))
+    if (!used.empty() && model.name == kDefaultEncoder && model.fault.empty() &&
+        read_model_folder(model.folder).name == used)
+      std::fprintf(stderr,
+                   "ovimap: words go by the small default encoder; a better one: ovimap models "
+                   "fetch %s\n",
+                   kFirstEncoder);
 }
 
 }  // namespace ovimap::apps

@@ -16,4 +16,8 @@ void print_run(const std::filesystem::path& map, const MappingRun& run, double f
 /// On stderr, where the map has no object: why.
 void advise_on_objects(const MappingRun& run);
 
+/// On stderr, where the small default encoder was used: how to get a better one.
+void advise_on_encoder(const MappingRun& run,
+                       const std::vector<std::filesystem::path>& model_dirs);
+
 }  // namespace ovimap::apps

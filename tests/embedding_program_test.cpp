@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 // Embeddings as a user meets them.
+#include "ovimap/inference/encoders/image_text_encoder.h"
+#include "ovimap/io/map_file/map_file.h"
 #include "program_fixture.h"
 
 namespace ovimap {
@@ -17,6 +19,38 @@ TEST_F(EmbeddingProgramTest, MakesOldMapsSearchable) {
   EXPECT_LE(run("query room.ovimap mug --encoder " + golden_model("minilm")).code, 1);
   // Another model's space: say so and offer the remedy.
   expect_complaint("query room.ovimap mug --encoder " + golden_model("clip"), {"reembed"});
+}
+
+TEST_F(EmbeddingProgramTest, AutoTakesThePreferredEncoderAndSaysWhereItIsTheSmallOne) {
+  const auto install = [this](const std::string& golden, const std::string& name,
+                              const std::string& keys) {
+    const std::filesystem::path folder = path("models/" + name);
+    std::filesystem::create_directories(path("models"));
+    std::filesystem::copy(std::filesystem::path(OVIMAP_SOURCE_DIR) /
+                              ("src/ovimap/inference/testdata/golden_" + golden),
+                          folder, std::filesystem::copy_options::recursive);
+    std::ofstream(folder / "model.yaml", std::ios::app) << "\n" << keys;
+  };
+  const auto encoder_of_run = [this] {
+    const ProgramResult result =
+        run(std::string("run replica/scene --masks gt -o room.ovimap --model-dir models") +
+            kSmallViews);
+    EXPECT_EQ(result.code, 0) << result.err;
+    const bool advised = result.err.find("ovimap models fetch") != std::string::npos;
+    return read_map_info(path("room.ovimap")).encoder.name + (advised ? " advised" : "");
+  };
+  install("minilm", kDefaultEncoder, "");
+  install("siglip", "doubtful", "preference: 90\nself_test: doubtful\n");
+  EXPECT_EQ(encoder_of_run(), "golden minilm advised");
+  install("clip", "better", "preference: 10\n");
+  EXPECT_EQ(encoder_of_run(), "golden clip");
+}
+
+TEST_F(EmbeddingProgramTest, SaysPlainlyThatThereIsNoSuchDevice) {
+  const std::string run_with = "run replica/scene -o room.ovimap --masks gt --encoder " +
+                               golden_model("minilm") + " --device ";
+  expect_complaint(run_with + "tensorrt", {"execution_provider is 'tensorrt'", "it has", "cpu"});
+  expect_complaint(run_with + "gpu", {"execution_provider", "cuda"});
 }
 
 TEST_F(EmbeddingProgramTest, EmbedsFinishedGeometry) {

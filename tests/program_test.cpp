@@ -191,7 +191,7 @@ TEST_F(ProgramTest, SaysWhatIsWrongWithTheCommandLine) {
                    {"'--weather' is no option of check; `ovimap check --help` lists them"});
   expect_complaint("edit room.ovimap renam 1 cup", {"'renam'", "edit", "did you mean 'rename'"});
   expect_complaint("models verfy x", {"'verfy'", "did you mean 'verify'"});
-  expect_complaint("models", {"say what models is to do: list, verify, path;"});
+  expect_complaint("models", {"say what models is to do: list, fetch, try, hub, verify, path;"});
   expect_complaint("edit room.ovimap", {"say what edit is to do: rename, merge"});
   expect_complaint("--versoin", {"did you mean '--version'"});
   expect_complaint("run recording", {"output"});

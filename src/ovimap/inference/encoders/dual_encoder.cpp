@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <map>
 
 #include "ovimap/base/error.h"
 #include "ovimap/inference/models/image_tensor.h"
@@ -17,7 +18,6 @@ namespace {
 constexpr const char* kImage = "image";
 constexpr const char* kText = "text";
 constexpr const char* kEmbedding = "embedding";
-constexpr std::size_t kItemsAtOnce = 8;  // keeps a GPU busy; a CPU gains nothing from more
 
 /// The image network and the weights beside it; all other files belong to the text.
 bool is_image_file(const ModelFolder& model, const std::string& file) {
@@ -46,11 +46,11 @@ void check_tensor(const ModelFolder& model, const TensorInfo& tensor, TensorType
 }
 
 /// How many items one run may take.
-std::size_t check_batch(const ModelFolder& model, const TensorInfo& input) {
+std::size_t check_batch(const ModelFolder& model, const TensorInfo& input, int items_at_once) {
   if (input.shape[0] > 1)
     fault(model, concat("tensor ", input.name, " takes exactly ", input.shape[0],
                         " items at a time; any number, or 1, is accepted"));
-  return input.shape[0] == 1 ? 1 : kItemsAtOnce;
+  return input.shape[0] == 1 ? 1 : static_cast<std::size_t>(items_at_once);
 }
 
 /// Every input the network wants must be one we feed.
@@ -64,14 +64,14 @@ void check_inputs_known(const ModelFolder& model, const OnnxSession& session, co
 }
 
 std::size_t check_image_network(const ModelFolder& model, const OnnxSession& session,
-                                int dimension) {
+                                const DualEncoderSpec& spec) {
   const std::int64_t size = model.input.size_px;
   const TensorInfo& input = session.input(model.input_of(kImage, kImage));
   check_inputs_known(model, session, kImage);
   check_tensor(model, input, TensorType::kFloat, "float32", {kAnySize, 3, size, size});
   check_tensor(model, session.output(model.output_of(kImage, kEmbedding)), TensorType::kFloat,
-               "float32", {kAnySize, dimension});
-  return check_batch(model, input);
+               "float32", {kAnySize, spec.dimension});
+  return check_batch(model, input, spec.items_at_once);
 }
 
 std::size_t check_text_network(const ModelFolder& model, const OnnxSession& session,
@@ -79,9 +79,9 @@ std::size_t check_text_network(const ModelFolder& model, const OnnxSession& sess
   const TensorInfo& ids = session.input(model.input_of(kText, "ids"));
   check_inputs_known(model, session, kText);
   for (const auto& [role, name] : model.network(kText).inputs) {
-    if (role != "ids" && role != "mask" && role != "types")
-      fault(model, concat("'networks.text.inputs.", role, "' is no role; accepted is ids, mask ",
-                          "or types"));
+    if (role != "ids" && role != "mask" && role != "ones" && role != "types")
+      fault(model, concat("'networks.text.inputs.", role, "' is no role; accepted is ids, mask, ",
+                          "ones or types"));
     check_tensor(model, session.input(name), TensorType::kInt64, "int64",
                  {kAnySize, spec.text.pad_to_context ? spec.text.context_length : kAnySize});
   }
@@ -92,7 +92,7 @@ std::size_t check_text_network(const ModelFolder& model, const OnnxSession& sess
                "float32", {kAnySize, spec.dimension});
   // Without padding texts run alone, so that none changes with its neighbours: quantised networks
   // scale by all they are given at once.
-  const std::size_t at_once = check_batch(model, ids);
+  const std::size_t at_once = check_batch(model, ids, spec.items_at_once);
   return spec.text.pad_to_context ? at_once : 1;
 }
 
@@ -134,7 +134,7 @@ DualEncoder::Network& DualEncoder::images() {
   std::call_once(images_.opened, [this] {
     verify_model_files(model_, [this](const auto& file) { return is_image_file(model_, file); });
     images_.session = open_network(model_, kImage, runtime_);
-    images_.at_once = check_image_network(model_, *images_.session, spec_.dimension);
+    images_.at_once = check_image_network(model_, *images_.session, spec_);
   });
   return images_;
 }
@@ -174,9 +174,12 @@ void DualEncoder::run_images(std::span<const RgbImage> images, std::span<float> 
 void DualEncoder::run_texts(std::span<const std::string> texts, std::span<float> rows) {
   const IdBatch batch = make_id_batch(texts, spec_.text, *tokenizer_);
   std::vector<TensorInput> inputs;
+  const std::vector<std::int64_t> ones(batch.ids.size(), 1);
+  const std::map<std::string, std::span<const std::int64_t>> by_role = {
+      {"ids", batch.ids}, {"mask", batch.mask}, {"ones", ones}, {"types", batch.types}};
   for (const auto& [role, name] : model_.network(kText).inputs) {
-    const auto& values = role == "ids" ? batch.ids : role == "mask" ? batch.mask : batch.types;
-    inputs.push_back({name, batch.shape, std::span<const std::int64_t>(values)});
+    const std::span<const std::int64_t> values = by_role.at(role);
+    inputs.push_back({name, batch.shape, values});
   }
   run(*texts_.session, kText, inputs, rows);
 }

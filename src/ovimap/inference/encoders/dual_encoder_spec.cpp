@@ -115,6 +115,7 @@ DualEncoderSpec read_dual_encoder_spec(const ModelFolder& model) {
   DualEncoderSpec spec;
   spec.dimension = require_count(model, "embedding_dim");
   spec.text = read_text_spec(model);
+  if (find_text(model, "items_at_once")) spec.items_at_once = require_count(model, "items_at_once");
   const auto scale = find_number<float>(model, "logit_scale");
   const auto bias = find_number<float>(model, "logit_bias");
   if (scale && bias) spec.calibration = MatchCalibration{*scale, *bias};

@@ -17,6 +17,7 @@ namespace ovimap {
 struct DualEncoderSpec {
   int dimension = 0;  ///< of an embedding
   TextSpec text;
+  int items_at_once = 8;  ///< in one run; keeps a GPU busy, a CPU gains nothing from more
   std::optional<MatchCalibration> calibration;
   std::string prompt_template = "{}";
 };

@@ -142,6 +142,39 @@ TEST(DualEncoder, TakesNetworksOfOneItem) {
   expect_row(encoder->encode_texts(texts), 1, {2 + 5 + 3, 3, 0});
 }
 
+TEST(DualEncoder, OnesHideNothing) {
+  EncoderFolder folder("ones");
+  folder.edit("mask: mask", "ones: mask");
+  const std::vector<std::string> texts = {"red"};
+  expect_row(folder.open()->encode_texts(texts), 0, {2 + 4 + 3, 6, 0});  // three ids, three [PAD]
+}
+
+TEST(DualEncoder, RunsAsManyItemsAtOnceAsItsModelSays) {
+  EncoderFolder folder("at_once");
+  OnnxGraph graph;  // adds the mean over the batch, as a network quantised while it runs might
+  graph.input("pixels", OnnxGraph::kFloat, {kAnySize, 3, kSize, kSize})
+      .node("ReduceMean", {"pixels"}, "mean",
+            {OnnxGraph::list_attribute("axes", {2, 3}), OnnxGraph::number_attribute("keepdims", 0)})
+      .node("ReduceMean", {"mean"}, "batch",
+            {OnnxGraph::list_attribute("axes", {0}), OnnxGraph::number_attribute("keepdims", 1)})
+      .node("Add", {"mean", "batch"}, "color")
+      .output("color", {kAnySize, kDimension});
+  folder.write("image.onnx", graph.file());
+  const std::vector<RgbImage> images = {RgbImage(3, 3, Rgb8{110, 100, 100}),
+                                        RgbImage(3, 3, Rgb8{100, 110, 100})};
+  expect_row(folder.open()->encode_images(images), 0, {3, 1, 0});
+  folder.edit("text_rule: bert", "text_rule: bert\nitems_at_once: 1");
+  expect_row(folder.open()->encode_images(images), 0, {1, 0, 0});
+  folder.edit("items_at_once: 1", "items_at_once: 0");
+  EXPECT_TRUE(contains(folder.error(), "'items_at_once' is 0"));
+}
+
+TEST(DualEncoder, WeightsBesideANetworkNeedADigest) {
+  EncoderFolder folder("beside");
+  folder.write("image.onnx_data", "weights");
+  EXPECT_TRUE(contains(folder.error(), "no digest of image.onnx_data"));
+}
+
 TEST(DualEncoder, RowsThatAreNotFiniteBecomeZeros) {
   EncoderFolder folder("nan");
   OnnxGraph graph;

@@ -7,6 +7,17 @@
 
 namespace ovimap {
 
+std::string preferred_encoder(const std::vector<std::filesystem::path>& model_dirs) {
+  std::string name = kDefaultEncoder;
+  int greatest = 0;
+  for (const ModelListing& model : list_models(model_search_path(model_dirs))) {
+    if (model.kind != "dual_encoder" || model.doubtful || model.preference <= greatest) continue;
+    greatest = model.preference;
+    name = model.name;
+  }
+  return name;
+}
+
 std::unique_ptr<ImageTextEncoder> make_image_text_encoder(
     const std::string& spec, const RuntimeConfig& runtime,
     const std::vector<std::filesystem::path>& model_dirs, EncoderUse use) {

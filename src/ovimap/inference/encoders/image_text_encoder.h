@@ -55,6 +55,10 @@ class ImageTextEncoder {
 /// The name of the model that `default` stands for; tools/setup.sh puts it on the search path.
 inline constexpr const char* kDefaultEncoder = "default-encoder";
 
+/// The model that `auto` stands for: of the encoders on the search path the one with the greatest
+/// `preference` whose self-test found nothing wrong; kDefaultEncoder where none has one.
+std::string preferred_encoder(const std::vector<std::filesystem::path>& model_dirs);
+
 /// What an encoder is wanted for. Its other half is opened when it is needed after all.
 enum class EncoderUse { kImages, kTexts, kBoth };
 

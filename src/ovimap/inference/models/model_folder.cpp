@@ -85,14 +85,16 @@ NetworkSpec parse_network(const YAML::Node& node, const fs::path& folder) {
   return {file, text_map(node["inputs"]), text_map(node["outputs"])};
 }
 
-/// A network's file and the weights that ONNX keeps beside it: "net.onnx", "net.onnx.data".
+/// A network's file and the weights that ONNX keeps beside it: "net.onnx", "net.onnx.data" or
+/// "net.onnx_data".
 std::vector<std::string> files_of(const fs::path& folder, const std::string& file) {
   std::vector<std::string> files = {file};
   std::error_code unreadable;
   const fs::path path = folder / file;
   for (const auto& entry : fs::directory_iterator(path.parent_path(), unreadable)) {
     const std::string name = entry.path().filename().string();
-    if (name.starts_with(path.filename().string() + "."))
+    const std::string network = path.filename().string();
+    if (name.starts_with(network + ".") || name.starts_with(network + "_data"))
       files.push_back((fs::path(file).parent_path() / name).string());
   }
   std::sort(files.begin(), files.end());

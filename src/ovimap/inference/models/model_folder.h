@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -72,12 +73,18 @@ void verify_model_files(const ModelFolder& model,
 std::vector<std::filesystem::path> model_search_path(
     const std::vector<std::filesystem::path>& model_dirs = {});
 
+/// The user's data folder for models, which need not exist; none where there is no home.
+std::optional<std::filesystem::path> user_model_folder();
+
 /// A folder on the search path that holds a model.yaml.
 struct ModelListing {
   std::filesystem::path folder;
   std::string name;   ///< the folder's name: what `--masks NAME` takes
   std::string kind;   ///< empty when model.yaml cannot be read
   std::string fault;  ///< why model.yaml cannot be read; empty when it can
+  int preference = 0;  ///< of encoders: `auto` takes the greatest; model.yaml's key
+  std::string variant;     ///< of a fetched model: full, fp16 or quantized
+  bool doubtful = false;   ///< its self-test said that it may be wrong
 };
 
 /// All models on the search path, the first of each name only, sorted by name within a folder.

@@ -30,19 +30,19 @@ void append_above_program(std::vector<fs::path>& folders) {
   for (; at.has_relative_path(); at = at.parent_path()) folders.push_back(at / kProjectFolder);
 }
 
-void append_user_data(std::vector<fs::path>& folders) {
-  const char* data = std::getenv("XDG_DATA_HOME");
-  const char* home = std::getenv("HOME");
-  if (data && *data)
-    folders.push_back(fs::path(data) / "ovimap" / "models");
-  else if (home && *home)
-    folders.push_back(fs::path(home) / ".local/share/ovimap/models");
+std::string extra(const ModelFolder& model, const char* key) {
+  const auto found = model.extras.find(key);
+  return found == model.extras.end() ? "" : found->second;
 }
 
 ModelListing listing(const fs::path& folder) {
-  ModelListing found{folder, folder.filename().string(), "", ""};
+  ModelListing found{folder, folder.filename().string(), "", "", 0, "", false};
   try {
-    found.kind = read_model_folder(folder).kind;
+    const ModelFolder model = read_model_folder(folder);
+    found.kind = model.kind;
+    found.preference = std::atoi(extra(model, "preference").c_str());
+    found.variant = extra(model, "variant");
+    found.doubtful = extra(model, "self_test") == "doubtful";
   } catch (const Error& error) {
     found.fault = error.what();
   }
@@ -60,12 +60,20 @@ std::vector<fs::path> model_folders_in(const fs::path& place) {
 
 }  // namespace
 
+std::optional<fs::path> user_model_folder() {
+  const char* data = std::getenv("XDG_DATA_HOME");
+  const char* home = std::getenv("HOME");
+  if (data && *data) return fs::path(data) / "ovimap" / "models";
+  if (home && *home) return fs::path(home) / ".local/share/ovimap/models";
+  return {};
+}
+
 std::vector<fs::path> model_search_path(const std::vector<fs::path>& model_dirs) {
   std::vector<fs::path> candidates = model_dirs;
   append_environment(candidates);
   candidates.emplace_back(kProjectFolder);
   append_above_program(candidates);
-  append_user_data(candidates);
+  if (const auto folder = user_model_folder()) candidates.push_back(*folder);
 
   std::vector<fs::path> folders;
   std::set<fs::path> seen;

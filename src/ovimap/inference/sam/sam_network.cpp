@@ -15,6 +15,7 @@ namespace {
 constexpr const char* kImage = "image";
 constexpr const char* kPoints = "points";
 constexpr const char* kLabels = "labels";
+constexpr const char* kBoxes = "boxes";
 constexpr const char* kMaskInput = "mask_input";
 constexpr const char* kHasMaskInput = "has_mask_input";
 constexpr const char* kImageSize = "image_size";
@@ -50,6 +51,7 @@ SamNetwork::SamNetwork(const ModelFolder& model, const RuntimeConfig& runtime)
       encoder_(folder_ / encoder_spec_.file, runtime),
       decoder_(folder_ / decoder_spec_.file, runtime) {
   check_tensors(model);
+  read_prompt_rules(model);
 }
 
 void SamNetwork::check_tensors(const ModelFolder& model) {
@@ -88,6 +90,37 @@ void SamNetwork::check_tensors(const ModelFolder& model) {
   grid_size_ = fixed ? static_cast<int>(masks.back()) : input_.size_px / kInputPerGrid;
 }
 
+void SamNetwork::read_prompt_rules(const ModelFolder& model) {
+  const auto flag = [&model](const char* key, bool otherwise) {
+    const auto found = model.extras.find(key);
+    if (found == model.extras.end()) return otherwise;
+    if (found->second != "true" && found->second != "false")
+      throw Error(concat("model file ", (model.folder / "model.yaml").string(), ": '", key,
+                         "' is '", found->second, "'; accepted is true or false"));
+    return found->second == "true";
+  };
+  box_corners_ = flag("box_corners", true);
+  adds_padding_ = flag("adds_padding", false);
+}
+
+/// Without corners a box is asked for by its point alone.
+std::vector<PromptPoints> SamNetwork::as_decoder_takes(
+    std::span<const PromptPoints> prompts) const {
+  std::vector<PromptPoints> taken(prompts.begin(), prompts.end());
+  for (PromptPoints& prompt : taken) {
+    const std::size_t before = prompt.size();
+    if (!box_corners_)
+      std::erase_if(prompt, [](const PromptPoint& point) {
+        return point.label == PointLabel::kBoxMin || point.label == PointLabel::kBoxMax;
+      });
+    if (prompt.size() < before) prompt.push_back({{0, 0}, PointLabel::kPadding});
+    if (adds_padding_)
+      std::erase_if(prompt,
+                    [](const PromptPoint& point) { return point.label == PointLabel::kPadding; });
+  }
+  return taken;
+}
+
 ImageFeatures SamNetwork::encode(const RgbImage& image) const {
   const FloatTensor tensor = image_tensor(image, input_);
   const std::vector<TensorInput> inputs = {
@@ -110,13 +143,14 @@ namespace {
 struct PointTensors {
   TensorShape points_shape, labels_shape;
   std::vector<float> points, labels;
+  std::vector<std::int64_t> label_numbers;  ///< the same labels
 };
 
 PointTensors point_tensors(std::span<const PromptPoints> prompts, const InputFrame& frame,
                            bool nested) {
   const auto count = static_cast<std::int64_t>(prompts.size());
   const auto points = static_cast<std::int64_t>(prompts.front().size());
-  PointTensors tensors{{count, points, 2}, {count, points}, {}, {}};
+  PointTensors tensors{{count, points, 2}, {count, points}, {}, {}, {}};
   if (nested) {
     tensors.points_shape.insert(tensors.points_shape.begin(), 1);
     tensors.labels_shape.insert(tensors.labels_shape.begin(), 1);
@@ -128,6 +162,7 @@ PointTensors point_tensors(std::span<const PromptPoints> prompts, const InputFra
       const Eigen::Vector2f in_input = point.in_image_px.cwiseProduct(frame.scale);
       tensors.points.insert(tensors.points.end(), {in_input.x(), in_input.y()});
       tensors.labels.push_back(static_cast<float>(point.label));
+      tensors.label_numbers.push_back(static_cast<std::int64_t>(point.label));
     }
   }
   return tensors;
@@ -144,6 +179,10 @@ class ConstantInputs {
     add_zeros(decoder, spec, kHasMaskInput, has_mask_);
     if (const auto found = spec.inputs.find(kImageSize); found != spec.inputs.end())
       add_size(decoder.input(found->second));
+    constexpr std::int64_t kBoxNumbers = 4;  // boxes are given as points: here there is none
+    if (const auto found = spec.inputs.find(kBoxes); found != spec.inputs.end())
+      inputs_.push_back(
+          {found->second, {1, 0, kBoxNumbers}, std::span<const float>(size_float_).first(0)});
   }
   const std::vector<TensorInput>& inputs() const { return inputs_; }
 
@@ -195,8 +234,9 @@ std::vector<MaskProposals> split_proposals(const std::filesystem::path& folder,
 }  // namespace
 
 std::vector<MaskProposals> SamNetwork::decode_batch(const ImageFeatures& features,
-                                                    std::span<const PromptPoints> prompts) const {
-  if (prompts.empty()) return {};
+                                                    std::span<const PromptPoints> asked) const {
+  if (asked.empty()) return {};
+  const std::vector<PromptPoints> prompts = as_decoder_takes(asked);
   const PointTensors points = point_tensors(prompts, features.frame, nested_);
   const ConstantInputs constants(decoder_, decoder_spec_, grid_size_);
   std::vector<TensorInput> inputs = constants.inputs();
@@ -205,8 +245,11 @@ std::vector<MaskProposals> SamNetwork::decode_batch(const ImageFeatures& feature
                       std::span<const float>(features.tensors[i].values)});
   inputs.push_back(
       {decoder_spec_.inputs.at(kPoints), points.points_shape, std::span(points.points)});
-  inputs.push_back(
-      {decoder_spec_.inputs.at(kLabels), points.labels_shape, std::span(points.labels)});
+  TensorInput labels = {decoder_spec_.inputs.at(kLabels), points.labels_shape,
+                        std::span(points.labels)};
+  if (decoder_.input(labels.name).type == TensorType::kInt64)
+    labels.values = std::span<const std::int64_t>(points.label_numbers);
+  inputs.push_back(labels);
   const std::vector<std::string> outputs = {decoder_spec_.outputs.at(kMasks),
                                             decoder_spec_.outputs.at(kScores)};
   const std::vector<FloatTensor> results = decoder_.run(inputs, outputs);

@@ -58,6 +58,8 @@ class SamNetwork {
 
  private:
   void check_tensors(const ModelFolder& model);
+  void read_prompt_rules(const ModelFolder& model);
+  std::vector<PromptPoints> as_decoder_takes(std::span<const PromptPoints> prompts) const;
   std::vector<MaskProposals> decode_batch(const ImageFeatures& features,
                                           std::span<const PromptPoints> prompts) const;
 
@@ -70,6 +72,8 @@ class SamNetwork {
   int grid_size_ = 0;
   bool batches_ = false;  ///< the number of prompts is open
   bool nested_ = false;   ///< points are [1, prompts, points, 2], as EfficientSAM has them
+  bool box_corners_ = true;    ///< the decoder knows the labels of box corners
+  bool adds_padding_ = false;  ///< the decoder adds the padding point itself
 };
 
 }  // namespace ovimap
