@@ -78,6 +78,8 @@ int synth(const SynthOptions& options) {
   for (const CLI::Option* option : options.of_videos)
     if (option->count() > 0 && !options.is_video())
       throw Error(concat(option->get_name(), " is of a walk; add --walk or --plan NAME"));
+  if (options.room.frames > 0 && options.is_video())
+    throw Error("--frames is of rooms; say how long a walk is with --seconds and --fps");
   const ThreadLimit limit(options.threads);
   if (options.catalog)
     return synth_catalog(

@@ -92,7 +92,7 @@ void window(Craft& craft, MadeModel& model) {
   add_board(mesh, {-0.03f, -0.025f, w}, {0.03f, 0.02f, h - w}, frame);
   if (!craft.tuned())
     add_board(mesh, {-x + w, -0.02f, h * 0.66f}, {x - w, 0.02f, h * 0.66f + 0.03f}, frame);
-  const Paint outside = photograph(craft.split, craft.random.bits());
+  const Paint outside = view_outside(craft.split, craft.random.bits());
   const auto view = craft.print(
       mesh, x, h / 2,
       [outside](float u, float v) {

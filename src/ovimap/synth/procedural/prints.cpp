@@ -138,6 +138,10 @@ Paint photograph(Split split, std::uint64_t seed) {
   return first ? skyline(seed) : flowers(seed);
 }
 
+Paint view_outside(Split split, std::uint64_t seed) {
+  return split == Split::kTuned ? landscape(seed) : skyline(seed);
+}
+
 Paint screen_picture(Split split, std::uint64_t seed) {
   Random random(seed);
   const LatticeNoise noise(random.bits());

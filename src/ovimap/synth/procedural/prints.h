@@ -12,6 +12,8 @@ namespace ovimap {
 /// What is printed on things, shown by screens and hung on walls; all painted from a seed, other
 /// motifs for each split.
 Paint photograph(Split split, std::uint64_t seed);
+/// What is seen through a window: land or a street.
+Paint view_outside(Split split, std::uint64_t seed);
 /// Windows, text and a photograph, or a picture that fills the screen.
 Paint screen_picture(Split split, std::uint64_t seed);
 /// Lines of text with headings, sometimes a figure.

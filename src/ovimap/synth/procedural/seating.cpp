@@ -30,8 +30,8 @@ void add_cushions(Craft& craft, TexturedMesh& mesh, int count, float left, float
   for (int i = 0; i < count; ++i) {
     const float x = left + width * static_cast<float>(i), give = craft.between(0, 0.02f);
     add_rounded_box(mesh, {x + kSeam_m, front + give, bottom},
-                    {x + width - kSeam_m, back, top - give}, craft.between(0.04f, 0.07f), cloth,
-                    kGrain_m);
+                    {x + width - kSeam_m, back, top - 0.3f * give}, craft.between(0.04f, 0.07f),
+                    cloth, kGrain_m);
   }
 }
 
@@ -52,7 +52,7 @@ void block_sofa(Craft& craft, MadeModel& model, float width, int seats) {
   add_cushions(craft, mesh, seats, -x + arm, x - arm, -y, y - 0.22f, 0.26f, seat, cloth);
   add_cushions(craft, mesh, seats, -x + arm, x - arm, y - 0.36f, y - 0.18f, seat - 0.02f, back,
                cloth);
-  model.decks = {{{0, -0.05f}, {x - arm - 0.05f, y - 0.3f}, seat - 0.02f}};
+  model.decks = {{{0, -0.05f}, {x - arm - 0.05f, y - 0.3f}, seat}};
 }
 
 /// Round arms, a back of upright panels, one long seat, often with a chaise at one end.
@@ -79,7 +79,7 @@ void panel_sofa(Craft& craft, MadeModel& model, float width, int seats, bool cha
       add_rounded_box(mesh, {x - 2 * roll - 0.7f, -y - 0.7f, low},
                       {x - 2 * roll, -y + 0.02f, low < 0.2f ? 0.24f : seat}, 0.05f, cloth,
                       kGrain_m);
-  model.decks = {{{0, -0.05f}, {x - 2 * roll - 0.05f, y - 0.28f}, seat - 0.015f}};
+  model.decks = {{{0, -0.05f}, {x - 2 * roll - 0.05f, y - 0.28f}, seat}};
 }
 
 void sofa(Craft& craft, MadeModel& model) {
@@ -197,7 +197,7 @@ void bed(Craft& craft, MadeModel& model) {
   for (const float side : x > 0.7f ? std::vector<float>{-0.5f, 0.5f} : std::vector<float>{0.f})
     add_rounded_box(mesh, {side * x - 0.3f, y - 0.44f, top - 0.01f},
                     {side * x + 0.3f, y - 0.05f, top + 0.12f}, 0.065f, sheet, kGrain_m);
-  model.decks = {{{0, -0.4f}, {x - 0.2f, 0.4f}, top + 0.03f}};
+  model.decks = {{{0, -0.4f}, {x - 0.2f, 0.4f}, top + 0.035f}};
 }
 
 void cushion(Craft& craft, MadeModel& model) {
