@@ -53,7 +53,7 @@ int eval(const EvalOptions& options) {
     std::fprintf(stderr, "ovimap: %s\n", notice.c_str());
   const ProtocolChoice protocols{options.protocol != "reference", options.protocol != "standard"};
   const EvalTable table = table_of(evaluation, config, protocols);
-  const std::string tables = eval_markdown(evaluation, table);
+  const std::string tables = eval_markdown(evaluation, table, config.sizes);
   if (!options.markdown.empty()) write_markdown(options.markdown, tables);
   if (options.json)
     print_json(eval_json(evaluation, table));

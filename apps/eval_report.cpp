@@ -37,6 +37,16 @@ nlohmann::json json_of(const ReferenceScores& scores) {
           {"predicted_instances", scores.predicted_instances}};
 }
 
+nlohmann::json json_of(const RecallGroup& group) {
+  return {{"things", group.things}, {"found", group.found}, {"recall", group.recall()}};
+}
+
+nlohmann::json json_of(const SizeRecall& recall) {
+  return {{"small", json_of(recall.small)},       {"medium", json_of(recall.medium)},
+          {"large", json_of(recall.large)},       {"flat", json_of(recall.flat)},
+          {"unscored", json_of(recall.unscored)}, {"objects_per_thing", recall.objects_per_thing}};
+}
+
 nlohmann::json json_of(const GeometryScores& scores) {
   return {{"accuracy_m", scores.accuracy_m},
           {"accuracy_median_m", scores.accuracy_median_m},
@@ -91,7 +101,8 @@ nlohmann::json json_of(const SemanticReport& report, const LabelSet& set, bool p
 }
 
 nlohmann::json scene_json(const EvalFigures& figures, const std::optional<LabelSet>& set) {
-  nlohmann::json json = {{"geometry", json_of(figures.geometry)}};
+  nlohmann::json json = {{"geometry", json_of(figures.geometry)},
+                         {"recall_by_size", json_of(figures.sizes)}};
   if (figures.standard) json["standard"] = json_of(*figures.standard);
   if (figures.reference) json["reference"] = json_of(*figures.reference);
   if (figures.standard_semantic)
@@ -159,6 +170,33 @@ std::string semantic_table(const EvalFigures& all, const std::vector<EvalFigures
   return text;
 }
 
+std::string size_table(const EvalFigures& all, const std::vector<EvalFigures>& scenes,
+                       const SizeGroupsConfig& config) {
+  char head[256];
+  std::snprintf(
+      head, sizeof head,
+      "| scene | under %g l | under %g l | larger | flat | not scored | objects / true |\n",
+      config.small_litres, config.medium_litres);
+  std::string text = concat(head, "| --- | --- | --- | --- | --- | --- | --- |\n");
+  const auto add = [&](const EvalFigures& figures) {
+    const SizeRecall& s = figures.sizes;
+    text += "| " + figures.name + " |";
+    for (const RecallGroup* group : {&s.small, &s.medium, &s.large, &s.flat, &s.unscored}) {
+      char cell[64];
+      std::snprintf(cell, sizeof cell, " %.2f (%d / %d) |", group->recall(), group->found,
+                    group->things);
+      text += group->things > 0 ? cell : " - |";
+    }
+    char ratio[32];
+    std::snprintf(ratio, sizeof ratio, " %.2f |\n", s.objects_per_thing);
+    text += ratio;
+  };
+  add(all);
+  if (scenes.size() > 1)
+    for (const EvalFigures& scene : scenes) add(scene);
+  return text;
+}
+
 std::string surface_table(const std::vector<EvalFigures>& scenes) {
   std::string text =
       "| scene | error, mm | median, mm | completeness |\n| --- | --- | --- | --- |\n";
@@ -194,6 +232,9 @@ EvalFigures pooled(const Evaluation& evaluation, std::size_t first, std::size_t 
       scenes.push_back(labelled_scene(evaluation.scenes[i], protocol));
     return scenes;
   };
+  std::vector<SizedScene> sized;
+  for (std::size_t i = first; i < first + count; ++i) sized.push_back(evaluation.scenes[i].sized);
+  figures.sizes = recall_by_size(sized, config.sizes);
   if (protocols.standard) {
     figures.standard = standard_scores(scenes_of(Protocol::kStandard));
     if (semantic)
@@ -251,7 +292,8 @@ nlohmann::json eval_json(const Evaluation& evaluation, const EvalTable& table) {
   for (const EvalFigures& scene : scenes) json["scenes"][scene.name] = scene_json(scene, set);
   if (all.standard)
     json["standard"] = {{"class_agnostic", json_of(*all.standard)},
-                        {"geometry", json_of(all.geometry)}};
+                        {"geometry", json_of(all.geometry)},
+                        {"recall_by_size", json_of(all.sizes)}};
   if (all.reference)
     json["reference"] = {{"class_agnostic", json_of(*all.reference)},
                          {"pooled", json_of(*all.reference_pooled)}};
@@ -262,7 +304,8 @@ nlohmann::json eval_json(const Evaluation& evaluation, const EvalTable& table) {
   return json;
 }
 
-std::string eval_markdown(const Evaluation& evaluation, const EvalTable& table) {
+std::string eval_markdown(const Evaluation& evaluation, const EvalTable& table,
+                          const SizeGroupsConfig& sizes) {
   const auto& [all, scenes] = table;
   std::string text = "Objects, whatever their class";
   if (all.standard)
@@ -273,6 +316,8 @@ std::string eval_markdown(const Evaluation& evaluation, const EvalTable& table) 
     text +=
         concat("\nClasses: ", report->all.classes, " of the ", evaluation.classes->labels.size(),
                " of `", evaluation.classes->name, "` occur\n\n", semantic_table(all, scenes));
+  text += "\nThings found (IoU of one half), by the size of their box\n\n" +
+          size_table(all, scenes, sizes);
   return text + "\nSurface\n\n" + surface_table(scenes);
 }
 

@@ -24,6 +24,7 @@ struct EvalFigures {
   std::optional<ReferenceScores> reference, reference_pooled;
   std::optional<SemanticReport> standard_semantic, reference_semantic;
   GeometryScores geometry;  ///< means over the scenes
+  SizeRecall sizes;         ///< of the `standard` protocol
 };
 
 /// Of all scenes pooled, or of one of them.
@@ -44,6 +45,7 @@ EvalTable table_of(const Evaluation& evaluation, const EvaluationConfig& config,
 nlohmann::json eval_json(const Evaluation& evaluation, const EvalTable& table);
 
 /// Tables that a terminal and a Markdown page both show well.
-std::string eval_markdown(const Evaluation& evaluation, const EvalTable& table);
+std::string eval_markdown(const Evaluation& evaluation, const EvalTable& table,
+                          const SizeGroupsConfig& sizes);
 
 }  // namespace ovimap::apps

@@ -5,6 +5,7 @@
 #include "command.h"
 #include "ovimap/base/error.h"
 #include "ovimap/base/parallel.h"
+#include "ovimap/synth/buildings/benchmark_scenes.h"
 #include "ovimap/synth/buildings/floor_plan.h"
 #include "ovimap/synth/rooms/room_spec.h"
 #include "synth_catalog.h"
@@ -24,7 +25,9 @@ struct SynthOptions {
   std::vector<CLI::Option*> of_videos;
   std::string size;
 
-  bool is_video() const { return walk || !room.plan.empty(); }
+  bool is_video() const {
+    return walk || !room.plan.empty() || !benchmark_scenes(room.room).empty();
+  }
 
   bool catalog = false;
   int views = PortraitConfig{}.views;
@@ -56,10 +59,27 @@ WrittenRoom render(const SynthOptions& options, const std::string& room, const s
   });
 }
 
+/// A scene of apartments-v1 or desks-v1, filmed as the set says but for what was asked for.
+WrittenRoom render_scene(SynthOptions options, const BenchmarkScene& scene) {
+  const float asked_fps = options.video.walk.fps, asked_seconds = options.video.walk.seconds,
+              asked_speed = options.video.walk.speed_mps;
+  options.video.walk = scene.walk;
+  for (const CLI::Option* option : options.of_videos) {
+    if (option->count() == 0) continue;
+    if (option->get_name() == "--fps") options.video.walk.fps = asked_fps;
+    if (option->get_name() == "--seconds") options.video.walk.seconds = asked_seconds;
+    if (option->get_name() == "--speed") options.video.walk.speed_mps = asked_speed;
+  }
+  options.room.scene = scene;
+  return render(options, scene.name, scene.name);
+}
+
 int synth(const SynthOptions& options) {
   for (const CLI::Option* option : options.of_videos)
     if (option->count() > 0 && !options.is_video())
       throw Error(concat(option->get_name(), " is of a walk; add --walk or --plan NAME"));
+  if (options.room.frames > 0 && options.is_video())
+    throw Error("--frames is of rooms; say how long a walk is with --seconds and --fps");
   const ThreadLimit limit(options.threads);
   if (options.catalog)
     return synth_catalog(
@@ -67,6 +87,8 @@ int synth(const SynthOptions& options) {
   std::vector<WrittenRoom> rooms;
   if (!options.room.plan.empty())
     rooms.push_back(render(options, options.room.plan, options.room.plan));
+  else if (const auto scenes = benchmark_scenes(options.room.room); !scenes.empty())
+    for (const BenchmarkScene& scene : scenes) rooms.push_back(render_scene(options, scene));
   else if (options.room.room == kRoomsV1)
     for (const std::string& name : rooms_v1_names()) rooms.push_back(render(options, name, name));
   else
@@ -87,6 +109,13 @@ std::string listed(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
   return text;
+}
+
+std::vector<std::string> scene_names() {
+  std::vector<std::string> names;
+  for (const char* set : {kApartmentsV1, kDesksV1})
+    for (const BenchmarkScene& scene : benchmark_scenes(set)) names.push_back(scene.name);
+  return names;
 }
 
 void add_walk_options(CLI::App& command, SynthOptions& options, CLI::Option* noise) {
@@ -125,9 +154,11 @@ Action add_synth(CLI::App& command) {
                   "folder to write; the recording is OUT/room, a walk OUT/its room's name")
       ->required();
   command
-      .add_option("--room", options->room.room,
-                  concat("which room: ", listed(room_names()), "; or ", kRoomsV1,
-                         ", the five of the benchmark, each OUT/its name"))
+      .add_option(
+          "--room", options->room.room,
+          concat("which room: ", listed(room_names()), "; or a benchmark, each scene OUT/its ",
+                 "name: ", kRoomsV1, ", ", kApartmentsV1, " or ", kDesksV1,
+                 ", whose scenes can be named too: ", listed(scene_names())))
       ->capture_default_str();
   command
       .add_option("--frames", options->room.frames,

@@ -3,8 +3,10 @@
 #include "synth_room.h"
 
 #include "ovimap/io/truth/replica_pack.h"
+#include "ovimap/synth/buildings/benchmark_scenes.h"
 #include "ovimap/synth/buildings/floor_plan.h"
 #include "ovimap/synth/buildings/room_builder.h"
+#include "ovimap/synth/recordings/little_seen.h"
 #include "ovimap/synth/rooms/rooms_v1.h"
 
 namespace ovimap::apps {
@@ -14,6 +16,14 @@ namespace {
 constexpr int kPlanWidth_px = 640, kPlanHeight_px = 480;
 
 SynthSequence make_sequence(const RoomOptions& options) {
+  if (options.scene) {
+    SynthSequenceConfig config;
+    config.noise = options.noise;
+    const PinholeCamera camera = options.width > 0 ? synth_camera(options.width, options.height)
+                                                   : synth_camera(kPlanWidth_px, kPlanHeight_px);
+    return {build_benchmark_scene(*options.scene, options.seed, options.furniture), camera,
+            *options.video, config};
+  }
   const bool plan = !options.plan.empty();
   const RoomSpec spec = room_spec(plan ? "bare" : options.room, options.seed);
   PinholeCamera camera = plan ? synth_camera(kPlanWidth_px, kPlanHeight_px) : spec.camera;
@@ -36,6 +46,7 @@ WrittenRoom write_room(const std::filesystem::path& out, const RoomOptions& opti
   pack.scene = scene;
   pack.frames = &sequence;
   pack.truth = sequence.truth_mesh();
+  if (options.scene) pack.unscored = little_seen(sequence, pack.truth);
   pack.timed = sequence.is_video();
   pack.notice = sequence.notice();
   pack.settings = sequence.settings();

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "ovimap/synth/buildings/benchmark_scenes.h"
 #include "ovimap/synth/furniture/furniture_catalog.h"
 #include "ovimap/synth/recordings/sequence.h"
 
@@ -20,6 +21,7 @@ struct RoomOptions {
   std::uint64_t seed = 1;
   bool noise = false;  ///< as a depth camera sees it
   std::string plan;    ///< one of floor_plan_names, with a video; empty: the room
+  std::optional<BenchmarkScene> scene;  ///< instead of a room or a plan, with a video
   std::optional<VideoConfig> video;  ///< the video of a walk instead of frames from all sides
   int width = 0, height = 0;         ///< pixels; 0: as the room says
 };

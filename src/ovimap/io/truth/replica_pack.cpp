@@ -104,6 +104,7 @@ void write_labels(const fs::path& root, const ReplicaPack& pack) {
     names["classes"][std::to_string(instance.class_id)] = instance.class_name;
     if (!instance.room.empty()) names["rooms"][std::to_string(instance.id)] = instance.room;
   }
+  if (!pack.unscored.empty()) names["unscored"] = pack.unscored;
   if (!pack.instances.empty()) write_text(root / pack.scene / "labels.json", names.dump(1) + "\n");
   if (pack.truth.vertices.empty()) return;
   std::string instances, classes;

@@ -35,9 +35,10 @@ struct ReplicaPack {
       nullptr;  ///< registered, one camera for all; with true ids or without
   Mesh truth;   ///< labels are instance ids; may be empty
   std::vector<PackInstance> instances;
-  bool timed = false;    ///< frames have true times: writes timestamps.txt
-  std::string notice;    ///< who made what is shown (Markdown); empty: no NOTICE.md
-  std::string settings;  ///< how it was made (YAML); empty: no settings.yaml
+  std::vector<std::uint32_t> unscored;  ///< ids too small or too little seen to be scored
+  bool timed = false;                   ///< frames have true times: writes timestamps.txt
+  std::string notice;                   ///< who made what is shown (Markdown); empty: no NOTICE.md
+  std::string settings;                 ///< how it was made (YAML); empty: no settings.yaml
 };
 
 /// `done` of `total` frames are on disk.

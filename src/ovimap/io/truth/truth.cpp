@@ -70,10 +70,12 @@ void read_names(const fs::path& path, Truth& truth) {
     if (!document.is_object()) throw std::invalid_argument("not an object");
     truth.instance_names = names_in(document, "instances");
     truth.class_names = names_in(document, "classes");
+    if (document.contains("unscored"))
+      truth.unscored = document.at("unscored").get<std::set<std::int32_t>>();
   } catch (const std::exception&) {
-    throw Error(concat("'", path.string(),
-                       "' is not of the form {\"instances\": {\"12\": \"sofa\"}, ",
-                       "\"classes\": {\"1\": \"sofa\"}}"));
+    throw Error(
+        concat("'", path.string(), "' is not of the form {\"instances\": {\"12\": \"sofa\"}, ",
+               "\"classes\": {\"1\": \"sofa\"}, \"unscored\": [12]}; the last may be left out"));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct Truth {
   std::vector<std::int32_t> instances;  ///< id per vertex; 0 or less = unlabelled
   std::vector<std::int32_t> classes;    ///< class per vertex; empty when the source has none
   std::map<std::int32_t, std::string> instance_names, class_names;  ///< empty when none are given
+  std::set<std::int32_t> unscored;  ///< instances that the recording calls too small to be scored
 };
 
 /// Which of ScanNet's numberings of classes a truth takes.
@@ -32,8 +34,8 @@ enum class ScanNetClasses {
 /// the scene's folder ROOT/SCENE (the one with results/ and traj.txt); the truth lies in ROOT:
 ///   SCENE_mesh.ply (triangles or quads), instance_labels_SCENE.txt and, when there is one,
 ///   semantic_labels_SCENE.txt (one whole number per vertex), and for names either labels.json
-///   {"instances": {"12": "sofa"}, "classes": {"1": "sofa"}} or the data set's own
-///   info_semantic.json.
+///   {"instances": {"12": "sofa"}, "classes": {"1": "sofa"}, "unscored": [12]} or the data set's
+///   own info_semantic.json.
 /// A labels.json in ROOT/SCENE goes before the one in ROOT; info_semantic.json comes last. Labels
 /// may also lie in ROOT/replica_gt_instances and ROOT/replica_gt_semantics. Without those of the
 /// instances the data set's own mesh_semantic.ply is taken (io/truth/truth_replica.h, which says where).

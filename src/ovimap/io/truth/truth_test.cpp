@@ -61,6 +61,15 @@ TEST_F(TruthFolder, LoadsMeshLabelsAndNames) {
   EXPECT_EQ(truth.class_names.at(1), "couch");
 }
 
+TEST_F(TruthFolder, ThingsMayBeNamedThatAreNotScored) {
+  write("labels.json", R"({"instances": {"12": "pen", "3": "wall"}, "unscored": [12]})");
+  EXPECT_EQ(load_truth(root_ / "den").unscored, std::set<std::int32_t>{12});
+  write("labels.json", R"({"instances": {"12": "pen"}, "unscored": {"12": true}})");
+  EXPECT_TRUE(fault_names("labels.json"));
+  write("labels.json", R"({"instances": {"12": "pen"}})");
+  EXPECT_TRUE(load_truth(root_ / "den").unscored.empty());
+}
+
 TEST_F(TruthFolder, TheScenesOwnNamesGoFirst) {
   write("labels.json", R"({"instances": {"12": "sofa"}})");
   write("den/labels.json", R"({"instances": {"12": "bed"}})");

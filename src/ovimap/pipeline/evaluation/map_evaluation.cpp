@@ -72,6 +72,18 @@ void count_views(const MapDocument& map, int min_views, EvaluatedScene& scene) {
   }
 }
 
+/// Truth, map and sizes of things; walls, floors and ceilings are known by their names.
+SizedScene sized_scene(const Truth& truth, std::vector<std::uint32_t> predicted) {
+  SizedScene scene{truth.instances,
+                   std::move(predicted),
+                   thing_sizes(truth.mesh.vertices, truth.instances),
+                   truth.unscored,
+                   {}};
+  for (const auto& [id, name] : truth.instance_names)
+    if (name == "wall" || name == "floor" || name == "ceiling") scene.structure.insert(id);
+  return scene;
+}
+
 /// The numbering of ScanNet's own truth that a set of classes needs: its 20 are some of NYU's 40.
 ScanNetClasses numbering_for(const std::string& classes) {
   return classes == "scannet20" ? ScanNetClasses::kNyu40 : ScanNetClasses::kScanNet200;
@@ -90,6 +102,9 @@ Draft draft_scene(const MapAndTruth& paths, const std::string& classes,
   draft.scene.geometry = geometry_scores(truth.mesh, mesh, config.geometry);
   std::vector<std::uint32_t> labels =
       transfer_labels(truth.mesh.vertices, mesh.vertices, mesh.labels, config.transfer);
+  draft.scene.sized = sized_scene(truth, labels);
+  for (std::int32_t& id : truth.instances)
+    if (truth.unscored.count(id) > 0) id = 0;
   draft.scene.labels.instances = {std::move(truth.instances), std::move(labels), {}};
   draft.classes = {paths.source, std::move(truth.classes), std::move(truth.class_names)};
   draft.embedded = has_embeddings(map);
@@ -173,6 +188,7 @@ void list_fields(EvaluationConfig& config, ConfigFields& fields) {
     inner.group("semantic",
                 [&](ConfigFields& semantic) { list_fields(config.semantic_reference, semantic); });
   });
+  fields.group("sizes", [&](ConfigFields& inner) { list_fields(config.sizes, inner); });
   fields.add("min_embedded_views", config.min_embedded_views, 0, 1000,
              "the reference protocol drops objects with fewer embedded views");
 }

@@ -12,6 +12,7 @@
 #include "ovimap/eval/geometry/geometry_scores.h"
 #include "ovimap/eval/scores/reference_scores.h"
 #include "ovimap/eval/scores/semantic_scores.h"
+#include "ovimap/eval/scores/size_recall.h"
 #include "ovimap/eval/scores/standard_scores.h"
 #include "ovimap/inference/models/onnx_session.h"
 #include "ovimap/semantics/classes/class_names.h"
@@ -24,6 +25,7 @@ struct EvaluationConfig {
   GeometryScoresConfig geometry;
   ReferenceProtocolConfig reference;
   SemanticReferenceConfig semantic_reference;
+  SizeGroupsConfig sizes;
   int min_embedded_views = 2;  ///< the reference protocol drops objects with fewer
 };
 void list_fields(EvaluationConfig& config, ConfigFields& fields);
@@ -45,7 +47,9 @@ struct MapAndTruth {
 /// What a map says at the vertices of its truth.
 struct EvaluatedScene {
   std::string name;                      ///< the map's path
-  SemanticScene labels;                  ///< classes are empty where there are no semantic figures
+  SemanticScene labels;                  ///< classes are empty where there are no semantic figures;
+                                         ///< things that are not scored are unlabelled in it
+  SizedScene sized;                      ///< the same with everything
   std::vector<std::uint32_t> few_views;  ///< objects with too few embedded views; empty for a map
                                          ///< without embeddings
   GeometryScores geometry;

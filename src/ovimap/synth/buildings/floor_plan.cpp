@@ -12,6 +12,7 @@
 #include "ovimap/synth/buildings/plan_rooms.h"
 #include "ovimap/synth/buildings/room_builder.h"
 #include "ovimap/synth/camera/walk.h"
+#include "ovimap/synth/procedural/made_model.h"
 #include "ovimap/synth/shapes/mesh_parts.h"
 #include "ovimap/synth/shapes/random.h"
 
@@ -23,6 +24,8 @@ constexpr int kFurnishings = 30;   // ways to furnish a room that are tried
 constexpr float kInside_m = 0.5f;  // of a doorway: where one stands who came through it
 constexpr float kFrameWidth_m = 0.03f, kFrameProud_m = 0.01f;
 constexpr float kThreshold_m = 0.004f;
+constexpr float kLeafThickness_m = 0.045f, kLeafGap_m = 0.006f;
+constexpr float kLeafOpen_rad[] = {1.35f, 1.55f};
 constexpr float kFaintLight = 0.02f;
 constexpr float kTouching_m = 1e-3f;
 const Eigen::Vector3f kFrameColor(0.62f, 0.58f, 0.52f);
@@ -129,6 +132,30 @@ RoomObject door_frame(const PlanRoom& room, const Doorway& doorway) {
   return object;
 }
 
+/// A leaf that stands open in the room, beside its doorway: a thing of its own, with handles.
+RoomObject door_leaf(const PlanRoom& room, const Doorway& doorway, std::uint64_t seed) {
+  Random random(seed);
+  const float width = doorway.width_m - 2 * kFrameWidth_m - kLeafGap_m;
+  const float height = doorway.height_m - kFrameWidth_m - kLeafGap_m;
+  RoomObject object;
+  object.name = object.class_name = "door";
+  object.room = room.spec.name;
+  MadeModel model = make_model("door leaf", room.spec.split, random);
+  OrientedBox place = doorway_box(room.spec, doorway, 0);
+  const Eigen::Vector2f hinge =
+      place.world_from_box({-place.half_m.x() + kFrameWidth_m + kLeafThickness_m, -kFrameProud_m});
+  place.yaw_rad -= random.uniform(kLeafOpen_rad[0], kLeafOpen_rad[1]);
+  place.half_m = {width / 2, kLeafThickness_m / 2};
+  place.center_m = hinge + room.origin_m;
+  place.center_m = place.world_from_box({width / 2, -kLeafThickness_m / 2});
+  place.bottom_m = kThreshold_m + kLeafGap_m;
+  place.top_m = height;
+  object.mesh = placed_mesh(model.mesh, place);
+  object.box = bounds(object.mesh);
+  object.footprint = place;
+  return object;
+}
+
 /// The walls of a room as a body meets them: without its doorways.
 std::vector<OrientedBox> walls_of(const PlanRoom& room) {
   std::vector<OrientedBox> boxes;
@@ -184,6 +211,11 @@ SynthRoom build_plan(const FloorPlan& plan, const std::filesystem::path& furnitu
   for (const PlanDoor& door : plan.doors) {  // a room's doorways are in the order of the doors
     const Doorway& doorway = rooms[door.first].spec.doorways[used[door.first]];
     all.objects.push_back(door_frame(rooms[door.first], doorway));
+    if (door.has_leaf) {
+      const Doorway& opens_into = rooms[door.second].spec.doorways[used[door.second]];
+      all.objects.push_back(
+          door_leaf(rooms[door.second], opens_into, plan.seed + all.objects.size()));
+    }
     ++used[door.first], ++used[door.second];
   }
   for (std::size_t i = 0; i < all.objects.size(); ++i)

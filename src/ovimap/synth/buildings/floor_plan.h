@@ -27,6 +27,7 @@ struct PlanDoor {
   std::size_t first = 0, second = 0;  ///< numbers of the rooms
   float at_m = 0;                     ///< its middle along the wall: x or y on the plan
   float width_m = 0.9f, height_m = 2.05f;
+  bool has_leaf = false;  ///< one that stands wide open in the second room
 };
 
 /// Rooms side by side on one floor, all at x, y >= 0. A walk visits them in their order.

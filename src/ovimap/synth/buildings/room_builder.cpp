@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "ovimap/base/error.h"
+#include "ovimap/synth/buildings/strewn.h"
 #include "ovimap/synth/furniture/model_store.h"
 #include "ovimap/synth/rooms/room_shell.h"
 #include "ovimap/synth/shapes/mesh_parts.h"
@@ -23,6 +24,8 @@ constexpr float kLampHalf_m = 0.25f;  // of the shining square below a ceiling l
 constexpr float kLightGap_m = 0.02f;
 const Eigen::Vector3f kLampLight(0.30f, 0.285f, 0.26f);  // per square metre of floor
 const Eigen::Vector3f kWindowLight(1.5f, 1.6f, 1.7f);    // per square metre of window
+const Eigen::Vector3f kShadeLight(1.5f, 1.2f, 0.8f);
+constexpr float kShadeHalf_m = 0.08f, kShadeShare = 0.78f;
 const Eigen::Vector3f kAmbient(0.46f, 0.46f, 0.47f);
 
 enum BuildStream : std::uint64_t { kModelStream = 1, kOutdoorStream = 2, kLayoutStream = 1000 };
@@ -160,6 +163,7 @@ std::vector<Piece> pick_models(const RoomSpec& spec, ModelStore& store) {
   Random random(spec.seed, kModelStream);
   std::vector<Piece> pieces;
   for (const FurnitureRequest& request : spec.furniture) {
+    // Alike: chairs at one table, the lamps of one ceiling.
     const bool alike =
         request.placement == Placement::kAround || request.placement == Placement::kOnCeiling;
     std::shared_ptr<const RoomModel> model;
@@ -172,16 +176,16 @@ std::vector<Piece> pick_models(const RoomSpec& spec, ModelStore& store) {
   return pieces;
 }
 
-AreaLight lamp_light(const OrientedBox& box, float floor_area_m2) {
+AreaLight lamp_light(const OrientedBox& box, float floor_area_m2, const RoomLight& light) {
   const Eigen::Vector3f center(box.center_m.x(), box.center_m.y(), box.bottom_m - kLightGap_m);
   return {center,
           {kLampHalf_m, 0, 0},
           {0, kLampHalf_m, 0},
           -Eigen::Vector3f::UnitZ(),
-          kLampLight * floor_area_m2};
+          (kLampLight * floor_area_m2 * light.lamps).cwiseProduct(light.tint)};
 }
 
-AreaLight window_light(const OrientedBox& box) {
+AreaLight window_light(const OrientedBox& box, const RoomLight& light) {
   const Eigen::Vector2f front = box.world_from_box({0, -box.half_m.y() - kLightGap_m});
   const Eigen::Vector2f x = box.x_axis() * box.half_m.x(), inward = -box.y_axis();
   const float half_height = (box.top_m - box.bottom_m) / 2;
@@ -189,11 +193,22 @@ AreaLight window_light(const OrientedBox& box) {
           {x.x(), x.y(), 0},
           {0, 0, half_height},
           {inward.x(), inward.y(), 0},
-          kWindowLight * (4 * box.half_m.x() * half_height)};
+          kWindowLight * (4 * box.half_m.x() * half_height) * light.windows};
+}
+
+/// A lamp that stands somewhere: light from its shade downwards.
+AreaLight shade_light(const OrientedBox& box, float glow, const RoomLight& light) {
+  const float height = box.bottom_m + kShadeShare * (box.top_m - box.bottom_m);
+  return {{box.center_m.x(), box.center_m.y(), height},
+          {kShadeHalf_m, 0, 0},
+          {0, kShadeHalf_m, 0},
+          -Eigen::Vector3f::UnitZ(),
+          kShadeLight * glow * light.lamps};
 }
 
 TexturedMesh piece_mesh(const Piece& piece, const OrientedBox& box, std::uint64_t seed) {
   TexturedMesh mesh = placed_mesh(piece.model->mesh, box);
+  if (piece.model->made) return mesh;
   if (piece.request->class_name == "ceiling lamp")
     for (SurfaceMaterial& material : mesh.materials) material.emission.setConstant(kLampGlow);
   if (piece.request->class_name == "window") {
@@ -206,10 +221,11 @@ TexturedMesh piece_mesh(const Piece& piece, const OrientedBox& box, std::uint64_
   return mesh;
 }
 
-void add_piece(const Piece& piece, const OrientedBox& box, std::size_t lamps, SynthRoom& room) {
+void add_piece(const Piece& piece, const OrientedBox& box, std::size_t lamps,
+               const RoomLight& light, SynthRoom& room) {
   RoomObject object;
   object.name = piece.model->name;
-  object.class_name = piece.request->class_name;
+  object.class_name = piece.model->made ? piece.model->class_name : piece.request->class_name;
   object.source = piece.model->source;
   object.mesh = piece_mesh(piece, box, room.seed);
   object.box = bounds(object.mesh);
@@ -217,8 +233,31 @@ void add_piece(const Piece& piece, const OrientedBox& box, std::size_t lamps, Sy
   room.objects.push_back(std::move(object));
   const float floor_area_m2 = room.size_m.x() * room.size_m.y();
   if (piece.request->class_name == "ceiling lamp")
-    room.lights.push_back(lamp_light(box, floor_area_m2 / static_cast<float>(lamps)));
-  if (piece.request->class_name == "window") room.lights.push_back(window_light(box));
+    room.lights.push_back(lamp_light(box, floor_area_m2 / static_cast<float>(lamps), light));
+  if (piece.request->class_name == "window") room.lights.push_back(window_light(box, light));
+  if (piece.model->glow > 0) room.lights.push_back(shade_light(box, piece.model->glow, light));
+}
+
+/// What lies about on the pieces that found a place.
+void add_clutter(const RoomSpec& spec, const std::vector<Piece>& pieces,
+                 const Arrangement& arrangement, ModelStore& store, SynthRoom& room) {
+  std::vector<Carrier> carriers;
+  std::vector<OrientedBox> taken;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (!arrangement.boxes[i] || pieces[i].request->placement == Placement::kRug) continue;
+    taken.push_back(*arrangement.boxes[i]);
+    carriers.push_back({pieces[i].request->class_name, *arrangement.boxes[i], pieces[i].model});
+  }
+  for (Strewn& thing : strewn(spec, carriers, taken, store)) {
+    RoomObject object;
+    object.name = thing.model->name;
+    object.class_name = thing.class_name;
+    object.source = thing.model->source;
+    object.mesh = placed_mesh(thing.model->mesh, thing.box);
+    object.box = bounds(object.mesh);
+    object.footprint = thing.box;
+    room.objects.push_back(std::move(object));
+  }
 }
 
 }  // namespace
@@ -236,7 +275,7 @@ OrientedBox doorway_box(const RoomSpec& spec, const Doorway& doorway, float dept
 
 SynthRoom build_room(const RoomSpec& spec, const std::filesystem::path& furniture_folder,
                      const LayoutConfig& config) {
-  ModelStore store(furniture_folder);
+  ModelStore store(furniture_folder, spec.split);
   const std::vector<Piece> pieces = pick_models(spec, store);
   Arrangement best;
   for (int i = 0; i < kLayouts && (i == 0 || best.missing > 0); ++i) {
@@ -250,19 +289,20 @@ SynthRoom build_room(const RoomSpec& spec, const std::filesystem::path& furnitur
   room.name = spec.name;
   room.seed = spec.seed;
   room.size_m = spec.size_m;
-  room.ambient = kAmbient;
+  room.ambient = (kAmbient * spec.light.ambient).cwiseProduct(spec.light.tint);
   room.objects = room_shell(spec);
   const auto lamps =
       static_cast<std::size_t>(std::count_if(pieces.begin(), pieces.end(), [](const Piece& piece) {
         return piece.request->class_name == "ceiling lamp";
       }));
   for (std::size_t i = 0; i < pieces.size(); ++i)
-    if (best.boxes[i]) add_piece(pieces[i], *best.boxes[i], lamps, room);
+    if (best.boxes[i]) add_piece(pieces[i], *best.boxes[i], lamps, spec.light, room);
+  if (!spec.clutter.empty()) add_clutter(spec, pieces, best, store, room);
   if (room.lights.empty()) {
     OrientedBox middle;
     middle.center_m = spec.size_m.head<2>() / 2;
     middle.bottom_m = spec.size_m.z();
-    room.lights.push_back(lamp_light(middle, spec.size_m.x() * spec.size_m.y()));
+    room.lights.push_back(lamp_light(middle, spec.size_m.x() * spec.size_m.y(), spec.light));
   }
   for (std::size_t i = 0; i < room.objects.size(); ++i)
     room.objects[i].id = static_cast<std::uint16_t>(i + 1);

@@ -21,6 +21,7 @@ constexpr std::uint64_t kWalkStream = 6001;
 constexpr double kPathSpacing_s = 0.25;  // between control points of the way
 constexpr double kGazeSpacing_s = 1;     // between decisions where to look
 constexpr float kDrift_hz[] = {0.1f, 0.4f}, kTremor_hz[] = {8, 12};
+constexpr double kSurveySpacing_s = 1;
 constexpr int kCornersPerRoom = 10;
 constexpr float kOutward = 0.75f;        // of the way from a room's middle to its walls
 constexpr float kStandsThere_m = 0.15f;  // from a point that counts as reached
@@ -153,8 +154,29 @@ std::vector<Eigen::Vector2d> walking_round(const SynthRoom& room, const WalkConf
   return points;
 }
 
+namespace {
+
+/// Along the moments of a survey, one a second, looking where each says.
+Walk surveying(const SynthRoom& room, const WalkConfig& config) {
+  std::vector<Eigen::Vector2d> places, gazes;
+  for (const SurveyMoment& moment : room.survey) {
+    const Eigen::Vector2d ahead = (moment.target_m - moment.eye_m).cast<double>();
+    double yaw = std::atan2(ahead.y(), ahead.x());
+    if (!gazes.empty()) yaw = gazes.back().x() + std::remainder(yaw - gazes.back().x(), kTurn_rad);
+    places.push_back(moment.eye_m.cast<double>());
+    gazes.emplace_back(yaw, std::atan2(moment.target_height_m - config.eye_m, ahead.norm()));
+  }
+  const double round = static_cast<double>(places.size() - 1) * kSurveySpacing_s;
+  const double seconds = config.seconds > 0 ? static_cast<double>(config.seconds) : round;
+  return {PlaneSpline(std::move(places), kSurveySpacing_s, false),
+          PlaneSpline(std::move(gazes), kSurveySpacing_s, false), seconds, room.seed, config};
+}
+
+}  // namespace
+
 Walk plan_walk(const SynthRoom& room, const RayScene& scene, const PinholeCamera& camera,
                const WalkConfig& config) {
+  if (!room.survey.empty()) return surveying(room, config);
   const PlaneSpline path(walking_round(room, config, config.speed_mps * kPathSpacing_s),
                          kPathSpacing_s, true);
   const double seconds = config.seconds > 0 ? config.seconds : path.seconds();

@@ -8,6 +8,7 @@
 #include "ovimap/synth/furniture/furniture_model.h"
 #include "ovimap/synth/furniture/furniture_palette.h"
 #include "ovimap/synth/rooms/room_shell.h"
+#include "ovimap/synth/rooms/room_spec.h"
 #include "ovimap/synth/shapes/mesh_parts.h"
 #include "ovimap/synth/shapes/soft_models.h"
 
@@ -18,6 +19,8 @@ constexpr float kRugShare = 0.55f;  // of the room's width and depth
 const Eigen::Vector2f kRugMost_m(2.6f, 1.8f);
 constexpr float kRugThickness_m = 0.006f, kPictureThickness_m = 0.025f;
 constexpr float kPillow_m = 0.14f, kBlanket_m = 0.09f;
+
+const std::string kMade = made_id("");
 
 bool made_up(const std::string& class_name) {
   return class_name == "rug" || class_name == "picture" || class_name == "pillow" ||
@@ -46,14 +49,31 @@ std::shared_ptr<const RoomModel> made_model(const std::string& class_name,
   return model;
 }
 
+std::shared_ptr<const RoomModel> model_by_rule(const std::string& kind, Split split,
+                                               Random& random) {
+  MadeModel thing = make_model(kind, split, random);
+  auto model = std::make_shared<RoomModel>();
+  model->name = thing.name;
+  model->class_name = thing.class_name;
+  model->mesh = std::move(thing.mesh);
+  model->size_m = bounds(model->mesh).sizes();
+  model->upper_side = HeightMap(model->mesh);
+  model->soft = thing.soft, model->stackable = thing.stackable;
+  model->made = true;
+  model->decks = std::move(thing.decks);
+  model->glow = thing.glow;
+  return model;
+}
+
 }  // namespace
 
 std::shared_ptr<const RoomModel> ModelStore::get(const std::string& class_name,
                                                  const std::string& id,
                                                  const Eigen::Vector3f& room_size_m,
                                                  Random& random) {
-  const auto& choices = models_of_class(class_name);
+  if (id.starts_with(kMade)) return model_by_rule(id.substr(kMade.size()), split_, random);
   if (!id.empty()) return load(id);
+  const auto& choices = models_of_class(class_name);
   if (!choices.empty()) return load(choices[random.index(choices.size())]);
   if (made_up(class_name)) return made_model(class_name, room_size_m, random);
   throw Error(concat("furniture class '", class_name,

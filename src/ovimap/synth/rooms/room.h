@@ -41,6 +41,12 @@ struct RoomZone {
   Eigen::AlignedBox2f floor_m;
 };
 
+/// Where somebody stands who films a place, and what at; moments follow each other at equal times.
+struct SurveyMoment {
+  Eigen::Vector2f eye_m, target_m;
+  float target_height_m = 0;
+};
+
 /// A furnished room, or several with walls between them. The floor is z = 0; all of it lies in
 /// [0, width] x [0, depth] x [0, height].
 struct SynthRoom {
@@ -51,6 +57,7 @@ struct SynthRoom {
   std::vector<AreaLight> lights;
   std::vector<RoomZone> zones;     ///< of a floor plan, in the order of a walk; else empty
   std::vector<OrientedBox> walls;  ///< of a floor plan: what a body cannot walk through, doors open
+  std::vector<SurveyMoment> survey;  ///< how a walk films it; empty: from a round through it
   float faint_light = 0;  ///< lamps are left out where they would add less than this, unhidden
   Eigen::Vector3f ambient = Eigen::Vector3f::Constant(0.5f);  ///< light from everywhere, linear RGB
 };

@@ -13,6 +13,7 @@
 
 #include "ovimap/geometry/camera.h"
 #include "ovimap/image/image.h"
+#include "ovimap/synth/procedural/made_model.h"
 
 namespace ovimap {
 
@@ -35,7 +36,8 @@ struct FurnitureRequest {
   Placement placement = Placement::kAgainstWall;
   int count = 1;
   std::vector<std::string> at = {};    ///< for kAround and kOnTop: classes of the supporting pieces
-  std::string model = {};              ///< a catalogue id; empty: any model of the class
+  std::string model = {};              ///< a catalogue id, or made_id of a kind that is made by
+                                       ///< rule; empty: any model of the class
   std::optional<float> bottom_m = {};  ///< for kOnWall: its lower edge; else centred at eye height
 };
 
@@ -44,6 +46,24 @@ struct Doorway {
   std::size_t wall = 0;  ///< number of the wall in wall_lines
   float center_m = 0;    ///< along the wall, from its start
   float width_m = 0.9f, height_m = 2.05f;
+};
+
+/// Names a kind of made_kinds where a model is asked for.
+inline std::string made_id(const std::string& kind) {
+  return "made:" + kind;
+}
+
+/// Things that lie about on the decks of pieces.
+struct Clutter {
+  std::vector<std::string> at;      ///< classes of the pieces that they lie on
+  std::vector<std::string> models;  ///< one of these each: made_id or a catalogue id
+  int least = 1, most = 3;          ///< on each deck
+};
+
+/// How a room is lit, as factors on ordinary lamps, daylight and light from everywhere.
+struct RoomLight {
+  float lamps = 1, windows = 1, ambient = 1;
+  Eigen::Vector3f tint = Eigen::Vector3f::Ones();  ///< of lamps and ambient light
 };
 
 /// What a room is made from. The same spec gives the same room.
@@ -59,6 +79,9 @@ struct RoomSpec {
   std::vector<FurnitureRequest> furniture;  ///< in the order of placing: large before small
   std::vector<Doorway> doorways = {};
   std::array<bool, 4> may_have_windows = {true, true, true, true};  ///< by wall
+  Split split = Split::kTuned;  ///< which things the made ones are
+  std::vector<Clutter> clutter = {};
+  RoomLight light = {};
   int frames = 200;
   PinholeCamera camera;
 };

@@ -5,84 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 
 #include "ovimap/base/error.h"
-#include "ovimap/base/parallel.h"
+#include "ovimap/synth/shapes/painting.h"
 #include "ovimap/synth/shapes/random.h"
 
 namespace ovimap {
 namespace {
 
-constexpr std::size_t kRowsPerTask = 16;
-constexpr int kRepeatSide_px = 1024;
-constexpr float kRepeatSide_m = 2.56f;
-constexpr float kPictureResolution_px_m = 400;
-
-using Color = Eigen::Vector3f;  // sRGB 0..1: patterns are designed as seen, not as light
-
-float smooth_step(float low, float high, float x) {
-  const float t = std::clamp((x - low) / (high - low), 0.f, 1.f);
-  return t * t * (3 - 2 * t);
-}
-
-Color mixed(const Color& a, const Color& b, float share_of_b) {
-  return a + (b - a) * share_of_b;
-}
-
-/// Smooth random values in [0, 1] on a lattice that repeats after `period` cells.
-class LatticeNoise {
- public:
-  explicit LatticeNoise(std::uint64_t seed) : seed_(seed) {}
-
-  float at(float x, float y, int period_x, int period_y) const {
-    const int left = static_cast<int>(std::floor(x)), top = static_cast<int>(std::floor(y));
-    const float u = smooth_step(0, 1, x - static_cast<float>(left));
-    const float v = smooth_step(0, 1, y - static_cast<float>(top));
-    const auto corner = [&](int dx, int dy) {
-      const auto wrap = [](int i, int period) { return ((i % period) + period) % period; };
-      const auto cell = static_cast<std::uint64_t>(wrap(left + dx, period_x)) << 32 |
-                        static_cast<std::uint64_t>(wrap(top + dy, period_y));
-      return static_cast<float>(mix_bits(seed_ ^ mix_bits(cell)) >> 40) * 0x1p-24f;
-    };
-    const float upper = corner(0, 0) * (1 - u) + corner(1, 0) * u;
-    const float lower = corner(0, 1) * (1 - u) + corner(1, 1) * u;
-    return upper * (1 - v) + lower * v;
-  }
-
- private:
-  std::uint64_t seed_;
-};
-
-/// Paints each pixel from its place (x, y) in 0..1, y downwards.
-std::shared_ptr<const Texture> painted(int width, int height,
-                                       const std::function<Color(float, float)>& color_at) {
-  RgbImage image(width, height);
-  parallel_for(static_cast<std::size_t>(height), kRowsPerTask, [&](std::size_t row) {
-    const int y = static_cast<int>(row);
-    for (int x = 0; x < width; ++x) {
-      const Color color = color_at((static_cast<float>(x) + 0.5f) / static_cast<float>(width),
-                                   (static_cast<float>(y) + 0.5f) / static_cast<float>(height));
-      const auto byte = [&](int i) {
-        return static_cast<std::uint8_t>(std::clamp(color[i], 0.f, 1.f) * 255 + 0.5f);
-      };
-      image.at(x, y) = {byte(0), byte(1), byte(2)};
-    }
-  });
-  return std::make_shared<Texture>(std::move(image));
-}
-
-SurfacePattern repeating(const std::function<Color(float, float)>& color_at) {
-  return {painted(kRepeatSide_px, kRepeatSide_px, color_at), kRepeatSide_m, kRepeatSide_m};
-}
-
-SurfacePattern picture(float width_m, float height_m,
-                       const std::function<Color(float, float)>& color_at) {
-  const auto pixels = [](float metres) {
-    return std::max(8, static_cast<int>(metres * kPictureResolution_px_m));
-  };
-  return {painted(pixels(width_m), pixels(height_m), color_at), width_m, height_m};
-}
+using Color = PaintColor;
 
 SurfacePattern planks(const Color& light, const Color& dark, std::uint64_t seed) {
   constexpr int kRows = 16, kPlanksPerRow = 2;
@@ -138,6 +69,41 @@ Color paint(Random& random) {
   return {chosen[0], chosen[1], chosen[2]};
 }
 
+/// Short blocks laid in a herringbone.
+SurfacePattern parquet(std::uint64_t seed) {
+  constexpr float kCells = 32, kLength = 4;  // of a block's width
+  const LatticeNoise tone(seed), grain(seed + 1);
+  const Color light(0.72f, 0.52f, 0.34f), dark(0.50f, 0.33f, 0.20f);
+  return repeating([=](float x, float y) {
+    const float u = x * kCells, v = y * kCells, row = std::floor(v), column = std::floor(u);
+    // Each cell belongs to a block that runs along u or along v, by its place on the diagonal.
+    const float place = part_of((column - row) / (2 * kLength)) * 2 * kLength;
+    const bool along_u = place < kLength;
+    const float start = along_u ? column - place : row - (2 * kLength - 1 - place);
+    const float id =
+        tone.at((along_u ? start : column) + 0.5f, (along_u ? row : start) + 0.5f, 32, 32);
+    const float across = along_u ? v - row : u - column, length = (along_u ? u : v) - start;
+    const float fine = grain.at(along_u ? x * 40 : x * 400, along_u ? y * 400 : y * 40, 400, 400);
+    const float gap = std::min({across, 1 - across, length, kLength - length});
+    return Color(mixed(light, dark, 0.2f + 0.5f * id + 0.3f * fine) *
+                 (0.6f + 0.4f * smooth_step(0.02f, 0.08f, gap)));
+  });
+}
+
+SurfacePattern mosaic(std::uint64_t seed) {
+  constexpr int kCells = 24;
+  const LatticeNoise noise(seed);
+  return repeating([=](float x, float y) {
+    const float shift = 0.5f * part_of(std::floor(y * kCells) / 2) * 2;
+    const float u = part_of(x * kCells + shift), v = part_of(y * kCells);
+    const float tone = noise.at(std::floor(x * kCells + shift) + 0.5f,
+                                std::floor(y * kCells) + 0.5f, kCells, kCells);
+    const Color stone = mixed({0.62f, 0.66f, 0.66f}, {0.86f, 0.85f, 0.8f}, tone);
+    return mixed({0.55f, 0.55f, 0.54f}, stone,
+                 smooth_step(0.02f, 0.07f, std::min({u, v, 1 - u, 1 - v})));
+  });
+}
+
 }  // namespace
 
 SurfacePattern floor_pattern(const std::string& style, std::uint64_t seed) {
@@ -146,7 +112,11 @@ SurfacePattern floor_pattern(const std::string& style, std::uint64_t seed) {
   if (style == "pine") return planks({0.90f, 0.78f, 0.58f}, {0.74f, 0.56f, 0.35f}, seed);
   if (style == "tiles") return tiles(seed);
   if (style == "carpet") return carpet(seed);
-  throw Error(concat("floor style '", style, "': not one of oak, walnut, pine, tiles, carpet"));
+  if (style == "ash") return planks({0.82f, 0.77f, 0.70f}, {0.66f, 0.60f, 0.53f}, seed);
+  if (style == "parquet") return parquet(seed);
+  if (style == "mosaic") return mosaic(seed);
+  throw Error(concat("floor style '", style,
+                     "': not one of oak, walnut, pine, tiles, carpet, ash, parquet, mosaic"));
 }
 
 SurfacePattern wall_pattern(const std::string& style, Rgb8 color, std::uint64_t seed) {
@@ -171,7 +141,19 @@ SurfacePattern wall_pattern(const std::string& style, Rgb8 color, std::uint64_t 
       const float dot = 1 - smooth_step(0.2f, 0.26f, std::sqrt(u * u + v * v));
       return Color(base * (plaster(x, y) * (1 - 0.2f * dot)));
     });
-  throw Error(concat("wall style '", style, "': not one of plaster, stripes, dots"));
+  if (style == "roller")
+    return repeating([=](float x, float y) {
+      return Color(base * (0.96f + 0.05f * noise.at(x * 128, y * 96, 128, 96)));
+    });
+  if (style == "panels")
+    return repeating([=](float x, float y) {
+      const float u = part_of(x * 4), v = part_of(y * 2);
+      const float edge = std::min(std::min(u, 1 - u) * 2, std::min(v, 1 - v) * 4);
+      const float groove = smooth_step(0.16f, 0.19f, edge) - smooth_step(0.22f, 0.25f, edge);
+      return Color(base * (plaster(x, y) * (1 - 0.12f * groove)));
+    });
+  throw Error(
+      concat("wall style '", style, "': not one of plaster, stripes, dots, roller, panels"));
 }
 
 SurfacePattern rug_pattern(float width_m, float height_m, std::uint64_t seed) {

@@ -17,9 +17,10 @@ struct SurfacePattern {
 };
 
 /// The same seed gives the same pixels. Repeating ones join without a seam.
-/// `style` is one of "oak", "walnut", "pine", "tiles", "carpet".
+/// `style` is one of "oak", "walnut", "pine", "tiles", "carpet", or one of those
+/// that only unseen scenes have: "ash", "parquet", "mosaic".
 SurfacePattern floor_pattern(const std::string& style, std::uint64_t seed);
-/// `style` is one of "plaster", "stripes", "dots".
+/// `style` is one of "plaster", "stripes", "dots"; of unseen scenes "roller", "panels".
 SurfacePattern wall_pattern(const std::string& style, Rgb8 color, std::uint64_t seed);
 /// A bordered carpet, not repeating.
 SurfacePattern rug_pattern(float width_m, float height_m, std::uint64_t seed);
