@@ -38,7 +38,9 @@ QueryEngine::QueryEngine(const SearchIndex& index, ImageTextEncoder* encoder,
   require_embeddings(index);
   if (scene_.shapes.empty())
     scene_.shapes = scene_of_boxes(index, Eigen::Vector3f::UnitZ(), config.shapes).shapes;
-  if (encoder) matcher_.emplace(index, *encoder, config, std::move(vocabulary));
+  if (encoder)
+    matcher_.emplace(index, *encoder, config, std::move(vocabulary),
+                     measure_objects(scene_.shapes));
 }
 
 QueryAnswer QueryEngine::find(const Query& query) const {
@@ -61,7 +63,11 @@ QueryAnswer QueryEngine::find(const Query& query) const {
   const auto model = encoder().calibration();
   const MatchScores scores = matcher_->match(terms, negatives);
   const PValue p_value = [&](float score) { return matcher_->p_value(scores, score); };
-  QueryAnswer result = answer(scores, p_value, model, query.relevance);
+  const Probability probability = [&](std::size_t position) {
+    return model ? model_probability(*model, scores.cosines[static_cast<Eigen::Index>(position)])
+                 : matcher_->probability(scores, position);
+  };
+  QueryAnswer result = answer(scores, p_value, probability, query.relevance);
   result.query = text;
   return result;
 }
@@ -178,7 +184,7 @@ std::vector<QueryMatch> QueryEngine::best_matches(const MatchScores& scores, Ran
 }
 
 QueryAnswer QueryEngine::answer(const MatchScores& scores, const PValue& p_value,
-                                std::optional<MatchCalibration> model, bool relevance) const {
+                                const Probability& probability, bool relevance) const {
   QueryAnswer result;
   result.matches = best_matches(scores, config_.rank_by, static_cast<std::size_t>(config_.top_k));
   const auto best = best_matches(scores, RankRule::kStandardScore, 1);
@@ -189,18 +195,21 @@ QueryAnswer QueryEngine::answer(const MatchScores& scores, const PValue& p_value
     if (!p_value) break;
     match.p_value = p_value(match.standard_score);
     match.probability =
-        model ? model_probability(*model, match.score) : match_probability(*match.p_value);
+        probability ? probability(match.position) : match_probability(*match.p_value);
   }
-  if (relevance) result.relevance = rate_all(scores, p_value);
+  if (relevance) result.relevance = rate_all(scores, p_value, probability);
   return result;
 }
 
-Eigen::VectorXf QueryEngine::rate_all(const MatchScores& scores, const PValue& p_value) const {
+Eigen::VectorXf QueryEngine::rate_all(const MatchScores& scores, const PValue& p_value,
+                                      const Probability& probability) const {
   Eigen::VectorXf relevance = scores.cosines.cwiseMax(0.f);
   for (std::size_t i = 0; i < index_.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     if (!index_.has_embedding(i) || scores.excluded[i])
       relevance[row] = 0.f;
+    else if (probability)
+      relevance[row] = static_cast<float>(probability(i));
     else if (p_value)
       relevance[row] = static_cast<float>(match_probability(p_value(scores.standard[row])));
   }

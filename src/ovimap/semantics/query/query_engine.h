@@ -67,17 +67,19 @@ class QueryEngine {
 
  private:
   using PValue = std::function<double(float standard_score)>;  // empty: no calibration
+  using Probability = std::function<double(std::size_t position)>;  // empty: by p-value
 
   QueryAnswer find_phrase(const QueryPhrase& phrase, const std::vector<std::string>& negatives,
                           bool relevance) const;
   QueryMatch phrase_match(const PhraseMatch& found, std::size_t position) const;
   QueryAnswer answer(const MatchScores& scores, const PValue& p_value,
-                     std::optional<MatchCalibration> model, bool relevance) const;
+                     const Probability& probability, bool relevance) const;
   QueryAnswer answer_like(const Eigen::VectorXf& embedding, std::size_t itself,
                           bool relevance) const;
   std::vector<QueryMatch> best_matches(const MatchScores& scores, RankRule rule,
                                        std::size_t count) const;
-  Eigen::VectorXf rate_all(const MatchScores& scores, const PValue& p_value) const;
+  Eigen::VectorXf rate_all(const MatchScores& scores, const PValue& p_value,
+                           const Probability& probability) const;
   ImageTextEncoder& encoder() const;
 
   const SearchIndex& index_;
