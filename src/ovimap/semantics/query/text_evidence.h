@@ -22,7 +22,8 @@ struct EvidenceConfig {
   float most_size_ratio = 3.f;     ///< what they may say at most, in log likelihood
   float competition = 0.5f;        ///< how much other words for an object take from a text; 0: none
   float odds_scale = 1.f;          ///< probability of a match: sigmoid(scale * log odds + offset)
-  float odds_offset = 0.f;
+  float odds_offset = 2.3f;        ///< fitted on generated rooms (docs/experiments.md)
+  float name_share = 0.3f;         ///< of all household words, that a name needs to be shown
   int max_objects = 50000;         ///< larger maps are searched by pictures alone
 };
 void list_fields(EvidenceConfig& config, ConfigFields& fields);
@@ -59,7 +60,7 @@ class TextEvidence {
   TextScores weigh(const std::string& text, const Eigen::VectorXf& row,
                    const Eigen::VectorXf& pictures) const;
 
-  /// Household words against each other.
+  const EvidenceConfig& config() const { return config_; }
   const Concepts& concepts() const { return concepts_; }
   /// [objects, household words] exp(score - the object's best), and the best [objects].
   const Eigen::MatrixXf& household_weights() const { return weights_; }
