@@ -164,6 +164,18 @@ void TextMatcher::apply_negatives(const MatchScores& negative, MatchScores& scor
   }
 }
 
+Eigen::MatrixXf TextMatcher::fit_of_each(std::span<const std::string> texts) const {
+  const Embeddings rows = encode_prompted(encoder_, texts, prompts_);
+  Eigen::MatrixXf fits(static_cast<Eigen::Index>(index_.size()), rows.rows());
+  parallel_for(texts.size(), 1, [&](std::size_t i) {
+    const auto text = static_cast<Eigen::Index>(i);
+    const Eigen::VectorXf row = rows.row(text).transpose();
+    const Eigen::VectorXf pictures = calibration_->standard_scores(index_.cosines(row));
+    fits.col(text) = evidence_ ? evidence_->weigh(texts[i], row, pictures).alone : pictures;
+  });
+  return fits;
+}
+
 double TextMatcher::p_value(const MatchScores& scores, float standard_score) const {
   // The best of several terms has several chances to score high (Sidak 1967).
   const double single = null_.p_value(double{standard_score});

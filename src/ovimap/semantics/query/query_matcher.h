@@ -43,6 +43,10 @@ class TextMatcher {
   MatchScores match(const std::vector<std::string>& terms,
                     const std::vector<std::string>& negatives) const;
 
+  /// [objects, texts] how well each text fits by itself, other words left out of account: what
+  /// the classes of a closed set are compared by.
+  Eigen::MatrixXf fit_of_each(std::span<const std::string> texts) const;
+
   /// Chance that a thing not in the map scores this high with its best object.
   double p_value(const MatchScores& scores, float standard_score) const;
   /// The standard score with that p-value, in (0, 1).

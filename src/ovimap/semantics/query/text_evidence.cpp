@@ -136,12 +136,12 @@ Eigen::VectorXf TextEvidence::competitors(const std::string& text,
 TextScores TextEvidence::weigh(const std::string& text, const Eigen::VectorXf& row,
                                const Eigen::VectorXf& pictures) const {
   TextScores scores;
-  scores.standard = pictures;
+  scores.alone = pictures;
   if (sizes_.cols() > 0 && config_.size_weight > 0.f)
-    scores.standard += config_.size_weight * size_log_ratio(row);
+    scores.alone += config_.size_weight * size_log_ratio(row);
   const Eigen::VectorXf rivals = best_.array() + competitors(text, row).array().log();
-  scores.log_odds = scores.standard - rivals;
-  scores.standard -= config_.competition * rivals;
+  scores.log_odds = scores.alone - rivals;
+  scores.standard = scores.alone - config_.competition * rivals;
   return scores;
 }
 

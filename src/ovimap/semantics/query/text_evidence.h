@@ -30,6 +30,7 @@ void list_fields(EvidenceConfig& config, ConfigFields& fields);
 
 /// What speaks for a text, object by object.
 struct TextScores {
+  Eigen::VectorXf alone;     ///< [objects] by picture and size, other words left out of account
   Eigen::VectorXf standard;  ///< [objects] standard deviations above unrelated things
   Eigen::VectorXf log_odds;  ///< [objects] against all other household words; empty: not known
 };
