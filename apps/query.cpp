@@ -80,7 +80,13 @@ nlohmann::json answer_json(const QueryAnswer& answer, const SearchIndex& index,
   nlohmann::json instances = nlohmann::json::array();
   for (const QueryMatch& match : answer.matches)
     instances.push_back(match_json(match, index.object(match.position), titles[match.position]));
+  const auto count = answer.count
+                         ? nlohmann::json{{"expected", answer.count->expected},
+                                          {"deviation", answer.count->deviation},
+                                          {"found", answer.count->found}}
+                         : nlohmann::json();
   return {{"query", answer.query},
+          {"count", count},
           {"verdict", verdict_name(answer.verdict)},
           {"reading", answer.reading},
           {"reason", answer.reason},
@@ -91,6 +97,9 @@ void print_answer(const QueryAnswer& answer, const SearchIndex& index,
                   const std::vector<std::string>& titles) {
   std::printf("%s: %s", answer.query.c_str(),
               answer.verdict == Verdict::kFound ? "found" : "not in the map");
+  if (answer.count)
+    std::printf(", %d found, %.1f +- %.1f by their chances", answer.count->found,
+                answer.count->expected, answer.count->deviation);
   if (!answer.reading.empty()) std::printf(", read as %s", answer.reading.c_str());
   if (!answer.reason.empty()) std::printf(" (%s)", answer.reason.c_str());
   std::printf(answer.verdict == Verdict::kFound ? "\n" : "; what comes nearest:\n");

@@ -20,6 +20,18 @@ double model_probability(const MatchCalibration& model, float cosine) {
   return 1.0 / (1.0 + std::exp(-(double{model.scale} * double{cosine} + double{model.bias})));
 }
 
+CountEstimate count_of(const PhraseMatch& found) {
+  CountEstimate count;
+  for (std::size_t i = 0; i < found.holds.size(); ++i) {
+    const double chance = double{found.scores[static_cast<Eigen::Index>(i)]};
+    count.expected += chance;
+    count.deviation += chance * (1.0 - chance);
+    count.found += found.holds[i] && chance > 0.0 ? 1 : 0;
+  }
+  count.deviation = std::sqrt(count.deviation);
+  return count;
+}
+
 std::vector<std::size_t> some_embedded(const SearchIndex& index, std::size_t most) {
   std::vector<std::size_t> positions;
   for (std::size_t i = 0; i < index.size(); ++i)
@@ -50,7 +62,7 @@ QueryAnswer QueryEngine::find(const Query& query) const {
     for (std::string& term : split_terms(checked_query_text(negative, config_.max_text_chars)))
       negatives.push_back(std::move(term));
   if (config_.grammar) {
-    const QueryPhrase phrase = parse_query(text);
+    const QueryPhrase phrase = parse_query(text, scene_.colors != nullptr);
     if (!phrase.free_text()) {
       QueryAnswer result = find_phrase(phrase, negatives, query.relevance);
       result.query = text;
@@ -90,12 +102,19 @@ QueryAnswer QueryEngine::find_phrase(const QueryPhrase& phrase,
     return std::tuple(-found.scores[static_cast<Eigen::Index>(a)], index_.object(a).id) <
            std::tuple(-found.scores[static_cast<Eigen::Index>(b)], index_.object(b).id);
   });
-  order.resize(std::min(order.size(), static_cast<std::size_t>(config_.top_k)));
+  if (phrase.how_many || phrase.count > 0) result.count = count_of(found);
+  std::size_t shown = static_cast<std::size_t>(config_.top_k);
+  if (phrase.count > 0) shown = static_cast<std::size_t>(phrase.count);
+  if (phrase.how_many) shown = static_cast<std::size_t>(std::max(result.count->found, 1));
+  order.resize(std::min(order.size(), shown));
   for (const std::size_t position : order) result.matches.push_back(phrase_match(found, position));
-  if (found.missing.empty() && any_holds) result.verdict = Verdict::kFound;
+  const bool enough = !result.count || result.count->found >= std::max(phrase.count, 1);
+  if (found.missing.empty() && any_holds && enough) result.verdict = Verdict::kFound;
   for (const std::string& things : found.missing)
     result.reason += concat(result.reason.empty() ? "" : ", ", "no [", things, "] in the map");
   if (found.missing.empty() && !any_holds) result.reason = "for nothing in the map is this true";
+  if (found.missing.empty() && any_holds && !enough)
+    result.reason = concat("only ", result.count->found, " of ", phrase.count);
   if (relevance) result.relevance = found.scores;
   return result;
 }

@@ -30,12 +30,19 @@ struct QueryMatch {
   std::string evidence;               ///< why a relation holds: "0.02 m above the top of #12"
 };
 
+/// How many things there are: the sum of the chances, and its standard deviation.
+struct CountEstimate {
+  double expected = 0, deviation = 0;
+  int found = 0;  ///< of which it is true
+};
+
 struct QueryAnswer {
   std::string query;
   std::string reading;  ///< how a phrase was understood: "[mug] on [table]"; empty for free text
   std::string reason;   ///< why a phrase was not found: "no [table] in the map"
   Verdict verdict = Verdict::kNotInMap;
   std::vector<QueryMatch> matches;  ///< best first, also when the verdict is kNotInMap
+  std::optional<CountEstimate> count;  ///< of "how many" and "two ..."
   Eigen::VectorXf relevance;        ///< [objects] in [0, 1], for heat maps; empty unless asked for
 };
 

@@ -47,6 +47,31 @@ void first_that_fits(const std::vector<std::size_t>& ordered, const Eigen::Vecto
   }
 }
 
+struct Rating {
+  float score = 1.f;
+  std::string evidence;
+};
+
+/// Plainly of a colour is what shows it on half of its surface; on a quarter is the border.
+void rate_color(const ColorShares& shares, Color color, Rating& rating) {
+  constexpr float kPlain = 0.5f, kLeast = 0.05f;
+  const float share = shares[static_cast<std::size_t>(color)];
+  rating.score *= std::clamp(share / kPlain, kLeast, 1.f);
+  add_evidence(rating.evidence,
+               concat(static_cast<int>(std::lround(100.f * share)), " % ", color_name(color)));
+}
+
+/// Sizes are known to some per cent: the border is the bound itself.
+void rate_size(const ObjectMeasures& measures, const SizeBound& size, Rating& rating) {
+  constexpr float kDeviation = 0.05f;  // of the logarithm
+  const float side_m = size.side == Side::kHeight   ? measures.height_m
+                       : size.side == Side::kLength ? measures.length_m
+                                                    : measures.depth_m;
+  const float excess = std::log(std::max(side_m, 1e-3f) / size.bound_m) / kDeviation;
+  rating.score *= 1.f / (1.f + std::exp(size.more ? -excess : excess));
+  add_evidence(rating.evidence, concat(std::round(100.f * side_m) / 100.f, " m ", side_name(size.side)));
+}
+
 std::vector<std::size_t> positive(const Eigen::VectorXf& scores) {
   std::vector<std::size_t> positions;
   for (std::size_t i = 0; i < static_cast<std::size_t>(scores.size()); ++i)
@@ -97,6 +122,7 @@ PhraseMatch PhraseSearch::match_phrase(const QueryPhrase& phrase,
                                        const std::vector<std::string>& negatives,
                                        float most_p) const {
   PhraseMatch result = match_things(phrase, negatives, most_p);
+  apply_attributes(phrase, result);
   if (phrase.relation) {
     // Which of several tables it is on need not be the one that looks most like a table.
     const PhraseMatch anchors = match_phrase(phrase.anchors[0], {}, config_.candidate_rate);
@@ -134,6 +160,19 @@ PhraseMatch PhraseSearch::match_things(const QueryPhrase& phrase,
   result.things = needed_matcher(phrase.things).match(terms, negatives);
   rate_by_text(phrase, most_p, result);
   return result;
+}
+
+void PhraseSearch::apply_attributes(const QueryPhrase& phrase, PhraseMatch& result) const {
+  const bool colored = phrase.color && scene_.colors;
+  const auto measures = phrase.size ? measure_objects(scene_.shapes) : std::vector<ObjectMeasures>{};
+  for (const std::size_t i : positive(result.scores)) {
+    Rating rating;
+    if (colored) rate_color(scene_.colors->shares()[i], *phrase.color, rating);
+    if (phrase.size) rate_size(measures[i], *phrase.size, rating);
+    at(result.scores, i) *= rating.score;
+    result.holds[i] = result.holds[i] && rating.score >= kBorder;
+    if (!rating.evidence.empty()) add_evidence(result.evidence[i], rating.evidence);
+  }
 }
 
 void PhraseSearch::rate_by_text(const QueryPhrase& phrase, float most_p,

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@ namespace ovimap {
 struct QueryScene {
   std::vector<ObjectShape> shapes;  ///< of each object of the index, by position
   GroundViewpoint viewpoint;        ///< for left, right, in front and behind
+  std::shared_ptr<const ObjectColors> colors;  ///< of each object; null: not known
 };
 
 /// A scene of the objects' boxes, exact where an axis of the world is up.
@@ -54,6 +56,8 @@ class PhraseSearch {
                            float most_p) const;
   PhraseMatch match_things(const QueryPhrase& phrase, const std::vector<std::string>& negatives,
                            float most_p) const;
+  /// Lowers what has not the colour or the size that was asked for.
+  void apply_attributes(const QueryPhrase& phrase, PhraseMatch& result) const;
   /// Takes away whatever one of the negatives is found to be.
   void leave_out(const std::vector<std::string>& negatives, PhraseMatch& result) const;
   const TextMatcher& needed_matcher(const std::string& what) const;
