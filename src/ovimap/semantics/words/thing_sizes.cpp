@@ -19,15 +19,24 @@ namespace {
 constexpr float kSmallerDeviation = 0.6f, kLargerDeviation = 0.45f;  // of logarithms
 constexpr float kDepthWeight = 0.5f;      // the side away from the camera is seen least
 constexpr float kBottomDeviation_m = 0.25f;
-constexpr float kMostBottomPenalty = 3.f;  // in log likelihood: anything can be put anywhere
+constexpr float kMostPenalty = 2.5f;       // of one size in log likelihood: maps merge and cut
+constexpr float kMostBottomPenalty = 3.f;  // ... and anything can be put anywhere
 constexpr float kThinnest_m = 0.02f;       // below it a size is noise
 constexpr float kLeastLogLikelihood = -12.f;
 constexpr float kFloorShare = 0.02f;
+constexpr float kStrayShare = 0.05f;  // of an object's surface, left out at either end of a side
 
 float log_term(float object_m, float usual_m) {
   const float ratio = std::log(std::max(object_m, kThinnest_m) / std::max(usual_m, kThinnest_m));
   const float deviations = ratio / (ratio < 0.f ? kSmallerDeviation : kLargerDeviation);
-  return -0.5f * deviations * deviations;
+  return -std::min(0.5f * deviations * deviations, kMostPenalty);
+}
+
+float quantile(std::vector<float>& values, float share) {
+  const auto at = values.begin() +
+                  static_cast<std::ptrdiff_t>(share * static_cast<float>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
 }
 
 float floor_height(std::span<const ObjectShape> shapes) {
@@ -36,17 +45,13 @@ float floor_height(std::span<const ObjectShape> shapes) {
     for (const Eigen::Vector3f& point : shape.surface) heights.push_back(point.z());
     if (shape.surface.empty()) heights.insert(heights.end(), {shape.bottom_m, shape.top_m});
   }
-  if (heights.empty()) return 0.f;
-  const auto at = heights.begin() + static_cast<std::ptrdiff_t>(
-                                        kFloorShare * static_cast<float>(heights.size() - 1));
-  std::nth_element(heights.begin(), at, heights.end());
-  return *at;
+  return heights.empty() ? 0.f : quantile(heights, kFloorShare);
 }
 
-/// The sides, longer first, of the smallest rectangle around a convex footprint; one of them lies
-/// along an edge of it.
-std::pair<float, float> smallest_rectangle(const Footprint& footprint) {
-  std::pair<float, float> best{0.f, 0.f};
+/// Direction of the longer side of the smallest rectangle around a convex footprint; one of its
+/// sides lies along an edge of it.
+Eigen::Vector2f long_direction(const Footprint& footprint) {
+  Eigen::Vector2f best = Eigen::Vector2f::UnitX();
   float area = std::numeric_limits<float>::max();
   for (std::size_t i = 0; i < footprint.size(); ++i) {
     const Eigen::Vector2f edge = footprint[(i + 1) % footprint.size()] - footprint[i];
@@ -58,9 +63,27 @@ std::pair<float, float> smallest_rectangle(const Footprint& footprint) {
     const Eigen::Vector2f sides = box.sizes();
     if (sides.prod() >= area) continue;
     area = sides.prod();
-    best = {sides.maxCoeff(), sides.minCoeff()};
+    best = sides.x() >= sides.y() ? along : across;
   }
   return best;
+}
+
+struct Range {
+  float low = 0, high = 0;
+  float size() const { return high - low; }
+};
+
+/// Of a shape along a direction: of its surface without what strays, or of its prism.
+Range range_along(const ObjectShape& shape, const Eigen::Vector3f& direction) {
+  std::vector<float> places;
+  for (const Eigen::Vector3f& point : shape.surface) places.push_back(direction.dot(point));
+  const bool known = !places.empty();
+  if (!known)
+    for (const Eigen::Vector2f& corner : shape.footprint)
+      for (const float height : {shape.bottom_m, shape.top_m})
+        places.push_back(direction.dot(Eigen::Vector3f(corner.x(), corner.y(), height)));
+  const float stray = known ? kStrayShare : 0.f;
+  return {quantile(places, stray), quantile(places, 1.f - stray)};
 }
 
 }  // namespace
@@ -69,8 +92,12 @@ std::vector<ObjectMeasures> measure_objects(std::span<const ObjectShape> shapes)
   const float floor = floor_height(shapes);
   std::vector<ObjectMeasures> measures;
   for (const ObjectShape& shape : shapes) {
-    const auto [length, depth] = smallest_rectangle(shape.footprint);
-    measures.push_back({shape.height_m(), length, depth, shape.bottom_m - floor});
+    const Eigen::Vector2f along = long_direction(shape.footprint);
+    const Range upright = range_along(shape, Eigen::Vector3f::UnitZ());
+    const float length_m = range_along(shape, {along.x(), along.y(), 0.f}).size();
+    const float depth_m = range_along(shape, {-along.y(), along.x(), 0.f}).size();
+    measures.push_back({upright.size(), std::max(length_m, depth_m), std::min(length_m, depth_m),
+                        upright.low - floor});
   }
   return measures;
 }

@@ -19,6 +19,7 @@ struct ObjectMeasures {
   float bottom_m = 0;               ///< above the floor
 };
 
+/// Without the 5 % of the surface that lie farthest out at each end, which often are not its own.
 /// The floor is where 2 % of all surface is lower. All shapes in one ground frame.
 std::vector<ObjectMeasures> measure_objects(std::span<const ObjectShape> shapes);
 
@@ -34,7 +35,7 @@ std::vector<ThingSize> read_thing_sizes(const std::vector<std::string>& lines);
 
 /// How well an object's measures fit a thing's, up to a factor that is the same for all things: a
 /// normal distribution of each logarithm, wider below than above the usual, since objects are seen
-/// in part, and of the distance to the usual heights.
+/// in part, and of the distance to the usual heights. No side alone can rule a thing out.
 float size_likelihood(const ObjectMeasures& object, const ThingSize& thing);
 
 }  // namespace ovimap

@@ -39,8 +39,8 @@ TEST(SizeLikelihood, TellsThingsOfDifferentSizeApart) {
 TEST(SizeLikelihood, ForgivesWhatWasSeenInPart) {
   const ThingSize thing{"table", {0.7f, 1.4f, 0.8f, 0.f}, 0.1f};
   const float whole = size_likelihood({0.7f, 1.4f, 0.8f, 0.f}, thing);
-  const float half = size_likelihood({0.7f, 0.7f, 0.8f, 0.f}, thing);
-  const float twice = size_likelihood({0.7f, 2.8f, 0.8f, 0.f}, thing);
+  const float half = size_likelihood({0.7f, 0.9f, 0.8f, 0.f}, thing);
+  const float twice = size_likelihood({0.7f, 2.2f, 0.8f, 0.f}, thing);
   EXPECT_GT(whole, half);
   EXPECT_GT(half, twice);
   EXPECT_GT(twice, 0.f);
