@@ -16,6 +16,8 @@ import pathlib
 import subprocess
 import tempfile
 
+import search_evidence
+
 DATA = pathlib.Path(__file__).parent / "data"
 EVERYTHING = 1000
 STUFF = {"floor", "wall", "ceiling"}
@@ -92,6 +94,7 @@ def kitchen_section(program, kitchen, work):
             map_file = work / f"kitchen_{name}.ovimap"
             run_json(program, "reembed", made, "--encoder", folder, "-o", map_file)
             encoders.append((f"{name} alone", map_file, ["--encoder", folder]))
+    encoders.append(("both, picture alone", made, dict(search_evidence.PIECES)["picture alone"]))
     encoders.append(("both (default)", made, []))
     columns = {name: list(kitchen_ranks(program, map_file, *options)) for name, map_file, options in encoders}
     text = [KITCHEN_HEAD, "", measured_at(), "", "    ovimap run KITCHEN --masks sam -o kitchen.ovimap", "",
@@ -189,6 +192,23 @@ def encoders_section(program, rooms, work):
     return text + [f"| both (default) | {default_figures(program, rooms, work)} |"]
 
 
+def evidence_section(program, rooms, work):
+    def map_of(room):
+        map_file = work / f"{room.name}.ovimap"
+        if not map_file.exists():
+            run_json(program, "embed", "gt", room, *FEW_CROPS, "-o", map_file)
+        return map_file
+
+    def ranks_of(answers, names):
+        return [next(rank for rank, found in enumerate(answer["instances"], 1) if names.get(str(found["id"])) == answer["query"])
+                for answer in answers]
+
+    def ask(map_file, texts, *options):
+        return query(program, map_file, texts, "--set", "query.grammar=false", *options)
+
+    return search_evidence.evidence_section(ask, rooms, map_of, ranks_of)
+
+
 def views_section(program, rooms, work):
     """Truth geometry, so that nothing but the choice of views differs."""
     text = ["## Which views to embed", "", "    ovimap embed gt ROOM --views PRESET -o room.ovimap", "",
@@ -229,7 +249,8 @@ def main():
             text = options.out.read_text().split(KITCHEN_HEAD)[0].splitlines()
         else:
             rooms = render_rooms(options.program, options.rooms)
-            text = head + encoders_section(options.program, rooms, work) + [""] + views_section(options.program, rooms, work) + [""]
+            text = head + encoders_section(options.program, rooms, work) + [""] + evidence_section(options.program, rooms, work) + [""]
+            text += views_section(options.program, rooms, work) + [""]
         if options.kitchen:
             text += kitchen_section(options.program, options.kitchen, work)
     options.out.write_text("\n".join(text) + "\n")

@@ -257,8 +257,8 @@ std::string singular(std::string word) {
   const auto ends = [&](std::string_view end) {
     return word.size() > end.size() + 1 && word.ends_with(end);
   };
-  if (ends("shelves") || ends("knives"))
-    return word.substr(0, word.size() - 3) + (ends("knives") ? "fe" : "f");
+  if (word.ends_with("shelves")) return word.substr(0, word.size() - 3) + "f";
+  if (word.ends_with("knives")) return word.substr(0, word.size() - 3) + "fe";
   if (ends("ies")) return word.substr(0, word.size() - 3) + "y";
   if (ends("xes") || ends("ches") || ends("shes") || ends("sses"))
     return word.substr(0, word.size() - 2);

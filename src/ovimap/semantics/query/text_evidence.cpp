@@ -88,7 +88,8 @@ TextEvidence::TextEvidence(std::span<const ObjectMeasures> objects, const WordLi
   std::vector<Eigen::VectorXf> columns(static_cast<std::size_t>(words));
   parallel_for(columns.size(), 1, [&](std::size_t word) {
     const Eigen::VectorXf row = household_rows_.row(static_cast<Eigen::Index>(word)).transpose();
-    columns[word] = pictures(row) + config_.size_weight * size_log_ratio(row);
+    columns[word] = pictures(row);
+    add_size(row, columns[word]);
   });
   weights_.resize(columns[0].size(), words);
   for (Eigen::Index word = 0; word < words; ++word)
@@ -98,12 +99,12 @@ TextEvidence::TextEvidence(std::span<const ObjectMeasures> objects, const WordLi
   total_ = weights_.rowwise().sum();
 }
 
-Eigen::VectorXf TextEvidence::size_log_ratio(const Eigen::VectorXf& row) const {
-  if (sizes_.cols() == 0) return Eigen::VectorXf::Zero(sizes_.rows());
+void TextEvidence::add_size(const Eigen::VectorXf& row, Eigen::VectorXf& scores) const {
+  if (sizes_.cols() == 0 || config_.size_weight == 0.f) return;
   const Eigen::VectorXf alike =
       ((thing_rows_ * row).array() - mean_cosine_) / cosine_deviation_;
   const float most = alike.maxCoeff(), certainty = ramp(most, kUnlike, kAlike);
-  if (certainty == 0.f) return Eigen::VectorXf::Zero(sizes_.rows());
+  if (certainty == 0.f) return;
   Eigen::VectorXf fit = Eigen::VectorXf::Zero(sizes_.rows());
   float shares = 0.f;
   for (Eigen::Index k = 0; k < alike.size(); ++k) {
@@ -114,7 +115,9 @@ Eigen::VectorXf TextEvidence::size_log_ratio(const Eigen::VectorXf& row) const {
   }
   const Eigen::ArrayXf ratio = (fit.array() / shares + kLeastLikelihood).log() -
                                (size_means_.array() + kLeastLikelihood).log();
-  return certainty * ratio.cwiseMax(-config_.most_size_ratio).cwiseMin(config_.most_size_ratio);
+  const float most_ratio = config_.most_size_ratio;
+  scores.array() +=
+      config_.size_weight * certainty * ratio.cwiseMax(-most_ratio).cwiseMin(most_ratio);
 }
 
 Eigen::VectorXf TextEvidence::competitors(const std::string& text,
@@ -137,8 +140,7 @@ TextScores TextEvidence::weigh(const std::string& text, const Eigen::VectorXf& r
                                const Eigen::VectorXf& pictures) const {
   TextScores scores;
   scores.alone = pictures;
-  if (sizes_.cols() > 0 && config_.size_weight > 0.f)
-    scores.alone += config_.size_weight * size_log_ratio(row);
+  add_size(row, scores.alone);
   const Eigen::VectorXf rivals = best_.array() + competitors(text, row).array().log();
   scores.log_odds = scores.alone - rivals;
   scores.standard = scores.alone - config_.competition * rivals;

@@ -68,7 +68,8 @@ class TextEvidence {
   const Eigen::VectorXf& household_best() const { return best_; }
 
  private:
-  Eigen::VectorXf size_log_ratio(const Eigen::VectorXf& row) const;
+  /// Adds what size and place say of the text to its scores [objects].
+  void add_size(const Eigen::VectorXf& row, Eigen::VectorXf& scores) const;
   Eigen::VectorXf competitors(const std::string& text, const Eigen::VectorXf& row) const;
 
   EvidenceConfig config_;
