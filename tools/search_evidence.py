@@ -6,6 +6,7 @@ import json
 import pathlib
 
 DATA = pathlib.Path(__file__).resolve().parents[1] / "src/ovimap/semantics/data"
+HEAD = "## What each piece of evidence adds"
 UNCLEAR = "object"
 WIDE = 3  # household words below a word that is called wide ("seat")
 PIECES = [
@@ -90,7 +91,7 @@ def evidence_section(query, rooms, map_of, ranks_of):
     """`query(map, texts, *options)` answers texts, `map_of(room)` is a room's map, `ranks_of(answers, names)` ranks of the
     first right objects."""
     everywhere = sorted({name for room in rooms for name in room_names(room).values()})
-    text = ["## What each piece of evidence adds", "",
+    text = [HEAD, "",
             "rooms-v1 with sensor noise, true instances; mean over the rooms. Words: the classes in the room, floor, walls and ceiling "
             "too. Found: of these words, those answered \"found\" with a right object first; of all answered \"found\" among them and "
             "as many absent ones (classes of the other rooms, scaled), those that are right; absent ones answered \"found\".", "",

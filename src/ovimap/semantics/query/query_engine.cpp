@@ -202,14 +202,19 @@ std::vector<QueryMatch> QueryEngine::best_matches(const MatchScores& scores, Ran
   return matches;
 }
 
+bool QueryEngine::is_found(const MatchScores& scores, const QueryMatch& best,
+                           const PValue& p_value) const {
+  if (matcher_ && scores.log_odds.size() > 0) return matcher_->is_found(scores, best.position);
+  return !p_value ||
+         p_value(best.standard_score) <= double{config_.verdict.false_positive_rate};
+}
+
 QueryAnswer QueryEngine::answer(const MatchScores& scores, const PValue& p_value,
                                 const Probability& probability, bool relevance) const {
   QueryAnswer result;
   result.matches = best_matches(scores, config_.rank_by, static_cast<std::size_t>(config_.top_k));
   const auto best = best_matches(scores, RankRule::kStandardScore, 1);
-  if (!best.empty() &&
-      (!p_value || p_value(best[0].standard_score) <= double{config_.verdict.false_positive_rate}))
-    result.verdict = Verdict::kFound;
+  if (!best.empty() && is_found(scores, best[0], p_value)) result.verdict = Verdict::kFound;
   for (QueryMatch& match : result.matches) {
     if (!p_value) break;
     match.p_value = p_value(match.standard_score);

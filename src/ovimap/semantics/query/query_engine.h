@@ -83,6 +83,7 @@ class QueryEngine {
                      const Probability& probability, bool relevance) const;
   QueryAnswer answer_like(const Eigen::VectorXf& embedding, std::size_t itself,
                           bool relevance) const;
+  bool is_found(const MatchScores& scores, const QueryMatch& best, const PValue& p_value) const;
   std::vector<QueryMatch> best_matches(const MatchScores& scores, RankRule rule,
                                        std::size_t count) const;
   Eigen::VectorXf rate_all(const MatchScores& scores, const PValue& p_value,

@@ -195,4 +195,11 @@ double TextMatcher::probability(const MatchScores& scores, std::size_t position)
   return 1.0 / (1.0 + std::exp(-odds));
 }
 
+bool TextMatcher::is_found(const MatchScores& scores, std::size_t position) const {
+  const float score = scores.standard[static_cast<Eigen::Index>(position)];
+  if (p_value(scores, score) > double{config_.verdict.false_positive_rate}) return false;
+  return scores.log_odds.size() == 0 ||
+         probability(scores, position) >= double{config_.evidence.found_probability};
+}
+
 }  // namespace ovimap

@@ -53,6 +53,9 @@ class TextMatcher {
   float score_at(const MatchScores& scores, double p) const;
   /// Chance that the object at that position is what was asked for.
   double probability(const MatchScores& scores, std::size_t position) const;
+  /// Whether that is enough to say that it was found: absent things hardly score as high (p-value),
+  /// and other words do not explain the object better (probability).
+  bool is_found(const MatchScores& scores, std::size_t position) const;
 
   const Embeddings& vocabulary() const { return vocabulary_; }
   const ScoreCalibration& calibration() const { return *calibration_; }

@@ -115,22 +115,22 @@ PhraseSearch::PhraseSearch(const SearchIndex& index, const TextMatcher* matcher,
 PhraseMatch PhraseSearch::match(const QueryPhrase& phrase,
                                 const std::vector<std::string>& negatives) const {
   // What only resembles the thing may be listed, but proves nothing.
-  return match_phrase(phrase, negatives, config_.verdict.false_positive_rate);
+  return match_phrase(phrase, negatives, Role::kThing);
 }
 
 PhraseMatch PhraseSearch::match_phrase(const QueryPhrase& phrase,
                                        const std::vector<std::string>& negatives,
-                                       float most_p) const {
-  PhraseMatch result = match_things(phrase, negatives, most_p);
+                                       Role role) const {
+  PhraseMatch result = match_things(phrase, negatives, role);
   apply_attributes(phrase, result);
   if (phrase.relation) {
     // Which of several tables it is on need not be the one that looks most like a table.
-    const PhraseMatch anchors = match_phrase(phrase.anchors[0], {}, config_.candidate_rate);
+    const PhraseMatch anchors = match_phrase(phrase.anchors[0], {}, Role::kAnchor);
     if (!phrase.negated) add_missing(result, anchors);
     if (*phrase.relation == Relation::kBetween) {
       const bool two = phrase.anchors.size() > 1;
       const PhraseMatch second =
-          two ? match_phrase(phrase.anchors[1], {}, config_.candidate_rate) : anchors;
+          two ? match_phrase(phrase.anchors[1], {}, Role::kAnchor) : anchors;
       if (two) add_missing(result, second);
       apply_between(anchors, second, !two, result);
     } else if (*phrase.relation == Relation::kNearest || *phrase.relation == Relation::kFarthest) {
@@ -145,7 +145,7 @@ PhraseMatch PhraseSearch::match_phrase(const QueryPhrase& phrase,
 
 PhraseMatch PhraseSearch::match_things(const QueryPhrase& phrase,
                                        const std::vector<std::string>& negatives,
-                                       float most_p) const {
+                                       Role role) const {
   PhraseMatch result;
   result.scores = Eigen::VectorXf::Ones(static_cast<Eigen::Index>(index_.size()));
   result.holds.assign(index_.size(), true);
@@ -158,7 +158,7 @@ PhraseMatch PhraseSearch::match_things(const QueryPhrase& phrase,
   if (terms.empty())
     throw Error(concat("the query names nothing in '", phrase.things, "'; say what to look for"));
   result.things = needed_matcher(phrase.things).match(terms, negatives);
-  rate_by_text(phrase, most_p, result);
+  rate_by_text(phrase, role, result);
   return result;
 }
 
@@ -175,8 +175,7 @@ void PhraseSearch::apply_attributes(const QueryPhrase& phrase, PhraseMatch& resu
   }
 }
 
-void PhraseSearch::rate_by_text(const QueryPhrase& phrase, float most_p,
-                                PhraseMatch& result) const {
+void PhraseSearch::rate_by_text(const QueryPhrase& phrase, Role role, PhraseMatch& result) const {
   const MatchScores& text = result.things;
   result.scores.setZero();
   std::optional<std::size_t> best;
@@ -184,22 +183,23 @@ void PhraseSearch::rate_by_text(const QueryPhrase& phrase, float most_p,
     if (index_.has_embedding(i) && !text.excluded[i] &&
         (!best || at(text.standard, i) > at(text.standard, *best)))
       best = i;
-  const double best_p = best ? matcher_->p_value(text, at(text.standard, *best)) : 1.0;
-  if (best_p > double{config_.verdict.false_positive_rate}) result.missing.push_back(phrase.things);
+  if (!best || !matcher_->is_found(text, *best)) result.missing.push_back(phrase.things);
   result.holds.assign(index_.size(), false);
   if (!best) return;
-  at(result.scores, *best) = static_cast<float>(match_probability(best_p));  // if only as a guess
+  at(result.scores, *best) = static_cast<float>(matcher_->probability(text, *best));  // a guess
   // A weak candidate can win a comparison of places; it cannot make a relation true.
   const bool compares = phrase.superlative || phrase.relation == Relation::kNearest ||
                         phrase.relation == Relation::kFarthest;
-  float level = matcher_->score_at(text, double{config_.candidate_rate});
+  const float possible = matcher_->score_at(text, double{config_.candidate_rate});
+  float level = possible;
   if (compares) level = std::max(level, config_.rival_share * at(text.standard, *best));
   for (std::size_t i = 0; i < index_.size(); ++i) {
     const bool candidate = index_.has_embedding(i) && !text.excluded[i];
-    const double p = candidate ? matcher_->p_value(text, at(text.standard, i)) : 1.0;
-    result.holds[i] = p <= double{most_p};
-    if (candidate && at(text.standard, i) >= level)
-      at(result.scores, i) = static_cast<float>(match_probability(p));
+    if (!candidate) continue;
+    const bool likely = at(text.standard, i) >= possible;
+    result.holds[i] = role == Role::kAnchor ? likely : matcher_->is_found(text, i);
+    if (at(text.standard, i) >= level)
+      at(result.scores, i) = static_cast<float>(matcher_->probability(text, i));
   }
 }
 
@@ -207,8 +207,7 @@ void PhraseSearch::leave_out(const std::vector<std::string>& negatives, PhraseMa
   const MatchScores text = needed_matcher("--not " + negatives.front()).match(negatives, {});
   for (std::size_t i = 0; i < index_.size(); ++i) {
     if (!index_.has_embedding(i)) continue;
-    const double p = matcher_->p_value(text, at(text.standard, i));
-    if (p > double{config_.verdict.false_positive_rate}) continue;
+    if (!matcher_->is_found(text, i)) continue;
     at(result.scores, i) = 0.f;
     result.holds[i] = false;
   }

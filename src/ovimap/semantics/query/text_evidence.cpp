@@ -49,6 +49,8 @@ void list_fields(EvidenceConfig& config, ConfigFields& fields) {
   fields.add("odds_scale", config.odds_scale, 0.01f, 100.f,
              "probability of a match: sigmoid(odds_scale * log odds + odds_offset)");
   fields.add("odds_offset", config.odds_offset, -100.f, 100.f, "... see odds_scale");
+  fields.add("found_probability", config.found_probability, 0.f, 1.f,
+             "a match with a smaller probability does not count as found");
   fields.add("name_share", config.name_share, 0.01f, 1.f,
              "share of all household words that a name needs to be shown; else it is an object");
   fields.add("max_objects", config.max_objects, 0, kMost,

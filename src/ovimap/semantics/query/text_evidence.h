@@ -23,6 +23,7 @@ struct EvidenceConfig {
   float competition = 0.5f;        ///< how much other words for an object take from a text; 0: none
   float odds_scale = 1.f;          ///< probability of a match: sigmoid(scale * log odds + offset)
   float odds_offset = 2.3f;        ///< fitted on generated rooms (docs/experiments.md)
+  float found_probability = 0.35f;  ///< a match with less does not count as found
   float name_share = 0.3f;         ///< of all household words, that a name needs to be shown
   int max_objects = 50000;         ///< larger maps are searched by pictures alone
 };
