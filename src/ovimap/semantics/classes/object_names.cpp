@@ -8,6 +8,8 @@ namespace ovimap {
 
 namespace {
 
+constexpr float kWide = 3.f;  // household words below a wide one
+
 /// [words, words] 1 where the row's word names a kind of the column's.
 Eigen::MatrixXf kinds_below(const Concepts& concepts) {
   const auto& words = concepts.household();
@@ -28,6 +30,10 @@ std::vector<ObjectName> name_objects(const TextEvidence& evidence) {
   const auto& words = evidence.concepts().household();
   const Eigen::MatrixXf below = kinds_below(evidence.concepts());
   const Eigen::VectorXf width = below.colwise().sum().transpose();
+  const EvidenceConfig& config = evidence.config();
+  const Eigen::VectorXf needed = width.unaryExpr([&](float kinds) {
+    return kinds > kWide ? std::max(config.name_share, config.wide_name_share) : config.name_share;
+  });
   const Eigen::MatrixXf& weights = evidence.household_weights();
   const Eigen::VectorXf total = weights.rowwise().sum();
   const Eigen::MatrixXf shares = total.cwiseInverse().asDiagonal() * (weights * below).eval();
@@ -35,7 +41,7 @@ std::vector<ObjectName> name_objects(const TextEvidence& evidence) {
   for (Eigen::Index i = 0; i < shares.rows(); ++i) {
     Eigen::Index best = -1;
     for (Eigen::Index word = 0; word < shares.cols(); ++word) {
-      if (shares(i, word) < evidence.config().name_share) continue;
+      if (shares(i, word) < needed[word]) continue;
       const bool narrower = best < 0 || width[word] < width[best];
       const bool likelier = best >= 0 && width[word] == width[best] &&
                             shares(i, word) > shares(i, best);

@@ -20,7 +20,7 @@ struct ObjectName {
 };
 
 /// A name for each object: the narrowest household word whose kinds together have at least
-/// EvidenceConfig::name_share.
+/// EvidenceConfig::name_share, or wide_name_share where they are many.
 std::vector<ObjectName> name_objects(const TextEvidence& evidence);
 
 }  // namespace ovimap

@@ -53,6 +53,8 @@ void list_fields(EvidenceConfig& config, ConfigFields& fields) {
              "a match with a smaller probability does not count as found");
   fields.add("name_share", config.name_share, 0.01f, 1.f,
              "share of all household words that a name needs to be shown; else it is an object");
+  fields.add("wide_name_share", config.wide_name_share, 0.01f, 1.f,
+             "... for a name of more than three household words, such as furniture");
   fields.add("max_objects", config.max_objects, 0, kMost,
              "maps of more objects are searched by pictures alone");
 }

@@ -25,6 +25,7 @@ struct EvidenceConfig {
   float odds_offset = 2.3f;        ///< fitted on generated rooms (docs/experiments.md)
   float found_probability = 0.35f;  ///< a match with less does not count as found
   float name_share = 0.3f;         ///< of all household words, that a name needs to be shown
+  float wide_name_share = 0.6f;    ///< ... a name of more than three kinds ("furniture")
   int max_objects = 50000;         ///< larger maps are searched by pictures alone
 };
 void list_fields(EvidenceConfig& config, ConfigFields& fields);
