@@ -7,6 +7,7 @@
 #include "ovimap/io/map_file/map_file.h"
 #include "ovimap/io/pictures/palette.h"
 #include "ovimap/pipeline/search/map_search.h"
+#include "ovimap/semantics/query/query_engine.h"
 
 namespace ovimap::apps {
 
@@ -18,7 +19,8 @@ ClassedMap classify(const ExportOptions& options) {
   const MapSearch search = open_map_search(options.map);
   const auto encoder =
       needed_encoder_of_map(search.info.encoder, options.encoder, runtime, options.model_dirs);
-  const auto guesses = project_classes(search.index, *encoder, result.set, kBestOnly);
+  const QueryEngine engine(search.index, encoder.get(), {}, {}, search.scene);
+  const auto guesses = project_classes(search.index, *engine.matcher(), result.set, kBestOnly);
   for (std::size_t i = 0; i < guesses.size(); ++i)
     if (!guesses[i].empty()) result.guesses[search.index.object(i).id] = guesses[i].front();
   return result;

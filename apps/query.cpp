@@ -11,6 +11,7 @@
 #include "ovimap/io/mesh/ply.h"
 #include "ovimap/io/pictures/pictures.h"
 #include "ovimap/pipeline/search/map_search.h"
+#include "ovimap/semantics/classes/object_names.h"
 #include "ovimap/semantics/query/query_engine.h"
 #include "ovimap/semantics/query/query_grammar.h"
 #include "ovimap/semantics/query/query_text.h"
@@ -46,12 +47,25 @@ nlohmann::json point_json(const Eigen::Vector3f& point) {
   return {point.x(), point.y(), point.z()};
 }
 
-nlohmann::json match_json(const QueryMatch& match, const SearchObject& object) {
+/// What each object is called: as a person named it, else a word that is clear, else "object".
+std::vector<std::string> titles_of(const SearchIndex& index, const QueryEngine& engine) {
+  std::vector<std::string> titles;
+  for (const SearchObject& object : index.objects()) titles.push_back(object.name);
+  if (!engine.matcher() || !engine.matcher()->evidence()) return titles;
+  const std::vector<ObjectName> names = name_objects(*engine.matcher()->evidence());
+  for (std::size_t i = 0; i < titles.size(); ++i)
+    if (titles[i].empty() && index.has_embedding(i)) titles[i] = names[i].word;
+  return titles;
+}
+
+nlohmann::json match_json(const QueryMatch& match, const SearchObject& object,
+                          const std::string& title) {
   const auto number = [](const std::optional<double>& value) {
     return value ? nlohmann::json(*value) : nlohmann::json();
   };
   return {{"id", match.id},
           {"name", object.name},
+          {"title", title},
           {"score", match.score},
           {"standard_score", match.standard_score},
           {"p_value", number(match.p_value)},
@@ -61,20 +75,31 @@ nlohmann::json match_json(const QueryMatch& match, const SearchObject& object) {
           {"centroid", point_json(object.centroid)}};
 }
 
-nlohmann::json answer_json(const QueryAnswer& answer, const SearchIndex& index) {
+nlohmann::json answer_json(const QueryAnswer& answer, const SearchIndex& index,
+                           const std::vector<std::string>& titles) {
   nlohmann::json instances = nlohmann::json::array();
   for (const QueryMatch& match : answer.matches)
-    instances.push_back(match_json(match, index.object(match.position)));
+    instances.push_back(match_json(match, index.object(match.position), titles[match.position]));
+  const auto count = answer.count
+                         ? nlohmann::json{{"expected", answer.count->expected},
+                                          {"deviation", answer.count->deviation},
+                                          {"found", answer.count->found}}
+                         : nlohmann::json();
   return {{"query", answer.query},
+          {"count", count},
           {"verdict", verdict_name(answer.verdict)},
           {"reading", answer.reading},
           {"reason", answer.reason},
           {"instances", instances}};
 }
 
-void print_answer(const QueryAnswer& answer, const SearchIndex& index) {
+void print_answer(const QueryAnswer& answer, const SearchIndex& index,
+                  const std::vector<std::string>& titles) {
   std::printf("%s: %s", answer.query.c_str(),
               answer.verdict == Verdict::kFound ? "found" : "not in the map");
+  if (answer.count)
+    std::printf(", %d found, %.1f +- %.1f by their chances", answer.count->found,
+                answer.count->expected, answer.count->deviation);
   if (!answer.reading.empty()) std::printf(", read as %s", answer.reading.c_str());
   if (!answer.reason.empty()) std::printf(" (%s)", answer.reason.c_str());
   std::printf(answer.verdict == Verdict::kFound ? "\n" : "; what comes nearest:\n");
@@ -84,7 +109,8 @@ void print_answer(const QueryAnswer& answer, const SearchIndex& index) {
     if (match.probability) std::printf("  %3.0f %%", 100.0 * *match.probability);
     std::printf("  at %6.2f %6.2f %6.2f", double{object.centroid.x()}, double{object.centroid.y()},
                 double{object.centroid.z()});
-    if (!object.name.empty()) std::printf("  %s", object.name.c_str());
+    if (const std::string& title = titles[match.position]; !title.empty())
+      std::printf("  %s", title.c_str());
     if (!match.evidence.empty()) std::printf("  %s", match.evidence.c_str());
     std::printf("\n");
   }
@@ -180,13 +206,14 @@ int query(const QueryOptions& options) {
   bool found = false;
   nlohmann::json results = nlohmann::json::array();
   const std::vector<QueryAnswer> answers = ask(options, engine);
+  const std::vector<std::string> titles = titles_of(search.index, engine);
   if (!options.heat_map.empty()) write_heat_maps(options, search, answers);
   for (const QueryAnswer& answer : answers) {
     found = found || answer.verdict == Verdict::kFound;
     if (options.json)
-      results.push_back(answer_json(answer, search.index));
+      results.push_back(answer_json(answer, search.index, titles));
     else
-      print_answer(answer, search.index);
+      print_answer(answer, search.index, titles);
   }
   if (options.json) print_json({{"results", results}});
   return found ? kDone : kAnswerIsNo;

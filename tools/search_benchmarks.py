@@ -5,8 +5,10 @@
 
 Usage: tools/search_benchmarks.py PROGRAM [--rooms build/benchmarks/rooms/noisy] [--kitchen FOLDER]
                                  [--out docs/search-benchmarks.md] [--keep-rooms]
+       tools/search_benchmarks.py PROGRAM --only-evidence [--rooms ...] [--kitchen-map MAP] [--out ...]
 --rooms: where rooms-v1 with noise is, or goes. FOLDER is 7-Scenes "red kitchen" (every 5th frame); without it only the
-rendered rooms are measured. --keep-rooms: the page's figures of the rooms stay as they are.
+rendered rooms are measured. --keep-rooms: the page's figures of the rooms stay as they are. --only-evidence: the page stays as it
+is but for the section on evidence; the rooms must be there. MAP: of the kitchen, as `ovimap run KITCHEN --masks sam` makes it.
 """
 import argparse
 import datetime
@@ -16,10 +18,13 @@ import pathlib
 import subprocess
 import tempfile
 
+import search_evidence
+
 DATA = pathlib.Path(__file__).parent / "data"
 EVERYTHING = 1000
 STUFF = {"floor", "wall", "ceiling"}
 KITCHEN_HEAD = "## A real kitchen"
+VIEWS_HEAD = "## Which views to embed"
 # The encoder's halves, to compare with, where they were built:
 #   build_default_encoder.py WHEELS .models/default-encoder-VARIANT --variant VARIANT
 PARTS = [(variant, pathlib.Path(f".models/default-encoder-{variant}")) for variant in ("classifier", "head")]
@@ -92,6 +97,7 @@ def kitchen_section(program, kitchen, work):
             map_file = work / f"kitchen_{name}.ovimap"
             run_json(program, "reembed", made, "--encoder", folder, "-o", map_file)
             encoders.append((f"{name} alone", map_file, ["--encoder", folder]))
+    encoders.append(("both, picture alone", made, dict(search_evidence.PIECES)["picture alone"]))
     encoders.append(("both (default)", made, []))
     columns = {name: list(kitchen_ranks(program, map_file, *options)) for name, map_file, options in encoders}
     text = [KITCHEN_HEAD, "", measured_at(), "", "    ovimap run KITCHEN --masks sam -o kitchen.ovimap", "",
@@ -189,9 +195,50 @@ def encoders_section(program, rooms, work):
     return text + [f"| both (default) | {default_figures(program, rooms, work)} |"]
 
 
+def evidence_section(program, rooms, work):
+    def map_of(room):
+        map_file = work / f"{room.name}.ovimap"
+        if not map_file.exists():
+            run_json(program, "embed", "gt", room, *FEW_CROPS, "-o", map_file)
+        return map_file
+
+    def ranks_of(answers, names):
+        return [next((rank for rank, found in enumerate(answer["instances"], 1)
+                      if names.get(str(found["id"])) == answer["query"]), EVERYTHING) for answer in answers]
+
+    def ask(map_file, texts, *options):
+        return query(program, map_file, texts, "--set", "query.grammar=false", *options)
+
+    text = search_evidence.evidence_section(ask, rooms, map_of, ranks_of)
+    return text[:1] + ["", measured_at()] + text[1:]
+
+
+def kitchen_evidence(program, map_file):
+    text = ["", "The kitchen: the 32 phrases below, and twice 50 words.", "",
+            "| evidence | first | among five | present, not found | absent, found |", "| --- | --- | --- | --- | --- |"]
+    for piece, options in search_evidence.PIECES:
+        ranks = [rank for _, rank, _, _ in kitchen_ranks(program, map_file, *options)]
+        wrong = verdict_rates(program, map_file, *options)
+        text.append(f"| {piece} | {recall(ranks, 1):.2f} | {recall(ranks, 5):.2f} | {len(wrong['present']) / 50:.0%} "
+                    f"| {len(wrong['absent']) / 50:.0%} |")
+    return text
+
+
+def write_evidence(options):
+    rooms = tuple(sorted(file.parent for file in options.rooms.glob("*/traj.txt")))
+    with tempfile.TemporaryDirectory() as folder:
+        text = evidence_section(options.program, rooms, pathlib.Path(folder))
+    if options.kitchen_map:
+        text += kitchen_evidence(options.program, options.kitchen_map)
+    page = options.out.read_text()
+    begin = page.find(search_evidence.HEAD)
+    begin = page.index(VIEWS_HEAD) if begin < 0 else begin
+    options.out.write_text(page[:begin] + "\n".join(text) + "\n\n" + page[page.index(VIEWS_HEAD):])
+
+
 def views_section(program, rooms, work):
     """Truth geometry, so that nothing but the choice of views differs."""
-    text = ["## Which views to embed", "", "    ovimap embed gt ROOM --views PRESET -o room.ovimap", "",
+    text = [VIEWS_HEAD, "", "    ovimap embed gt ROOM --views PRESET -o room.ovimap", "",
             "rooms-v1 with sensor noise, true instances; mean over the five rooms. AQ: embedding queries "
             "an object. Words: the classes in the room; reciprocal rank, right object first, among three. One scale of crops.", "",
             "| views | AQ | MRR | first | first three |", "| --- | --- | --- | --- | --- |"]
@@ -219,8 +266,13 @@ def main():
     parser.add_argument("--rooms", type=pathlib.Path, default=pathlib.Path("build/benchmarks/rooms/noisy"))
     parser.add_argument("--kitchen", type=pathlib.Path)
     parser.add_argument("--keep-rooms", action="store_true")
+    parser.add_argument("--only-evidence", action="store_true")
+    parser.add_argument("--kitchen-map", type=pathlib.Path)
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("docs/search-benchmarks.md"))
     options = parser.parse_args()
+    if options.only_evidence:
+        write_evidence(options)
+        return
     head = ["<!-- SPDX-FileCopyrightText: 2026 The ovimap authors -->", "<!-- SPDX-License-Identifier: Apache-2.0 -->",
             "<!-- Written by tools/search_benchmarks.py; do not edit. -->", "# Search benchmarks", ""]
     with tempfile.TemporaryDirectory() as folder:
@@ -229,7 +281,8 @@ def main():
             text = options.out.read_text().split(KITCHEN_HEAD)[0].splitlines()
         else:
             rooms = render_rooms(options.program, options.rooms)
-            text = head + encoders_section(options.program, rooms, work) + [""] + views_section(options.program, rooms, work) + [""]
+            text = head + encoders_section(options.program, rooms, work) + [""] + evidence_section(options.program, rooms, work) + [""]
+            text += views_section(options.program, rooms, work) + [""]
         if options.kitchen:
             text += kitchen_section(options.program, options.kitchen, work)
     options.out.write_text("\n".join(text) + "\n")

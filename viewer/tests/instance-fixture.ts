@@ -6,6 +6,7 @@ export function instance(id: number, more: Partial<Instance> = {}): Instance {
   return {
     id,
     name: '',
+    label: null,
     guesses: [],
     class: null,
     color: [id, 0, 0],

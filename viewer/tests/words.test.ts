@@ -9,15 +9,21 @@ import { instance } from './instance-fixture';
 
 const guess = (name: string): { name: string; cosine: number } => ({ name, cosine: 0.4 });
 const mug = instance(12, { name: 'my mug', guesses: [guess('cup')] });
-const table = instance(3, { guesses: [guess('table'), guess('desk')] });
+const table = instance(3, {
+  label: { name: 'table', share: 0.6 },
+  guesses: [guess('table'), guess('desk')],
+});
+const unclear = instance(5, { label: { name: 'object', share: 0 }, guesses: [guess('dish rack')] });
 
 describe('words', () => {
-  test('an object is called by its name, a guess, or its number', () => {
+  test('an object is called by its name, what it clearly is, or its number', () => {
     expect(titleOf(mug)).toBe('my mug');
     expect(isGuess(mug)).toBe(false);
     expect(titleOf(table)).toBe('table');
     expect(isGuess(table)).toBe(true);
     expect(titleOf(instance(7))).toBe('Object 7');
+    expect(titleOf(unclear)).toBe('Object 5');
+    expect(isGuess(unclear)).toBe(false);
   });
 
   test('numbers of the server become names', () => {

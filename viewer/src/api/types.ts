@@ -30,9 +30,17 @@ export interface NameGuess {
   cosine: number;
 }
 
+/** A word for an object where one is clear, else "object". */
+export interface ObjectLabel {
+  name: string;
+  share: number;
+}
+
 export interface Instance {
   id: number;
   name: string;
+  /** Null until it is known. */
+  label: ObjectLabel | null;
   guesses: NameGuess[];
   class: { id: number; name: string; color: Color } | null;
   color: Color;

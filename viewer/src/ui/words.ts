@@ -2,14 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Instance } from '../api/types';
 
-/** What an object is called: as a person named it, else the best guess, else by its number. */
+/** The word that the evidence for an object is clear about; empty: none. */
+function clearWord(instance: Instance): string {
+  const word = instance.label?.name ?? '';
+  return word === 'object' ? '' : word;
+}
+
+/** What an object is called: as a person named it, else what it clearly is, else by its number. */
 export function titleOf(instance: Instance): string {
-  return instance.name || instance.guesses[0]?.name || `Object ${instance.id}`;
+  return instance.name || clearWord(instance) || `Object ${instance.id}`;
 }
 
 /** Whether the title is only a guess. */
 export function isGuess(instance: Instance): boolean {
-  return instance.name === '' && instance.guesses.length > 0;
+  return instance.name === '' && clearWord(instance) !== '';
 }
 
 export function percent(share: number | null): string {

@@ -13,6 +13,7 @@
 #include "ovimap/pipeline/evaluation/truth_classes.h"
 #include "ovimap/pipeline/search/map_search.h"
 #include "ovimap/pipeline/search/name_guesses.h"
+#include "ovimap/semantics/query/query_engine.h"
 
 namespace ovimap {
 
@@ -152,7 +153,8 @@ void add_classes(Draft& draft, const LabelSet& set, ImageTextEncoder& encoder,
                              " % of the truth of ", draft.paths.source.string(), ")"));
   draft.scene.labels.truth_classes = std::move(numbered.numbers);
   const MapSearch search = open_map_search(draft.paths.map);
-  const auto guesses = project_classes(search.index, encoder, set, kBestOnly);
+  const QueryEngine engine(search.index, &encoder, {}, {}, search.scene);
+  const auto guesses = project_classes(search.index, *engine.matcher(), set, kBestOnly);
   for (std::size_t i = 0; i < guesses.size(); ++i)
     if (!guesses[i].empty())
       draft.scene.labels.predicted_classes[search.index.object(i).id] =

@@ -43,6 +43,20 @@ QueryScene scene_of(const SearchableMap& map, const SearchIndex& index,
   return scene;
 }
 
+/// The largest crop of each object that keeps one.
+std::vector<StoredCrop> crops_of(const SuperPointLooks& looks,
+                                 std::span<const InstanceSummary> instances) {
+  std::vector<StoredCrop> crops;
+  for (const InstanceSummary& instance : instances) {
+    const ObjectView* largest = nullptr;
+    for (const ObjectView* view : appearance_of(looks, instance.super_points).views)
+      if (!view->crop.empty() && (!largest || view->visible_px > largest->visible_px))
+        largest = view;
+    crops.push_back(largest ? largest->crop : StoredCrop{});
+  }
+  return crops;
+}
+
 MapSearch search_in(SearchableMap&& map, const ObjectShapeConfig& config) {
   MapSearch search;
   search.index = index_of(map);
@@ -73,7 +87,12 @@ std::string model_of_map(const EncoderIdentity& wanted,
 }  // namespace
 
 MapSearch open_map_search(const std::filesystem::path& map, const ObjectShapeConfig& config) {
-  return search_in(read_searchable_map(map), config);
+  MapSearch search = search_in(read_searchable_map(map), config);
+  search.scene.colors = std::make_shared<const ObjectColors>(
+      [map, instances = search.info.instances] {
+        return crops_of(load_map_without_voxels(map).semantics.looks, instances);
+      });
+  return search;
 }
 
 MapSearch make_map_search(const MapRecord& corrected, MapInfo info,
@@ -94,7 +113,10 @@ MapSearch make_map_search(const MapRecord& corrected, MapInfo info,
   map.surfaces = corrected.surfaces;
   map.frames = corrected.frames;
   map.info = std::move(info);
-  return search_in(std::move(map), config);
+  MapSearch search = search_in(std::move(map), config);
+  search.scene.colors = std::make_shared<const ObjectColors>(
+      [crops = crops_of(corrected.semantics.looks, corrected.instances)] { return crops; });
+  return search;
 }
 
 std::unique_ptr<ImageTextEncoder> encoder_of_map(

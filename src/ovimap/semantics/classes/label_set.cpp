@@ -111,4 +111,15 @@ std::vector<std::vector<ClassGuess>> project_classes(const SearchIndex& index,
   return guesses;
 }
 
+std::vector<std::vector<ClassGuess>> project_classes(const SearchIndex& index,
+                                                     const TextMatcher& matcher,
+                                                     const LabelSet& set, std::size_t top) {
+  const Eigen::MatrixXf fits = matcher.fit_of_each(spoken_names(set));
+  std::vector<std::vector<ClassGuess>> guesses(index.size());
+  for (std::size_t i = 0; i < index.size(); ++i)
+    if (index.has_embedding(i))
+      guesses[i] = best_guesses(fits.row(static_cast<Eigen::Index>(i)).transpose(), top);
+  return guesses;
+}
+
 }  // namespace ovimap

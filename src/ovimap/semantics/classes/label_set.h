@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "ovimap/semantics/query/search_index.h"
+#include "ovimap/semantics/query/query_matcher.h"
 
 namespace ovimap {
 
@@ -36,7 +36,7 @@ Embeddings encode_labels(ImageTextEncoder& encoder, const LabelSet& set,
 
 struct ClassGuess {
   std::size_t label = 0;  ///< position in the set
-  float score = 0;        ///< cosine
+  float score = 0;        ///< cosine, or standard score
 };
 
 /// The `top` classes nearest to each object, best first (method section 11: class projection);
@@ -46,5 +46,11 @@ std::vector<std::vector<ClassGuess>> project_classes(const SearchIndex& index,
                                                      ImageTextEncoder& encoder, const LabelSet& set,
                                                      std::size_t top,
                                                      const std::string& prompts = {});
+
+/// The same by all evidence that queries go by, the objects' sizes included; the scores are
+/// standard ones.
+std::vector<std::vector<ClassGuess>> project_classes(const SearchIndex& index,
+                                                     const TextMatcher& matcher,
+                                                     const LabelSet& set, std::size_t top);
 
 }  // namespace ovimap

@@ -34,6 +34,7 @@ void list_fields(QueryConfig& config, ConfigFields& fields) {
   fields.group("relations", [&](ConfigFields& inner) { list_fields(config.relations, inner); });
   fields.group("shapes", [&](ConfigFields& inner) { list_fields(config.shapes, inner); });
   fields.group("verdict", [&](ConfigFields& inner) { list_fields(config.verdict, inner); });
+  fields.group("evidence", [&](ConfigFields& inner) { list_fields(config.evidence, inner); });
 }
 
 }  // namespace ovimap

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "ovimap/semantics/query/text_evidence.h"
 #include "ovimap/semantics/query/verdict.h"
 #include "ovimap/semantics/relations/object_shape.h"
 #include "ovimap/semantics/relations/relations.h"
@@ -25,6 +26,7 @@ struct QueryConfig {
   int max_text_chars = 2000;                        ///< longer queries are refused
   int max_like_references = 300;  ///< objects that calibrate the search for look-alikes
   VerdictConfig verdict;
+  EvidenceConfig evidence;
 
   bool grammar = true;           ///< "mug on the table" is a relation; false: all is free text
   float candidate_rate = 0.35f;  ///< relations are tried on objects with at most this p-value

@@ -20,6 +20,18 @@ double model_probability(const MatchCalibration& model, float cosine) {
   return 1.0 / (1.0 + std::exp(-(double{model.scale} * double{cosine} + double{model.bias})));
 }
 
+CountEstimate count_of(const PhraseMatch& found) {
+  CountEstimate count;
+  for (std::size_t i = 0; i < found.holds.size(); ++i) {
+    const double chance = double{found.scores[static_cast<Eigen::Index>(i)]};
+    count.expected += chance;
+    count.deviation += chance * (1.0 - chance);
+    count.found += found.holds[i] && chance > 0.0 ? 1 : 0;
+  }
+  count.deviation = std::sqrt(count.deviation);
+  return count;
+}
+
 std::vector<std::size_t> some_embedded(const SearchIndex& index, std::size_t most) {
   std::vector<std::size_t> positions;
   for (std::size_t i = 0; i < index.size(); ++i)
@@ -38,7 +50,9 @@ QueryEngine::QueryEngine(const SearchIndex& index, ImageTextEncoder* encoder,
   require_embeddings(index);
   if (scene_.shapes.empty())
     scene_.shapes = scene_of_boxes(index, Eigen::Vector3f::UnitZ(), config.shapes).shapes;
-  if (encoder) matcher_.emplace(index, *encoder, config, std::move(vocabulary));
+  if (encoder)
+    matcher_.emplace(index, *encoder, config, std::move(vocabulary),
+                     measure_objects(scene_.shapes));
 }
 
 QueryAnswer QueryEngine::find(const Query& query) const {
@@ -48,7 +62,7 @@ QueryAnswer QueryEngine::find(const Query& query) const {
     for (std::string& term : split_terms(checked_query_text(negative, config_.max_text_chars)))
       negatives.push_back(std::move(term));
   if (config_.grammar) {
-    const QueryPhrase phrase = parse_query(text);
+    const QueryPhrase phrase = parse_query(text, scene_.colors != nullptr);
     if (!phrase.free_text()) {
       QueryAnswer result = find_phrase(phrase, negatives, query.relevance);
       result.query = text;
@@ -61,7 +75,11 @@ QueryAnswer QueryEngine::find(const Query& query) const {
   const auto model = encoder().calibration();
   const MatchScores scores = matcher_->match(terms, negatives);
   const PValue p_value = [&](float score) { return matcher_->p_value(scores, score); };
-  QueryAnswer result = answer(scores, p_value, model, query.relevance);
+  const Probability probability = [&](std::size_t position) {
+    return model ? model_probability(*model, scores.cosines[static_cast<Eigen::Index>(position)])
+                 : matcher_->probability(scores, position);
+  };
+  QueryAnswer result = answer(scores, p_value, probability, query.relevance);
   result.query = text;
   return result;
 }
@@ -84,12 +102,19 @@ QueryAnswer QueryEngine::find_phrase(const QueryPhrase& phrase,
     return std::tuple(-found.scores[static_cast<Eigen::Index>(a)], index_.object(a).id) <
            std::tuple(-found.scores[static_cast<Eigen::Index>(b)], index_.object(b).id);
   });
-  order.resize(std::min(order.size(), static_cast<std::size_t>(config_.top_k)));
+  if (phrase.how_many || phrase.count > 0) result.count = count_of(found);
+  std::size_t shown = static_cast<std::size_t>(config_.top_k);
+  if (phrase.count > 0) shown = static_cast<std::size_t>(phrase.count);
+  if (phrase.how_many) shown = static_cast<std::size_t>(std::max(result.count->found, 1));
+  order.resize(std::min(order.size(), shown));
   for (const std::size_t position : order) result.matches.push_back(phrase_match(found, position));
-  if (found.missing.empty() && any_holds) result.verdict = Verdict::kFound;
+  const bool enough = !result.count || result.count->found >= std::max(phrase.count, 1);
+  if (found.missing.empty() && any_holds && enough) result.verdict = Verdict::kFound;
   for (const std::string& things : found.missing)
     result.reason += concat(result.reason.empty() ? "" : ", ", "no [", things, "] in the map");
   if (found.missing.empty() && !any_holds) result.reason = "for nothing in the map is this true";
+  if (found.missing.empty() && any_holds && !enough)
+    result.reason = concat("only ", result.count->found, " of ", phrase.count);
   if (relevance) result.relevance = found.scores;
   return result;
 }
@@ -177,30 +202,38 @@ std::vector<QueryMatch> QueryEngine::best_matches(const MatchScores& scores, Ran
   return matches;
 }
 
+bool QueryEngine::is_found(const MatchScores& scores, const QueryMatch& best,
+                           const PValue& p_value) const {
+  if (matcher_ && scores.log_odds.size() > 0) return matcher_->is_found(scores, best.position);
+  return !p_value ||
+         p_value(best.standard_score) <= double{config_.verdict.false_positive_rate};
+}
+
 QueryAnswer QueryEngine::answer(const MatchScores& scores, const PValue& p_value,
-                                std::optional<MatchCalibration> model, bool relevance) const {
+                                const Probability& probability, bool relevance) const {
   QueryAnswer result;
   result.matches = best_matches(scores, config_.rank_by, static_cast<std::size_t>(config_.top_k));
   const auto best = best_matches(scores, RankRule::kStandardScore, 1);
-  if (!best.empty() &&
-      (!p_value || p_value(best[0].standard_score) <= double{config_.verdict.false_positive_rate}))
-    result.verdict = Verdict::kFound;
+  if (!best.empty() && is_found(scores, best[0], p_value)) result.verdict = Verdict::kFound;
   for (QueryMatch& match : result.matches) {
     if (!p_value) break;
     match.p_value = p_value(match.standard_score);
     match.probability =
-        model ? model_probability(*model, match.score) : match_probability(*match.p_value);
+        probability ? probability(match.position) : match_probability(*match.p_value);
   }
-  if (relevance) result.relevance = rate_all(scores, p_value);
+  if (relevance) result.relevance = rate_all(scores, p_value, probability);
   return result;
 }
 
-Eigen::VectorXf QueryEngine::rate_all(const MatchScores& scores, const PValue& p_value) const {
+Eigen::VectorXf QueryEngine::rate_all(const MatchScores& scores, const PValue& p_value,
+                                      const Probability& probability) const {
   Eigen::VectorXf relevance = scores.cosines.cwiseMax(0.f);
   for (std::size_t i = 0; i < index_.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     if (!index_.has_embedding(i) || scores.excluded[i])
       relevance[row] = 0.f;
+    else if (probability)
+      relevance[row] = static_cast<float>(probability(i));
     else if (p_value)
       relevance[row] = static_cast<float>(match_probability(p_value(scores.standard[row])));
   }

@@ -30,12 +30,19 @@ struct QueryMatch {
   std::string evidence;               ///< why a relation holds: "0.02 m above the top of #12"
 };
 
+/// How many things there are: the sum of the chances, and its standard deviation.
+struct CountEstimate {
+  double expected = 0, deviation = 0;
+  int found = 0;  ///< of which it is true
+};
+
 struct QueryAnswer {
   std::string query;
   std::string reading;  ///< how a phrase was understood: "[mug] on [table]"; empty for free text
   std::string reason;   ///< why a phrase was not found: "no [table] in the map"
   Verdict verdict = Verdict::kNotInMap;
   std::vector<QueryMatch> matches;  ///< best first, also when the verdict is kNotInMap
+  std::optional<CountEstimate> count;  ///< of "how many" and "two ..."
   Eigen::VectorXf relevance;        ///< [objects] in [0, 1], for heat maps; empty unless asked for
 };
 
@@ -67,17 +74,20 @@ class QueryEngine {
 
  private:
   using PValue = std::function<double(float standard_score)>;  // empty: no calibration
+  using Probability = std::function<double(std::size_t position)>;  // empty: by p-value
 
   QueryAnswer find_phrase(const QueryPhrase& phrase, const std::vector<std::string>& negatives,
                           bool relevance) const;
   QueryMatch phrase_match(const PhraseMatch& found, std::size_t position) const;
   QueryAnswer answer(const MatchScores& scores, const PValue& p_value,
-                     std::optional<MatchCalibration> model, bool relevance) const;
+                     const Probability& probability, bool relevance) const;
   QueryAnswer answer_like(const Eigen::VectorXf& embedding, std::size_t itself,
                           bool relevance) const;
+  bool is_found(const MatchScores& scores, const QueryMatch& best, const PValue& p_value) const;
   std::vector<QueryMatch> best_matches(const MatchScores& scores, RankRule rule,
                                        std::size_t count) const;
-  Eigen::VectorXf rate_all(const MatchScores& scores, const PValue& p_value) const;
+  Eigen::VectorXf rate_all(const MatchScores& scores, const PValue& p_value,
+                           const Probability& probability) const;
   ImageTextEncoder& encoder() const;
 
   const SearchIndex& index_;

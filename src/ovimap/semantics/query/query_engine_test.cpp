@@ -176,7 +176,8 @@ TEST_F(QueryEngineTest, EncodesTheVocabularyOnce) {
   const int words = encoder_.texts_encoded;
   EXPECT_GE(words, 300);
   const QueryEngine second(index_, &encoder_, {}, first.matcher()->vocabulary());
-  EXPECT_EQ(encoder_.texts_encoded, words);
+  const auto lists = static_cast<int>(TextEvidence::texts().size());
+  EXPECT_EQ(encoder_.texts_encoded, words + lists);  // which remember_text_lists() remembers
   const auto a = first.find({"mug", {}}).matches, b = second.find({"mug", {}}).matches;
   EXPECT_EQ(a[0].p_value, b[0].p_value);
 }
@@ -196,6 +197,78 @@ TEST_F(QueryEngineTest, RefusesBadInput) {
   QueryConfig config;
   config.prompts = "no slot";
   EXPECT_THROW(QueryEngine(index_, &encoder_, config), Error);
+}
+
+StoredCrop plain_crop(Rgb8 color) {
+  ObjectCrop crop;
+  crop.image = RgbImage(16, 16, color);
+  crop.mask = Image<std::uint8_t>(16, 16, 1);
+  crop.object_px = {Eigen::Vector2i(0, 0), Eigen::Vector2i(15, 15)};
+  return store_crop(crop, {});
+}
+
+class AttributesTest : public ::testing::Test {
+ protected:
+  AttributesTest() {
+    QueryScene scene = scene_of_boxes(index_, Eigen::Vector3f::UnitZ());
+    scene.colors = std::make_shared<const ObjectColors>([this] {
+      std::vector<StoredCrop> crops(index_.size(), plain_crop({235, 235, 235}));
+      crops[0] = plain_crop({190, 30, 35});
+      crops[1] = plain_crop({40, 80, 180});
+      return crops;
+    });
+    QueryConfig config;
+    config.evidence.size_weight = 0.f;  // these boxes are no furniture
+    engine_.emplace(index_, &encoder_, config, Embeddings{}, scene);
+  }
+  std::vector<InstanceId> ids(const std::string& text) const {
+    std::vector<InstanceId> list;
+    for (const QueryMatch& match : engine_->find({text, {}}).matches) list.push_back(match.id);
+    return list;
+  }
+
+  WordEncoder encoder_;
+  SearchIndex index_ =
+      map_of({"chair", "chair", "chair", "table", "mug", "lamp", "door", "sofa"},
+             {{Eigen::Vector3f(0, 0, 0), Eigen::Vector3f(0.5f, 0.5f, 0.8f)},
+              {Eigen::Vector3f(2, 0, 0), Eigen::Vector3f(2.5f, 0.5f, 0.8f)},
+              {Eigen::Vector3f(4, 0, 0), Eigen::Vector3f(4.5f, 0.5f, 1.3f)},
+              {Eigen::Vector3f(6, 0, 0), Eigen::Vector3f(8, 1, 0.7f)},
+              {Eigen::Vector3f(6, 0, 0.7f), Eigen::Vector3f(6.1f, 0.1f, 0.8f)},
+              {Eigen::Vector3f(9, 0, 0), Eigen::Vector3f(9.3f, 0.3f, 1.5f)},
+              {Eigen::Vector3f(10, 0, 0), Eigen::Vector3f(11, 0.1f, 2)},
+              {Eigen::Vector3f(12, 0, 0), Eigen::Vector3f(14, 1, 0.8f)}});
+  std::optional<QueryEngine> engine_;
+};
+
+TEST_F(AttributesTest, ColorsAreThoseOfTheSurface) {
+  EXPECT_EQ(ids("red chair").front(), 1u);
+  EXPECT_EQ(ids("blue chair").front(), 2u);
+  EXPECT_EQ(ids("white chair").front(), 3u);
+  const QueryAnswer green = engine_->find({"green chair", {}});
+  EXPECT_EQ(green.verdict, Verdict::kNotInMap);
+  const QueryAnswer red = engine_->find({"red chair", {}});
+  EXPECT_EQ(red.verdict, Verdict::kFound);
+  EXPECT_NE(red.matches[0].evidence.find("% red"), std::string::npos);
+}
+
+TEST_F(AttributesTest, SizesAreMeasured) {
+  EXPECT_EQ(ids("chair taller than 1 m").front(), 3u);
+  EXPECT_EQ(engine_->find({"table longer than 1.5 m", {}}).verdict, Verdict::kFound);
+  EXPECT_EQ(engine_->find({"table longer than 3 m", {}}).verdict, Verdict::kNotInMap);
+}
+
+TEST_F(AttributesTest, ThingsAreCounted) {
+  const QueryAnswer chairs = engine_->find({"how many chairs", {}});
+  ASSERT_TRUE(chairs.count);
+  EXPECT_EQ(chairs.count->found, 3);
+  EXPECT_NEAR(chairs.count->expected, 3.0, 1.0);
+  EXPECT_EQ(chairs.matches.size(), 3u);
+  EXPECT_EQ(engine_->find({"two chairs", {}}).verdict, Verdict::kFound);
+  EXPECT_EQ(engine_->find({"two chairs", {}}).matches.size(), 2u);
+  const QueryAnswer tables = engine_->find({"two tables", {}});
+  EXPECT_EQ(tables.verdict, Verdict::kNotInMap);
+  EXPECT_EQ(tables.reason, "only 1 of 2");
 }
 
 }  // namespace

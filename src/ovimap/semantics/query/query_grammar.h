@@ -8,13 +8,27 @@
 #include <vector>
 
 #include "ovimap/semantics/relations/relations.h"
+#include "ovimap/semantics/words/colors.h"
 
 namespace ovimap {
 
-/// A query as understood: `[superlative] things [[not] relation anchor [and anchor]]`. Without
-/// superlative and relation it is free text.
+enum class Side { kHeight, kLength, kDepth };
+
+/// "longer than 1.5 m".
+struct SizeBound {
+  Side side = Side::kHeight;
+  bool more = true;  ///< than the bound; false: less
+  float bound_m = 0;
+};
+
+/// A query as understood: `[number] [superlative] [color] things [size] [[not] relation anchor [and
+/// anchor]]`. With things alone it is free text.
 struct QueryPhrase {
+  bool how_many = false;  ///< "how many chairs"
+  int count = 0;          ///< "two chairs"; 0: not said
   std::optional<Superlative> superlative;
+  std::optional<Color> color;
+  std::optional<SizeBound> size;
   std::string things;     ///< what is looked for; terms may be separated by commas
   bool anything = false;  ///< "object", "anything": geometry alone decides
   std::optional<Relation> relation;
@@ -22,15 +36,21 @@ struct QueryPhrase {
   std::vector<QueryPhrase> anchors;  ///< one; two for kBetween, or one of which it takes two:
   bool same_kind = false;            ///< "between the chairs"
 
-  bool free_text() const { return !superlative && !relation; }
+  bool free_text() const {
+    return !superlative && !relation && !color && !size && !how_many && count == 0;
+  }
 };
 
 /// Reads `text` by the grammar of docs/query.md. Whatever does not fit it is free text: every text
 /// that names something has a reading. Text between double quotes is never taken for grammar.
-QueryPhrase parse_query(std::string_view text);
+/// `colors`: whether colour words before a thing are read as its colour.
+QueryPhrase parse_query(std::string_view text, bool colors = true);
 
 /// The reading in one line, for people: "largest [cabinet] under [window]".
 std::string describe(const QueryPhrase& phrase);
+
+/// "high", "long", "deep".
+const char* side_name(Side side);
 
 /// "on", "nearest to", ...
 const char* relation_name(Relation relation);

@@ -30,11 +30,39 @@ TEST(QueryGrammar, ReadsRelations) {
 
 TEST(QueryGrammar, ReadsSuperlatives) {
   EXPECT_EQ(reading("largest cabinet"), "largest [cabinet]");
-  EXPECT_EQ(reading("the biggest white cabinet"), "largest [white cabinet]");
+  EXPECT_EQ(reading("the biggest white cabinet"), "largest white [cabinet]");
   EXPECT_EQ(reading("smallest mug on the largest table"), "smallest [mug] on largest [table]");
   EXPECT_EQ(reading("tallest thing"), "tallest [thing]");
   EXPECT_TRUE(parse_query("tallest thing").anything);
   EXPECT_FALSE(parse_query("tallest chair").anything);
+}
+
+TEST(QueryGrammar, ReadsColors) {
+  EXPECT_EQ(reading("red chair"), "red [chair]");
+  EXPECT_EQ(reading("the dark blue mug on the white table"), "blue [mug] on white [table]");
+  EXPECT_EQ(reading("gray office chair"), "grey [office chair]");
+  for (const char* text : {"red", "dark red", "orange", "red chair, armchair", "\"white wine\" glass"})
+    EXPECT_TRUE(parse_query(text).free_text()) << text;
+  EXPECT_TRUE(parse_query("red chair", false).free_text());  // a map without colours
+}
+
+TEST(QueryGrammar, ReadsSizes) {
+  EXPECT_EQ(reading("table longer than 1.5 m"), "[table] more than 1.5 m long");
+  EXPECT_EQ(reading("a red box that is shorter than 40cm"), "red [box] less than 0.4 m high");
+  EXPECT_EQ(reading("cabinet taller than 2 metres near the door"),
+            "[cabinet] more than 2 m high near [door]");
+  for (const char* text : {"table longer than a sofa", "longer than 2 m", "box taller than 3 miles"})
+    EXPECT_TRUE(parse_query(text).free_text()) << text;
+}
+
+TEST(QueryGrammar, ReadsNumbers) {
+  EXPECT_EQ(reading("the two mugs"), "2 [mug]");
+  EXPECT_EQ(reading("3 red boxes on the shelf"), "3 red [box] on [shelf]");
+  EXPECT_EQ(reading("how many chairs"), "how many [chair]");
+  EXPECT_EQ(reading("How many shelves are there"), "how many [shelf]");
+  EXPECT_EQ(reading("how many books are on the table"), "how many [book] on [table]");
+  for (const char* text : {"two", "one chair", "how many", "1 chair", "99999 chairs"})
+    EXPECT_TRUE(parse_query(text).free_text()) << text;
 }
 
 TEST(QueryGrammar, NestsToTheRight) {

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "ovimap/base/error.h"
+#include "ovimap/base/parallel.h"
 #include "ovimap/semantics/query/query_text.h"
 #include "ovimap/semantics/query/word_lists.h"
 
@@ -24,6 +26,7 @@ void join(MatchScores& scores, const MatchScores& other, TermRule rule) {
     if (better != (rule == TermRule::kAny)) continue;
     scores.standard[i] = other.standard[i];
     scores.cosines[i] = other.cosines[i];
+    if (scores.log_odds.size() > 0) scores.log_odds[i] = other.log_odds[i];
   }
 }
 
@@ -47,7 +50,8 @@ void require_embedding_length(const SearchIndex& index, Eigen::Index length,
 }
 
 TextMatcher::TextMatcher(const SearchIndex& index, ImageTextEncoder& encoder,
-                         const QueryConfig& config, Embeddings vocabulary)
+                         const QueryConfig& config, Embeddings vocabulary,
+                         std::span<const ObjectMeasures> measures)
     : index_(index),
       encoder_(encoder),
       config_(config),
@@ -63,6 +67,42 @@ TextMatcher::TextMatcher(const SearchIndex& index, ImageTextEncoder& encoder,
                        ", but the vocabulary has ", vocabulary_.rows(),
                        " words; give at most so many"));
   calibration_.emplace(index, vocabulary_, config.verdict);
+  null_ = calibration_->null_distribution();
+  if (index.size() <= static_cast<std::size_t>(config.evidence.max_objects))
+    weigh_evidence(measures);
+}
+
+void TextMatcher::weigh_evidence(std::span<const ObjectMeasures> measures) {
+  evidence_.emplace(
+      measures, encode_word_lists(encoder_, config_),
+      [&](const Eigen::VectorXf& row) {
+        return calibration_->standard_scores(index_.cosines(row));
+      },
+      config_.evidence);
+  // What absent things reach, with all evidence.
+  const std::vector<std::string> words = vocabulary_texts();
+  std::vector<double> best(static_cast<std::size_t>(vocabulary_.rows()),
+                           std::numeric_limits<double>::lowest());
+  parallel_for(best.size(), 1, [&](std::size_t word) {
+    const Eigen::VectorXf row = vocabulary_.row(static_cast<Eigen::Index>(word)).transpose();
+    // A vocabulary that was handed in need not be of these words.
+    const MatchScores scores = scores_of(word < words.size() ? words[word] : "", row);
+    for (std::size_t i = 0; i < index_.size(); ++i)
+      if (index_.has_embedding(i))
+        best[word] = std::max(best[word], double{scores.standard[static_cast<Eigen::Index>(i)]});
+  });
+  null_ = fit_null(std::move(best), null_.likeness, config_.verdict);
+}
+
+MatchScores TextMatcher::scores_of(const std::string& text, const Eigen::VectorXf& row) const {
+  MatchScores scores;
+  scores.cosines = index_.cosines(row);
+  scores.standard = calibration_->standard_scores(scores.cosines);
+  if (!evidence_) return scores;
+  TextScores weighed = evidence_->weigh(text, row, scores.standard);
+  scores.standard = std::move(weighed.standard);
+  scores.log_odds = std::move(weighed.log_odds);
+  return scores;
 }
 
 std::vector<std::string> TextMatcher::vocabulary_texts() {
@@ -71,6 +111,13 @@ std::vector<std::string> TextMatcher::vocabulary_texts() {
 
 Embeddings TextMatcher::encode_vocabulary(ImageTextEncoder& encoder, const QueryConfig& config) {
   return encode_prompted(encoder, vocabulary_texts(), prompts_of(encoder, config));
+}
+
+WordLists TextMatcher::encode_word_lists(ImageTextEncoder& encoder, const QueryConfig& config) {
+  WordLists lists;
+  lists.texts = TextEvidence::texts();
+  lists.rows = encode_prompted(encoder, lists.texts, prompts_of(encoder, config));
+  return lists;
 }
 
 MatchScores TextMatcher::match(const std::vector<std::string>& terms,
@@ -84,26 +131,25 @@ MatchScores TextMatcher::match(const std::vector<std::string>& terms,
       throw Error(concat("encoder '", encoder_.identity().name, "' gave no embedding of '",
                          texts[i], "'; try other words"));
   const auto count = static_cast<Eigen::Index>(terms.size());
-  MatchScores scores = joined(rows, 0, count, config_.terms);
+  MatchScores scores = joined(terms, rows.topRows(count), config_.terms);
   if (!negatives.empty())
-    apply_negatives(joined(rows, count, rows.rows() - count, TermRule::kAny), scores);
+    apply_negatives(joined(negatives, rows.bottomRows(rows.rows() - count), TermRule::kAny),
+                    scores);
   return scores;
 }
 
-MatchScores TextMatcher::joined(const Embeddings& rows, Eigen::Index first, Eigen::Index count,
+MatchScores TextMatcher::joined(std::span<const std::string> texts, const Embeddings& rows,
                                 TermRule rule) const {
   MatchScores scores;
-  for (Eigen::Index row = first; row < first + count; ++row) {
-    MatchScores term;
-    term.cosines = index_.cosines(rows.row(row).transpose());
-    term.standard = calibration_->standard_scores(term.cosines);
-    if (row == first)
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    MatchScores term = scores_of(texts[i], rows.row(static_cast<Eigen::Index>(i)).transpose());
+    if (i == 0)
       scores = std::move(term);
     else
       join(scores, term, rule);
   }
   scores.excluded.assign(index_.size(), false);
-  scores.alternatives = rule == TermRule::kAny ? static_cast<int>(count) : 1;
+  scores.alternatives = rule == TermRule::kAny ? static_cast<int>(texts.size()) : 1;
   return scores;
 }
 
@@ -118,15 +164,42 @@ void TextMatcher::apply_negatives(const MatchScores& negative, MatchScores& scor
   }
 }
 
+Eigen::MatrixXf TextMatcher::fit_of_each(std::span<const std::string> texts) const {
+  const Embeddings rows = encode_prompted(encoder_, texts, prompts_);
+  Eigen::MatrixXf fits(static_cast<Eigen::Index>(index_.size()), rows.rows());
+  parallel_for(texts.size(), 1, [&](std::size_t i) {
+    const auto text = static_cast<Eigen::Index>(i);
+    const Eigen::VectorXf row = rows.row(text).transpose();
+    const Eigen::VectorXf pictures = calibration_->standard_scores(index_.cosines(row));
+    fits.col(text) = evidence_ ? evidence_->weigh(texts[i], row, pictures).alone : pictures;
+  });
+  return fits;
+}
+
 double TextMatcher::p_value(const MatchScores& scores, float standard_score) const {
   // The best of several terms has several chances to score high (Sidak 1967).
-  const double single = calibration_->null_distribution().p_value(double{standard_score});
+  const double single = null_.p_value(double{standard_score});
   return -std::expm1(scores.alternatives * std::log1p(-single));
 }
 
 float TextMatcher::score_at(const MatchScores& scores, double p) const {
   const double single = -std::expm1(std::log1p(-p) / scores.alternatives);
-  return static_cast<float>(calibration_->null_distribution().score_at(single));
+  return static_cast<float>(null_.score_at(single));
+}
+
+double TextMatcher::probability(const MatchScores& scores, std::size_t position) const {
+  const auto row = static_cast<Eigen::Index>(position);
+  if (scores.log_odds.size() == 0) return match_probability(p_value(scores, scores.standard[row]));
+  const double odds = double{config_.evidence.odds_scale} * double{scores.log_odds[row]} +
+                      double{config_.evidence.odds_offset};
+  return 1.0 / (1.0 + std::exp(-odds));
+}
+
+bool TextMatcher::is_found(const MatchScores& scores, std::size_t position) const {
+  const float score = scores.standard[static_cast<Eigen::Index>(position)];
+  if (p_value(scores, score) > double{config_.verdict.false_positive_rate}) return false;
+  return scores.log_odds.size() == 0 ||
+         probability(scores, position) >= double{config_.evidence.found_probability};
 }
 
 }  // namespace ovimap

@@ -47,6 +47,31 @@ void first_that_fits(const std::vector<std::size_t>& ordered, const Eigen::Vecto
   }
 }
 
+struct Rating {
+  float score = 1.f;
+  std::string evidence;
+};
+
+/// Plainly of a colour is what shows it on half of its surface; on a quarter is the border.
+void rate_color(const ColorShares& shares, Color color, Rating& rating) {
+  constexpr float kPlain = 0.5f, kLeast = 0.05f;
+  const float share = shares[static_cast<std::size_t>(color)];
+  rating.score *= std::clamp(share / kPlain, kLeast, 1.f);
+  add_evidence(rating.evidence,
+               concat(static_cast<int>(std::lround(100.f * share)), " % ", color_name(color)));
+}
+
+/// Sizes are known to some per cent: the border is the bound itself.
+void rate_size(const ObjectMeasures& measures, const SizeBound& size, Rating& rating) {
+  constexpr float kDeviation = 0.05f;  // of the logarithm
+  const float side_m = size.side == Side::kHeight   ? measures.height_m
+                       : size.side == Side::kLength ? measures.length_m
+                                                    : measures.depth_m;
+  const float excess = std::log(std::max(side_m, 1e-3f) / size.bound_m) / kDeviation;
+  rating.score *= 1.f / (1.f + std::exp(size.more ? -excess : excess));
+  add_evidence(rating.evidence, concat(std::round(100.f * side_m) / 100.f, " m ", side_name(size.side)));
+}
+
 std::vector<std::size_t> positive(const Eigen::VectorXf& scores) {
   std::vector<std::size_t> positions;
   for (std::size_t i = 0; i < static_cast<std::size_t>(scores.size()); ++i)
@@ -90,21 +115,22 @@ PhraseSearch::PhraseSearch(const SearchIndex& index, const TextMatcher* matcher,
 PhraseMatch PhraseSearch::match(const QueryPhrase& phrase,
                                 const std::vector<std::string>& negatives) const {
   // What only resembles the thing may be listed, but proves nothing.
-  return match_phrase(phrase, negatives, config_.verdict.false_positive_rate);
+  return match_phrase(phrase, negatives, Role::kThing);
 }
 
 PhraseMatch PhraseSearch::match_phrase(const QueryPhrase& phrase,
                                        const std::vector<std::string>& negatives,
-                                       float most_p) const {
-  PhraseMatch result = match_things(phrase, negatives, most_p);
+                                       Role role) const {
+  PhraseMatch result = match_things(phrase, negatives, role);
+  apply_attributes(phrase, result);
   if (phrase.relation) {
     // Which of several tables it is on need not be the one that looks most like a table.
-    const PhraseMatch anchors = match_phrase(phrase.anchors[0], {}, config_.candidate_rate);
+    const PhraseMatch anchors = match_phrase(phrase.anchors[0], {}, Role::kAnchor);
     if (!phrase.negated) add_missing(result, anchors);
     if (*phrase.relation == Relation::kBetween) {
       const bool two = phrase.anchors.size() > 1;
       const PhraseMatch second =
-          two ? match_phrase(phrase.anchors[1], {}, config_.candidate_rate) : anchors;
+          two ? match_phrase(phrase.anchors[1], {}, Role::kAnchor) : anchors;
       if (two) add_missing(result, second);
       apply_between(anchors, second, !two, result);
     } else if (*phrase.relation == Relation::kNearest || *phrase.relation == Relation::kFarthest) {
@@ -119,7 +145,7 @@ PhraseMatch PhraseSearch::match_phrase(const QueryPhrase& phrase,
 
 PhraseMatch PhraseSearch::match_things(const QueryPhrase& phrase,
                                        const std::vector<std::string>& negatives,
-                                       float most_p) const {
+                                       Role role) const {
   PhraseMatch result;
   result.scores = Eigen::VectorXf::Ones(static_cast<Eigen::Index>(index_.size()));
   result.holds.assign(index_.size(), true);
@@ -132,12 +158,24 @@ PhraseMatch PhraseSearch::match_things(const QueryPhrase& phrase,
   if (terms.empty())
     throw Error(concat("the query names nothing in '", phrase.things, "'; say what to look for"));
   result.things = needed_matcher(phrase.things).match(terms, negatives);
-  rate_by_text(phrase, most_p, result);
+  rate_by_text(phrase, role, result);
   return result;
 }
 
-void PhraseSearch::rate_by_text(const QueryPhrase& phrase, float most_p,
-                                PhraseMatch& result) const {
+void PhraseSearch::apply_attributes(const QueryPhrase& phrase, PhraseMatch& result) const {
+  const bool colored = phrase.color && scene_.colors;
+  const auto measures = phrase.size ? measure_objects(scene_.shapes) : std::vector<ObjectMeasures>{};
+  for (const std::size_t i : positive(result.scores)) {
+    Rating rating;
+    if (colored) rate_color(scene_.colors->shares()[i], *phrase.color, rating);
+    if (phrase.size) rate_size(measures[i], *phrase.size, rating);
+    at(result.scores, i) *= rating.score;
+    result.holds[i] = result.holds[i] && rating.score >= kBorder;
+    if (!rating.evidence.empty()) add_evidence(result.evidence[i], rating.evidence);
+  }
+}
+
+void PhraseSearch::rate_by_text(const QueryPhrase& phrase, Role role, PhraseMatch& result) const {
   const MatchScores& text = result.things;
   result.scores.setZero();
   std::optional<std::size_t> best;
@@ -145,22 +183,23 @@ void PhraseSearch::rate_by_text(const QueryPhrase& phrase, float most_p,
     if (index_.has_embedding(i) && !text.excluded[i] &&
         (!best || at(text.standard, i) > at(text.standard, *best)))
       best = i;
-  const double best_p = best ? matcher_->p_value(text, at(text.standard, *best)) : 1.0;
-  if (best_p > double{config_.verdict.false_positive_rate}) result.missing.push_back(phrase.things);
+  if (!best || !matcher_->is_found(text, *best)) result.missing.push_back(phrase.things);
   result.holds.assign(index_.size(), false);
   if (!best) return;
-  at(result.scores, *best) = static_cast<float>(match_probability(best_p));  // if only as a guess
+  at(result.scores, *best) = static_cast<float>(matcher_->probability(text, *best));  // a guess
   // A weak candidate can win a comparison of places; it cannot make a relation true.
   const bool compares = phrase.superlative || phrase.relation == Relation::kNearest ||
                         phrase.relation == Relation::kFarthest;
-  float level = matcher_->score_at(text, double{config_.candidate_rate});
+  const float possible = matcher_->score_at(text, double{config_.candidate_rate});
+  float level = possible;
   if (compares) level = std::max(level, config_.rival_share * at(text.standard, *best));
   for (std::size_t i = 0; i < index_.size(); ++i) {
     const bool candidate = index_.has_embedding(i) && !text.excluded[i];
-    const double p = candidate ? matcher_->p_value(text, at(text.standard, i)) : 1.0;
-    result.holds[i] = p <= double{most_p};
-    if (candidate && at(text.standard, i) >= level)
-      at(result.scores, i) = static_cast<float>(match_probability(p));
+    if (!candidate) continue;
+    const bool likely = at(text.standard, i) >= possible;
+    result.holds[i] = role == Role::kAnchor ? likely : matcher_->is_found(text, i);
+    if (at(text.standard, i) >= level)
+      at(result.scores, i) = static_cast<float>(matcher_->probability(text, i));
   }
 }
 
@@ -168,8 +207,7 @@ void PhraseSearch::leave_out(const std::vector<std::string>& negatives, PhraseMa
   const MatchScores text = needed_matcher("--not " + negatives.front()).match(negatives, {});
   for (std::size_t i = 0; i < index_.size(); ++i) {
     if (!index_.has_embedding(i)) continue;
-    const double p = matcher_->p_value(text, at(text.standard, i));
-    if (p > double{config_.verdict.false_positive_rate}) continue;
+    if (!matcher_->is_found(text, i)) continue;
     at(result.scores, i) = 0.f;
     result.holds[i] = false;
   }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@ namespace ovimap {
 struct QueryScene {
   std::vector<ObjectShape> shapes;  ///< of each object of the index, by position
   GroundViewpoint viewpoint;        ///< for left, right, in front and behind
+  std::shared_ptr<const ObjectColors> colors;  ///< of each object; null: not known
 };
 
 /// A scene of the objects' boxes, exact where an axis of the world is up.
@@ -49,15 +51,19 @@ class PhraseSearch {
   PhraseMatch match(const QueryPhrase& phrase, const std::vector<std::string>& negatives) const;
 
  private:
-  /// `most_p`: the largest p-value with which an object counts as the thing (PhraseMatch::holds).
+  /// What is looked for must be found; an anchor may be what resembles it.
+  enum class Role { kThing, kAnchor };
+
   PhraseMatch match_phrase(const QueryPhrase& phrase, const std::vector<std::string>& negatives,
-                           float most_p) const;
+                           Role role) const;
   PhraseMatch match_things(const QueryPhrase& phrase, const std::vector<std::string>& negatives,
-                           float most_p) const;
+                           Role role) const;
+  /// Lowers what has not the colour or the size that was asked for.
+  void apply_attributes(const QueryPhrase& phrase, PhraseMatch& result) const;
   /// Takes away whatever one of the negatives is found to be.
   void leave_out(const std::vector<std::string>& negatives, PhraseMatch& result) const;
   const TextMatcher& needed_matcher(const std::string& what) const;
-  void rate_by_text(const QueryPhrase& phrase, float most_p, PhraseMatch& result) const;
+  void rate_by_text(const QueryPhrase& phrase, Role role, PhraseMatch& result) const;
   void apply_pairs(const QueryPhrase& phrase, const PhraseMatch& anchors,
                    PhraseMatch& result) const;
   void apply_order(const QueryPhrase& phrase, const PhraseMatch& anchors,

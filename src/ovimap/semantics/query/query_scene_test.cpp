@@ -37,6 +37,13 @@ const std::vector<Thing> kRoom{
     {"bag", box(1.6f, 1.2f, 0, 0.4f, 0.4f, 0.3f)},         // 12: under the table
 };
 
+/// Relations alone: to words, a counter is a kind of table.
+QueryConfig pictures_alone() {
+  QueryConfig config;
+  config.evidence.size_weight = config.evidence.competition = 0.f;
+  return config;
+}
+
 class QuerySceneTest : public ::testing::Test {
  protected:
   QuerySceneTest() {
@@ -53,7 +60,8 @@ class QuerySceneTest : public ::testing::Test {
     camera.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
     camera.translation() << -2, 2.5, 1.5;
     scene.viewpoint = mean_viewpoint(ground, {&camera, 1});
-    engine_ = std::make_unique<QueryEngine>(index_, &encoder_, QueryConfig{}, Embeddings{}, scene);
+    engine_ =
+        std::make_unique<QueryEngine>(index_, &encoder_, pictures_alone(), Embeddings{}, scene);
   }
 
   InstanceId best(const std::string& text) const {
@@ -163,7 +171,7 @@ TEST_F(QuerySceneTest, WhatOnlyResemblesAThingMakesNoRelationTrue) {
   bool seen_as_candidate = false;
   for (int words = 2; words < 40 && !seen_as_candidate; ++words) {
     const SearchIndex index = map_with_lookalike(words);
-    const QueryEngine engine(index, &encoder_);
+    const QueryEngine engine(index, &encoder_, pictures_alone());
     const QueryAnswer on_shelf = engine.find({"mug on the shelf", {}});
     ASSERT_FALSE(on_shelf.matches.empty());
     const QueryMatch& best = on_shelf.matches[0];

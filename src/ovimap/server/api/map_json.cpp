@@ -77,6 +77,13 @@ json class_of(const MapSnapshot& now, InstanceId id) {
           {"color", color(instance_color(static_cast<std::uint32_t>(label.id)))}};
 }
 
+/// What the object is called where nobody named it; null: not known yet.
+json label_of(const MapSnapshot& now, std::size_t position) {
+  if (position >= now.names.size()) return nullptr;
+  const ObjectName& name = now.names[position];
+  return {{"name", name.word}, {"share", name.share}};
+}
+
 /// Positions of an object's views that keep a crop, as ordinals of /crops/.
 json crops_of(const MapSnapshot& now, const InstanceSummary& instance) {
   json ordinals = json::array();
@@ -90,6 +97,7 @@ json instance_json(const MapSnapshot& now, std::size_t position) {
   const InstanceSummary& instance = now.record->instances[position];
   return {{"id", instance.id},
           {"name", now.name_of(instance.id)},
+          {"label", label_of(now, position)},
           {"guesses", guesses_json(now, instance.id)},
           {"class", class_of(now, instance.id)},
           {"color", color(instance_color(instance.id))},

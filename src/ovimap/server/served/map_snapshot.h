@@ -10,6 +10,7 @@
 
 #include "ovimap/pipeline/search/map_search.h"
 #include "ovimap/semantics/classes/label_set.h"
+#include "ovimap/semantics/classes/object_names.h"
 #include "ovimap/semantics/query/query_engine.h"
 #include "ovimap/server/surface/surface_measure.h"
 
@@ -43,6 +44,7 @@ struct MapSnapshot {
   std::shared_ptr<const MapSearch> objects;      ///< in the order of record->instances
   std::shared_ptr<const QueryEngine> engine;     ///< of `objects`; null: there is none, or not yet
   std::shared_ptr<const ObjectGuesses> guesses;  ///< null: likewise
+  std::vector<ObjectName> names;                 ///< by position; empty: not known
   SearchState search = SearchState::kPreparing;
   std::string why_no_search;  ///< a sentence
 

@@ -125,6 +125,8 @@ void ServedMap::set_search(MapSnapshot& next) const {
     next.why_no_search = error.what();
     return;
   }
+  if (const TextEvidence* evidence = next.engine->matcher()->evidence())
+    next.names = name_objects(*evidence);
   if (!classes_) return;
   auto guesses = std::make_shared<ObjectGuesses>();
   guesses->set = *classes_;
@@ -166,6 +168,7 @@ void ServedMap::open_encoder(const MapSnapshot& now) {
   runtime.threads = config_.threads;
   auto encoder = needed_encoder_of_map(wanted, config_.encoder, runtime, config_.model_dirs);
   TextMatcher::encode_vocabulary(*encoder, config_.query);
+  TextMatcher::encode_word_lists(*encoder, config_.query);
   const std::lock_guard lock(changing_);
   encoder_ = std::move(encoder);
   rebuild();

@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/semantics/words/concepts.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <sstream>
+
+#include "ovimap/base/error.h"
+
+namespace ovimap {
+
+namespace {
+
+/// What follows tells more of a thing that is named before it.
+constexpr std::array kAfterThing = {" of ", " with ", " for ", " from ", " to ", " without "};
+
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  return lower;
+}
+
+std::vector<std::string> parts_of(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  std::istringstream in(text);
+  for (std::string part; std::getline(in, part, separator);)
+    if (!part.empty()) parts.push_back(part);
+  return parts;
+}
+
+}  // namespace
+
+Concepts::Concepts(const std::vector<std::string>& lines) {
+  for (const std::string& line : lines) {
+    const Kind kind = above_.size();
+    const std::size_t end = line.find(';');
+    if (end == std::string::npos) throw Error(concat("'", line, "' is no line of words;parents"));
+    std::vector<Kind> above{kind};
+    for (const std::string& number : parts_of(line.substr(end + 1), ' ')) {
+      const std::size_t parent = std::stoul(number);
+      if (parent >= kind) throw Error(concat("'", line, "' comes before its parent ", parent));
+      above.insert(above.end(), above_[parent].begin(), above_[parent].end());
+    }
+    std::sort(above.begin(), above.end());
+    above.erase(std::unique(above.begin(), above.end()), above.end());
+    above_.push_back(std::move(above));
+    for (std::string word : parts_of(line.substr(0, end), '|')) {
+      if (word[0] == '*') {
+        word.erase(0, 1);
+        household_.push_back({word, kind});
+      }
+      by_word_[word].push_back(kind);
+    }
+  }
+}
+
+std::vector<Concepts::Kind> Concepts::exact(const std::string& words) const {
+  const auto found = by_word_.find(words);
+  return found == by_word_.end() ? std::vector<Kind>{} : found->second;
+}
+
+std::vector<Concepts::Kind> Concepts::known(const std::string& words) const {
+  std::vector<Kind> kinds = exact(words);
+  for (const std::string_view plural : {"s", "es"})
+    if (kinds.empty() && words.size() > plural.size() + 1 && words.ends_with(plural))
+      kinds = exact(words.substr(0, words.size() - plural.size()));
+  return kinds;
+}
+
+std::vector<Concepts::Kind> Concepts::kinds_of(std::string_view text) const {
+  std::string words = lower_case(text);
+  if (auto whole = known(words); !whole.empty()) return whole;
+  for (const std::string_view separator : kAfterThing)
+    if (const std::size_t at = words.find(separator); at != std::string::npos) words.resize(at);
+  while (!words.empty()) {
+    if (auto kinds = known(words); !kinds.empty()) return kinds;
+    const std::size_t blank = words.find(' ');
+    if (blank == std::string::npos) break;
+    words.erase(0, blank + 1);
+  }
+  return {};
+}
+
+bool Concepts::is_kind_of(Kind kind, Kind of) const {
+  return std::binary_search(above_[kind].begin(), above_[kind].end(), of);
+}
+
+bool Concepts::compatible(const std::vector<Kind>& a, const std::vector<Kind>& b) const {
+  for (const Kind one : a)
+    for (const Kind other : b)
+      if (is_kind_of(one, other) || is_kind_of(other, one)) return true;
+  return false;
+}
+
+}  // namespace ovimap

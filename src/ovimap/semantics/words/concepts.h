@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+namespace ovimap {
+
+/// Which words name a kind of which thing: a mug is a drinking vessel, a container, an artefact.
+/// A part of WordNet (docs/NOTICE-wordnet.md). Immutable.
+class Concepts {
+ public:
+  using Kind = std::size_t;
+
+  /// Lines "words;parents": words separated by |, a household word first with an asterisk, and the
+  /// numbers of lines before this one, from 0, separated by blanks. Throws Error for other lines.
+  explicit Concepts(const std::vector<std::string>& lines);
+
+  /// The kinds that a text may mean: those of the whole text, else of its longest end that is known
+  /// ("wooden kitchen chair": chair), before "of", "with" and the like ("bottle of milk": bottle).
+  /// Empty where nothing is known.
+  std::vector<Kind> kinds_of(std::string_view text) const;
+
+  bool is_kind_of(Kind kind, Kind of) const;
+
+  /// Whether one thing can be both: one of them is a kind of the other, in some sense of the texts.
+  bool compatible(const std::vector<Kind>& a, const std::vector<Kind>& b) const;
+
+  struct HouseholdWord {
+    std::string word;
+    Kind kind;
+  };
+  const std::vector<HouseholdWord>& household() const { return household_; }
+
+ private:
+  std::vector<Kind> exact(const std::string& words) const;
+  std::vector<Kind> known(const std::string& words) const;
+
+  std::vector<std::vector<Kind>> above_;  ///< of each kind, ascending, itself included
+  std::unordered_map<std::string, std::vector<Kind>> by_word_;
+  std::vector<HouseholdWord> household_;
+};
+
+}  // namespace ovimap

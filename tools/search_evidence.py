@@ -1,0 +1,121 @@
+# SPDX-FileCopyrightText: 2026 The ovimap authors
+# SPDX-License-Identifier: Apache-2.0
+"""What size, place and rival words add to a search: a part of tools/search_benchmarks.py."""
+import functools
+import json
+import pathlib
+
+DATA = pathlib.Path(__file__).resolve().parents[1] / "src/ovimap/semantics/data"
+HEAD = "## What each piece of evidence adds"
+UNCLEAR = "object"
+WIDE = 3  # household words below a word that is called wide ("seat")
+PIECES = [
+    ("picture alone", ["--set", "query.evidence.size_weight=0", "--set", "query.evidence.competition=0"]),
+    ("with size and place", ["--set", "query.evidence.competition=0"]),
+    ("with rival words", ["--set", "query.evidence.size_weight=0"]),
+    ("with both (default)", []),
+]
+
+
+class Concepts:
+    """src/ovimap/semantics/words/concepts.h in few words."""
+
+    def __init__(self):
+        self.above, self.by_word, self.household = [], {}, {}
+        for line in (DATA / "concepts.txt").read_text().splitlines():
+            if not line or line.startswith("#"):
+                continue
+            words, parents = line.split(";")
+            kind = len(self.above)
+            self.above.append({kind}.union(*(self.above[int(parent)] for parent in parents.split())))
+            for word in filter(None, words.split("|")):
+                if word.startswith("*"):
+                    self.household[word[1:]] = kind
+                self.by_word.setdefault(word.lstrip("*"), []).append(kind)
+
+    def kinds_of(self, text):
+        words = text.split()
+        for begin in range(len(words)):
+            tail = " ".join(words[begin:])
+            for word in (tail, tail.removesuffix("s"), tail.removesuffix("es")):
+                if word in self.by_word:
+                    return self.by_word[word]
+        return []
+
+    def compatible(self, a, b):
+        return a == b or any(x in self.above[y] or y in self.above[x] for x in self.kinds_of(a) for y in self.kinds_of(b))
+
+    def is_wide(self, word):
+        kind = self.household[word]
+        return sum(kind in self.above[other] for other in self.household.values()) > WIDE
+
+
+@functools.cache
+def concepts():
+    return Concepts()
+
+
+def verdict_counts(answers, present, names):
+    """Of words in the room: found and right, found and wrong; of the others: found."""
+    right = wrong = absent = 0
+    for answer in answers:
+        if answer["verdict"] != "found":
+            continue
+        best = names.get(str(answer["instances"][0]["id"]))
+        if answer["query"] not in present:
+            absent += 1
+        elif best == answer["query"]:
+            right += 1
+        else:
+            wrong += 1
+    return right, wrong, absent
+
+
+def name_counts(titles, names):
+    """How many objects are called by a right or wrong narrow word, a right or wrong wide one, or none."""
+    counts = dict.fromkeys(("right", "wrong", "wide, right", "wide, wrong", "none"), 0)
+    for number, title in titles.items():
+        if title == UNCLEAR:
+            counts["none"] += 1
+            continue
+        right = "right" if concepts().compatible(title, names[str(number)]) else "wrong"
+        counts[f"wide, {right}" if concepts().is_wide(title) else right] += 1
+    return counts
+
+
+def room_names(room):
+    return json.loads((room / "labels.json").read_text())["instances"]
+
+
+def evidence_section(query, rooms, map_of, ranks_of):
+    """`query(map, texts, *options)` answers texts, `map_of(room)` is a room's map, `ranks_of(answers, names)` ranks of the
+    first right objects."""
+    everywhere = sorted({name for room in rooms for name in room_names(room).values()})
+    text = [HEAD, "",
+            "rooms-v1 with sensor noise, true instances; mean over the rooms. Words: the classes in the room, floor, walls and ceiling "
+            "too. Found: of these words, those answered \"found\" with a right object first; of all answered \"found\" among them and "
+            "as many absent ones (classes of the other rooms, scaled), those that are right; absent ones answered \"found\".", "",
+            "| evidence | MRR | first | found and right | right of found | absent, found |", "| --- | --- | --- | --- | --- | --- |"]
+    totals = {}
+    for piece, options in PIECES:
+        rows = []
+        for room in rooms:
+            names = room_names(room)
+            present = sorted(set(names.values()))
+            absent = [word for word in everywhere if not any(concepts().compatible(word, name) for name in present)]
+            answers = query(map_of(room), present + absent, *options)
+            ranks = ranks_of(answers[: len(present)], names)
+            right, wrong, false = verdict_counts(answers, set(present), names)
+            false *= len(present) / len(absent)
+            rows.append((sum(1 / rank for rank in ranks) / len(ranks), sum(rank == 1 for rank in ranks) / len(ranks),
+                         right / len(present), right / max(1e-9, right + wrong + false), false / len(present)))
+            if not options:
+                titles = {hit["id"]: hit["title"] for hit in answers[0]["instances"]}
+                for key, count in name_counts(titles, names).items():
+                    totals[key] = totals.get(key, 0) + count
+        mean = [sum(column) / len(rows) for column in zip(*rows)]
+        text.append(f"| {piece} | {mean[0]:.3f} | {mean[1]:.3f} | {mean[2]:.0%} | {mean[3]:.0%} | {mean[4]:.0%} |")
+    objects = sum(totals.values())
+    text += ["", "What the viewer calls the objects of these rooms, by all evidence: " + ", ".join(
+        f"{key} {count / objects:.0%}" for key, count in totals.items()) + f" of {objects}."]
+    return text
