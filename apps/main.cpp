@@ -32,6 +32,7 @@ constexpr Entry kCommands[] = {
     {"merge", "make one map of two of the same place", add_merge},
     {"correct", "fuse a map's frames again, from corrected poses", add_correct},
     {"eval", "score maps against the truth", add_eval},
+    {"eval-poses", "score the poses of a camera against true ones", add_eval_poses},
     {"ablate", "vary one choice and score the maps, beside published figures", add_ablate},
     {"reproduce", "make the paper's tables from your own copy of its data", add_reproduce},
     {"bench", "measure speed and memory on a recording", add_bench},
