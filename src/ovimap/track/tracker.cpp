@@ -11,6 +11,8 @@ namespace ovimap {
 
 namespace {
 
+constexpr std::int64_t kLongestGap = 6;  // frames; longer ones predict nothing more
+
 double share_with_depth(const TrackLevel& level) {
   const auto valid = std::count_if(level.inverse_depth.begin(), level.inverse_depth.end(),
                                    [](float inverse) { return inverse > 0; });
@@ -80,15 +82,19 @@ std::vector<Pose> Tracker::predictions(const Frame& frame) const {
 
 bool Tracker::follow(const Frame& frame) {
   if (!reference_) return false;
+  const auto gap = std::clamp<std::int64_t>(frame.index - last_index_, 1, kLongestGap);
+  AlignmentConfig config = config_.alignment;  // a prediction over several frames is that much worse
+  config.prior_sigma_m *= static_cast<float>(gap), config.prior_sigma_rad *= static_cast<float>(gap);
   const std::optional<Alignment> alignment =
-      align_best(*reference_, pyramid_, seen_from(*reference_, predictions(frame)), config_.alignment);
+      align_best(*reference_, pyramid_, seen_from(*reference_, predictions(frame)), config);
   if (!alignment) return false;
   log_.back().quality = alignment->quality;
   if (!believable(alignment->quality, config_, lost_)) return false;
   const Pose pose = reference_->world_from_camera * alignment->reference_from_frame;
   const Pose step = last_pose_.inverse() * pose;
-  const auto gap = static_cast<double>(std::clamp<std::int64_t>(frame.index - last_index_, 1, 3));
-  if (step.translation().norm() > gap * config_.max_step_m || angle_of(step) > gap * config_.max_step_rad)
+  const auto most = static_cast<double>(gap);
+  if (step.translation().norm() > most * config_.max_step_m ||
+      angle_of(step) > most * config_.max_step_rad)
     return false;
   accept(frame.index, *alignment, *reference_, lost_);
   if (frame.posed) last_given_ = frame.world_from_camera;
@@ -109,8 +115,12 @@ void Tracker::accept(std::int64_t index, const Alignment& alignment, const Refer
   last_pose_ = result.world_from_camera;
   last_index_ = index;
   last_given_.reset();
+  // As much as went out of sight now may go again before the next frame.
+  const double overlap = alignment.quality.overlap;
+  const double next_overlap = overlap - std::max(0., last_overlap_ - overlap);
+  last_overlap_ = overlap;
   reference_is_old_ = ++reference_age_ >= config_.reference_frames || relocated ||
-                      alignment.quality.overlap < config_.reference_overlap;
+                      next_overlap < config_.reference_overlap;
 }
 
 /// The map's surface from the last tracked pose, with that frame's intensities.
@@ -120,6 +130,7 @@ void Tracker::refresh_reference(const VoxelMap& map) {
   reference_ = make_reference(last_pyramid_, model, last_pose_);
   reference_is_old_ = false;
   reference_age_ = 0;
+  last_overlap_ = 1;
 }
 
 bool Tracker::find_again(const VoxelMap& map) {

@@ -62,6 +62,7 @@ class Tracker {
   std::optional<Reference> reference_;
   bool reference_is_old_ = false;
   int reference_age_ = 0;
+  double last_overlap_ = 1;  ///< of the last tracked frame with the reference
   Pose last_pose_ = Pose::Identity();
   Pose last_motion_ = Pose::Identity();  ///< last camera from the one before
   std::int64_t last_index_ = 0;

@@ -13,6 +13,10 @@ namespace ovimap {
 
 namespace {
 
+constexpr double kLeastOverlap = 0.1;  // of a start
+constexpr double kSureAgreement = 0.8, kSureCorrelation = 0.93;  // no other start need be tried
+constexpr double kTexture = 6;  // grey levels; less says nothing
+constexpr int kLeastIterations = 8;     // at most so many at least; still ones end a level before
 constexpr double kStill = 1e-4;  // metres and radians: steps smaller than this end a level
 
 MotionPrior prior_at(const Pose& present, const Pose& predicted, const AlignmentConfig& config) {
@@ -25,7 +29,7 @@ MotionPrior prior_at(const Pose& present, const Pose& predicted, const Alignment
 }
 
 int iterations_of(std::size_t level, std::size_t levels, const AlignmentConfig& config) {
-  return std::max(3, config.max_iterations >> (levels - 1 - level));
+  return std::max(kLeastIterations, config.max_iterations >> (levels - 1 - level));
 }
 
 double correlation(const ResidualSums& sums) {
@@ -49,6 +53,11 @@ AlignmentQuality quality_of(const ResidualSums& sums) {
   const double residuals = sums.measured + sums.photometric_count;
   if (residuals > 0) quality.cost = sums.cost / residuals;
   return quality;
+}
+
+bool beyond_doubt(const AlignmentQuality& quality) {
+  return quality.agreement >= kSureAgreement &&
+         (quality.texture < kTexture || quality.correlation >= kSureCorrelation);
 }
 
 /// The steps of one level.
@@ -101,6 +110,7 @@ Alignment align(const Reference& reference, const TrackPyramid& frame, const Pos
   const std::size_t levels = frame.size();
   for (std::size_t level = levels; level-- > finest;) {
     if (reference.levels[level].points.empty()) continue;
+    scale.reach = 1 + static_cast<float>(level);
     align_level(reference.levels[level], frame[level], predicted, reference.median_depth_m,
                 iterations_of(level, levels, config), config, scale, alignment);
   }
@@ -113,16 +123,21 @@ Alignment align(const Reference& reference, const TrackPyramid& frame, const Pos
 std::optional<Alignment> align_best(const Reference& reference, const TrackPyramid& frame,
                                     const std::vector<Pose>& reference_from_frame,
                                     const AlignmentConfig& config) {
-  constexpr double kLeastOverlap = 0.1;
   const std::size_t level = std::min(kSurfaceLevel + 1, frame.size() - 1);
-  const Pose* best = nullptr;
-  double least = std::numeric_limits<double>::max();
+  std::vector<std::pair<double, const Pose*>> ranked;
   for (const Pose& start : reference_from_frame) {
     const AlignmentQuality quality = judge(reference, frame, start, config, level);
-    if (quality.overlap >= kLeastOverlap && quality.cost < least) least = quality.cost, best = &start;
+    if (quality.overlap >= kLeastOverlap) ranked.emplace_back(quality.cost, &start);
   }
-  if (!best) return std::nullopt;
-  return align(reference, frame, *best, config);
+  std::sort(ranked.begin(), ranked.end());
+  std::optional<Alignment> best;
+  for (const auto& [cost, start] : ranked) {
+    Alignment alignment = align(reference, frame, *start, config);
+    const bool sure = beyond_doubt(alignment.quality);
+    if (!best || alignment.quality.cost < best->quality.cost) best = std::move(alignment);
+    if (sure) break;
+  }
+  return best;
 }
 
 AlignmentQuality judge(const Reference& reference, const TrackPyramid& frame,

@@ -20,7 +20,7 @@ struct AlignmentConfig {
   float prior_sigma_m = 0.03f;         ///< of the predicted motion, per frame
   float prior_sigma_rad = 0.05f;
   float degenerate_sigma_m = 0.02f;    ///< directions known less well are left to the prediction
-  int max_iterations = 12;             ///< of a level, the coarsest; finer ones take fewer
+  int max_iterations = 20;             ///< of a level, the coarsest; finer ones take fewer
 };
 void list_fields(AlignmentConfig& config, ConfigFields& fields);
 
@@ -51,7 +51,8 @@ Alignment align(const Reference& reference, const TrackPyramid& frame, const Pos
                 const AlignmentConfig& config, std::size_t finest = 0);
 
 /// The same from the one of several starts that fits best at a coarse level, which is the prediction
-/// as well; nullopt where none shows enough of the reference.
+/// as well. Where that leaves a doubt the others are tried, and the best result is taken; nullopt
+/// where none shows enough of the reference.
 std::optional<Alignment> align_best(const Reference& reference, const TrackPyramid& frame,
                                     const std::vector<Pose>& reference_from_frame,
                                     const AlignmentConfig& config);

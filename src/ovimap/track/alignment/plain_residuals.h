@@ -22,7 +22,7 @@ inline ResidualSums plain_sum_residuals(const ReferenceLevel& reference, const T
   };
   ResidualSums sums;
   for (const ReferencePoint& point : reference.points) {
-    const PointResidual at = residual_of(point, frame, forth, back, config);
+    const PointResidual at = residual_of(point, frame, forth, back, config, scale.reach);
     sums.points += 1, sums.seen += at.seen, sums.measured += at.measured;
     const Eigen::Vector3d normal = point.normal.cast<double>(), place = point.point.cast<double>();
     if (at.near) {

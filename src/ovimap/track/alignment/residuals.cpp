@@ -25,7 +25,7 @@ using Vector6f = Eigen::Matrix<float, 6, 1>;
 PointResidual residual_of(const ReferencePoint& point, const TrackLevel& frame,
                           const Eigen::Isometry3f& reference_from_frame,
                           const Eigen::Isometry3f& frame_from_reference,
-                          const AlignmentConfig& config) {
+                          const AlignmentConfig& config, float reach) {
   PointResidual at;
   const Eigen::Vector3f in_frame = frame_from_reference * point.point;
   if (in_frame.z() <= 0.05f) return at;
@@ -53,7 +53,7 @@ PointResidual residual_of(const ReferencePoint& point, const TrackLevel& frame,
       std::max(kMinCosine, std::fabs(point.normal.dot(reference_from_frame.linear() * ray)));
   const float noise = config.noise.sigma_m(depth) * cosine;
   at.sigma_m = std::sqrt(noise * noise + config.model_sigma_m * config.model_sigma_m);
-  at.near = std::fabs(depth - in_frame.z()) < kFar_m + kFarShare * depth;
+  at.near = std::fabs(depth - in_frame.z()) < reach * (kFar_m + kFarShare * depth);
   return at;
 }
 
@@ -143,7 +143,7 @@ OVIMAP_VECTORIZE ResidualSums sum_range(std::span<const ReferencePoint> points, 
   TaskSums task;
   for (const ReferencePoint& point : points) {
     const PointResidual at =
-        residual_of(point, frame, reference_from_frame, frame_from_reference, config);
+        residual_of(point, frame, reference_from_frame, frame_from_reference, config, scale.reach);
     sums.points += 1, sums.seen += at.seen, sums.measured += at.measured;
     if (at.near) {
       sums.agreeing += std::fabs(at.distance_m) < kAgree_sigmas * at.sigma_m;

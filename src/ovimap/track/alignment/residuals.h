@@ -10,6 +10,8 @@ namespace ovimap {
 struct ResidualScale {
   float geometric = 3;      ///< in standard deviations of the noise model
   float photometric = 20;   ///< in grey levels
+  float reach = 1;          ///< how much farther than a pixel's noise a surface may be off and be
+                            ///< the same
   float gain = 1, bias = 0; ///< reference intensity = gain * frame intensity + bias
 };
 
@@ -48,6 +50,6 @@ struct PointResidual {
 PointResidual residual_of(const ReferencePoint& point, const TrackLevel& frame,
                           const Eigen::Isometry3f& reference_from_frame,
                           const Eigen::Isometry3f& frame_from_reference,
-                          const AlignmentConfig& config);
+                          const AlignmentConfig& config, float reach = 1);
 
 }  // namespace ovimap

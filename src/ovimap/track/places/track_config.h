@@ -11,8 +11,8 @@ struct TrackConfig {
   AlignmentConfig alignment;
   // When a frame is believed to be where the alignment says.
   float min_overlap = 0.15f;      ///< share of the reference in sight
-  float min_agreement = 0.5f;     ///< share of that on the reference's surface
-  float min_correlation = 0.3f;   ///< of intensities, where there is texture
+  float min_agreement = 0.6f;     ///< share of that on the reference's surface
+  float min_correlation = 0.8f;   ///< of intensities, where there is texture
   float min_texture = 6.f;        ///< grey levels; less is none
   float min_depth_share = 0.05f;  ///< share of pixels with depth
   float max_step_m = 0.4f;        ///< between frames
@@ -24,8 +24,8 @@ struct TrackConfig {
   KeyframeSpacing keyframes;
   int place_candidates = 4;
   float min_similarity = 0.5f;
-  float relocated_agreement = 0.6f;  ///< what a found place must reach
-  float relocated_correlation = 0.5f;
+  float relocated_agreement = 0.7f;  ///< what a found place must reach
+  float relocated_correlation = 0.85f;
   float max_range_m = 8.f;  ///< how far the map's surface is cast
 };
 void list_fields(TrackConfig& config, ConfigFields& fields);
