@@ -83,7 +83,7 @@ std::vector<Pose> Tracker::predictions(const Frame& frame) const {
 bool Tracker::follow(const Frame& frame) {
   if (!reference_) return false;
   const auto gap = std::clamp<std::int64_t>(frame.index - last_index_, 1, kLongestGap);
-  AlignmentConfig config = config_.alignment;  // a prediction over several frames is that much worse
+  FrameAlignmentConfig config = config_.alignment;  // a prediction over several frames is that much worse
   config.prior_sigma_m *= static_cast<float>(gap), config.prior_sigma_rad *= static_cast<float>(gap);
   const std::optional<Alignment> alignment =
       align_best(*reference_, pyramid_, seen_from(*reference_, predictions(frame)), config);

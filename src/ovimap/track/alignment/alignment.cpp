@@ -19,7 +19,7 @@ constexpr double kTexture = 6;  // grey levels; less says nothing
 constexpr int kLeastIterations = 8;     // at most so many at least; still ones end a level before
 constexpr double kStill = 1e-4;  // metres and radians: steps smaller than this end a level
 
-MotionPrior prior_at(const Pose& present, const Pose& predicted, const AlignmentConfig& config) {
+MotionPrior prior_at(const Pose& present, const Pose& predicted, const FrameAlignmentConfig& config) {
   MotionPrior prior;
   const double by_metre = 1 / (config.prior_sigma_m * config.prior_sigma_m),
                by_radian = 1 / (config.prior_sigma_rad * config.prior_sigma_rad);
@@ -28,7 +28,7 @@ MotionPrior prior_at(const Pose& present, const Pose& predicted, const Alignment
   return prior;
 }
 
-int iterations_of(std::size_t level, std::size_t levels, const AlignmentConfig& config) {
+int iterations_of(std::size_t level, std::size_t levels, const FrameAlignmentConfig& config) {
   return std::max(kLeastIterations, config.max_iterations >> (levels - 1 - level));
 }
 
@@ -62,7 +62,7 @@ bool beyond_doubt(const AlignmentQuality& quality) {
 
 /// The steps of one level.
 void align_level(const ReferenceLevel& reference, const TrackLevel& frame, const Pose& predicted,
-                 float lever_m, int iterations, const AlignmentConfig& config, ResidualScale& scale,
+                 float lever_m, int iterations, const FrameAlignmentConfig& config, ResidualScale& scale,
                  Alignment& alignment) {
   const double min_information = 1 / (config.degenerate_sigma_m * config.degenerate_sigma_m);
   for (int i = 0; i < iterations; ++i) {
@@ -70,7 +70,7 @@ void align_level(const ReferenceLevel& reference, const TrackLevel& frame, const
                                             config, true);
     const double share = config.independent_share;
     alignment.information = share * sums.h;
-    const Step step =
+    const MotionStep step =
         solve_step(share * sums.h, share * sums.b,
                    prior_at(alignment.reference_from_frame, predicted, config), lever_m,
                    min_information);
@@ -83,7 +83,7 @@ void align_level(const ReferenceLevel& reference, const TrackLevel& frame, const
 
 }  // namespace
 
-void list_fields(AlignmentConfig& config, ConfigFields& fields) {
+void list_fields(FrameAlignmentConfig& config, ConfigFields& fields) {
   fields.group("noise", [&](ConfigFields& f) { list_fields(config.noise, f); });
   fields.add("model_sigma_m", config.model_sigma_m, 0.0001f, 0.1f,
              "standard deviation of the map's surface, metres");
@@ -102,7 +102,7 @@ void list_fields(AlignmentConfig& config, ConfigFields& fields) {
 }
 
 Alignment align(const Reference& reference, const TrackPyramid& frame, const Pose& predicted,
-                const AlignmentConfig& config, std::size_t finest) {
+                const FrameAlignmentConfig& config, std::size_t finest) {
   OVIMAP_ASSERT(reference.levels.size() == frame.size());
   Alignment alignment;
   alignment.reference_from_frame = predicted;
@@ -122,7 +122,7 @@ Alignment align(const Reference& reference, const TrackPyramid& frame, const Pos
 
 std::optional<Alignment> align_best(const Reference& reference, const TrackPyramid& frame,
                                     const std::vector<Pose>& reference_from_frame,
-                                    const AlignmentConfig& config) {
+                                    const FrameAlignmentConfig& config) {
   const std::size_t level = std::min(kSurfaceLevel + 1, frame.size() - 1);
   std::vector<std::pair<double, const Pose*>> ranked;
   for (const Pose& start : reference_from_frame) {
@@ -141,7 +141,7 @@ std::optional<Alignment> align_best(const Reference& reference, const TrackPyram
 }
 
 AlignmentQuality judge(const Reference& reference, const TrackPyramid& frame,
-                       const Pose& reference_from_frame, const AlignmentConfig& config,
+                       const Pose& reference_from_frame, const FrameAlignmentConfig& config,
                        std::size_t level) {
   ResidualScale scale;
   scale.geometric = 1;

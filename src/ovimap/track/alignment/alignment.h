@@ -12,7 +12,7 @@ namespace ovimap {
 
 class ConfigFields;
 
-struct AlignmentConfig {
+struct FrameAlignmentConfig {
   DepthNoiseConfig noise;              ///< of the sensor's depth
   float model_sigma_m = 0.003f;        ///< standard deviation of the map's surface
   float photometric_weight = 0.2f;      ///< of a pixel's intensity beside its depth; 0: depth alone
@@ -22,7 +22,7 @@ struct AlignmentConfig {
   float degenerate_sigma_m = 0.02f;    ///< directions known less well are left to the prediction
   int max_iterations = 20;             ///< of a level, the coarsest; finer ones take fewer
 };
-void list_fields(AlignmentConfig& config, ConfigFields& fields);
+void list_fields(FrameAlignmentConfig& config, ConfigFields& fields);
 
 /// How well a frame agrees with a reference at a pose.
 struct AlignmentQuality {
@@ -48,18 +48,18 @@ struct Alignment {
 ///
 /// Deterministic for any number of threads: sums are made in pieces of fixed size and in order.
 Alignment align(const Reference& reference, const TrackPyramid& frame, const Pose& predicted,
-                const AlignmentConfig& config, std::size_t finest = 0);
+                const FrameAlignmentConfig& config, std::size_t finest = 0);
 
 /// The same from the one of several starts that fits best at a coarse level, which is the prediction
 /// as well. Where that leaves a doubt the others are tried, and the best result is taken; nullopt
 /// where none shows enough of the reference.
 std::optional<Alignment> align_best(const Reference& reference, const TrackPyramid& frame,
                                     const std::vector<Pose>& reference_from_frame,
-                                    const AlignmentConfig& config);
+                                    const FrameAlignmentConfig& config);
 
 /// The quality at a pose, by the points of one level.
 AlignmentQuality judge(const Reference& reference, const TrackPyramid& frame,
-                       const Pose& reference_from_frame, const AlignmentConfig& config,
+                       const Pose& reference_from_frame, const FrameAlignmentConfig& config,
                        std::size_t level);
 
 }  // namespace ovimap

@@ -22,7 +22,7 @@ Vector6d motion_of(const Pose& pose) {
   return motion;
 }
 
-Step solve_step(const Matrix6d& h, const Vector6d& b, const MotionPrior& prior, double lever_m,
+MotionStep solve_step(const Matrix6d& h, const Vector6d& b, const MotionPrior& prior, double lever_m,
                 double min_information) {
   // With rotations in metres at the lever's end all six directions compare.
   Vector6d scale;
@@ -31,7 +31,7 @@ Step solve_step(const Matrix6d& h, const Vector6d& b, const MotionPrior& prior, 
   const Matrix6d belief = scale.asDiagonal() * prior.information * scale.asDiagonal();
   const Vector6d wanted = scale.cwiseInverse().asDiagonal() * prior.remaining;
   const Eigen::SelfAdjointEigenSolver<Matrix6d> directions(data);
-  Step step;
+  MotionStep step;
   Matrix6d known = Matrix6d::Zero();  // projects on the directions that the data decide
   for (int i = 0; i < 6; ++i) {
     if (directions.eigenvalues()[i] < min_information) {

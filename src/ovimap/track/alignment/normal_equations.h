@@ -18,7 +18,7 @@ Pose small_motion(const Vector6d& motion);
 Vector6d motion_of(const Pose& pose);
 
 /// The step that minimises step' H step / 2 - step' b together with the prior.
-struct Step {
+struct MotionStep {
   Vector6d motion;
   int degenerate = 0;
 };
@@ -31,7 +31,7 @@ struct MotionPrior {
 
 /// Solves H step = b with the prior. Directions in which the data know less than `min_information`
 /// (eigenvalues of H, rotations scaled by `lever_m` to metres) take the prior's step alone.
-Step solve_step(const Matrix6d& h, const Vector6d& b, const MotionPrior& prior, double lever_m,
+MotionStep solve_step(const Matrix6d& h, const Vector6d& b, const MotionPrior& prior, double lever_m,
                 double min_information);
 
 }  // namespace ovimap

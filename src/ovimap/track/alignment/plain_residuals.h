@@ -10,7 +10,7 @@ namespace ovimap {
 /// trying out small motions of the frame. For tests.
 inline ResidualSums plain_sum_residuals(const ReferenceLevel& reference, const TrackLevel& frame,
                                         const Pose& reference_from_frame, const ResidualScale& scale,
-                                        const AlignmentConfig& config) {
+                                        const FrameAlignmentConfig& config) {
   constexpr double kTry = 1e-3, kFreedom = 5;
   const Eigen::Isometry3f forth = reference_from_frame.cast<float>();
   const Eigen::Isometry3f back = reference_from_frame.inverse().cast<float>();

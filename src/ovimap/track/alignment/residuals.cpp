@@ -25,7 +25,7 @@ using Vector6f = Eigen::Matrix<float, 6, 1>;
 PointResidual residual_of(const ReferencePoint& point, const TrackLevel& frame,
                           const Eigen::Isometry3f& reference_from_frame,
                           const Eigen::Isometry3f& frame_from_reference,
-                          const AlignmentConfig& config, float reach) {
+                          const FrameAlignmentConfig& config, float reach) {
   PointResidual at;
   const Eigen::Vector3f in_frame = frame_from_reference * point.point;
   if (in_frame.z() <= 0.05f) return at;
@@ -138,7 +138,7 @@ void add_statistics(const ReferencePoint& point, const PointResidual& at, Residu
 OVIMAP_VECTORIZE ResidualSums sum_range(std::span<const ReferencePoint> points, const PinholeCamera& camera,
                        const TrackLevel& frame, const Eigen::Isometry3f& reference_from_frame,
                        const Eigen::Isometry3f& frame_from_reference, const ResidualScale& scale,
-                       const AlignmentConfig& config, bool derivatives) {
+                       const FrameAlignmentConfig& config, bool derivatives) {
   ResidualSums sums;
   TaskSums task;
   for (const ReferencePoint& point : points) {
@@ -195,7 +195,7 @@ ResidualScale ResidualSums::next_scale(const ResidualScale& present) const {
 
 ResidualSums sum_residuals(const ReferenceLevel& reference, const TrackLevel& frame,
                            const Pose& reference_from_frame, const ResidualScale& scale,
-                           const AlignmentConfig& config, bool derivatives) {
+                           const FrameAlignmentConfig& config, bool derivatives) {
   const Eigen::Isometry3f forth = reference_from_frame.cast<float>();
   const Eigen::Isometry3f back = reference_from_frame.inverse().cast<float>();
   const std::span<const ReferencePoint> points(reference.points);

@@ -34,7 +34,7 @@ struct ResidualSums {
 /// to be made before reference_from_frame.
 ResidualSums sum_residuals(const ReferenceLevel& reference, const TrackLevel& frame,
                            const Pose& reference_from_frame, const ResidualScale& scale,
-                           const AlignmentConfig& config, bool derivatives);
+                           const FrameAlignmentConfig& config, bool derivatives);
 
 /// Residual of one point; the plain and the fast walk share nothing but this.
 struct PointResidual {
@@ -50,6 +50,6 @@ struct PointResidual {
 PointResidual residual_of(const ReferencePoint& point, const TrackLevel& frame,
                           const Eigen::Isometry3f& reference_from_frame,
                           const Eigen::Isometry3f& frame_from_reference,
-                          const AlignmentConfig& config, float reach = 1);
+                          const FrameAlignmentConfig& config, float reach = 1);
 
 }  // namespace ovimap

@@ -8,7 +8,7 @@
 namespace ovimap {
 
 struct TrackConfig {
-  AlignmentConfig alignment;
+  FrameAlignmentConfig alignment;
   // When a frame is believed to be where the alignment says.
   float min_overlap = 0.15f;      ///< share of the reference in sight
   float min_agreement = 0.6f;     ///< share of that on the reference's surface
