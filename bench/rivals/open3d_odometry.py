@@ -19,6 +19,8 @@ import open3d
 import open3d.core as core
 from open3d_fusion import MAX_RANGE_M, TRUNCATION_VOXELS, VOXEL_M, Ours
 
+DEPTH_SCALE = 1000.0  # units per metre
+
 
 class Recording:
     """Frames of a recording as Open3D's images."""
@@ -31,7 +33,8 @@ class Recording:
         width, height, fx, fy, cx, cy = self.ours.raw("camera", numpy.float64)
         shape = (int(height), int(width))
         self.intrinsic = core.Tensor([[fx, 0, cx], [0, fy, cy], [0, 0, 1]], core.float64)
-        depth = self.ours.raw("depth", numpy.float32).reshape(*shape, 1)
+        metres = self.ours.raw("depth", numpy.float32).reshape(*shape, 1)
+        depth = numpy.rint(metres * DEPTH_SCALE).astype(numpy.uint16)  # as cameras store it, which their SLAM demands
         color = self.ours.raw("color", numpy.uint8).reshape(*shape, 3)
         return open3d.t.geometry.RGBDImage(open3d.t.geometry.Image(core.Tensor(numpy.ascontiguousarray(color))),
                                            open3d.t.geometry.Image(core.Tensor(numpy.ascontiguousarray(depth))))
@@ -47,7 +50,7 @@ class Odometry:
         if self.last is not None:
             criteria = [open3d.t.pipelines.odometry.OdometryConvergenceCriteria(n) for n in (10, 5, 3)]
             found = open3d.t.pipelines.odometry.rgbd_odometry_multi_scale(
-                image, self.last, intrinsic, core.Tensor(numpy.eye(4)), 1.0, MAX_RANGE_M, criteria,
+                image, self.last, intrinsic, core.Tensor(numpy.eye(4)), DEPTH_SCALE, MAX_RANGE_M, criteria,
                 open3d.t.pipelines.odometry.Method.Hybrid)
             self.pose = self.pose @ found.transformation.numpy()
         self.last = image
@@ -65,15 +68,15 @@ class Slam:
         rows, columns = image.depth.rows, image.depth.columns
         if self.model is None:
             self.model = slam.Model(VOXEL_M, 16, 20000, core.Tensor(numpy.eye(4)), core.Device("CPU:0"))
-            self.seen, self.cast = slam.Frame(rows, columns, intrinsic, core.Device("CPU:0")), slam.Frame(rows, columns, intrinsic, core.Device("CPU:0"))
+            self.seen, self.cast = (slam.Frame(rows, columns, intrinsic, core.Device("CPU:0")) for _ in range(2))
         self.seen.set_data_from_image("depth", image.depth)
         self.seen.set_data_from_image("color", image.color)
         if self.count > 0:
-            found = self.model.track_frame_to_model(self.seen, self.cast, 1.0, MAX_RANGE_M, 0.07)
+            found = self.model.track_frame_to_model(self.seen, self.cast, DEPTH_SCALE, MAX_RANGE_M, 0.07)
             self.pose = self.pose @ found.transformation
         self.model.update_frame_pose(self.count, self.pose)
-        self.model.integrate(self.seen, 1.0, MAX_RANGE_M, TRUNCATION_VOXELS)
-        self.model.synthesize_model_frame(self.cast, 1.0, 0.1, MAX_RANGE_M, TRUNCATION_VOXELS, False)
+        self.model.integrate(self.seen, DEPTH_SCALE, MAX_RANGE_M, TRUNCATION_VOXELS)
+        self.model.synthesize_model_frame(self.cast, DEPTH_SCALE, 0.1, MAX_RANGE_M, TRUNCATION_VOXELS, False)
         self.count += 1
         return self.pose.numpy()
 
@@ -117,7 +120,7 @@ def main():
             times.append(1e3 * (time.perf_counter() - start))
             lines.append(tum_line(position / arguments.fps, pose))
     arguments.output.write_text("\n".join(lines) + "\n")
-    result = {"frames": len(lines), "failed": failed, "p50_ms": statistics.median(times), "open3d": open3d.__version__}
+    result = {"frames": len(lines), "failed": failed, "p50_ms": statistics.median(times or [0.0]), "open3d": open3d.__version__}
     print(json.dumps(result) if arguments.json else result)
 
 
