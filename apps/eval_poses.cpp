@@ -30,7 +30,8 @@ std::vector<TimedPose> true_poses(const std::filesystem::path& path) {
 }
 
 nlohmann::json statistics_json(const ErrorStatistics& errors) {
-  return {{"rmse", errors.rmse}, {"mean", errors.mean}, {"median", errors.median}, {"max", errors.max}};
+  return {
+      {"rmse", errors.rmse}, {"mean", errors.mean}, {"median", errors.median}, {"max", errors.max}};
 }
 
 void print_scores(const TrajectoryScores& scores) {
@@ -72,7 +73,8 @@ Action add_eval_poses(CLI::App& command) {
   command.add_option("TRUTH", options->truth, "true poses: TUM lines, or a recording with poses")
       ->required();
   command
-      .add_option("--max-gap", options->max_gap_s, "most time between a pose and its truth, seconds")
+      .add_option("--max-gap", options->max_gap_s,
+                  "most time between a pose and its truth, seconds")
       ->check(CLI::Range(0., 10.))
       ->capture_default_str();
   command.add_flag("--json", options->json, "print one JSON object");

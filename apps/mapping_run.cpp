@@ -39,7 +39,8 @@ struct MappingInputs {
                                                        : PoseNeed::kAll;
       source = open_frame_source(options.source, config.source);
     }
-    tracking = options.poses == "track" || options.poses == "refine" || (source && !source->posed());
+    tracking = options.poses == "track" || options.poses == "refine" ||
+               (source && !source->posed());
     keeps_for_loops = tracking && config.mapper.frame_store.max_mb == 0;
     if (keeps_for_loops) config.mapper.frame_store.max_mb = kStoreForLoops_mb;
     if (!recorded) return;
@@ -164,8 +165,12 @@ MapHeader make_header(const MappingInputs& inputs, const MappingOptions& options
 std::optional<Tracker> make_tracker(const MappingInputs& inputs, const BegunRun& begun) {
   if (!inputs.tracking) return std::nullopt;
   Tracker tracker(inputs.config.track);
-  if (begun.document && !begun.document->frames.empty())
+  if (begun.document && !begun.document->frames.empty()) {
+    if (begun.document->kept_frames.empty())
+      throw Error("the map to go on with keeps no frames to find the camera's place by; map it with "
+                  "--set frame_store.max_mb=1000");
     tracker.begin_in(keyframes_of(*begun.document, inputs.config.track.keyframes));
+  }
   return tracker;
 }
 
@@ -243,7 +248,8 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
   }).get();
   LiveMapper mapper(inputs.config.mapper, inputs.config.live, inputs.masks, inputs.encoder);
   std::shared_ptr<Tracker> tracker;
-  if (auto made = make_tracker(inputs, begun)) tracker = std::make_shared<Tracker>(std::move(*made));
+  if (auto made = make_tracker(inputs, begun))
+    tracker = std::make_shared<Tracker>(std::move(*made));
   mapper.track_with(tracker);
   MapHeader header = make_header(inputs, options, mapper.config());
   const std::string pace = intake ? std::string("pushed") : concat(fps, " frames/s");

@@ -186,7 +186,8 @@ void add_live_options(CLI::App& command, ServeOptions& options) {
       ->needs(live);
   add_mapping_settings(command, options.mapping);
   add_poses(command, options.mapping);
-  for (const char* name : {"--masks", "--preset", "--views", "--config", "--set", "--frames", "--poses"})
+  for (const char* name :
+       {"--masks", "--preset", "--views", "--config", "--set", "--frames", "--poses"})
     command.get_option(name)->needs(live);
 }
 

@@ -51,8 +51,8 @@ TEST_F(TrackProgramTest, LiveTracksAsWell) {
 }
 
 TEST_F(TrackProgramTest, GivenPosesArePredictionsToRefine) {
-  const auto report = run_json(
-      "run recording --poses refine --set map.voxel_size_m=0.03 -o map.ovimap --json");
+  const auto report =
+      run_json("run recording --poses refine --set map.voxel_size_m=0.03 -o map.ovimap --json");
   EXPECT_EQ(report["tracking"]["frames_tracked"], report["frames"]);
 }
 

@@ -73,8 +73,10 @@ std::vector<Pose> Tracker::predictions(const Frame& frame) const {
   std::vector<Pose> poses;
   if (frame.posed && last_given_)
     poses.push_back(last_pose_ * last_given_->inverse() * frame.world_from_camera);
-  const double ratio = static_cast<double>(frame.index - last_index_) / static_cast<double>(last_gap_);
-  if (!lost_) poses.push_back(last_pose_ * small_motion(std::clamp(ratio, 0., 3.) * motion_of(last_motion_)));
+  const double ratio =
+      static_cast<double>(frame.index - last_index_) / static_cast<double>(last_gap_);
+  if (!lost_)
+    poses.push_back(last_pose_ * small_motion(std::clamp(ratio, 0., 3.) * motion_of(last_motion_)));
   poses.push_back(last_pose_);
   poses.push_back(last_pose_ * turn_between(last_pyramid_, pyramid_));
   return poses;
@@ -83,8 +85,10 @@ std::vector<Pose> Tracker::predictions(const Frame& frame) const {
 bool Tracker::follow(const Frame& frame) {
   if (!reference_) return false;
   const auto gap = std::clamp<std::int64_t>(frame.index - last_index_, 1, kLongestGap);
-  FrameAlignmentConfig config = config_.alignment;  // a prediction over several frames is that much worse
-  config.prior_sigma_m *= static_cast<float>(gap), config.prior_sigma_rad *= static_cast<float>(gap);
+  FrameAlignmentConfig config =
+      config_.alignment;  // a prediction over several frames is that much worse
+  config.prior_sigma_m *= static_cast<float>(gap),
+      config.prior_sigma_rad *= static_cast<float>(gap);
   const std::optional<Alignment> alignment =
       align_best(*reference_, pyramid_, seen_from(*reference_, predictions(frame)), config);
   if (!alignment) return false;
@@ -125,8 +129,8 @@ void Tracker::accept(std::int64_t index, const Alignment& alignment, const Refer
 
 /// The map's surface from the last tracked pose, with that frame's intensities.
 void Tracker::refresh_reference(const VoxelMap& map) {
-  const Image<float> model = cast_inverse_depth(map, last_pyramid_[kSurfaceLevel].camera, last_pose_,
-                                                config_.max_range_m);
+  const Image<float> model =
+      cast_inverse_depth(map, last_pyramid_[kSurfaceLevel].camera, last_pose_, config_.max_range_m);
   reference_ = make_reference(last_pyramid_, model, last_pose_);
   reference_is_old_ = false;
   reference_age_ = 0;
@@ -184,7 +188,8 @@ std::string summary_line(const TrackSummary& summary) {
   constexpr std::size_t kMostNamed = 5;
   for (std::size_t i = 0; i < std::min(kMostNamed, summary.lost.size()); ++i) {
     const auto [first, last] = summary.lost[i];
-    line += concat(i == 0 ? " (" : ", ", first == last ? concat("frame ", first) : concat("frames ", first, " to ", last));
+    line += concat(i == 0 ? " (" : ", ", first == last ? concat("frame ", first)
+                                                       : concat("frames ", first, " to ", last));
   }
   if (summary.lost.size() > kMostNamed) line += ", ...";
   if (!summary.lost.empty()) line += ")";

@@ -14,8 +14,8 @@ struct TrackedFrame {
   std::int64_t index = 0;  ///< of the frame in its source
   double timestamp_s = 0;
   std::string name;
-  bool tracked = false;     ///< else lost: the pose is the last one known, and means nothing
-  bool relocated = false;   ///< found again in this frame
+  bool tracked = false;    ///< else lost: the pose is the last one known, and means nothing
+  bool relocated = false;  ///< found again in this frame
   Pose world_from_camera = Pose::Identity();
   Matrix6d information = Matrix6d::Zero();  ///< as Alignment has it
   int degenerate = 0;
@@ -66,7 +66,7 @@ class Tracker {
   Pose last_pose_ = Pose::Identity();
   Pose last_motion_ = Pose::Identity();  ///< last camera from the one before
   std::int64_t last_index_ = 0;
-  std::int64_t last_gap_ = 1;            ///< frames between those
+  std::int64_t last_gap_ = 1;       ///< frames between those
   std::optional<Pose> last_given_;  ///< pose that came with that frame
   bool begun_ = false, lost_ = false;
   std::vector<TrackedFrame> log_;

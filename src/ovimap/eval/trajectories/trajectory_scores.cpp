@@ -65,18 +65,18 @@ TrajectoryScores score_trajectory(const std::vector<TimedPose>& truth,
                                   const std::vector<TimedPose>& estimate, double max_gap_s) {
   const std::vector<PosePair> pairs = match(truth, estimate, max_gap_s);
   if (pairs.size() < 3)
-    throw Error(concat("only ", pairs.size(), " of ", estimate.size(),
-                       " poses have a true one within ", max_gap_s,
-                       " s; give trajectories of one recording and one clock, or a wider --max-gap"));
+    throw Error(concat(
+        "only ", pairs.size(), " of ", estimate.size(), " poses have a true one within ", max_gap_s,
+        " s; give trajectories of one recording and one clock, or a wider --max-gap"));
   TrajectoryScores scores;
   scores.truth_poses = truth.size();
   scores.matched = pairs.size();
   const Pose truth_from_estimate = aligning(pairs);
   std::vector<double> off_m, step_m, step_deg;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    off_m.push_back((truth_from_estimate * pairs[i].estimate.translation() -
-                     pairs[i].truth.translation())
-                        .norm());
+    off_m.push_back(
+        (truth_from_estimate * pairs[i].estimate.translation() - pairs[i].truth.translation())
+            .norm());
     if (i == 0) continue;
     const Pose true_step = pairs[i - 1].truth.inverse() * pairs[i].truth;
     const Pose off = true_step.inverse() * (pairs[i - 1].estimate.inverse() * pairs[i].estimate);

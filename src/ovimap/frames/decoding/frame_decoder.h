@@ -42,8 +42,9 @@ class FrameDecoder {
   FrameDecoder(const CameraRig& rig, const FrameSourceConfig& config = {});
 
   /// `color`: JPEG or PNG; `depth`: 16-bit grey PNG; `pose`: as CameraRig::world_from_depth_camera
-  /// takes it; nullopt: not known. The frame has no index, name and time. Throws Error with one sentence when an image
-  /// cannot be decoded, is of another size or holds no depth, or the pose is no rigid transform.
+  /// takes it; nullopt: not known. The frame has no index, name and time. Throws Error with one
+  /// sentence when an image cannot be decoded, is of another size or holds no depth, or the pose is
+  /// no rigid transform.
   Frame decode(std::span<const std::uint8_t> color, std::span<const std::uint8_t> depth,
                const std::optional<Eigen::Matrix4d>& pose) const;
 

@@ -11,8 +11,8 @@
 
 namespace ovimap {
 
-/// One RGB-D observation, with its pose where that is known. Colour and depth may come from two cameras that were never
-/// registered.
+/// One RGB-D observation, with its pose where that is known. Colour and depth may come from two
+/// cameras that were never registered.
 struct Frame {
   std::int64_t index = 0;  ///< position in its source
   std::string name;        ///< file stem of the colour image; names 2D mask files (`--masks DIR`)

@@ -100,7 +100,8 @@ Recording list_frames(const fs::path& folder, const FrameSourceConfig& config) {
     recording.frames.push_back(std::move(frame));
     numbers.push_back(number);
   }
-  assign_by_line(read_trajectory_if_needed(folder / "traj.txt", config.poses), numbers, recording.frames);
+  assign_by_line(read_trajectory_if_needed(folder / "traj.txt", config.poses), numbers,
+                 recording.frames);
   return recording;
 }
 

@@ -117,7 +117,8 @@ class RecordingSource : public FrameSource {
           record.camera->scaled_to(frame.depth_camera.width, frame.depth_camera.height);
     }
     frame.posed = posed_;
-    if (posed_) frame.world_from_camera = recording_.rig.world_from_depth_camera(stored_pose(record));
+    if (posed_)
+      frame.world_from_camera = recording_.rig.world_from_depth_camera(stored_pose(record));
     frame.depth = load_depth(record);
     const std::string name = label(record.color, record.color_part, record);
     frame.color = load(name, record.color, record.color_part,
@@ -195,8 +196,8 @@ class RecordingSource : public FrameSource {
 /// A pose that is stored but means "unknown" (not finite, as some trackers write) is none.
 bool has_pose(const RecordedFrame& frame) {
   std::error_code unreadable;
-  return frame.pose ? frame.pose->allFinite()
-                    : !frame.pose_file.empty() && std::filesystem::exists(frame.pose_file, unreadable);
+  if (frame.pose) return frame.pose->allFinite();
+  return !frame.pose_file.empty() && std::filesystem::exists(frame.pose_file, unreadable);
 }
 
 bool read_poses(const Recording& recording, PoseNeed need) {

@@ -18,8 +18,9 @@ struct LoopReport {
   std::optional<PoseCorrection> correction;  ///< where the map was fused again
 };
 
-/// Closes the loops of a map that keeps frames, and fuses it anew (correct_poses) where a pose moved
-/// by more than half a voxel. Nothing but the map decides, so it can be done again after a crash.
+/// Closes the loops of a map that keeps frames, and fuses it anew (correct_poses) where a pose
+/// moved by more than half a voxel. Nothing but the map decides, so it can be done again after a
+/// crash.
 LoopReport close_map_loops(MapDocument& map, const MapperConfig& mapper, const TrackConfig& track,
                            const LoopConfig& loops,
                            const std::function<void(std::size_t, std::size_t)>& progress = nullptr);

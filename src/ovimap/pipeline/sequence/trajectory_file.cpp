@@ -25,8 +25,8 @@ void write_trajectory(const std::filesystem::path& file, const std::vector<Frame
       stream << std::setprecision(6) << frame.timestamp_s;
     else
       stream << frame.index;
-    stream << std::setprecision(7) << ' ' << place.x() << ' ' << place.y() << ' ' << place.z() << ' '
-           << turn.x() << ' ' << turn.y() << ' ' << turn.z() << ' ' << turn.w() << '\n';
+    stream << std::setprecision(7) << ' ' << place.x() << ' ' << place.y() << ' ' << place.z()
+           << ' ' << turn.x() << ' ' << turn.y() << ' ' << turn.z() << ' ' << turn.w() << '\n';
   }
   if (!stream.flush()) throw Error(concat(file.string(), " cannot be written; give another file"));
 }

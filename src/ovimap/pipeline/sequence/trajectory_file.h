@@ -10,9 +10,9 @@
 
 namespace ovimap {
 
-/// Poses of the depth camera in a map's world, as TUM lines: time tx ty tz qx qy qz qw, the time that
-/// of the frame, or its index where frames have no times that grow. Throws Error when the file cannot
-/// be written.
+/// Poses of the depth camera in a map's world, as TUM lines: time tx ty tz qx qy qz qw, the time
+/// that of the frame, or its index where frames have no times that grow. Throws Error when the file
+/// cannot be written.
 void write_trajectory(const std::filesystem::path& file, const std::vector<FrameLogEntry>& frames);
 
 /// The poses of a TUM file, by time. Throws Error for lines that are none.

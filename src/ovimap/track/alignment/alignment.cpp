@@ -13,13 +13,14 @@ namespace ovimap {
 
 namespace {
 
-constexpr double kLeastOverlap = 0.1;  // of a start
+constexpr double kLeastOverlap = 0.1;                            // of a start
 constexpr double kSureAgreement = 0.8, kSureCorrelation = 0.93;  // no other start need be tried
-constexpr double kTexture = 6;  // grey levels; less says nothing
-constexpr int kLeastIterations = 8;     // at most so many at least; still ones end a level before
-constexpr double kStill = 1e-4;  // metres and radians: steps smaller than this end a level
+constexpr double kTexture = 6;                                   // grey levels; less says nothing
+constexpr int kLeastIterations = 8;  // at most so many at least; still ones end a level before
+constexpr double kStill = 1e-4;      // metres and radians: steps smaller than this end a level
 
-MotionPrior prior_at(const Pose& present, const Pose& predicted, const FrameAlignmentConfig& config) {
+MotionPrior prior_at(const Pose& present, const Pose& predicted,
+                     const FrameAlignmentConfig& config) {
   MotionPrior prior;
   const double by_metre = 1 / (config.prior_sigma_m * config.prior_sigma_m),
                by_radian = 1 / (config.prior_sigma_rad * config.prior_sigma_rad);
@@ -62,18 +63,17 @@ bool beyond_doubt(const AlignmentQuality& quality) {
 
 /// The steps of one level.
 void align_level(const ReferenceLevel& reference, const TrackLevel& frame, const Pose& predicted,
-                 float lever_m, int iterations, const FrameAlignmentConfig& config, ResidualScale& scale,
-                 Alignment& alignment) {
+                 float lever_m, int iterations, const FrameAlignmentConfig& config,
+                 ResidualScale& scale, Alignment& alignment) {
   const double min_information = 1 / (config.degenerate_sigma_m * config.degenerate_sigma_m);
   for (int i = 0; i < iterations; ++i) {
-    const ResidualSums sums = sum_residuals(reference, frame, alignment.reference_from_frame, scale,
-                                            config, true);
+    const ResidualSums sums =
+        sum_residuals(reference, frame, alignment.reference_from_frame, scale, config, true);
     const double share = config.independent_share;
     alignment.information = share * sums.h;
-    const MotionStep step =
-        solve_step(share * sums.h, share * sums.b,
-                   prior_at(alignment.reference_from_frame, predicted, config), lever_m,
-                   min_information);
+    const MotionStep step = solve_step(share * sums.h, share * sums.b,
+                                       prior_at(alignment.reference_from_frame, predicted, config),
+                                       lever_m, min_information);
     alignment.degenerate = step.degenerate;
     alignment.reference_from_frame = small_motion(step.motion) * alignment.reference_from_frame;
     scale = sums.next_scale(scale);
@@ -116,7 +116,8 @@ Alignment align(const Reference& reference, const TrackPyramid& frame, const Pos
   }
   alignment.reference_from_frame.linear() =
       Eigen::Quaterniond(alignment.reference_from_frame.linear()).normalized().matrix();
-  alignment.quality = judge(reference, frame, alignment.reference_from_frame, config, kSurfaceLevel);
+  alignment.quality =
+      judge(reference, frame, alignment.reference_from_frame, config, kSurfaceLevel);
   return alignment;
 }
 

@@ -13,14 +13,14 @@ namespace ovimap {
 class ConfigFields;
 
 struct FrameAlignmentConfig {
-  DepthNoiseConfig noise;              ///< of the sensor's depth
-  float model_sigma_m = 0.003f;        ///< standard deviation of the map's surface
-  float photometric_weight = 0.2f;      ///< of a pixel's intensity beside its depth; 0: depth alone
-  float independent_share = 0.01f;     ///< of all residuals: neighbours err alike
-  float prior_sigma_m = 0.03f;         ///< of the predicted motion, per frame
+  DepthNoiseConfig noise;           ///< of the sensor's depth
+  float model_sigma_m = 0.003f;     ///< standard deviation of the map's surface
+  float photometric_weight = 0.2f;  ///< of a pixel's intensity beside its depth; 0: depth alone
+  float independent_share = 0.01f;  ///< of all residuals: neighbours err alike
+  float prior_sigma_m = 0.03f;      ///< of the predicted motion, per frame
   float prior_sigma_rad = 0.05f;
-  float degenerate_sigma_m = 0.02f;    ///< directions known less well are left to the prediction
-  int max_iterations = 20;             ///< of a level, the coarsest; finer ones take fewer
+  float degenerate_sigma_m = 0.02f;  ///< directions known less well are left to the prediction
+  int max_iterations = 20;           ///< of a level, the coarsest; finer ones take fewer
 };
 void list_fields(FrameAlignmentConfig& config, ConfigFields& fields);
 
@@ -50,9 +50,9 @@ struct Alignment {
 Alignment align(const Reference& reference, const TrackPyramid& frame, const Pose& predicted,
                 const FrameAlignmentConfig& config, std::size_t finest = 0);
 
-/// The same from the one of several starts that fits best at a coarse level, which is the prediction
-/// as well. Where that leaves a doubt the others are tried, and the best result is taken; nullopt
-/// where none shows enough of the reference.
+/// The same from the one of several starts that fits best at a coarse level, which is the
+/// prediction as well. Where that leaves a doubt the others are tried, and the best result is
+/// taken; nullopt where none shows enough of the reference.
 std::optional<Alignment> align_best(const Reference& reference, const TrackPyramid& frame,
                                     const std::vector<Pose>& reference_from_frame,
                                     const FrameAlignmentConfig& config);

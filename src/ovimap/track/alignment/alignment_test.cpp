@@ -23,7 +23,9 @@ struct Scene {
   Reference reference() const {
     return make_reference(make_pyramid(camera.take(start)), {}, Pose::Identity());
   }
-  TrackPyramid seen_from(const Pose& motion) const { return make_pyramid(camera.take(start * motion)); }
+  TrackPyramid seen_from(const Pose& motion) const {
+    return make_pyramid(camera.take(start * motion));
+  }
 
   fixture::RoomCamera camera;
   Pose start = fixture::room_pose(10);
@@ -93,8 +95,8 @@ TEST(Residuals, AreThoseOfThePlainWalk) {
   ResidualScale scale;
   scale.geometric = 2, scale.gain = 1.1f, scale.bias = -3;
   for (std::size_t level = 0; level < frame.size(); ++level) {
-    const ResidualSums plain = plain_sum_residuals(reference.levels[level], frame[level],
-                                                   Pose::Identity(), scale, {});
+    const ResidualSums plain =
+        plain_sum_residuals(reference.levels[level], frame[level], Pose::Identity(), scale, {});
     const ResidualSums fast =
         sum_residuals(reference.levels[level], frame[level], Pose::Identity(), scale, {}, true);
     EXPECT_EQ(plain.measured, fast.measured);

@@ -22,8 +22,8 @@ Vector6d motion_of(const Pose& pose) {
   return motion;
 }
 
-MotionStep solve_step(const Matrix6d& h, const Vector6d& b, const MotionPrior& prior, double lever_m,
-                double min_information) {
+MotionStep solve_step(const Matrix6d& h, const Vector6d& b, const MotionPrior& prior,
+                      double lever_m, double min_information) {
   // With rotations in metres at the lever's end all six directions compare.
   Vector6d scale;
   scale << 1, 1, 1, 1 / lever_m, 1 / lever_m, 1 / lever_m;

@@ -31,7 +31,7 @@ struct MotionPrior {
 
 /// Solves H step = b with the prior. Directions in which the data know less than `min_information`
 /// (eigenvalues of H, rotations scaled by `lever_m` to metres) take the prior's step alone.
-MotionStep solve_step(const Matrix6d& h, const Vector6d& b, const MotionPrior& prior, double lever_m,
-                double min_information);
+MotionStep solve_step(const Matrix6d& h, const Vector6d& b, const MotionPrior& prior,
+                      double lever_m, double min_information);
 
 }  // namespace ovimap

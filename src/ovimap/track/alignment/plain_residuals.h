@@ -9,7 +9,8 @@ namespace ovimap {
 /// sum_residuals as the method says it: one point after another in double precision, derivatives by
 /// trying out small motions of the frame. For tests.
 inline ResidualSums plain_sum_residuals(const ReferenceLevel& reference, const TrackLevel& frame,
-                                        const Pose& reference_from_frame, const ResidualScale& scale,
+                                        const Pose& reference_from_frame,
+                                        const ResidualScale& scale,
                                         const FrameAlignmentConfig& config) {
   constexpr double kTry = 1e-3, kFreedom = 5;
   const Eigen::Isometry3f forth = reference_from_frame.cast<float>();

@@ -52,8 +52,7 @@ InversePlane plane_at(const Image<float>& inverse, int x, int y) {
 /// (a, b, c) . point = 1.
 Eigen::Vector3f normal_of(const InversePlane& plane, const PinholeCamera& camera, int x, int y) {
   const float a = plane.right * camera.fx, b = plane.down * camera.fy;
-  const Eigen::Vector3f ray =
-      camera.unproject(static_cast<float>(x), static_cast<float>(y), 1.f);
+  const Eigen::Vector3f ray = camera.unproject(static_cast<float>(x), static_cast<float>(y), 1.f);
   return Eigen::Vector3f(a, b, plane.value - a * ray.x() - b * ray.y()).normalized();
 }
 
@@ -79,7 +78,8 @@ ReferencePoint finest_point(const TrackLevel& fine, const InversePlane& plane, i
   int best = 0;
   float steepest = -1;
   for (int i = 0; i < 4; ++i) {
-    const float steep = gradient_at(fine.intensity, 2 * x + (i & 1), 2 * y + (i >> 1)).squaredNorm();
+    const float steep =
+        gradient_at(fine.intensity, 2 * x + (i & 1), 2 * y + (i >> 1)).squaredNorm();
     if (steep > steepest) steepest = steep, best = i;
   }
   const int dx = best & 1, dy = best >> 1;
@@ -160,8 +160,8 @@ Reference make_reference(const TrackPyramid& pyramid, const Image<float>& model,
   Image<float> inverse;
   reference.mapped_share = merge(model, pyramid[kSurfaceLevel].inverse_depth, inverse);
   const bool has_finest = pyramid[0].intensity.width() >= 2 * inverse.width();
-  add_points(pyramid[kSurfaceLevel], inverse, has_finest ? &pyramid[0] : nullptr, reference.levels[kSurfaceLevel].points,
-             &reference.levels[0].points);
+  add_points(pyramid[kSurfaceLevel], inverse, has_finest ? &pyramid[0] : nullptr,
+             reference.levels[kSurfaceLevel].points, &reference.levels[0].points);
   for (std::size_t i = kSurfaceLevel + 1; i < pyramid.size(); ++i) {
     inverse = halved_inverse(inverse);
     add_points(pyramid[i], inverse, nullptr, reference.levels[i].points, nullptr);

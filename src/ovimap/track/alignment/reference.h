@@ -11,9 +11,9 @@ namespace ovimap {
 /// A piece of surface that frames are aligned to, in the camera frame of its reference.
 struct ReferencePoint {
   Eigen::Vector3f point;
-  Eigen::Vector3f normal;     ///< unit; 0: the surface bends or breaks here, or is the sensor's alone
-  float intensity = -1;       ///< -1: unknown
-  Eigen::Vector2f gradient;   ///< of the intensity, per pixel of this level
+  Eigen::Vector3f normal;  ///< unit; 0: the surface bends or breaks here, or is the sensor's alone
+  float intensity = -1;    ///< -1: unknown
+  Eigen::Vector2f gradient;  ///< of the intensity, per pixel of this level
 };
 
 /// The points of one level.

@@ -75,7 +75,8 @@ struct TaskSums {
     int k = 0;
     for (int row = 0; row < 6; ++row) {
       sums.b[row] = b[row];
-      for (int column = row; column < 6; ++column, ++k) sums.h(row, column) = sums.h(column, row) = h[k];
+      for (int column = row; column < 6; ++column, ++k)
+        sums.h(row, column) = sums.h(column, row) = h[k];
     }
   }
 };
@@ -121,7 +122,8 @@ void add_photometric(const ReferencePoint& point, const PinholeCamera& camera,
     return;
   }
   const float inverse = 1 / point.point.z();
-  const float du = point.gradient.x() * camera.fx * inverse, dv = point.gradient.y() * camera.fy * inverse;
+  const float du = point.gradient.x() * camera.fx * inverse,
+              dv = point.gradient.y() * camera.fy * inverse;
   const Eigen::Vector3f by_point(du, dv, -(du * point.point.x() + dv * point.point.y()) * inverse);
   Vector6f j;
   j << -by_point, -point.point.cross(by_point);
@@ -131,14 +133,17 @@ void add_photometric(const ReferencePoint& point, const PinholeCamera& camera,
 
 void add_statistics(const ReferencePoint& point, const PointResidual& at, ResidualSums& sums) {
   sums.frame_sum += at.intensity, sums.frame_squares += at.intensity * at.intensity;
-  sums.reference_sum += point.intensity, sums.reference_squares += point.intensity * point.intensity;
+  sums.reference_sum += point.intensity,
+      sums.reference_squares += point.intensity * point.intensity;
   sums.products += at.intensity * point.intensity;
 }
 
-OVIMAP_VECTORIZE ResidualSums sum_range(std::span<const ReferencePoint> points, const PinholeCamera& camera,
-                       const TrackLevel& frame, const Eigen::Isometry3f& reference_from_frame,
-                       const Eigen::Isometry3f& frame_from_reference, const ResidualScale& scale,
-                       const FrameAlignmentConfig& config, bool derivatives) {
+OVIMAP_VECTORIZE ResidualSums sum_range(std::span<const ReferencePoint> points,
+                                        const PinholeCamera& camera, const TrackLevel& frame,
+                                        const Eigen::Isometry3f& reference_from_frame,
+                                        const Eigen::Isometry3f& frame_from_reference,
+                                        const ResidualScale& scale,
+                                        const FrameAlignmentConfig& config, bool derivatives) {
   ResidualSums sums;
   TaskSums task;
   for (const ReferencePoint& point : points) {
@@ -178,17 +183,18 @@ ResidualSums& ResidualSums::operator+=(const ResidualSums& other) {
 ResidualScale ResidualSums::next_scale(const ResidualScale& present) const {
   ResidualScale next = present;
   if (geometric_weights > 0)
-    next.geometric =
-        std::clamp(static_cast<float>(std::sqrt(geometric_squares / geometric_weights)), 0.5f, 10.f);
+    next.geometric = std::clamp(
+        static_cast<float>(std::sqrt(geometric_squares / geometric_weights)), 0.5f, 10.f);
   if (photometric_count < 50) return next;
-  next.photometric = std::clamp(
-      static_cast<float>(std::sqrt(photometric_squares / photometric_count)), 2.f, 40.f);
+  next.photometric =
+      std::clamp(static_cast<float>(std::sqrt(photometric_squares / photometric_count)), 2.f, 40.f);
   const double n = photometric_count;
   const double frame_variance = frame_squares / n - (frame_sum / n) * (frame_sum / n);
   const double reference_variance =
       reference_squares / n - (reference_sum / n) * (reference_sum / n);
   if (frame_variance > 25 && reference_variance > 25)
-    next.gain = std::clamp(static_cast<float>(std::sqrt(reference_variance / frame_variance)), 0.7f, 1.4f);
+    next.gain =
+        std::clamp(static_cast<float>(std::sqrt(reference_variance / frame_variance)), 0.7f, 1.4f);
   next.bias = static_cast<float>(reference_sum / n - next.gain * frame_sum / n);
   return next;
 }

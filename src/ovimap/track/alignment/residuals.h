@@ -8,11 +8,11 @@ namespace ovimap {
 
 /// Residuals of one kind are this large, robustly; weights and costs are those of Student's t.
 struct ResidualScale {
-  float geometric = 3;      ///< in standard deviations of the noise model
-  float photometric = 20;   ///< in grey levels
-  float reach = 1;          ///< how much farther than a pixel's noise a surface may be off and be
-                            ///< the same
-  float gain = 1, bias = 0; ///< reference intensity = gain * frame intensity + bias
+  float geometric = 3;       ///< in standard deviations of the noise model
+  float photometric = 20;    ///< in grey levels
+  float reach = 1;           ///< how much farther than a pixel's noise a surface may be off and be
+                             ///< the same
+  float gain = 1, bias = 0;  ///< reference intensity = gain * frame intensity + bias
 };
 
 /// Sums over points at one pose.

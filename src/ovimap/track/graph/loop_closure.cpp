@@ -34,17 +34,16 @@ std::vector<Candidate> candidates_of(std::size_t at, const std::vector<Keyframe>
     const double path = paths[at] - paths[i];
     if (path < config.min_path_m) break;
     const double alike = similarity(keyframes[at].code, keyframes[i].code);
-    const Pose between =
-        keyframes[i].world_from_camera.inverse() * keyframes[at].world_from_camera;
-    const bool near =
-        between.translation().norm() < config.near_m + config.drift_per_m * path &&
-        Eigen::AngleAxisd(between.linear()).angle() < 0.6;
+    const Pose between = keyframes[i].world_from_camera.inverse() * keyframes[at].world_from_camera;
+    const bool near = between.translation().norm() < config.near_m + config.drift_per_m * path &&
+                      Eigen::AngleAxisd(between.linear()).angle() < 0.6;
     if (alike >= config.min_similarity || (near && alike > 0)) found.push_back({-alike, i});
   }
   std::sort(found.begin(), found.end(), [](const Candidate& a, const Candidate& b) {
     return std::tie(a.rank, a.place) < std::tie(b.rank, b.place);
   });
-  if (std::ssize(found) > config.candidates) found.resize(static_cast<std::size_t>(config.candidates));
+  if (std::ssize(found) > config.candidates)
+    found.resize(static_cast<std::size_t>(config.candidates));
   return found;
 }
 
@@ -63,9 +62,8 @@ std::optional<PoseEdge> verified(const Keyframe& earlier, const Keyframe& later,
                                  const TrackConfig& track) {
   const TrackPyramid place = pyramid_of(earlier), frame = pyramid_of(later);
   const Reference reference = make_reference(place, {}, Pose::Identity());
-  const std::vector<Pose> starts = {
-      earlier.world_from_camera.inverse() * later.world_from_camera, turn_between(place, frame),
-      Pose::Identity()};
+  const std::vector<Pose> starts = {earlier.world_from_camera.inverse() * later.world_from_camera,
+                                    turn_between(place, frame), Pose::Identity()};
   const std::optional<Alignment> alignment = align_best(reference, frame, starts, track.alignment);
   if (!alignment || !believable(alignment->quality, track, true) || alignment->degenerate > 0)
     return std::nullopt;
@@ -128,8 +126,8 @@ LoopClosure close_loops(const std::vector<Keyframe>& keyframes, const TrackConfi
   closure.closed -= closure.dropped;
   if (closure.dropped > 0) poses = optimise_poses(closure.poses, edges);
   for (std::size_t i = 0; i < poses.size(); ++i)
-    closure.furthest_m = std::max(
-        closure.furthest_m, (poses[i].translation() - closure.poses[i].translation()).norm());
+    closure.furthest_m = std::max(closure.furthest_m,
+                                  (poses[i].translation() - closure.poses[i].translation()).norm());
   if (closure.closed > 0) closure.poses = std::move(poses);
   return closure;
 }
@@ -150,7 +148,8 @@ std::vector<Pose> follow_keyframes(const std::vector<Pose>& poses,
     const Pose first = moved(before), second = moved(after);
     const auto gap = static_cast<double>(keyframes[after].index - keyframes[before].index);
     const double share =
-        gap > 0 ? std::clamp(static_cast<double>(order[i] - keyframes[before].index) / gap, 0., 1.) : 0;
+        gap > 0 ? std::clamp(static_cast<double>(order[i] - keyframes[before].index) / gap, 0., 1.)
+                : 0;
     Pose pose = Pose::Identity();
     pose.linear() = Eigen::Quaterniond(first.linear())
                         .slerp(share, Eigen::Quaterniond(second.linear()))

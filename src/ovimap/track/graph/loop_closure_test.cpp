@@ -68,7 +68,8 @@ TEST(LoopClosure, FindsThePlaceThatWasSeenAgain) {
   std::vector<Pose> truth;
   const auto add = [&](const Pose& real, const Pose& believed) {
     truth.push_back(real);
-    keyframes.push_back(make_keyframe(make_pyramid(camera.take(real)), std::ssize(keyframes) * 10, believed));
+    keyframes.push_back(
+        make_keyframe(make_pyramid(camera.take(real)), std::ssize(keyframes) * 10, believed));
   };
   const Pose start = fixture::room_pose(10);
   Vector6d drift;

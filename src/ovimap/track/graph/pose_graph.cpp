@@ -74,7 +74,8 @@ std::vector<Pose> optimise_poses(const std::vector<Pose>& poses,
     problem.AddParameterBlock(node.turn.coeffs().data(), 4, new ceres::EigenQuaternionManifold);
   }
   for (const PoseEdge& edge : edges) {
-    auto* cost = new ceres::AutoDiffCostFunction<EdgeResidual, 6, 3, 4, 3, 4>(new EdgeResidual{edge});
+    auto* cost =
+        new ceres::AutoDiffCostFunction<EdgeResidual, 6, 3, 4, 3, 4>(new EdgeResidual{edge});
     ceres::LossFunction* loss = edge.loop ? new ceres::CauchyLoss(3.0) : nullptr;
     Node &from = nodes[edge.from], &to = nodes[edge.to];
     problem.AddResidualBlock(cost, loss, from.place.data(), from.turn.coeffs().data(),

@@ -18,7 +18,8 @@ struct PoseEdge {
 
 /// The poses that agree best with all edges, squares weighed; the first stays. Throws nothing:
 /// without a better solution the poses are returned as they are.
-std::vector<Pose> optimise_poses(const std::vector<Pose>& poses, const std::vector<PoseEdge>& edges);
+std::vector<Pose> optimise_poses(const std::vector<Pose>& poses,
+                                 const std::vector<PoseEdge>& edges);
 
 /// How far an edge is off its poses, in its standard deviations.
 double edge_error(const std::vector<Pose>& poses, const PoseEdge& edge);

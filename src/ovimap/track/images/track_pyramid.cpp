@@ -21,9 +21,8 @@ float luma(const Rgb8& color) {
 /// and at the bottom is left out.
 PinholeCamera shrunk(const PinholeCamera& camera, int factor) {
   const auto by = static_cast<float>(factor);
-  return {camera.width / factor,        camera.height / factor,
-          camera.fx / by,               camera.fy / by,
-          (camera.cx + 0.5f) / by - 0.5f, (camera.cy + 0.5f) / by - 0.5f};
+  return {camera.width / factor, camera.height / factor,         camera.fx / by,
+          camera.fy / by,        (camera.cx + 0.5f) / by - 0.5f, (camera.cy + 0.5f) / by - 0.5f};
 }
 
 /// Mean over a square of those inverse depths that are near the greatest, the nearest surface; 0
@@ -58,7 +57,8 @@ float seen_by_color(const Frame& frame, const Eigen::Isometry3f& color_from_dept
   const Eigen::Vector3f in_color = color_from_depth * point;
   if (in_color.z() <= 0) return -1;
   const Eigen::Vector2f pixel = frame.color_camera.project(in_color);
-  if (!(pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() < static_cast<float>(frame.color.width() - 1) &&
+  if (!(pixel.x() >= 0 && pixel.y() >= 0 &&
+        pixel.x() < static_cast<float>(frame.color.width() - 1) &&
         pixel.y() < static_cast<float>(frame.color.height() - 1)))
     return -1;
   const int x = static_cast<int>(pixel.x()), y = static_cast<int>(pixel.y());
@@ -86,7 +86,8 @@ TrackLevel finest_level(const Frame& frame) {
         level.intensity.row(y)[x] = mean_luma(frame.color, x * factor, y * factor, factor);
       else if (near > 0)
         level.intensity.row(y)[x] = seen_by_color(
-            frame, color_from_depth, level.camera.unproject(static_cast<float>(x), static_cast<float>(y), 1 / near));
+            frame, color_from_depth,
+            level.camera.unproject(static_cast<float>(x), static_cast<float>(y), 1 / near));
     }
   });
   return level;

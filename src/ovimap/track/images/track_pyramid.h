@@ -19,9 +19,9 @@ struct TrackLevel {
 /// Halved again and again, the finest level first.
 using TrackPyramid = std::vector<TrackLevel>;
 
-inline constexpr int kFinestWidth_px = 320;    ///< at most so wide is the finest level, as a rule
-inline constexpr int kCoarsestWidth_px = 40;   ///< no level is narrower
-inline constexpr float kOneSurface = 0.05f;    ///< depths that differ by a smaller share are averaged
+inline constexpr int kFinestWidth_px = 320;   ///< at most so wide is the finest level, as a rule
+inline constexpr int kCoarsestWidth_px = 40;  ///< no level is narrower
+inline constexpr float kOneSurface = 0.05f;  ///< depths that differ by a smaller share are averaged
 
 /// The frame's depth and colour, shrunk by averages of what is one surface.
 TrackPyramid make_pyramid(const Frame& frame);

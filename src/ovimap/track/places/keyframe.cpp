@@ -19,7 +19,8 @@ TrackPyramid pyramid_of(const Keyframe& keyframe) {
 
 bool KeyframeSpacing::far(const Pose& from, const Pose& to) const {
   const Pose step = from.inverse() * to;
-  return step.translation().norm() >= step_m || Eigen::AngleAxisd(step.linear()).angle() >= step_rad;
+  return step.translation().norm() >= step_m ||
+         Eigen::AngleAxisd(step.linear()).angle() >= step_rad;
 }
 
 }  // namespace ovimap

@@ -15,7 +15,8 @@ struct Keyframe {
   TrackLevel image;  ///< the surface's level
 };
 
-Keyframe make_keyframe(const TrackPyramid& pyramid, std::int64_t index, const Pose& world_from_camera);
+Keyframe make_keyframe(const TrackPyramid& pyramid, std::int64_t index,
+                       const Pose& world_from_camera);
 
 /// The levels that a keyframe has: its finest is empty.
 TrackPyramid pyramid_of(const Keyframe& keyframe);

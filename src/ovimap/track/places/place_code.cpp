@@ -20,7 +20,8 @@ std::array<float, kCodePixels> shrink(const Image<float>& image, float invalid_b
     for (int x = 0; x < image.width(); ++x) {
       const float value = image.row(y)[x];
       if (value <= invalid_below) continue;
-      const int cell = y * kCodeHeight / image.height() * kCodeWidth + x * kCodeWidth / image.width();
+      const int cell =
+          y * kCodeHeight / image.height() * kCodeWidth + x * kCodeWidth / image.width();
       sums[static_cast<std::size_t>(cell)] += value, counts[static_cast<std::size_t>(cell)] += 1;
     }
   const float total = std::reduce(sums.begin(), sums.end()),
@@ -75,8 +76,8 @@ Image<float> halved_intensity(const Image<float>& fine) {
 }
 
 /// The shift around a first guess at which two images differ least.
-Eigen::Vector2i best_shift(const Image<float>& a, const Image<float>& b, const Eigen::Vector2i& guess,
-                           int reach_px) {
+Eigen::Vector2i best_shift(const Image<float>& a, const Image<float>& b,
+                           const Eigen::Vector2i& guess, int reach_px) {
   Eigen::Vector2i best = guess;
   double least = 1e13;
   for (int dy = guess.y() - reach_px; dy <= guess.y() + reach_px; ++dy)
@@ -120,8 +121,10 @@ std::vector<std::size_t> most_similar(const PlaceCode& code, const std::vector<P
 
 Pose turn_between(const TrackPyramid& reference, const TrackPyramid& frame) {
   const TrackLevel &a = reference.back(), &b = frame.back();
-  const Image<float> small_a = halved_intensity(a.intensity), small_b = halved_intensity(b.intensity);
-  const Eigen::Vector2i rough = best_shift(small_a, small_b, Eigen::Vector2i::Zero(), kTurnReach_px);
+  const Image<float> small_a = halved_intensity(a.intensity),
+                     small_b = halved_intensity(b.intensity);
+  const Eigen::Vector2i rough =
+      best_shift(small_a, small_b, Eigen::Vector2i::Zero(), kTurnReach_px);
   const Eigen::Vector2f shift = best_shift(a.intensity, b.intensity, 2 * rough, 1).cast<float>();
   // What the reference has in its middle, the frame has shifted.
   const Eigen::Vector3d seen =

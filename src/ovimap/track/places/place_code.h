@@ -26,7 +26,8 @@ PlaceCode place_code(const TrackPyramid& pyramid);
 /// intensities fit best.
 double similarity(const PlaceCode& a, const PlaceCode& b);
 
-/// The most similar of `codes` to `code`, best first, at most `count`, each at least `min_similarity`.
+/// The most similar of `codes` to `code`, best first, at most `count`, each at least
+/// `min_similarity`.
 std::vector<std::size_t> most_similar(const PlaceCode& code, const std::vector<PlaceCode>& codes,
                                       std::size_t count, double min_similarity);
 

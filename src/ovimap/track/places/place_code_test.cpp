@@ -20,7 +20,8 @@ TEST(PlaceCode, IsAlikeWhereTheCameraWasAndNotElsewhere) {
   EXPECT_NEAR(similarity(here, here), 1, 1e-5);
   EXPECT_GT(similarity(here, beside), 0.8);
   EXPECT_LT(similarity(here, elsewhere), 0.5);
-  EXPECT_EQ(most_similar(here, {elsewhere, beside, here}, 2, 0.5), (std::vector<std::size_t>{2, 1}));
+  EXPECT_EQ(most_similar(here, {elsewhere, beside, here}, 2, 0.5),
+            (std::vector<std::size_t>{2, 1}));
 }
 
 TEST(PlaceCode, DoesNotMindExposure) {
@@ -39,7 +40,8 @@ TEST(TurnBetween, FindsAFastPan) {
   const fixture::RoomCamera camera;
   const Pose start = fixture::room_pose(0);
   const Pose pan(Eigen::AngleAxisd(0.2, Eigen::Vector3d(0.2, 1, 0).normalized()));
-  const Pose found = turn_between(make_pyramid(camera.take(start)), make_pyramid(camera.take(start * pan)));
+  const Pose found =
+      turn_between(make_pyramid(camera.take(start)), make_pyramid(camera.take(start * pan)));
   EXPECT_LT(fixture::angle_rad(found, pan), 0.04);
 }
 
