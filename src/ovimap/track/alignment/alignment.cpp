@@ -61,15 +61,20 @@ bool beyond_doubt(const AlignmentQuality& quality) {
          (quality.texture < kTexture || quality.correlation >= kSureCorrelation);
 }
 
-/// The steps of one level.
+/// Of a level's residuals, those that err independently: a coarse pixel stands for four finer ones.
+double independent_share(std::size_t level, const FrameAlignmentConfig& config) {
+  const auto halvings = static_cast<double>(std::max(level, kSurfaceLevel) - kSurfaceLevel);
+  return std::min(1., config.independent_share * std::pow(4, halvings));
+}
+
+/// The steps of one level; `share` of its residuals are independent.
 void align_level(const ReferenceLevel& reference, const TrackLevel& frame, const Pose& predicted,
-                 float lever_m, int iterations, const FrameAlignmentConfig& config,
+                 float lever_m, int iterations, double share, const FrameAlignmentConfig& config,
                  ResidualScale& scale, Alignment& alignment) {
   const double min_information = 1 / (config.degenerate_sigma_m * config.degenerate_sigma_m);
   for (int i = 0; i < iterations; ++i) {
     const ResidualSums sums =
         sum_residuals(reference, frame, alignment.reference_from_frame, scale, config, true);
-    const double share = config.independent_share;
     alignment.information = share * sums.h;
     const MotionStep step = solve_step(share * sums.h, share * sums.b,
                                        prior_at(alignment.reference_from_frame, predicted, config),
@@ -112,7 +117,8 @@ Alignment align(const Reference& reference, const TrackPyramid& frame, const Pos
     if (reference.levels[level].points.empty()) continue;
     scale.reach = 1 + static_cast<float>(level);
     align_level(reference.levels[level], frame[level], predicted, reference.median_depth_m,
-                iterations_of(level, levels, config), config, scale, alignment);
+                iterations_of(level, levels, config), independent_share(level, config), config,
+                scale, alignment);
   }
   alignment.reference_from_frame.linear() =
       Eigen::Quaterniond(alignment.reference_from_frame.linear()).normalized().matrix();

@@ -13,7 +13,7 @@ struct LoopConfig {
   float min_similarity = 0.6f;
   float near_m = 0.5f;  ///< keyframes estimated so near each other are held against each other
   float drift_per_m = 0.02f;  ///< as well, this much farther for each metre between them
-  float step_sigma_m = 0.003f, step_sigma_rad = 0.003f;  ///< of the motion between two keyframes
+  float step_sigma_m = 0.008f, step_sigma_rad = 0.006f;  ///< of the motion between two keyframes
   float loop_sigma_m = 0.01f, loop_sigma_rad = 0.006f;   ///< of a verified place
   float most_sigmas = 8.f;  ///< loops that the poses of all contradict more are dropped
 };

@@ -87,12 +87,11 @@ TEST(LoopClosure, FindsThePlaceThatWasSeenAgain) {
   }
   LoopConfig config;
   config.min_path_m = 1.5f;
-  config.step_sigma_m = 0.01f;
   const double before = fixture::distance_m(keyframes.back().world_from_camera, truth.back());
   const LoopClosure closure = close_loops(keyframes, {}, config);
-  EXPECT_GT(before, 0.15);
+  EXPECT_GT(before, 0.04);
   EXPECT_GT(closure.closed, 0u);
-  EXPECT_LT(fixture::distance_m(closure.poses.back(), truth.back()), 0.03);
+  EXPECT_LT(fixture::distance_m(closure.poses.back(), truth.back()), 0.02);
 }
 
 TEST(FollowKeyframes, MovesPosesBetweenTheirKeyframes) {
