@@ -23,7 +23,30 @@ struct BenchOptions {
   MappingOptions mapping;
   int project_every = 5;
   int corridor = 0;  ///< frames; 0: measure SOURCE
+  bool track = false;  ///< find the poses instead of taking the recording's
   bool json = false;
+};
+
+/// A recording with the poses that a run found; what it left out stays left out.
+class LocatedFrames : public FrameSource {
+ public:
+  LocatedFrames(const FrameSource& source, const std::vector<FrameLogEntry>& frames)
+      : source_(source) {
+    for (const FrameLogEntry& frame : frames) poses_[frame.index] = frame.world_from_camera;
+  }
+  std::string kind() const override { return source_.kind(); }
+  std::int64_t size() const override { return source_.size(); }
+  FrameRead read(std::int64_t position) const override {
+    const auto pose = poses_.find(position);
+    if (pose == poses_.end()) return {std::nullopt, "was left out"};
+    FrameRead read = source_.read(position);
+    if (read.frame) read.frame->world_from_camera = pose->second;
+    return read;
+  }
+
+ private:
+  const FrameSource& source_;
+  std::map<std::int64_t, Pose> poses_;
 };
 
 /// Keeps a mesh up to date beside a mapper of its own, for the first frames.
@@ -106,12 +129,14 @@ int bench(const BenchOptions& options) {
   if (options.corridor > 0) return bench_corridor(options.corridor, config, options.json);
 #endif
   config.masks.runtime.threads = network_threads(config, options.mapping);
+  if (options.track) config.source.poses = PoseNeed::kNone;
   const auto source = open_frame_source(options.mapping.source, config.source);
   const auto range = positions(parse_frame_range(options.mapping.frames), source->size());
   auto masks = make_mask_source(options.mapping.masks, config.masks,
                                 {source.get(), options.mapping.model_dirs});
   Mapper mapper(config.mapper, std::move(masks), make_encoder(options.mapping, config));
   const auto checkpoints = bound_memory(config.memory);
+  Tracker tracker(config.track);
   Progress progress("measuring");
   const double cpu_before = cpu_seconds();
   const SequenceResult result = run_sequence(
@@ -120,11 +145,12 @@ int bench(const BenchOptions& options) {
         progress.show(done, total);
         return true;
       },
-      {}, checkpoints.get());
+      {}, checkpoints.get(), options.track ? &tracker : nullptr);
   const double cpu_ms =
       1e3 * (cpu_seconds() - cpu_before) / static_cast<double>(result.frames.size());
+  const LocatedFrames located(*source, result.frames);
   for (std::size_t i = 0; i < range.size(); i += static_cast<std::size_t>(options.project_every)) {
-    const FrameRead read = source->read(range[i]);
+    const FrameRead read = located.read(range[i]);
     if (read.frame) (void)mapper.project(*read.frame);
     mapper.map().trim();
   }
@@ -138,7 +164,7 @@ int bench(const BenchOptions& options) {
   const auto voxels = static_cast<double>(mapper.map().blocks_in_memory()) * kBlockVoxels;
   const double map_bytes = static_cast<double>(mapper.map().bytes());
   StageTimers timers = mapper.timers();
-  measure_mesh(*source, range, config.mapper, timers);
+  measure_mesh(located, range, config.mapper, timers);
   const MapDocument document = make_document(std::move(mapper), result, {options.mapping.source});
   const std::uintmax_t file_bytes = saved_bytes(document, config.mapper, timers);
   const double fps = static_cast<double>(result.frames.size()) / result.seconds;
@@ -180,6 +206,7 @@ Action add_bench(CLI::App& command) {
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   command.get_option("SOURCE")->required(false);
+  command.add_flag("--track", options->track, "find the poses as well, as run --poses track does");
   add_max_memory(command, options->mapping);
 #ifdef OVIMAP_SYNTH
   command

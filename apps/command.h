@@ -17,6 +17,7 @@
 #include "ovimap/io/map_tables/map_document.h"
 #include "ovimap/pipeline/live/live_mapper.h"
 #include "ovimap/pipeline/mapping/checkpointer.h"
+#include "ovimap/track/graph/loop_closure.h"
 
 namespace ovimap::apps {
 
@@ -36,6 +37,7 @@ Action add_merge(CLI::App& command);
 Action add_export(CLI::App& command);
 Action add_correct(CLI::App& command);
 Action add_eval(CLI::App& command);
+Action add_eval_poses(CLI::App& command);
 Action add_bench(CLI::App& command);
 Action add_synth(CLI::App& command);
 Action add_report(CLI::App& command);
@@ -61,12 +63,16 @@ struct MappingOptions {
   std::vector<std::string> settings;  ///< "a.b=c"
   std::vector<std::filesystem::path> model_dirs;
   std::string frames = ":";  ///< "A:B:STEP"
+  std::string poses = "given";  ///< given, track, refine, or auto: given where there are any
   std::string max_memory;    ///< "300M"; empty: as the settings say
   int threads = 0;
 };
 void add_mapping_options(CLI::App& command, MappingOptions& options);
 /// The same without the recording.
 void add_mapping_settings(CLI::App& command, MappingOptions& options);
+
+/// --poses, with "auto" where it is not given.
+void add_poses(CLI::App& command, MappingOptions& options);
 
 /// --max-memory, which is memory.max_mb in units of its own.
 void add_max_memory(CLI::App& command, MappingOptions& options);
@@ -75,6 +81,8 @@ void add_max_memory(CLI::App& command, MappingOptions& options);
 struct ProgramConfig {
   MapperConfig mapper;
   FrameSourceConfig source;
+  TrackConfig track;
+  LoopConfig loops;
   MaskSourceConfig masks;
   RuntimeConfig encoder;
   LiveConfig live;

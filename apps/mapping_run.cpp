@@ -14,6 +14,8 @@ namespace ovimap::apps {
 
 namespace {
 
+constexpr int kStoreForLoops_mb = 1000;  // a closed loop fuses the frames again
+
 /// The settings that made the map, with what the command line chose beside them.
 std::string effective_config(ProgramConfig config, const MappingOptions& options,
                              const MapperConfig& mapper,
@@ -31,8 +33,17 @@ struct MappingInputs {
   explicit MappingInputs(const MappingOptions& options, bool recorded = true)
       : config(read_program_config(options)) {
     config.masks.runtime.threads = network_threads(config, options);
+    if (recorded) {
+      config.source.poses = options.poses == "auto"    ? PoseNeed::kAllOrNone
+                            : options.poses == "track" ? PoseNeed::kNone
+                                                       : PoseNeed::kAll;
+      source = open_frame_source(options.source, config.source);
+    }
+    tracking = options.poses == "track" || options.poses == "refine" ||
+               (source && !source->posed());
+    keeps_for_loops = tracking && config.mapper.frame_store.max_mb == 0;
+    if (keeps_for_loops) config.mapper.frame_store.max_mb = kStoreForLoops_mb;
     if (!recorded) return;
-    source = open_frame_source(options.source, config.source);
     range = positions(parse_frame_range(options.frames), source->size());
   }
   void open_networks(const MappingOptions& options, const std::filesystem::path& keep_masks = {}) {
@@ -45,6 +56,8 @@ struct MappingInputs {
 
   ProgramConfig config;
   std::unique_ptr<FrameSource> source;  ///< null where frames are pushed
+  bool tracking = false;                ///< poses are to be found
+  bool keeps_for_loops = false;         ///< frames are kept for that alone
   std::vector<std::int64_t> range;
   std::shared_ptr<MaskSource> masks;
   std::shared_ptr<ImageTextEncoder> encoder;
@@ -148,6 +161,34 @@ MapHeader make_header(const MappingInputs& inputs, const MappingOptions& options
           effective_config(inputs.config, options, mapper, inputs.encoder)};
 }
 
+/// The tracker of a run whose poses are to be found, at home in what the run goes on with.
+std::optional<Tracker> make_tracker(const MappingInputs& inputs, const BegunRun& begun) {
+  if (!inputs.tracking) return std::nullopt;
+  Tracker tracker(inputs.config.track);
+  if (begun.document && !begun.document->frames.empty()) {
+    if (begun.document->kept_frames.empty())
+      throw Error("the map to go on with keeps no frames to find the camera's place by; map it with "
+                  "--set frame_store.max_mb=1000");
+    tracker.begin_in(keyframes_of(*begun.document, inputs.config.track.keyframes));
+  }
+  return tracker;
+}
+
+/// What tracking did, and, where the camera came by a place again, the map with its loops closed.
+/// Frames that were kept for that alone are not saved.
+TrackingRun finish_tracking(const Tracker& tracker, const ProgramConfig& config, bool keep_frames,
+                            MapDocument& map) {
+  TrackingRun tracking{summarise(tracker.log()), {}};
+  if (!map.kept_frames.empty()) {
+    Progress progress("closing loops");
+    tracking.loops = close_map_loops(
+        map, config.mapper, config.track, config.loops,
+        [&](std::size_t done, std::size_t total) { progress.show(done, total); });
+  }
+  if (!keep_frames) map.kept_frames.clear();
+  return tracking;
+}
+
 MappingRun finished_run(MappingInputs&& inputs, MapHeader header, Mapper&& mapper,
                         SequenceResult sequence, std::unique_ptr<Checkpointer> checkpoints) {
   MappingRun run;
@@ -172,6 +213,7 @@ MappingRun map_recording(const MappingOptions& options, const std::string& title
   MappingInputs inputs(options);
   BegunRun begun = find_begun(target, inputs.config.memory);
   inputs.open_networks(options, keep_masks);
+  std::optional<Tracker> tracker = make_tracker(inputs, begun);
   Mapper mapper(inputs.config.mapper, inputs.masks, inputs.encoder);
   MapHeader header = make_header(inputs, options, mapper.config());
   SequenceResult sequence = resume(begun, header, inputs, mapper);
@@ -185,10 +227,14 @@ MappingRun map_recording(const MappingOptions& options, const std::string& title
           progress.show(done, total);
           return !interrupted();
         },
-        std::move(sequence), checkpoints.get());
+        std::move(sequence), checkpoints.get(), tracker ? &*tracker : nullptr);
   }
-  return finished_run(std::move(inputs), std::move(header), std::move(mapper), std::move(sequence),
-                      std::move(checkpoints));
+  const ProgramConfig config = inputs.config;
+  const bool keep_frames = !inputs.keeps_for_loops;
+  MappingRun run = finished_run(std::move(inputs), std::move(header), std::move(mapper),
+                                std::move(sequence), std::move(checkpoints));
+  if (tracker) run.tracking = finish_tracking(*tracker, config, keep_frames, run.document);
+  return run;
 }
 
 MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& target,
@@ -201,6 +247,10 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
     inputs.open_networks(options);
   }).get();
   LiveMapper mapper(inputs.config.mapper, inputs.config.live, inputs.masks, inputs.encoder);
+  std::shared_ptr<Tracker> tracker;
+  if (auto made = make_tracker(inputs, begun))
+    tracker = std::make_shared<Tracker>(std::move(*made));
+  mapper.track_with(tracker);
   MapHeader header = make_header(inputs, options, mapper.config());
   const std::string pace = intake ? std::string("pushed") : concat(fps, " frames/s");
   header.config_text.insert(0, concat("# live, ", pace, "\n"));
@@ -230,8 +280,11 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
   }
   if (audience) header.edits = audience->end();
   if (live.sequence.depth_camera.width == 0) live.sequence.depth_camera = done.depth_camera;
+  const ProgramConfig config = inputs.config;
+  const bool keep_frames = !inputs.keeps_for_loops;
   MappingRun run = finished_run(std::move(inputs), std::move(header), mapper.take(), live.sequence,
                                 std::move(checkpoints));
+  if (tracker) run.tracking = finish_tracking(*tracker, config, keep_frames, run.document);
   run.live = std::move(live);
   return run;
 }

@@ -4,8 +4,15 @@
 
 #include "command.h"
 #include "ovimap/pipeline/live/live_run.h"
+#include "ovimap/pipeline/revise/map_loops.h"
 
 namespace ovimap::apps {
+
+/// How the camera was tracked.
+struct TrackingRun {
+  TrackSummary summary;
+  LoopReport loops;
+};
 
 /// A recording, mapped.
 struct MappingRun {
@@ -13,6 +20,7 @@ struct MappingRun {
   bool masks_wanted = false;            ///< there was a source of 2D masks
   SequenceResult sequence;
   std::optional<LiveRunResult> live;  ///< of map_live
+  std::optional<TrackingRun> tracking;  ///< where poses were not given
   StageTimers timers;
   MapDocument document;
   std::unique_ptr<Checkpointer> checkpoints;  ///< remove them when the map is saved

@@ -52,6 +52,16 @@ void add_frame_range(CLI::App& command, std::string& frames) {
       command.add_option("--frames", frames, "which frames: FIRST:LAST:STEP, each part optional"));
 }
 
+void add_poses(CLI::App& command, MappingOptions& options) {
+  options.poses = "auto";
+  command
+      .add_option("--poses", options.poses,
+                  "given (by the recording), track (found from the images), refine (tracked, with "
+                  "the given ones as a prediction), or auto: given where there are any")
+      ->check(CLI::IsMember({"auto", "given", "track", "refine"}))
+      ->capture_default_str();
+}
+
 void add_max_memory(CLI::App& command, MappingOptions& options) {
   command.add_option(
       "--max-memory", options.max_memory,
@@ -62,6 +72,8 @@ void add_max_memory(CLI::App& command, MappingOptions& options) {
 void list_fields(ProgramConfig& config, ConfigFields& fields) {
   list_fields(config.mapper, fields);
   fields.group("source", [&](ConfigFields& f) { list_fields(config.source, f); });
+  fields.group("track", [&](ConfigFields& f) { list_fields(config.track, f); });
+  fields.group("loops", [&](ConfigFields& f) { list_fields(config.loops, f); });
   fields.group("masks", [&](ConfigFields& f) { list_fields(config.masks, f); });
   fields.group("encoder.runtime", [&](ConfigFields& f) { list_fields(config.encoder, f); });
   fields.group("live", [&](ConfigFields& f) { list_fields(config.live, f); });

@@ -4,6 +4,7 @@
 #include "ovimap/base/parallel.h"
 #include "ovimap/io/map_file/map_file.h"
 #include "ovimap/pipeline/report/map_pictures.h"
+#include "ovimap/pipeline/sequence/trajectory_file.h"
 #include "run_report.h"
 
 namespace ovimap::apps {
@@ -13,7 +14,7 @@ namespace {
 struct RunOptions {
   MappingOptions mapping;
   std::filesystem::path map;
-  std::filesystem::path pictures;
+  std::filesystem::path pictures, trajectory;
   bool json = false;
   bool live = false;
   bool resume = false;
@@ -30,6 +31,7 @@ int run(const RunOptions& options) {
   report_faults(mapped);
   save_map(options.map, mapped.document);
   mapped.checkpoints->remove();
+  if (!options.trajectory.empty()) write_trajectory(options.trajectory, mapped.document.frames);
   if (!options.pictures.empty())
     write_map_pictures(options.pictures, mapped.document, *mapped.source);
   if (options.json)
@@ -54,6 +56,9 @@ Action add_run(CLI::App& command) {
       ->check(CLI::Range(0.1, 1000.))
       ->needs(live)
       ->capture_default_str();
+  add_poses(command, options->mapping);
+  command.add_option("--trajectory", options->trajectory,
+                     "file to write the camera's poses to, a TUM line for each frame in the map");
   add_max_memory(command, options->mapping);
   command.add_flag("--resume", options->resume,
                    "go on with the frames that a killed run, or the map, does not have yet");

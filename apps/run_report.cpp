@@ -44,6 +44,7 @@ nlohmann::json live_json(const LiveRunResult& live, double fps) {
   return {{"camera_fps", fps},
           {"frames_fused", done.frames_fused},
           {"frames_dropped", done.frames_dropped},
+          {"frames_lost", done.frames_lost},
           {"frames_read_late", live.frames_read_late},
           {"camera_seconds", live.camera_seconds},
           {"mask_frames", done.mask_frames},
@@ -75,6 +76,33 @@ void print_live(const LiveRunResult& live, double fps) {
         static_cast<long long>(done.masks_skipped));
   if (done.views_skipped > 0)
     std::printf("looks at objects left out: %lld\n", static_cast<long long>(done.views_skipped));
+}
+
+nlohmann::json tracking_json(const TrackingRun& tracking) {
+  const TrackSummary& done = tracking.summary;
+  nlohmann::json lost = nlohmann::json::array();
+  for (const auto& [first, last] : done.lost) lost.push_back({first, last});
+  return {{"frames", done.frames},
+          {"frames_tracked", done.tracked},
+          {"lost", lost},
+          {"found_times", done.found_times},
+          {"frames_degenerate", done.degenerate},
+          {"loop_candidates", tracking.loops.candidates},
+          {"loops_closed", tracking.loops.closed},
+          {"loops_dropped", tracking.loops.dropped},
+          {"loop_moved_m", tracking.loops.furthest_m}};
+}
+
+void print_tracking(const TrackingRun& tracking) {
+  std::printf("%s\n", summary_line(tracking.summary).c_str());
+  if (tracking.summary.degenerate > 0)
+    std::printf("in %zu frames the images did not tell every direction of the motion\n",
+                tracking.summary.degenerate);
+  if (tracking.loops.closed > 0)
+    std::printf("%zu places were seen again%s; poses moved by up to %.1f cm\n",
+                tracking.loops.closed,
+                tracking.loops.correction ? ", and the map was fused anew" : "",
+                100 * tracking.loops.furthest_m);
 }
 
 bool masks_all_absent(const MappingRun& run) {
@@ -115,6 +143,7 @@ nlohmann::json run_json(const std::filesystem::path& map, const MappingRun& run,
                            {"instances", run.document.instances.size()},
                            {"cpu_seconds", cpu_seconds()},
                            {"peak_rss_mb", peak_rss_mb()}};
+  if (run.tracking) report["tracking"] = tracking_json(*run.tracking);
   if (run.live) report["live"] = live_json(*run.live, fps);
   return report;
 }
@@ -127,6 +156,7 @@ void print_run(const std::filesystem::path& map, const MappingRun& run, double f
   if (tiles.evicted > 0)
     std::printf("%zu tiles left memory on the way, %zu came back; peak memory %.0f MB\n",
                 tiles.evicted, tiles.loaded, peak_rss_mb());
+  if (run.tracking) print_tracking(*run.tracking);
   if (run.live) print_live(*run.live, fps);
 }
 

@@ -89,6 +89,7 @@ void serve_live(const ServeOptions& options) {
                       options.served};
   service.served.encoder = options.mapping.encoder;
   service.server.frames = config.source;
+  if (options.mapping.poses == "track") service.server.frames.poses = PoseNeed::kNone;
   if (options.pushed()) service.intake = &intake;
   service.run([&](const HttpServer& server) { announce(options, server); },
               [&](const MappingRun& run) {
@@ -184,7 +185,9 @@ void add_live_options(CLI::App& command, ServeOptions& options) {
                 "go on with the frames that a killed run, or the map, does not have yet")
       ->needs(live);
   add_mapping_settings(command, options.mapping);
-  for (const char* name : {"--masks", "--preset", "--views", "--config", "--set", "--frames"})
+  add_poses(command, options.mapping);
+  for (const char* name :
+       {"--masks", "--preset", "--views", "--config", "--set", "--frames", "--poses"})
     command.get_option(name)->needs(live);
 }
 

@@ -18,6 +18,7 @@ import subprocess
 
 import lasting
 import speed
+import tracking
 from speed import run_json
 
 TUNED, UNSEEN = ["living-room", "bedroom", "kitchen"], ["office", "bathroom"]
@@ -28,7 +29,7 @@ ABLATIONS = ["masks", "views", "fusion", "incremental", "timing"]  # on the unse
 # A schedule is one of a video: a walk through an unseen room. A network takes seconds a frame, true masks nothing.
 WALK = ["--room", "office", "--walk", "--seconds", "20", "--size", "320x240"]
 SCHEDULES = {"gt": [], "sam": ["--frames", "::5"]}
-SECTIONS = ["tiny", "rooms", "exact", "apartments", "desks", "speed", "corridor", "lasting", "surface", "masks", "views", "fusion", "incremental", "schedule", "timing"]
+SECTIONS = ["tiny", "rooms", "exact", "apartments", "desks", "speed", "track", "corridor", "lasting", "surface", "masks", "views", "fusion", "incremental", "schedule", "timing"]
 NEED_KITCHEN = ["speed", "lasting"]
 # Two crops a view instead of six: the ablations compare, and embedding is most of their time.
 FEW_CROPS = ["--set", "crops.scales=1"]
@@ -241,6 +242,11 @@ def speed_section(program, kitchen):
             "    make rivals; make bench SOURCE=KITCHEN", "", *speed.speed_lines(program, kitchen)]
 
 
+def track_section(program, work, kitchen):
+    return ["## Tracking without poses", "", "    make benchmarks KITCHEN=KITCHEN_VIDEO ONLY=track", "",
+            *tracking.tracking_lines(program, work, kitchen)]
+
+
 def lasting_section(program, kitchen):
     return ["## What a map that lasts costs", "", "    make benchmarks KITCHEN=FOLDER ONLY=lasting", "",
             *lasting.lasting_lines(program, kitchen)]
@@ -288,6 +294,7 @@ def main():
                "exact": lambda: quality_section(program, work, noisy=False),
                **{name: functools.partial(place_section, program, work, name, arguments.studio) for name in PLACES},
                "speed": lambda: speed_section(program, arguments.kitchen),
+               "track": lambda: track_section(program, work, arguments.kitchen),
                "corridor": lambda: corridor_section(program),
                "lasting": lambda: lasting_section(program, arguments.kitchen),
                "surface": lambda: surface_section(program, work),

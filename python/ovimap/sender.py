@@ -69,19 +69,22 @@ class FrameSender:
         self._heard = 0.0  # when the last answer came
         self._post_json("/api/camera", rig)
 
-    def send(self, color: npt.NDArray[np.uint8] | bytes, depth: npt.NDArray[Any] | bytes, pose: npt.ArrayLike, timestamp: float = 0.0, *,
+    def send(self, color: npt.NDArray[np.uint8] | bytes, depth: npt.NDArray[Any] | bytes, pose: npt.ArrayLike | None, timestamp: float = 0.0, *,
              name: str = "", patience_s: float = 0.0) -> bool:  # fmt: skip
         """Sends one frame; False when the mapper had no room for it, also not within patience_s.
 
         color: uint8 [height, width, 3], or the bytes of a JPEG or PNG.
         depth: uint16 [height, width] in the camera's units, floats in metres, or the bytes of a PNG. Floats that are not finite
             or do not fit into 16 bits of the camera's units are sent as 0, which is none.
-        pose: [4, 4], world_from_camera of the depth camera, unless the camera's "poses" says otherwise.
+        pose: [4, 4], world_from_camera of the depth camera, unless the camera's "poses" says otherwise. None: not known, where the
+            server tracks the camera (ovimap serve --live http --poses track).
 
         Raises TypeError and ValueError for another type or shape and for a pose that is not finite, of which nothing is sent.
         Raises SendError when the frame is wrong or the map is finished, and when the answer was lost: the frame may have been
         taken, and is not sent twice."""
-        about: dict[str, Any] = {"pose": _pose(pose), "timestamp_s": _time(timestamp)}
+        about: dict[str, Any] = {"timestamp_s": _time(timestamp)}
+        if pose is not None:
+            about["pose"] = _pose(pose)
         if name:
             about["name"] = name
         body, kind = _multipart({"color": self._color(color), "depth": self._depth(depth), "frame": json.dumps(about).encode()})

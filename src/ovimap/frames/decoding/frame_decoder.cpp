@@ -80,14 +80,15 @@ FrameDecoder::FrameDecoder(const CameraRig& rig, const FrameSourceConfig& config
     : rig_(completed(rig)), config_(config), units_(rig_, config) {}
 
 Frame FrameDecoder::decode(std::span<const std::uint8_t> color, std::span<const std::uint8_t> depth,
-                           const Eigen::Matrix4d& pose) const {
-  const std::string fault = pose_fault(pose);
+                           const std::optional<Eigen::Matrix4d>& pose) const {
+  const std::string fault = pose ? pose_fault(*pose) : "";
   if (!fault.empty()) throw Error(concat("the pose is no rigid transform: ", fault));
   Frame frame;
   frame.color_camera = rig_.color_camera;
   frame.depth_camera = rig_.depth_camera;
   frame.color_from_depth = rig_.color_from_depth;
-  frame.world_from_camera = rig_.world_from_depth_camera(pose);
+  frame.posed = pose.has_value();
+  if (pose) frame.world_from_camera = rig_.world_from_depth_camera(*pose);
   frame.depth =
       units_.metres(named("depth", [&] { return decode_stored_depth(depth, frame.depth_camera); }));
   if (!has_depth(frame.depth))

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -41,10 +42,11 @@ class FrameDecoder {
   FrameDecoder(const CameraRig& rig, const FrameSourceConfig& config = {});
 
   /// `color`: JPEG or PNG; `depth`: 16-bit grey PNG; `pose`: as CameraRig::world_from_depth_camera
-  /// takes it. The frame has no index, name and time. Throws Error with one sentence when an image
-  /// cannot be decoded, is of another size or holds no depth, or the pose is no rigid transform.
+  /// takes it; nullopt: not known. The frame has no index, name and time. Throws Error with one
+  /// sentence when an image cannot be decoded, is of another size or holds no depth, or the pose is
+  /// no rigid transform.
   Frame decode(std::span<const std::uint8_t> color, std::span<const std::uint8_t> depth,
-               const Eigen::Matrix4d& pose) const;
+               const std::optional<Eigen::Matrix4d>& pose) const;
 
   const CameraRig& rig() const { return rig_; }
 

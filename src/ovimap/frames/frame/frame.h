@@ -11,8 +11,8 @@
 
 namespace ovimap {
 
-/// One posed RGB-D observation. Colour and depth may come from two cameras that were never
-/// registered.
+/// One RGB-D observation, with its pose where that is known. Colour and depth may come from two
+/// cameras that were never registered.
 struct Frame {
   std::int64_t index = 0;  ///< position in its source
   std::string name;        ///< file stem of the colour image; names 2D mask files (`--masks DIR`)
@@ -23,6 +23,7 @@ struct Frame {
   PinholeCamera depth_camera;
   Pose color_from_depth = Pose::Identity();   ///< x_in_color = color_from_depth * x_in_depth
   Pose world_from_camera = Pose::Identity();  ///< of the depth camera
+  bool posed = true;  ///< world_from_camera is known
 
   /// Colour and depth share camera and pose: pixel (u, v) is the same ray in both.
   bool registered() const {

@@ -16,11 +16,19 @@ namespace ovimap {
 
 class ConfigFields;
 
+/// What a recording's poses are to a caller.
+enum class PoseNeed {
+  kAll,       ///< a frame without a pose is a faulty one
+  kAllOrNone, ///< likewise, unless no frame of the recording has one
+  kNone,      ///< poses are not read
+};
+
 struct FrameSourceConfig {
   float min_depth_m = 0.1f;      ///< nearer depth is invalid
   float max_depth_m = 10.f;      ///< farther depth is invalid
   float max_time_gap_s = 0.02f;  ///< colour, depth and pose farther apart do not belong together
   int min_confidence = 1;        ///< depth of less is invalid (Record3D: 0 low, 1 medium, 2 high)
+  PoseNeed poses = PoseNeed::kAll;  ///< the caller's, not a setting of the user's
 };
 void list_fields(FrameSourceConfig& config, ConfigFields& fields);
 
@@ -49,6 +57,8 @@ class FrameSource {
   /// "record3d", "folder".
   virtual std::string kind() const = 0;
   virtual std::int64_t size() const = 0;
+  /// Whether its frames come with poses.
+  virtual bool posed() const { return true; }
 
   /// The frame at `position` in [0, size()); its Frame::index is `position`.
   [[nodiscard]] virtual FrameRead read(std::int64_t position) const = 0;
@@ -64,7 +74,8 @@ class FrameSource {
 /// Opens what `path` contains: the layout is recognised by its files; `camera.yaml` and then
 /// `calibration.yaml` beside them override the cameras (camera_rig.h has the format). Throws Error
 /// when the path is missing, no layout fits (the message lists what was looked for), the layout's
-/// own description is broken, or no frame has colour, depth and pose.
+/// own description is broken, or no frame has colour, depth and, where
+/// `config` needs it, a pose.
 std::unique_ptr<FrameSource> open_frame_source(const std::filesystem::path& path,
                                                const FrameSourceConfig& config = {});
 

@@ -43,7 +43,7 @@ void assign_trajectory(const Trajectory& trajectory, double max_gap_s,
     numbered &= number >= 0 && number < lines;
     numbers.push_back(numbered ? static_cast<std::int64_t>(number) : -1);
     if (number < 0 || timeline.empty()) continue;
-    if (const TrajectoryPose* pose = timeline.nearest(number, max_gap_s)) {
+    if (const auto pose = timeline.at(number, max_gap_s)) {
       frame.timestamp_s = number;
       frame.pose = pose->matrix;
       frame.pose_origin = pose->origin;
@@ -72,11 +72,11 @@ void find_poses(const fs::path& folder, const FrameSourceConfig& config,
     for (std::size_t i = 0; i < frames.size(); ++i) frames[i].pose_file = files[i];
   } else if (const fs::path pose_file = find_one(folder, kPoseFiles, false); !pose_file.empty()) {
     assign_trajectory(read_trajectory(pose_file), config.max_time_gap_s, frames);
-  } else {
+  } else if (config.poses == PoseNeed::kAll) {
     throw Error(concat(
         folder.string(), ": no poses; give poses.txt (a line for each image: 16 numbers, 12 as ",
         "KITTI, or 'time tx ty tz qx qy qz qw' as TUM) or poses/NAME.txt with 4x4 matrices, ",
-        "world_from_camera"));
+        "world_from_camera; `ovimap run` finds them itself"));
   }
 }
 
@@ -97,7 +97,7 @@ Recording list_frames(const fs::path& folder, const FrameSourceConfig& config) {
     frame.depth = depths[i];
     recording.frames.push_back(std::move(frame));
   }
-  find_poses(folder, config, colors, recording.frames);
+  if (config.poses != PoseNeed::kNone) find_poses(folder, config, colors, recording.frames);
   if (const fs::path file = find_one(folder, kDepthIntrinsics, false); !file.empty())
     read_text_intrinsics(file, recording.rig.depth_camera);
   if (const fs::path file = find_one(folder, kColorIntrinsics, false); !file.empty())

@@ -43,13 +43,13 @@ Metadata read_metadata(const fs::path& file) {
     metadata.depth_width = document.at("dw").get<int>();
     metadata.depth_height = document.at("dh").get<int>();
     metadata.frames_per_s = document.value("fps", kAssumedFramesPerSecond);
-    metadata.poses = document.at("poses").get<std::vector<std::vector<double>>>();
+    metadata.poses = document.value("poses", metadata.poses);
     metadata.intrinsics =
         document.value("perFrameIntrinsicCoeffs", std::vector<std::vector<float>>{});
     metadata.times_s = document.value("frameTimestamps", std::vector<double>{});
   } catch (const nlohmann::json::exception& fault) {
     throw Error(concat(file.string(), " does not describe a Record3D recording (", fault.what(),
-                       "); expected are K, w, h, dw, dh and poses"));
+                       "); expected are K, w, h, dw and dh"));
   }
   if (k.size() != 9)
     throw Error(concat(file.string(), ": K has ", k.size(),

@@ -75,7 +75,7 @@ std::vector<double> read_times(const fs::path& file) {
   return std::move(*times);
 }
 
-Recording list_frames(const fs::path& folder, const FrameSourceConfig&) {
+Recording list_frames(const fs::path& folder, const FrameSourceConfig& config) {
   Recording recording;
   recording.kind = kReplicaReader.kind;
   recording.folder = folder;
@@ -100,7 +100,8 @@ Recording list_frames(const fs::path& folder, const FrameSourceConfig&) {
     recording.frames.push_back(std::move(frame));
     numbers.push_back(number);
   }
-  assign_by_line(read_trajectory(folder / "traj.txt"), numbers, recording.frames);
+  assign_by_line(read_trajectory_if_needed(folder / "traj.txt", config.poses), numbers,
+                 recording.frames);
   return recording;
 }
 

@@ -75,7 +75,7 @@ Recording list_frames(const fs::path& folder, const FrameSourceConfig& config) {
   recording.rig.depth_units_per_m = 5000;
 
   const auto colors = read_list(folder / "rgb.txt"), depths = read_list(folder / "depth.txt");
-  const Trajectory trajectory = read_trajectory(folder / "groundtruth.txt");
+  const Trajectory trajectory = read_trajectory_if_needed(folder / "groundtruth.txt", config.poses);
   const PoseTimeline timeline(trajectory);
   for (const auto& [i, j] : associate(colors, depths, config.max_time_gap_s)) {
     RecordedFrame frame;
@@ -83,7 +83,7 @@ Recording list_frames(const fs::path& folder, const FrameSourceConfig& config) {
     frame.timestamp_s = colors[i].time_s;
     frame.color = colors[i].file;
     frame.depth = depths[j].file;
-    if (const TrajectoryPose* pose = timeline.nearest(depths[j].time_s, config.max_time_gap_s)) {
+    if (const auto pose = timeline.at(depths[j].time_s, config.max_time_gap_s)) {
       frame.pose = pose->matrix;
       frame.pose_origin = pose->origin;
     }

@@ -63,11 +63,15 @@ auto load(const std::string& name, const std::filesystem::path& file,
 
 class RecordingSource : public FrameSource {
  public:
-  RecordingSource(Recording recording, const FrameSourceConfig& config)
-      : recording_(std::move(recording)), config_(config), units_(recording_.rig, config) {}
+  RecordingSource(Recording recording, const FrameSourceConfig& config, bool posed)
+      : recording_(std::move(recording)),
+        config_(config),
+        units_(recording_.rig, config),
+        posed_(posed) {}
 
   std::string kind() const override { return recording_.kind; }
   std::int64_t size() const override { return static_cast<std::int64_t>(recording_.frames.size()); }
+  bool posed() const override { return posed_; }
 
   FrameRead read(std::int64_t position) const override {
     const RecordedFrame& record = at(position);
@@ -112,7 +116,9 @@ class RecordingSource : public FrameSource {
       frame.depth_camera =
           record.camera->scaled_to(frame.depth_camera.width, frame.depth_camera.height);
     }
-    frame.world_from_camera = recording_.rig.world_from_depth_camera(stored_pose(record));
+    frame.posed = posed_;
+    if (posed_)
+      frame.world_from_camera = recording_.rig.world_from_depth_camera(stored_pose(record));
     frame.depth = load_depth(record);
     const std::string name = label(record.color, record.color_part, record);
     frame.color = load(name, record.color, record.color_part,
@@ -184,9 +190,22 @@ class RecordingSource : public FrameSource {
   Recording recording_;
   FrameSourceConfig config_;
   DepthUnits units_;
+  bool posed_;
 };
 
-std::string missing_part(const RecordedFrame& frame) {
+/// A pose that is stored but means "unknown" (not finite, as some trackers write) is none.
+bool has_pose(const RecordedFrame& frame) {
+  std::error_code unreadable;
+  if (frame.pose) return frame.pose->allFinite();
+  return !frame.pose_file.empty() && std::filesystem::exists(frame.pose_file, unreadable);
+}
+
+bool read_poses(const Recording& recording, PoseNeed need) {
+  if (need != PoseNeed::kAllOrNone) return need == PoseNeed::kAll;
+  return std::any_of(recording.frames.begin(), recording.frames.end(), has_pose);
+}
+
+std::string missing_part(const RecordedFrame& frame, bool posed) {
   if (!frame.fault.empty()) return frame.fault;
   std::error_code unreadable;
   const auto absent = [&](const std::filesystem::path& file) {
@@ -194,29 +213,31 @@ std::string missing_part(const RecordedFrame& frame) {
   };
   for (const auto& file : {frame.color, frame.depth})
     if (absent(file)) return file.filename().string() + " is missing";
-  if (frame.pose) return {};
+  if (frame.pose || !posed) return {};
   if (frame.pose_file.empty()) return frame.name + " has no pose";
   if (absent(frame.pose_file)) return frame.pose_file.filename().string() + " is missing";
   return {};
 }
 
-void check_any_complete(const Recording& recording) {
+void check_any_complete(const Recording& recording, bool posed) {
   std::string first_fault = "there are no frames";
   for (const RecordedFrame& frame : recording.frames) {
-    const std::string missing = missing_part(frame);
+    const std::string missing = missing_part(frame, posed);
     if (missing.empty()) return;
     if (&frame == &recording.frames.front()) first_fault = missing;
   }
   throw Error(concat(recording.folder.string(), ": none of ", recording.frames.size(),
-                     " frames has colour, depth and pose (", first_fault, ")"));
+                     " frames has colour", posed ? ", depth and pose (" : " and depth (",
+                     first_fault, ")"));
 }
 
 }  // namespace
 
 std::unique_ptr<FrameSource> open_recording(Recording recording, const FrameSourceConfig& config) {
-  check_any_complete(recording);
+  const bool posed = read_poses(recording, config.poses);
+  check_any_complete(recording, posed);
   complete_cameras(recording);
-  return std::make_unique<RecordingSource>(std::move(recording), config);
+  return std::make_unique<RecordingSource>(std::move(recording), config, posed);
 }
 
 }  // namespace ovimap

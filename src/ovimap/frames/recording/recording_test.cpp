@@ -136,6 +136,25 @@ TEST_F(RecordingTest, NoCompleteFrameIsAnErrorThatNamesWhatIsMissing) {
   }
 }
 
+TEST_F(RecordingTest, PosesMayBeMissingWhereTheCallerAllowsIt) {
+  const auto open = [&](PoseNeed need) {
+    FrameSourceConfig config;
+    config.poses = need;
+    return open_frame_source(folder_.path(), config);
+  };
+  EXPECT_TRUE(open(PoseNeed::kAllOrNone)->posed());
+  EXPECT_FALSE(open(PoseNeed::kNone)->read(1).frame->posed);
+  std::filesystem::remove(file("pose.txt"));
+  EXPECT_EQ(open(PoseNeed::kAllOrNone)->read(1).fault, "frame-000001.pose.txt: is missing");
+  for (int i : {0, 2})
+    std::filesystem::remove(folder_.path() / ("frame-" + fixture::padded(i, 6) + ".pose.txt"));
+  const auto unposed = open(PoseNeed::kAllOrNone);
+  EXPECT_FALSE(unposed->posed());
+  ASSERT_TRUE(unposed->read(1).frame);
+  EXPECT_FALSE(unposed->read(1).frame->posed);
+  EXPECT_TRUE(unposed->read(1).frame->world_from_camera.matrix().isIdentity());
+}
+
 TEST(OpenFrameSource, WhatCannotBeOpenedIsNamed) {
   const fixture::TemporaryFolder folder;
   const auto message = [](const std::filesystem::path& path) -> std::string {

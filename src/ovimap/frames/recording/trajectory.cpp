@@ -25,6 +25,19 @@ TrajectoryPose parse_pose(const TextLine& line, const std::string& file_name) {
   return pose;
 }
 
+bool usable(const TrajectoryPose& pose) {
+  return pose.matrix && pose_fault(*pose.matrix).empty();
+}
+
+Pose between(const Pose& from, const Pose& to, double share) {
+  Pose pose = Pose::Identity();
+  pose.linear() = Eigen::Quaterniond(from.linear())
+                      .slerp(share, Eigen::Quaterniond(to.linear()))
+                      .toRotationMatrix();
+  pose.translation() = (1 - share) * from.translation() + share * to.translation();
+  return pose;
+}
+
 }  // namespace
 
 Trajectory read_trajectory(const std::filesystem::path& file) {
@@ -39,6 +52,13 @@ Trajectory read_trajectory(const std::filesystem::path& file) {
                        " holds no pose; accepted is one a line: 16 numbers (4x4 matrix), 12 "
                        "(KITTI) or 8 (TUM: time tx ty tz qx qy qz qw)"));
   return trajectory;
+}
+
+Trajectory read_trajectory_if_needed(const std::filesystem::path& file, PoseNeed need) {
+  std::error_code unreadable;
+  const bool there = std::filesystem::exists(file, unreadable);
+  if (need == PoseNeed::kNone || (need == PoseNeed::kAllOrNone && !there)) return {};
+  return read_trajectory(file);
 }
 
 PoseTimeline::PoseTimeline(const Trajectory& trajectory) {
@@ -60,6 +80,24 @@ const TrajectoryPose* PoseTimeline::nearest(double time_s, double max_gap_s) con
     nearest = candidate->second;
   }
   return nearest;
+}
+
+std::optional<TrajectoryPose> PoseTimeline::at(double time_s, double max_gap_s) const {
+  const TrajectoryPose* near = nearest(time_s, max_gap_s);
+  if (!near) return std::nullopt;
+  const auto after =
+      std::lower_bound(by_time_.begin(), by_time_.end(), time_s,
+                       [](const auto& pose, double time) { return pose.first < time; });
+  if (after == by_time_.begin() || after == by_time_.end()) return *near;
+  const auto before = after - 1;
+  const double gap_s = after->first - before->first;
+  const bool bracketed = time_s - before->first <= max_gap_s && after->first - time_s <= max_gap_s;
+  if (!bracketed || gap_s <= 0 || !usable(*before->second) || !usable(*after->second)) return *near;
+  TrajectoryPose pose = *near;
+  pose.matrix = between(rigid_pose(*before->second->matrix), rigid_pose(*after->second->matrix),
+                        (time_s - before->first) / gap_s)
+                    .matrix();
+  return pose;
 }
 
 void assign_by_line(const Trajectory& trajectory, const std::vector<std::int64_t>& numbers,

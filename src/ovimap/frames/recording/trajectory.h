@@ -27,6 +27,9 @@ using Trajectory = std::vector<TrajectoryPose>;
 /// all.
 Trajectory read_trajectory(const std::filesystem::path& file);
 
+/// The same; empty where poses are not needed, or may be missing and the file is.
+Trajectory read_trajectory_if_needed(const std::filesystem::path& file, PoseNeed need);
+
 /// The poses of a trajectory by time.
 class PoseTimeline {
  public:
@@ -35,6 +38,9 @@ class PoseTimeline {
 
   /// The pose nearest in time and at most `max_gap_s` away; nullptr when there is none.
   const TrajectoryPose* nearest(double time_s, double max_gap_s) const;
+  /// The pose at a time: between the two around it, each at most `max_gap_s` away, in proportion;
+  /// the nearest where only one is, nullopt where none is. Keeps the nearest's origin.
+  std::optional<TrajectoryPose> at(double time_s, double max_gap_s) const;
 
  private:
   std::vector<std::pair<double, const TrajectoryPose*>> by_time_;

@@ -57,6 +57,21 @@ TEST(PoseTimeline, FindsTheNearestWithinTheGap) {
   EXPECT_EQ(PoseTimeline({}).nearest(1, 10), nullptr);
 }
 
+TEST(PoseTimeline, InterpolatesBetweenPosesWithinTheGap) {
+  const Trajectory trajectory =
+      read("1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0.7071067811865476 0.7071067811865476\n9 5 0 0 0 0 0 1\n");
+  const PoseTimeline timeline(trajectory);
+  const auto pose = timeline.at(1.25, 1);
+  ASSERT_TRUE(pose);
+  EXPECT_NEAR((*pose->matrix)(0, 3), 0.25, 1e-12);
+  EXPECT_NEAR(std::atan2((*pose->matrix)(1, 0), (*pose->matrix)(0, 0)), M_PI / 8, 1e-12);
+  EXPECT_EQ(pose->origin, "poses.txt line 1");
+  EXPECT_NEAR((*timeline.at(1.25, 0.5)->matrix)(0, 3), 0, 1e-12);  // the other is too far away
+  EXPECT_NEAR((*timeline.at(8.5, 1)->matrix)(0, 3), 5, 1e-12);
+  EXPECT_FALSE(timeline.at(5, 1));
+  EXPECT_NEAR((*timeline.at(2, 1)->matrix)(0, 3), 1, 1e-12);
+}
+
 TEST(AssignByLine, ByRankWhenCountsAgreeElseByNumber) {
   Trajectory trajectory(3);
   for (int i = 0; i < 3; ++i) {

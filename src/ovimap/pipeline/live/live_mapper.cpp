@@ -124,7 +124,7 @@ void LiveMapper::prepare_frames() {
   while (auto next = incoming_.pop()) {
     begin("prepare");
     Prepared prepared{nullptr, nullptr, next->pushed};
-    prepared.frame = std::make_shared<const PreparedFrame>(
+    prepared.frame = std::make_shared<PreparedFrame>(
         prepare_frame(std::move(next->frame), config_, prepare_timers_));
     if (!mask_source_)
       prepared.cut = std::make_shared<const FrameSegments>(
@@ -144,6 +144,7 @@ void LiveMapper::restore(MapDocument&& document) {
 void LiveMapper::fuse_frames() {
   while (auto next = prepared_.pop()) {
     apply_late_masks();
+    if (tracker_ && !locate(*next->frame)) continue;
     fuse(std::move(*next));
   }
   wanted_masks_.close();
@@ -158,6 +159,21 @@ void LiveMapper::count_encoder_failures() {
   const std::lock_guard lock(mutex_);
   statistics_.views_failed = failures.views;
   statistics_.encoder_fault = std::move(failures.first);
+}
+
+/// Gives the frame its pose; false when the camera is lost.
+bool LiveMapper::locate(PreparedFrame& prepared) {
+  begin("track");
+  auto frame = std::make_shared<Frame>(*prepared.frame);
+  auto t = mapper_->timers().measure("track");
+  const TrackedFrame& tracked = tracker_->track(*frame, mapper_->map());
+  frame->world_from_camera = tracked.world_from_camera;
+  frame->posed = true;
+  prepared.frame = std::move(frame);
+  if (tracked.tracked) return true;
+  const std::lock_guard lock(mutex_);
+  ++statistics_.frames_lost;
+  return false;
 }
 
 void LiveMapper::fuse(Prepared prepared) {

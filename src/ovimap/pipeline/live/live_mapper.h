@@ -14,6 +14,7 @@
 #include "ovimap/io/map_tables/map_document.h"
 #include "ovimap/pipeline/live/mask_schedule.h"
 #include "ovimap/pipeline/mapping/mapper.h"
+#include "ovimap/track/tracker.h"
 
 namespace ovimap {
 
@@ -30,6 +31,7 @@ void list_fields(LiveConfig& config, ConfigFields& fields);
 /// What a live run did and left out. Lags are from `push` until the result was in the map.
 struct LiveStatistics {
   std::int64_t frames_pushed = 0, frames_fused = 0, frames_dropped = 0;
+  std::int64_t frames_lost = 0;    ///< fused nowhere, for the camera was lost
   std::int64_t mask_frames = 0;    ///< frames whose masks are in the map
   std::int64_t masks_late = 0;     ///< ... after their frame was fused
   std::int64_t masks_skipped = 0;  ///< frames that wanted masks while the network was busy
@@ -55,6 +57,9 @@ class LiveMapper {
              std::shared_ptr<ImageTextEncoder> encoder = nullptr);
   /// Cancels.
   ~LiveMapper();
+
+  /// Finds the poses of the frames instead of taking theirs. Before the first push only.
+  void track_with(std::shared_ptr<Tracker> tracker) { tracker_ = std::move(tracker); }
 
   /// Takes a frame without waiting; false when it had to be dropped. Throws what a stage threw.
   bool push(Frame frame);
@@ -93,7 +98,7 @@ class LiveMapper {
     Clock::time_point pushed;
   };
   struct Prepared {
-    std::shared_ptr<const PreparedFrame> frame;
+    std::shared_ptr<PreparedFrame> frame;
     std::shared_ptr<const FrameSegments> cut;  ///< null: not masked, or masks are to come
     Clock::time_point pushed;
   };
@@ -101,6 +106,7 @@ class LiveMapper {
   void prepare_frames();
   void fuse_frames();
   void find_masks();
+  bool locate(PreparedFrame& prepared);
   void fuse(Prepared prepared);
   void count_encoder_failures();
   void apply_masks(Prepared late);
@@ -119,6 +125,7 @@ class LiveMapper {
   MapperConfig config_;
   LiveConfig live_;
   std::shared_ptr<MaskSource> mask_source_;
+  std::shared_ptr<Tracker> tracker_;  ///< null: frames have poses; the fusing thread's
   std::unique_ptr<Mapper> mapper_;  ///< the fusing thread's, until that ends
   MaskSchedule schedule_;
   StageTimers prepare_timers_, mask_timers_;

@@ -11,7 +11,7 @@ namespace ovimap {
 
 namespace {
 
-/// The line of a frame; null: it has none.
+/// The pose of a frame; nullopt: it has none.
 class Lines {
  public:
   Lines(const Trajectory& trajectory, std::size_t frames, double max_gap_s)
@@ -20,11 +20,11 @@ class Lines {
         in_order_(trajectory.size() == frames),
         max_gap_s_(max_gap_s) {}
 
-  const TrajectoryPose* of(const FrameLogEntry& frame, std::size_t position) const {
-    if (!timeline_.empty()) return timeline_.nearest(frame.timestamp_s, max_gap_s_);
+  std::optional<TrajectoryPose> of(const FrameLogEntry& frame, std::size_t position) const {
+    if (!timeline_.empty()) return timeline_.at(frame.timestamp_s, max_gap_s_);
     const std::int64_t line = in_order_ ? static_cast<std::int64_t>(position) : frame.index;
-    if (line < 0 || line >= static_cast<std::int64_t>(trajectory_.size())) return nullptr;
-    return &trajectory_[static_cast<std::size_t>(line)];
+    if (line < 0 || line >= static_cast<std::int64_t>(trajectory_.size())) return std::nullopt;
+    return trajectory_[static_cast<std::size_t>(line)];
   }
 
   bool by_time() const { return !timeline_.empty(); }
@@ -45,7 +45,7 @@ std::vector<Pose> match_poses(const std::vector<FrameLogEntry>& frames,
   std::vector<Pose> poses;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const FrameLogEntry& frame = frames[i];
-    const TrajectoryPose* line = lines.of(frame, i);
+    const std::optional<TrajectoryPose> line = lines.of(frame, i);
     if (!line && lines.by_time())
       throw Error(concat("frame '", frame.name, "' of the map was taken at ", frame.timestamp_s,
                          " s, and ", file.string(), " has no pose within ", max_gap_s,

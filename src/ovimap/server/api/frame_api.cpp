@@ -46,9 +46,10 @@ FrameIntake::Offer offer_of(const HttpRequest& request) {
   return request.header(kRetry).empty() ? FrameIntake::Offer::kFirst : FrameIntake::Offer::kAgain;
 }
 
-Eigen::Matrix4d pose_of(const json& about) {
-  const bool given = about.contains("pose") && about["pose"].is_array();
-  const json numbers = given ? about["pose"] : json::array();
+/// Nullopt where none is given.
+std::optional<Eigen::Matrix4d> pose_of(const json& about) {
+  if (!about.contains("pose")) return std::nullopt;
+  const json numbers = about["pose"].is_array() ? about["pose"] : json::array();
   const auto is_number = [](const json& number) { return number.is_number(); };
   if (numbers.size() != 16 || !std::all_of(numbers.begin(), numbers.end(), is_number))
     throw BadRequest(400, "'pose' must be 16 numbers, the rows of a 4x4 matrix");
@@ -121,12 +122,15 @@ HttpReply FrameApi::frame(const HttpRequest& request) {
       throw BadRequest(400, concat("'", name, "' is no part of a frame; see /api/openapi.json"));
   const json about = object_of(part_of(parts, "frame"), "the part 'frame'");
   check_keys(about, {"pose", "timestamp_s", "name"});
-  const Eigen::Matrix4d pose = pose_of(about);
+  const std::optional<Eigen::Matrix4d> pose = pose_of(about);
   const double timestamp_s = time_of(about);
   const std::string name = name_of(about);
   const auto color = bytes_of(part_of(parts, "color")),
              depth = bytes_of(part_of(parts, "depth"));
   intake();
+  if (!pose && config_.poses != PoseNeed::kNone)
+    throw BadRequest(400, "'pose' is missing; send 16 numbers, the rows of a 4x4 matrix, or start "
+                          "the server with --poses track");
   const auto offer = offer_of(request);
   // One frame at a time: they stay in order, the camera stays the same, and large images are
   // decoded one by one, and not at all where there is no room.

@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/track/alignment/alignment.h"
+
+#include <gtest/gtest.h>
+
+#include "ovimap/base/parallel.h"
+#include "ovimap/track/alignment/plain_residuals.h"
+#include "ovimap/track/room_camera_fixture.h"
+
+namespace ovimap {
+namespace {
+
+Pose moved(double x, double y, double z, double rx, double ry, double rz) {
+  Vector6d motion;
+  motion << x, y, z, rx, ry, rz;
+  return small_motion(motion);
+}
+
+struct Scene {
+  explicit Scene(bool textured = true) { camera.textured = textured; }
+
+  Reference reference() const {
+    return make_reference(make_pyramid(camera.take(start)), {}, Pose::Identity());
+  }
+  TrackPyramid seen_from(const Pose& motion) const {
+    return make_pyramid(camera.take(start * motion));
+  }
+
+  fixture::RoomCamera camera;
+  Pose start = fixture::room_pose(10);
+};
+
+TEST(Alignment, FindsTheMotionOfACamera) {
+  const Scene scene;
+  const Pose motion = moved(0.03, -0.02, 0.04, 0.02, -0.03, 0.015);
+  const Alignment found = align(scene.reference(), scene.seen_from(motion), Pose::Identity(), {});
+  EXPECT_LT(fixture::distance_m(found.reference_from_frame, motion), 0.002);
+  EXPECT_LT(fixture::angle_rad(found.reference_from_frame, motion), 0.002);
+  EXPECT_EQ(found.degenerate, 0);
+  EXPECT_GT(found.quality.agreement, 0.9);
+  EXPECT_GT(found.quality.correlation, 0.9);
+}
+
+TEST(Alignment, FindsItByDepthAlone) {
+  Scene scene(false);
+  scene.start.linear() =
+      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), Eigen::Vector3d(2.5, 1, 2.5))
+          .matrix();  // into a corner
+  const Pose motion = moved(0.02, -0.01, 0.03, 0.01, -0.02, 0.01);
+  const Alignment found = align(scene.reference(), scene.seen_from(motion), Pose::Identity(), {});
+  EXPECT_LT(fixture::distance_m(found.reference_from_frame, motion), 0.004);
+  EXPECT_LT(fixture::angle_rad(found.reference_from_frame, motion), 0.004);
+}
+
+TEST(Alignment, IsTheSameForAnyNumberOfThreads) {
+  const Scene scene;
+  const Reference reference = scene.reference();
+  const TrackPyramid frame = scene.seen_from(moved(0.02, 0.01, 0, 0, 0.02, 0));
+  const auto with = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return align(reference, frame, Pose::Identity(), {});
+  };
+  const Alignment one = with(1), many = with(4);
+  EXPECT_EQ(one.reference_from_frame.matrix(), many.reference_from_frame.matrix());
+  EXPECT_EQ(one.information, many.information);
+}
+
+/// A wall straight ahead without texture says how far it is and how it is turned, no more.
+TEST(Alignment, LeavesWhatABlankWallDoesNotTellToThePrediction) {
+  Frame wall;
+  wall.depth_camera = wall.color_camera = {160, 120, 140.f, 140.f, 79.5f, 59.5f};
+  wall.depth = DepthImage(160, 120, 1.5f);
+  wall.color = RgbImage(160, 120, {128, 128, 128});
+  const Reference reference = make_reference(make_pyramid(wall), {}, Pose::Identity());
+  wall.depth.fill(1.48f);  // the camera went 2 cm towards it
+  const Alignment found =
+      align(reference, make_pyramid(wall), moved(0.03, -0.02, 0, 0, 0, 0.02), {});
+  EXPECT_EQ(found.degenerate, 3);
+  const Vector6d motion = motion_of(found.reference_from_frame);
+  EXPECT_NEAR(motion[2], 0.02, 0.001);
+  EXPECT_NEAR(motion[0], 0.03, 0.001);
+  EXPECT_NEAR(motion[1], -0.02, 0.001);
+  EXPECT_NEAR(motion[5], 0.02, 0.001);
+}
+
+TEST(Alignment, TellsAWrongPlaceByItsQuality) {
+  const Scene scene;
+  const Pose away = moved(0.8, 0, 0.3, 0, 1.2, 0);
+  const Alignment found = align(scene.reference(), scene.seen_from(away), Pose::Identity(), {});
+  EXPECT_LT(std::min(found.quality.agreement, found.quality.correlation), 0.5);
+}
+
+TEST(Residuals, AreThoseOfThePlainWalk) {
+  const Scene scene;
+  const Reference reference = scene.reference();
+  const TrackPyramid frame = scene.seen_from(moved(0.01, 0, 0.01, 0, 0.01, 0));
+  ResidualScale scale;
+  scale.geometric = 2, scale.gain = 1.1f, scale.bias = -3;
+  for (std::size_t level = 0; level < frame.size(); ++level) {
+    const ResidualSums plain =
+        plain_sum_residuals(reference.levels[level], frame[level], Pose::Identity(), scale, {});
+    const ResidualSums fast =
+        sum_residuals(reference.levels[level], frame[level], Pose::Identity(), scale, {}, true);
+    EXPECT_EQ(plain.measured, fast.measured);
+    EXPECT_LT((plain.h - fast.h).norm(), 1e-3 * plain.h.norm());
+    EXPECT_LT((plain.b - fast.b).norm(), 1e-3 * plain.b.norm());
+  }
+}
+
+TEST(NormalEquations, SmallMotionsAreTakenBack) {
+  Vector6d motion;
+  motion << 0.1, -0.2, 0.3, 0.3, 0.2, -0.1;
+  EXPECT_LT((motion_of(small_motion(motion)) - motion).norm(), 1e-12);
+  EXPECT_EQ(motion_of(Pose::Identity()), Vector6d::Zero());
+}
+
+}  // namespace
+}  // namespace ovimap

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "ovimap/geometry/pose.h"
+#include "ovimap/map/voxels/voxel_map.h"
+#include "ovimap/track/images/track_pyramid.h"
+
+namespace ovimap {
+
+/// A piece of surface that frames are aligned to, in the camera frame of its reference.
+struct ReferencePoint {
+  Eigen::Vector3f point;
+  Eigen::Vector3f normal;  ///< unit; 0: the surface bends or breaks here, or is the sensor's alone
+  float intensity = -1;    ///< -1: unknown
+  Eigen::Vector2f gradient;  ///< of the intensity, per pixel of this level
+};
+
+/// The points of one level.
+struct ReferenceLevel {
+  PinholeCamera camera;
+  std::vector<ReferencePoint> points;
+};
+
+/// What frames are aligned to: the map's surface as one pose sees it, with the intensities of the
+/// frame that was taken there.
+struct Reference {
+  Pose world_from_camera = Pose::Identity();
+  std::vector<ReferenceLevel> levels;  ///< as the frame's pyramid
+  float median_depth_m = 1;
+  double mapped_share = 0;  ///< of the points with depth, those that the map has
+};
+
+/// The map's inverse depth seen by a level's camera, where the map has a surface.
+Image<float> cast_inverse_depth(const VoxelMap& map, const PinholeCamera& camera,
+                                const Pose& world_from_camera, float max_range_m);
+
+/// The reference of a frame at a pose. `model`: inverse depth of the map at the pyramid's level 1
+/// (cast_inverse_depth), empty: the frame's own depth is the surface. Where the model has none, the
+/// frame's depth is taken. A pyramid without its finest image gives no points there.
+Reference make_reference(const TrackPyramid& pyramid, const Image<float>& model,
+                         const Pose& world_from_camera);
+
+/// The level whose pixels are the surface's pieces.
+inline constexpr std::size_t kSurfaceLevel = 1;
+
+}  // namespace ovimap

@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/track/graph/loop_closure.h"
+
+#include <algorithm>
+
+#include "ovimap/base/config.h"
+
+namespace ovimap {
+
+namespace {
+
+/// The way that the camera went up to each keyframe, metres.
+std::vector<double> paths_of(const std::vector<Keyframe>& keyframes) {
+  std::vector<double> paths;
+  for (std::size_t i = 0; i < keyframes.size(); ++i)
+    paths.push_back(i == 0 ? 0
+                           : paths.back() + (keyframes[i].world_from_camera.translation() -
+                                             keyframes[i - 1].world_from_camera.translation())
+                                                .norm());
+  return paths;
+}
+
+struct Candidate {
+  double rank = 0;  ///< smaller first
+  std::size_t place = 0;
+};
+
+/// Earlier keyframes that may show what keyframe `at` shows.
+std::vector<Candidate> candidates_of(std::size_t at, const std::vector<Keyframe>& keyframes,
+                                     const std::vector<double>& paths, const LoopConfig& config) {
+  std::vector<Candidate> found;
+  for (std::size_t i = 0; i < at; ++i) {
+    const double path = paths[at] - paths[i];
+    if (path < config.min_path_m) break;
+    const double alike = similarity(keyframes[at].code, keyframes[i].code);
+    const Pose between = keyframes[i].world_from_camera.inverse() * keyframes[at].world_from_camera;
+    const bool near = between.translation().norm() < config.near_m + config.drift_per_m * path &&
+                      Eigen::AngleAxisd(between.linear()).angle() < 0.6;
+    if (alike >= config.min_similarity || (near && alike > 0)) found.push_back({-alike, i});
+  }
+  std::sort(found.begin(), found.end(), [](const Candidate& a, const Candidate& b) {
+    return std::tie(a.rank, a.place) < std::tie(b.rank, b.place);
+  });
+  if (std::ssize(found) > config.candidates)
+    found.resize(static_cast<std::size_t>(config.candidates));
+  return found;
+}
+
+std::vector<PoseEdge> edges_between_neighbours(const std::vector<Keyframe>& keyframes,
+                                               const LoopConfig& config) {
+  std::vector<PoseEdge> edges;
+  for (std::size_t i = 1; i < keyframes.size(); ++i)
+    edges.push_back({i - 1, i,
+                     keyframes[i - 1].world_from_camera.inverse() * keyframes[i].world_from_camera,
+                     config.step_sigma_m, config.step_sigma_rad, false});
+  return edges;
+}
+
+/// The pair's edge when its frames show one place.
+std::optional<PoseEdge> verified(const Keyframe& earlier, const Keyframe& later,
+                                 const TrackConfig& track) {
+  const TrackPyramid place = pyramid_of(earlier), frame = pyramid_of(later);
+  const Reference reference = make_reference(place, {}, Pose::Identity());
+  const std::vector<Pose> starts = {earlier.world_from_camera.inverse() * later.world_from_camera,
+                                    turn_between(place, frame), Pose::Identity()};
+  const std::optional<Alignment> alignment = align_best(reference, frame, starts, track.alignment);
+  if (!alignment || !believable(alignment->quality, track, true) || alignment->degenerate > 0)
+    return std::nullopt;
+  PoseEdge edge;
+  edge.from_to = alignment->reference_from_frame;
+  edge.loop = true;
+  return edge;
+}
+
+void find_loops(const std::vector<Keyframe>& keyframes, const TrackConfig& track,
+                const LoopConfig& config, std::vector<PoseEdge>& edges, LoopClosure& closure) {
+  const std::vector<double> paths = paths_of(keyframes);
+  for (std::size_t at = 0; at < keyframes.size(); ++at)
+    for (const Candidate& candidate : candidates_of(at, keyframes, paths, config)) {
+      ++closure.candidates;
+      auto edge = verified(keyframes[candidate.place], keyframes[at], track);
+      if (!edge) continue;
+      edge->from = candidate.place, edge->to = at;
+      edge->sigma_m = config.loop_sigma_m, edge->sigma_rad = config.loop_sigma_rad;
+      edges.push_back(*edge);
+      ++closure.closed;
+    }
+}
+
+}  // namespace
+
+void list_fields(LoopConfig& config, ConfigFields& fields) {
+  fields.add("min_path_m", config.min_path_m, 0.f, 1e6f,
+             "a loop is a place seen again after so long a way, metres");
+  fields.add("candidates", config.candidates, 1, 1000, "places that a keyframe is held against");
+  fields.add("min_similarity", config.min_similarity, -1.f, 1.f,
+             "least similarity of the codes of two places to be held against each other");
+  fields.add("near_m", config.near_m, 0.f, 1000.f,
+             "keyframes so near each other are held against each other as well, metres");
+  fields.add("drift_per_m", config.drift_per_m, 0.f, 1.f,
+             "and by this much farther ones for each metre of way between them");
+  fields.add("step_sigma_m", config.step_sigma_m, 1e-5f, 10.f,
+             "standard deviation of the motion between two keyframes, metres");
+  fields.add("step_sigma_rad", config.step_sigma_rad, 1e-5f, 10.f,
+             "standard deviation of the turn between two keyframes, radians");
+  fields.add("loop_sigma_m", config.loop_sigma_m, 1e-5f, 10.f,
+             "standard deviation of a place seen again, metres");
+  fields.add("loop_sigma_rad", config.loop_sigma_rad, 1e-5f, 10.f,
+             "standard deviation of its turn, radians");
+  fields.add("most_sigmas", config.most_sigmas, 0.1f, 1e6f,
+             "loops that the others contradict by more are dropped, standard deviations");
+}
+
+LoopClosure close_loops(const std::vector<Keyframe>& keyframes, const TrackConfig& track,
+                        const LoopConfig& config) {
+  LoopClosure closure;
+  for (const Keyframe& keyframe : keyframes) closure.poses.push_back(keyframe.world_from_camera);
+  std::vector<PoseEdge> edges = edges_between_neighbours(keyframes, config);
+  find_loops(keyframes, track, config, edges, closure);
+  if (closure.closed == 0) return closure;
+  std::vector<Pose> poses = optimise_poses(closure.poses, edges);
+  closure.dropped = std::erase_if(edges, [&](const PoseEdge& edge) {
+    return edge.loop && edge_error(poses, edge) > config.most_sigmas;
+  });
+  closure.closed -= closure.dropped;
+  if (closure.dropped > 0) poses = optimise_poses(closure.poses, edges);
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    closure.furthest_m = std::max(closure.furthest_m,
+                                  (poses[i].translation() - closure.poses[i].translation()).norm());
+  if (closure.closed > 0) closure.poses = std::move(poses);
+  return closure;
+}
+
+std::vector<Pose> follow_keyframes(const std::vector<Pose>& poses,
+                                   const std::vector<std::int64_t>& order,
+                                   const std::vector<Keyframe>& keyframes,
+                                   const std::vector<Pose>& corrected) {
+  OVIMAP_ASSERT(poses.size() == order.size() && keyframes.size() == corrected.size());
+  std::vector<Pose> result;
+  std::size_t before = 0;
+  for (std::size_t i = 0; i < poses.size() && !keyframes.empty(); ++i) {
+    while (before + 1 < keyframes.size() && keyframes[before + 1].index <= order[i]) ++before;
+    const std::size_t after = std::min(before + 1, keyframes.size() - 1);
+    const auto moved = [&](std::size_t k) {
+      return Pose(corrected[k] * keyframes[k].world_from_camera.inverse() * poses[i]);
+    };
+    const Pose first = moved(before), second = moved(after);
+    const auto gap = static_cast<double>(keyframes[after].index - keyframes[before].index);
+    const double share =
+        gap > 0 ? std::clamp(static_cast<double>(order[i] - keyframes[before].index) / gap, 0., 1.)
+                : 0;
+    Pose pose = Pose::Identity();
+    pose.linear() = Eigen::Quaterniond(first.linear())
+                        .slerp(share, Eigen::Quaterniond(second.linear()))
+                        .normalized()
+                        .matrix();
+    pose.translation() = (1 - share) * first.translation() + share * second.translation();
+    result.push_back(pose);
+  }
+  return result;
+}
+
+}  // namespace ovimap

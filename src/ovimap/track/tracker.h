@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "ovimap/track/places/track_config.h"
+
+namespace ovimap {
+
+/// What the tracker made of a frame.
+struct TrackedFrame {
+  std::int64_t index = 0;  ///< of the frame in its source
+  double timestamp_s = 0;
+  std::string name;
+  bool tracked = false;    ///< else lost: the pose is the last one known, and means nothing
+  bool relocated = false;  ///< found again in this frame
+  Pose world_from_camera = Pose::Identity();
+  Matrix6d information = Matrix6d::Zero();  ///< as Alignment has it
+  int degenerate = 0;
+  AlignmentQuality quality;
+};
+
+struct TrackSummary {
+  std::size_t frames = 0, tracked = 0, lost_times = 0, found_times = 0, degenerate = 0;
+  std::vector<std::pair<std::int64_t, std::int64_t>> lost;  ///< first and last index, in order
+};
+
+/// Follows a camera through a map that is made from its frames. A frame is tracked against the
+/// map's surface as the last reference pose sees it; whoever fuses tracked frames into the map does
+/// so before the next one comes.
+class Tracker {
+ public:
+  explicit Tracker(const TrackConfig& config) : config_(config) {}
+
+  /// Where the frame was taken. The first frame with depth is the world, or where its own pose is
+  /// (`frame.posed`); later poses of frames predict motion and do no more.
+  const TrackedFrame& track(const Frame& frame, const VoxelMap& map);
+
+  /// Begins in a map that is there already, whose places these are: the first frame is one that is
+  /// to be found.
+  void begin_in(std::vector<Keyframe> places);
+
+  const std::vector<TrackedFrame>& log() const { return log_; }
+  const std::vector<Keyframe>& keyframes() const { return keyframes_; }
+  const TrackConfig& config() const { return config_; }
+
+ private:
+  bool start(const Frame& frame);
+  bool follow(const Frame& frame);
+  bool find_again(const VoxelMap& map);
+  bool try_place(const Keyframe& keyframe, const VoxelMap& map);
+  std::vector<Pose> predictions(const Frame& frame) const;
+  void accept(std::int64_t index, const Alignment& alignment, const Reference& reference,
+              bool relocated);
+  void refresh_reference(const VoxelMap& map);
+  void keep_keyframe();
+
+  TrackConfig config_;
+  TrackPyramid pyramid_, last_pyramid_;  ///< of the present frame and of the last tracked one
+  std::optional<Reference> reference_;
+  bool reference_is_old_ = false;
+  int reference_age_ = 0;
+  double last_overlap_ = 1;  ///< of the last tracked frame with the reference
+  Pose last_pose_ = Pose::Identity();
+  Pose last_motion_ = Pose::Identity();  ///< last camera from the one before
+  std::int64_t last_index_ = 0;
+  std::int64_t last_gap_ = 1;       ///< frames between those
+  std::optional<Pose> last_given_;  ///< pose that came with that frame
+  bool begun_ = false, lost_ = false;
+  std::vector<TrackedFrame> log_;
+  std::vector<Keyframe> keyframes_;
+  std::vector<PlaceCode> codes_;
+};
+
+TrackSummary summarise(const std::vector<TrackedFrame>& log);
+/// "tracked 498 of 500 frames, lost 1 time (frames 100 to 101)".
+std::string summary_line(const TrackSummary& summary);
+
+}  // namespace ovimap
