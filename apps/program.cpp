@@ -45,7 +45,7 @@ constexpr CommandEntry kCommands[] = {
     {"eval", "score maps against the truth",
      "eval demo/tiny.ovimap --gt demo/tiny/room", add_eval},
     {"eval-poses", "score the poses of a camera against true ones",
-     "eval-poses demo/tiny/room/traj.txt demo/tiny/room", add_eval_poses},
+     "eval-poses tracked.txt demo/tiny/room", add_eval_poses},
     {"ablate", "vary one choice and score the maps, beside published figures",
      "ablate fusion demo/tiny/room --masks gt --frames ::4 -o tables", add_ablate},
     {"reproduce", "make the paper's tables from your own copy of its data",

@@ -44,6 +44,8 @@ class Place:
     def fault_of(self, example):
         if example[0] == "correct":
             self.prepare_correction()
+        if example[0] == "eval-poses":
+            self.run("run", "demo/tiny/room", "--trajectory", "tracked.txt", "-o", "tracked.ovimap")
         begin = time.monotonic()
         ended = self.run(*example)
         print(f"{time.monotonic() - begin:6.1f} s  {shlex.join(example)}", flush=True)
