@@ -228,7 +228,8 @@ void check_any_complete(const Recording& recording, bool posed) {
   }
   throw Error(concat(recording.folder.string(), ": none of ", recording.frames.size(),
                      " frames has colour", posed ? ", depth and pose (" : " and depth (",
-                     first_fault, ")"));
+                     first_fault,
+                     posed ? "); `ovimap run --poses track` finds poses itself" : ")"));
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ inline constexpr std::size_t kCodePixels = std::size_t{kCodeWidth} * kCodeHeight
 
 /// What a place looks like from one pose: its intensities and inverse depths as images of a few
 /// hundred pixels, each with mean 0 and length 1. Two codes compare by the product of their pixels,
-/// so a change of exposure does not matter, and a thousand compare in a millisecond. It needs no
+/// so a change of exposure does not matter, and no index is needed for thousands. It needs no
 /// training and no chance, unlike ferns and vocabularies, and depth tells white rooms apart.
 struct PlaceCode {
   std::array<float, kCodePixels> intensity{}, inverse_depth{};
