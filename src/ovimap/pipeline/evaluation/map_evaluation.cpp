@@ -141,6 +141,15 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
+std::map<std::uint32_t, std::int32_t> numbers_of_guesses(
+    const SearchIndex& index, const std::vector<std::vector<ClassGuess>>& guesses) {
+  std::map<std::uint32_t, std::int32_t> numbers;
+  for (std::size_t i = 0; i < guesses.size(); ++i)
+    if (!guesses[i].empty())
+      numbers[index.object(i).id] = static_cast<std::int32_t>(guesses[i].front().label) + 1;
+  return numbers;
+}
+
 /// The classes of truth and map in the set's numbers.
 void add_classes(Draft& draft, const LabelSet& set, ImageTextEncoder& encoder,
                  std::vector<std::string>& notices) {
@@ -154,11 +163,10 @@ void add_classes(Draft& draft, const LabelSet& set, ImageTextEncoder& encoder,
   draft.scene.labels.truth_classes = std::move(numbered.numbers);
   const MapSearch search = open_map_search(draft.paths.map);
   const QueryEngine engine(search.index, &encoder, {}, {}, search.scene);
-  const auto guesses = project_classes(search.index, *engine.matcher(), set, kBestOnly);
-  for (std::size_t i = 0; i < guesses.size(); ++i)
-    if (!guesses[i].empty())
-      draft.scene.labels.predicted_classes[search.index.object(i).id] =
-          static_cast<std::int32_t>(guesses[i].front().label) + 1;
+  draft.scene.labels.predicted_classes = numbers_of_guesses(
+      search.index, project_classes(search.index, *engine.matcher(), set, kBestOnly));
+  draft.scene.picture_classes =
+      numbers_of_guesses(search.index, project_classes(search.index, encoder, set, kBestOnly));
 }
 
 LabelSet chosen_set(const std::vector<Draft>& drafts, const std::string& classes) {
@@ -230,6 +238,7 @@ SemanticReport semantic_report(const Evaluation& evaluation, std::size_t first, 
   for (std::size_t i = first; i < first + count; ++i) {
     const EvaluatedScene& scene = evaluation.scenes[i];
     scenes.push_back(scene.labels);
+    if (protocol == Protocol::kReference) scenes.back().predicted_classes = scene.picture_classes;
     scenes.back().instances = labelled_scene(scene, protocol);
     queries += scene.embedding_queries, instances += scene.embedded_instances;
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -50,6 +51,8 @@ struct EvaluatedScene {
   SemanticScene labels;                  ///< classes are empty where there are no semantic figures;
                                          ///< things that are not scored are unlabelled in it
   SizedScene sized;                      ///< the same with everything
+  std::map<std::uint32_t, std::int32_t> picture_classes;  ///< predicted as the paper does, by the
+                                                          ///< nearest name alone
   std::vector<std::uint32_t> few_views;  ///< objects with too few embedded views; empty for a map
                                          ///< without embeddings
   GeometryScores geometry;
