@@ -50,6 +50,12 @@ std::vector<Votes> count_votes(const Segments& segments, const Image<VoxelRef>& 
   return votes;
 }
 
+/// A segment takes and shows super-points that have more votes than this.
+int votes_needed(int area_px, const AssociationConfig& config) {
+  return std::max(config.assoc_min_votes,
+                  static_cast<int>(config.assoc_min_share * static_cast<float>(area_px)));
+}
+
 /// Most votes; the lower (older) label on a tie.
 std::pair<Label, int> winner(const Votes& votes) {
   std::pair<Label, int> best{kNoLabel, 0};
@@ -96,7 +102,7 @@ class OneToOne {
   void enqueue(std::size_t segment, const Votes& votes) {
     const auto [label, count] = winner(votes);
     // Among equals the lower segment goes first: the queue serves the largest tuple.
-    if (count > config_.assoc_min_votes)
+    if (count > votes_needed(segments_.segments[segment].area_px, config_))
       queue_.emplace(count, segments_.segments.size() - 1 - segment, label);
   }
 
@@ -145,6 +151,17 @@ std::vector<Label> overlapped_labels(const Votes& votes, int area_px,
   return labels;
 }
 
+/// The segment's own super-point, into which all of it is fused, and what it shows of others.
+std::vector<ShownLabel> shown_labels(const Votes& votes, int area_px, Label own, int min_votes) {
+  std::map<Label, int> shown;
+  for (const auto& [label, count] : votes)
+    if (count > min_votes) shown[label] = count;
+  shown[own] = area_px;
+  std::vector<ShownLabel> result;
+  for (const auto& [label, points] : shown) result.push_back({label, points});
+  return result;
+}
+
 }  // namespace
 
 void list_fields(AssociationConfig& config, ConfigFields& fields) {
@@ -155,6 +172,8 @@ void list_fields(AssociationConfig& config, ConfigFields& fields) {
                                      "how segments take super-points");
   fields.add("assoc_min_votes", config.assoc_min_votes, 0, 1000000,
              "a super-point needs more votes than this, points");
+  fields.add("assoc_min_share", config.assoc_min_share, 0.f, 1.f,
+             "... and more than this share of the segment's points (0: the paper)");
   fields.add("merge_min_points", config.merge_min_points, 0, 100000000,
              "segments with more points tell what to merge");
   fields.add("merge_min_share", config.merge_min_share, 0.f, 1.f,
@@ -170,14 +189,18 @@ std::vector<SegmentAssociation> associate(const Segments& segments, const Image<
   } else {
     for (std::size_t i = 0; i < votes.size(); ++i) {
       const auto [label, count] = winner(votes[i]);
-      if (count > config.assoc_min_votes) result[i].label = label;
+      if (count > votes_needed(segments.segments[i].area_px, config)) result[i].label = label;
     }
   }
   for (std::size_t i = 0; i < result.size(); ++i) {
     result[i].overlapped = overlapped_labels(votes[i], segments.segments[i].area_px, config);
-    if (result[i].label != kNoLabel) continue;
-    result[i].label = map.labels().create();
-    result[i].founded = true;
+    if (result[i].label == kNoLabel) {
+      result[i].label = map.labels().create();
+      result[i].founded = true;
+    }
+    const int area_px = segments.segments[i].area_px;
+    result[i].shown =
+        shown_labels(votes[i], area_px, result[i].label, votes_needed(area_px, config));
   }
   return result;
 }

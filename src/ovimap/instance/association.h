@@ -19,16 +19,28 @@ enum class AssociationRule {
 struct AssociationConfig {
   AssociationRule association = AssociationRule::kMixed;
   int assoc_min_votes = 20;       ///< a label needs more votes than this (theta_assoc)
+  float assoc_min_share = 0.05f;  ///< ... and than this share of the segment's points: noise puts a
+                                  ///< few points of a wall onto what stands before it
   int merge_min_points = 1000;    ///< larger segments tell which super-points belong together
   float merge_min_share = 0.15f;  ///< ... namely those holding more than this share of its points
 };
 void list_fields(AssociationConfig& config, ConfigFields& fields);
+
+/// So many points of a segment lie on the surface of a super-point.
+struct ShownLabel {
+  Label label = kNoLabel;
+  int points = 0;
+  bool operator==(const ShownLabel&) const = default;
+};
 
 struct SegmentAssociation {
   Label label = kNoLabel;  ///< the super-point the segment is fused into
   bool founded = false;    ///< the label is new
   std::vector<Label>
       overlapped;  ///< two or more labels when the segment says they are one (Spa), ascending
+  /// The super-points whose surface it shows, ascending: its own, with all points of the segment,
+  /// and others with as many points as would make them its own.
+  std::vector<ShownLabel> shown = {};
 };
 
 /// Gives every segment a super-point by spatial voting (paper section 3.1, equation for Omega;

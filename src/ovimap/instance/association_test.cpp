@@ -84,6 +84,20 @@ TEST_F(AssociateTest, FoundsALabelWithoutEnoughVotes) {
   EXPECT_TRUE(result[0].founded);
 }
 
+TEST_F(AssociateTest, AFewStrayPointsMakeNoLargeSegmentASuperPoints) {
+  hold(0, 25, 3);
+  for (const auto rule :
+       {AssociationRule::kMixed, AssociationRule::kOneToOne, AssociationRule::kArgmax}) {
+    config_.association = rule;
+    config_.assoc_min_share = 0.05f;
+    EXPECT_EQ(associate(cut({{0, 400}}), surface_, map_, config_)[0].label, 3u);
+    config_.assoc_min_share = 0.1f;
+    const auto result = associate(cut({{0, 400}}), surface_, map_, config_);
+    EXPECT_TRUE(result[0].founded) << "25 points are not more than a tenth of 400";
+    EXPECT_EQ(result[0].shown.size(), 1u) << "nor does it show that super-point";
+  }
+}
+
 TEST_F(AssociateTest, OneToOneGivesTheLoserItsNextLabel) {
   config_.association = AssociationRule::kOneToOne;
   hold(0, 200, 2, 3);
@@ -119,6 +133,16 @@ TEST_F(AssociateTest, ReportsLabelsThatALargeSegmentSpans) {
   const auto result = associate(cut({{0, 200}, {200, 260}}), surface_, map_, config_);
   EXPECT_EQ(result[0].overlapped, (std::vector<Label>{1, 2})) << "label 3 holds only 5 %";
   EXPECT_TRUE(result[1].overlapped.empty());
+}
+
+TEST_F(AssociateTest, TellsWhatOfOtherSuperPointsASegmentShows) {
+  hold(0, 90, 1);
+  hold(90, 130, 2);
+  hold(130, 145, 3);
+  const auto result = associate(cut({{0, 200}, {200, 260}}), surface_, map_, config_);
+  EXPECT_EQ(result[0].shown, (std::vector<ShownLabel>{{1, 200}, {2, 40}}))
+      << "15 points of label 3 are too few";
+  EXPECT_EQ(result[1].shown, (std::vector<ShownLabel>{{6, 60}}));
 }
 
 TEST_F(AssociateTest, VotesCountForMergedLabels) {

@@ -75,11 +75,12 @@ Evidence evidence_between(const Cluster& a, const Cluster& b) {
 /// no others can come to speak for joining.
 class Contraction {
  public:
-  Contraction(const EntitySightings& sightings, double apart_weight) : apart_weight_(apart_weight) {
-    for (const auto& [root, seen] : sightings) {
-      roots_.push_back(root);
+  /// Of these roots, in ascending order.
+  Contraction(std::vector<Label> roots, const EntitySightings& sightings, double apart_weight)
+      : apart_weight_(apart_weight), roots_(std::move(roots)) {
+    for (const Label root : roots_) {
       Cluster& cluster = clusters_.emplace_back();
-      for (const EntitySighting& sighting : seen) cluster.push_back({sighting, 1});
+      for (const EntitySighting& sighting : sightings.at(root)) cluster.push_back({sighting, 1});
     }
     edges_.resize(roots_.size());
     into_.resize(roots_.size());
@@ -104,11 +105,9 @@ class Contraction {
     }
   }
 
-  std::map<Label, Label> objects() const {
-    std::map<Label, Label> result;
+  void write_objects(std::map<Label, Label>& objects) const {
     for (Node node = 0; node < roots_.size(); ++node)
-      result.emplace_hint(result.end(), roots_[node], roots_[object_of(node)]);
-    return result;
+      objects[roots_[node]] = roots_[object_of(node)];
   }
 
  private:
@@ -216,7 +215,12 @@ void list_fields(ConsensusConfig& config, ConfigFields& fields) {
 }
 
 void EntityConsensus::observe(const std::map<Label, std::uint16_t>& entity_of_root) {
-  for (const auto& [root, entity] : entity_of_root) sightings_[root].push_back({frames_, entity});
+  std::map<std::uint16_t, Label> shown;
+  for (const auto& [root, entity] : entity_of_root) {
+    sightings_[root].push_back({frames_, entity});
+    enter(root);
+    link(shown.try_emplace(entity, root).first->second, root);
+  }
   ++frames_;
 }
 
@@ -230,19 +234,56 @@ void EntityConsensus::merge(Label keep, Label drop) {
                    return a.frame < b.frame;
                  });
   kept = std::move(both);
+  enter(keep);
+  link(keep, drop);
+  std::erase(parts_.at(part_of_.at(drop)), drop);
+  part_of_.erase(drop);
+  objects_.erase(drop);
 }
 
-std::map<Label, Label> EntityConsensus::objects() const {
-  Contraction graph(sightings_, config_.apart_weight);
-  graph.run();
-  return graph.objects();
+/// The root is in a part, and its part has changed.
+void EntityConsensus::enter(Label root) {
+  const auto [found, is_new] = part_of_.try_emplace(root, last_part_ + 1);
+  if (is_new) parts_[++last_part_] = {root};
+  changed_.insert(found->second);
+}
+
+/// Makes one part of two, at the cost of the smaller.
+void EntityConsensus::link(Label a, Label b) {
+  Part into = part_of_.at(a), from = part_of_.at(b);
+  if (into == from) return;
+  if (parts_.at(into).size() < parts_.at(from).size()) std::swap(into, from);
+  const std::vector<Label> moved = std::move(parts_.extract(from).mapped());
+  for (const Label root : moved) part_of_[root] = into;
+  std::vector<Label>& members = parts_.at(into);
+  members.insert(members.end(), moved.begin(), moved.end());
+  changed_.erase(from);
+  changed_.insert(into);
+}
+
+const std::map<Label, Label>& EntityConsensus::objects() {
+  for (const Part part : changed_) {
+    std::vector<Label> roots = parts_.at(part);
+    std::sort(roots.begin(), roots.end());
+    Contraction graph(std::move(roots), sightings_, config_.apart_weight);
+    graph.run();
+    graph.write_objects(objects_);
+  }
+  changed_.clear();
+  return objects_;
 }
 
 void EntityConsensus::restore(EntitySightings sightings, std::uint32_t frames) {
+  *this = EntityConsensus(config_);
   sightings_ = std::move(sightings);
   frames_ = frames;
-  for (const auto& [root, seen] : sightings_)
+  std::map<EntitySighting, Label> shown;
+  for (const auto& [root, seen] : sightings_) {
+    enter(root);
+    for (const EntitySighting& sighting : seen)
+      link(shown.try_emplace(sighting, root).first->second, root);
     if (!seen.empty()) frames_ = std::max(frames_, seen.back().frame + 1);
+  }
 }
 
 }  // namespace ovimap

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -50,8 +51,9 @@ class EntityConsensus {
   /// Two super-points became one. Where a frame saw both, what it says of `keep` counts.
   void merge(Label keep, Label drop);
 
-  /// The oldest (lowest) root of each root's object.
-  std::map<Label, Label> objects() const;
+  /// The oldest (lowest) root of each root's object. What a frame says changes the objects of those
+  /// super-points alone that chains of entities link to what it shows: only they are looked at anew.
+  const std::map<Label, Label>& objects();
 
   const EntitySightings& sightings() const { return sightings_; }
   std::uint32_t frames() const { return frames_; }
@@ -59,8 +61,18 @@ class EntityConsensus {
   void restore(EntitySightings sightings, std::uint32_t frames);
 
  private:
+  using Part = std::uint32_t;  ///< super-points that chains of entities link
+
+  void enter(Label root);
+  void link(Label a, Label b);
+
   ConsensusConfig config_;
   EntitySightings sightings_;
+  std::map<Label, Part> part_of_;
+  std::map<Part, std::vector<Label>> parts_;
+  Part last_part_ = 0;
+  std::set<Part> changed_;          ///< those whose objects are to be found anew
+  std::map<Label, Label> objects_;  ///< as of when they were last asked for
   std::uint32_t frames_ = 0;
 };
 

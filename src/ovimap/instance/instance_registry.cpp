@@ -50,6 +50,8 @@ void list_fields(InstanceConfig& config, ConfigFields& fields) {
                                      "what an instance is when there are 2D masks");
   fields.add("min_vote_share", config.min_vote_share, 0.f, 100.f,
              "votes needed per frame without such a vote");
+  fields.add("segments_as_entities", config.segments_as_entities,
+             "frames without 2D masks take part in the consensus, each segment as an entity");
   list_fields(config.consensus, fields);
   list_fields(config.merging, fields);
 }
@@ -58,13 +60,14 @@ void InstanceRegistry::observe(const Segments& segments,
                                std::span<const SegmentAssociation> associations,
                                std::int64_t frame_index, bool has_entities, LabelForest& forest) {
   const bool by_votes = has_entities && config_.instances == InstanceReading::kEntityVotes;
-  const bool by_consensus = has_entities && config_.instances == InstanceReading::kConsensus;
+  const bool by_consensus = (has_entities || config_.segments_as_entities) &&
+                            config_.instances == InstanceReading::kConsensus;
   if (by_votes) vote(segments, associations, forest);
-  if (by_consensus) see_entities(segments, associations, forest);
-  for (const auto& [keep, drop] : merging_.observe(associations, forest))
-    config_.instances == InstanceReading::kConsensus ? merge_consensus(keep, drop)
-                                                     : merge(keep, drop);
-  if (by_consensus) find_objects();
+  if (by_consensus) see_entities(segments, associations, forest, has_entities);
+  if (by_consensus)
+    find_objects();
+  else
+    merge_super_points(associations, forest);
   if (!by_votes && !by_consensus) see_super_points(associations, forest);
   count_sightings(associations, frame_index, forest);
 }
@@ -102,25 +105,30 @@ InstanceId InstanceRegistry::best_free_instance(const SuperPoint& point,
   return best == 0 ? ++last_id_ : best;
 }
 
-/// Which super-points the frame's entities show, each by the entity that covers most of it.
+/// Which super-points the frame's entities show: an entity shows one when it covers most of what is
+/// in sight of it.
 void InstanceRegistry::see_entities(const Segments& segments,
                                     std::span<const SegmentAssociation> associations,
-                                    const LabelForest& forest) {
+                                    const LabelForest& forest, bool has_entities) {
+  const auto entity_of = [&](std::size_t i) {
+    return has_entities ? segments.segments[i].entity : static_cast<std::uint16_t>(i + 1);
+  };
   std::map<Label, std::map<std::uint16_t, int>> areas;
   for (std::size_t i = 0; i < associations.size(); ++i)
-    areas[forest.root(associations[i].label)][segments.segments[i].entity] +=
-        segments.segments[i].area_px;
+    for (const ShownLabel& shown : associations[i].shown)
+      areas[forest.root(shown.label)][entity_of(i)] += shown.points;
   std::map<Label, std::uint16_t> entity_of_root;
-  for (auto& [root, by_entity] : areas) {
+  for (const auto& [root, by_entity] : areas) {
     SuperPoint& point = super_points_[root];
     ++point.frames_seen;
-    by_entity.erase(0);
-    if (by_entity.empty()) continue;
-    if (point.votes.empty()) point.votes[++last_id_] = 0;
-    ++point.votes.begin()->second;
+    int in_sight = 0;
+    for (const auto& [entity, points] : by_entity) in_sight += points;
     const auto most =
         std::max_element(by_entity.begin(), by_entity.end(),
                          [](const auto& a, const auto& b) { return a.second < b.second; });
+    if (most->first == 0 || 2 * most->second <= in_sight) continue;
+    if (point.votes.empty()) point.votes[++last_id_] = 0;
+    ++point.votes.begin()->second;
     entity_of_root[root] = most->first;
   }
   consensus_.observe(entity_of_root);
@@ -129,7 +137,7 @@ void InstanceRegistry::see_entities(const Segments& segments,
 /// An object goes by the oldest id among its super-points. The others are its aliases for as long
 /// as they belong to it.
 void InstanceRegistry::find_objects() {
-  const std::map<Label, Label> object_of = consensus_.objects();
+  const std::map<Label, Label>& object_of = consensus_.objects();
   const auto object = [&](Label root) {
     const auto found = object_of.find(root);
     return found == object_of.end() ? root : found->second;
@@ -153,6 +161,15 @@ void InstanceRegistry::find_objects() {
       aliases_[own] = id;
   }
   for (const Label root : moved) regroup(root);
+}
+
+/// A consensus of entities needs no merges: that a segment spans two super-points is part of it, and
+/// may be taken back.
+void InstanceRegistry::merge_super_points(std::span<const SegmentAssociation> associations,
+                                          LabelForest& forest) {
+  for (const auto& [keep, drop] : merging_.observe(associations, forest))
+    config_.instances == InstanceReading::kConsensus ? merge_consensus(keep, drop)
+                                                     : merge(keep, drop);
 }
 
 /// Every super-point an instance of its own: the frame had no 2D masks, or the paper's reading is

@@ -27,6 +27,9 @@ struct InstanceConfig {
   InstanceReading instances = InstanceReading::kConsensus;
   float min_vote_share =
       0.1f;  ///< votes needed per frame in which the super-point was seen without voting so
+  bool segments_as_entities = false;  ///< frames without 2D masks take part in the consensus, each
+                                      ///< segment as an entity; false: super-points that their
+                                      ///< segments span are merged
   ConsensusConfig consensus;
   MergeConfig merging;
 };
@@ -119,8 +122,9 @@ class InstanceRegistry {
   void vote(const Segments& segments, std::span<const SegmentAssociation> associations,
             const LabelForest& forest);
   void see_entities(const Segments& segments, std::span<const SegmentAssociation> associations,
-                    const LabelForest& forest);
+                    const LabelForest& forest, bool has_entities);
   void find_objects();
+  void merge_super_points(std::span<const SegmentAssociation> associations, LabelForest& forest);
   void merge_consensus(Label keep, Label drop);
   const SuperPoint& absorb(Label keep, Label drop);
   bool supported(const SuperPoint& point, int votes) const;

@@ -14,6 +14,7 @@ struct Piece {
   std::uint16_t entity;
   int area_px;
   std::vector<Label> overlapped = {};
+  std::vector<ShownLabel> also_shown = {};  ///< besides its own label
 };
 
 class RegistryTest : public ::testing::Test {
@@ -27,7 +28,8 @@ class RegistryTest : public ::testing::Test {
     std::vector<SegmentAssociation> associations;
     for (const Piece& piece : pieces) {
       segments.segments.push_back({piece.entity, piece.area_px});
-      associations.push_back({piece.label, false, piece.overlapped});
+      associations.push_back({piece.label, false, piece.overlapped, piece.also_shown});
+      associations.back().shown.push_back({piece.label, piece.area_px});
     }
     registry.observe(segments, associations, frame_++, has_entities, forest_);
   }
@@ -139,7 +141,7 @@ TEST_F(RegistryTest, KnowsTheMembersOfEveryInstance) {
         const Label a = forest.root(1 + static_cast<Label>(random() % 12)),
                     b = forest.root(1 + static_cast<Label>(random() % 12));
         segments.segments.push_back({static_cast<std::uint16_t>(random() % 4), 100});
-        associations.push_back({a, false, {}});
+        associations.push_back({a, false, {}, {{a, 100}}});
         if (a != b && random() % 8 == 0)
           associations.back().overlapped = {std::min(a, b), std::max(a, b)};
       }
@@ -160,10 +162,29 @@ TEST_F(RegistryTest, MergedSuperPointsKeepTheOlderIdForGood) {
   const InstanceId older = registry.instance_of(2);
   see(registry, {{1, 5, 500}});
   const InstanceId younger = registry.instance_of(1);
-  for (int i = 0; i < 2; ++i) see(registry, {{1, 5, 2000, {1, 2}}});
+  for (int i = 0; i < 2; ++i) see(registry, {{1, 0, 2000, {1, 2}}}, false);
   EXPECT_EQ(registry.instance_of(1), older);
   EXPECT_EQ(registry.resolve(younger), older);
   EXPECT_EQ(registry.instances().size(), 1u);
+}
+
+TEST_F(RegistryTest, AnEntityJoinsAllSuperPointsThatItShowsUntilFramesTellThemApart) {
+  InstanceRegistry registry;
+  see(registry, {{1, 5, 500}});  // two ends of a wall, each from where the other is out of sight
+  see(registry, {{2, 5, 500}});
+  EXPECT_NE(registry.instance_of(1), registry.instance_of(2));
+  for (int i = 0; i < 20; ++i) see(registry, {{1, 5, 2000, {1, 2}, {{2, 900}}}});
+  EXPECT_EQ(registry.instance_of(1), registry.instance_of(2));
+  EXPECT_EQ(forest_.root(2), 2u) << "nothing is merged for good";
+  for (int i = 0; i < 50; ++i) see(registry, {{1, 5, 900}, {2, 6, 900}});
+  EXPECT_NE(registry.instance_of(1), registry.instance_of(2));
+}
+
+TEST_F(RegistryTest, AnEntityThatCoversLessThanHalfOfASuperPointSaysNothingOfIt) {
+  InstanceRegistry registry;
+  see(registry, {{1, 5, 500}, {2, 6, 300}});
+  for (int i = 0; i < 5; ++i) see(registry, {{1, 5, 500, {}, {{2, 400}}}, {2, 6, 600}});
+  EXPECT_NE(registry.instance_of(1), registry.instance_of(2));
 }
 
 TEST_F(RegistryTest, SuperPointReadingKeepsTheOlderIdAfterAMerge) {
@@ -194,7 +215,7 @@ TEST_F(RegistryTest, MergedSuperPointsKeepTheirVotes) {
   InstanceRegistry registry(config);
   for (int i = 0; i < 5; ++i) see(registry, {{2, 4, 100}});
   const InstanceId id = registry.instance_of(2);
-  for (int i = 0; i < 3; ++i) see(registry, {{1, 0, 2000, {1, 2}}});
+  for (int i = 0; i < 3; ++i) see(registry, {{1, 0, 2000, {1, 2}}}, false);
   EXPECT_EQ(registry.instance_of(1), id) << "the dropped super-point's votes moved to the survivor";
 }
 

@@ -16,7 +16,7 @@ TEST(SummarizeInstances, DescribesASphere) {
   scene.integrate_views(map, 12, label);
   InstanceRegistry registry;
   const Segments segments{IdImage(1, 1), {{1, 500}}};
-  const std::vector<SegmentAssociation> associations{{label, false, {}}};
+  const std::vector<SegmentAssociation> associations{{label, false, {}, {{label, 500}}}};
   for (int frame = 0; frame < 3; ++frame)
     registry.observe(segments, associations, frame, true, map.labels());
 
@@ -37,7 +37,7 @@ TEST(SummarizeInstances, LeavesOutWhatIsSmallOrSeenOnce) {
   scene.integrate_views(map, 2, label);
   InstanceRegistry registry;
   const Segments segments{IdImage(1, 1), {{1, 500}}};
-  const std::vector<SegmentAssociation> associations{{label, false, {}}};
+  const std::vector<SegmentAssociation> associations{{label, false, {}, {{label, 500}}}};
   registry.observe(segments, associations, 0, true, map.labels());
   EXPECT_TRUE(summarize_instances(map, registry, {}).empty());
   EXPECT_EQ(summarize_instances(map, registry, {.min_instance_views = 1}).size(), 1u);

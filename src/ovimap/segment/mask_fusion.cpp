@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "ovimap/base/config.h"
@@ -30,11 +31,39 @@ Overlaps count_overlaps(const DepthRegions& regions, const IdImage& entity_ids,
   return overlaps;
 }
 
+/// The pairs that hold a square of `side_px`. The largest square that ends at a pixel is one larger
+/// than the least of those that end at its three neighbours above and to the left.
+std::set<RegionEntity> pairs_with_core(const DepthRegions& regions, const IdImage& entity_ids,
+                                       int side_px) {
+  const int width = entity_ids.width(), height = entity_ids.height();
+  std::set<RegionEntity> found;
+  if (side_px > std::min(width, height)) return found;
+  std::vector<int> above(static_cast<std::size_t>(width) + 1, 0), row(above);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const auto i = static_cast<std::size_t>(x);
+      const RegionEntity pair{regions.ids.at(x, y), entity_ids.at(x, y)};
+      row[i + 1] = 0;
+      if (pair.first == 0 || pair.second == 0) continue;
+      const auto same = [&](int dx, int dy) {
+        return x >= dx && y >= dy && regions.ids.at(x - dx, y - dy) == pair.first &&
+               entity_ids.at(x - dx, y - dy) == pair.second;
+      };
+      const bool inner = same(1, 0) && same(0, 1) && same(1, 1);
+      row[i + 1] = inner ? 1 + std::min({row[i], above[i + 1], above[i]}) : 1;
+      if (row[i + 1] == side_px) found.insert(pair);
+    }
+    std::swap(above, row);
+  }
+  return found;
+}
+
 /// Which segment each (region, entity) pair becomes.
 class Assignment {
  public:
-  Assignment(const DepthRegions& regions, const Overlaps& overlaps, const MaskFusionConfig& config)
-      : config_(config), overlaps_(overlaps) {
+  Assignment(const DepthRegions& regions, const Overlaps& overlaps,
+             const std::set<RegionEntity>& cores, const MaskFusionConfig& config)
+      : config_(config), overlaps_(overlaps), cores_(cores) {
     for (const auto& [pair, count] : overlaps) entity_area_[pair.second] += count;
     for (std::size_t i = 0; i < regions.regions.size(); ++i)
       if (regions.regions[i].area_px >= config.min_region_px)
@@ -51,7 +80,7 @@ class Assignment {
   std::vector<Segment> segments;
 
  private:
-  bool splits(int count, int entity_area, int region_area) const {
+  bool lies_within(int count, int entity_area, int region_area) const {
     return static_cast<float>(count) >
                config_.split_entity_share * static_cast<float>(entity_area) &&
            static_cast<float>(count) < config_.split_region_share * static_cast<float>(region_area);
@@ -65,12 +94,19 @@ class Assignment {
     for (auto found = begin; found != end && found->first.first == region; ++found) {
       const auto& [pair, count] = *found;
       if (pair.second == 0) continue;
-      if (splits(count, entity_area_.at(pair.second), region_area)) {
+      if (lies_within(count, entity_area_.at(pair.second), region_area)) {
         assign(pair, pair.second);
         rest_area -= count;
       } else if (count > best_count) {
         best_count = count, best_entity = pair.second;
       }
+    }
+    for (auto found = begin; found != end && found->first.first == region; ++found) {
+      const auto& [pair, count] = *found;
+      if (pair.second == best_entity || segment_of_.contains(pair) || !cores_.contains(pair))
+        continue;
+      assign(pair, pair.second);
+      rest_area -= count;
     }
     if (static_cast<float>(best_count) < config_.adopt_region_share * static_cast<float>(rest_area))
       best_entity = 0;
@@ -99,6 +135,7 @@ class Assignment {
 
   const MaskFusionConfig& config_;
   const Overlaps& overlaps_;
+  const std::set<RegionEntity>& cores_;
   std::map<std::uint16_t, int> entity_area_;
   std::map<RegionEntity, std::uint16_t> segment_of_;
 };
@@ -115,6 +152,9 @@ void list_fields(MaskFusionConfig& config, ConfigFields& fields) {
              "share of an entity inside a region to split it off");
   fields.add("split_region_share", config.split_region_share, 0.f, 1.f,
              "largest share of the region that is split off");
+  fields.add("split_core_px", config.split_core_px, 1, 100000000,
+             "side of a square that an entity's part of a region holds, to split it off whatever "
+             "its share, pixels (100000000: never, as in the paper's code)");
   fields.add("adopt_region_share", config.adopt_region_share, 0.f, 1.f,
              "share of a region an entity covers to own its rest");
 }
@@ -122,7 +162,8 @@ void list_fields(MaskFusionConfig& config, ConfigFields& fields) {
 Segments fuse_masks(const DepthRegions& regions, const IdImage& entity_ids, const DepthImage& depth,
                     const MaskFusionConfig& config) {
   const Overlaps overlaps = count_overlaps(regions, entity_ids, depth);
-  Assignment assignment(regions, overlaps, config);
+  const std::set<RegionEntity> cores = pairs_with_core(regions, entity_ids, config.split_core_px);
+  Assignment assignment(regions, overlaps, cores, config);
   Segments result{IdImage(depth.width(), depth.height()), std::move(assignment.segments)};
   for (std::size_t i = 0; i < depth.size();) {
     const RegionEntity pair{regions.ids[i], entity_ids[i]};

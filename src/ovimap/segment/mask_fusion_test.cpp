@@ -39,13 +39,33 @@ TEST(FuseMasks, SplitsSmallEntitiesOffAndTheRestTakesTheLargest) {
 }
 
 TEST(FuseMasks, KeepsARegionWithoutEnoughEntityAsBackground) {
-  // Entity 1 is mostly in region 2, so it is not split off region 1, of which it covers 10 of 60
-  // columns.
+  // Entity 1 is mostly in region 2, so the strip of 6 of 60 columns is not split off region 1.
   const Segments result = fuse_masks(regions_of(columns({{0, 60, 1}, {60, 100, 2}}), 2),
-                                     columns({{50, 100, 1}}), kDepth, {});
+                                     columns({{54, 100, 1}}), kDepth, {});
   ASSERT_EQ(result.segments.size(), 2u);
   EXPECT_EQ(result.segments[result.ids.at(0, 0) - 1u].entity, 0);
   EXPECT_EQ(result.segments[result.ids.at(99, 0) - 1u].entity, 1);
+}
+
+TEST(FuseMasks, SplitsOffWhatIsNoMereStripOfAnEntity) {
+  // A wall with a door, which make one region: the door is more than half of it, and the next
+  // entity goes on in another region.
+  const DepthRegions regions = regions_of(columns({{0, 60, 1}, {60, 100, 2}}), 2);
+  const IdImage entities = columns({{0, 20, 1}, {20, 53, 2}, {53, 100, 3}});
+  const auto segments_with = [&](int core_px) {
+    MaskFusionConfig config;
+    config.split_core_px = core_px;
+    return fuse_masks(regions, entities, kDepth, config);
+  };
+  const Segments result = segments_with(7);
+  ASSERT_EQ(result.segments.size(), 4u);
+  const auto entity_at = [&](int x) { return result.segments[result.ids.at(x, 5) - 1u].entity; };
+  EXPECT_EQ(entity_at(10), 1);
+  EXPECT_EQ(entity_at(30), 2);
+  EXPECT_EQ(entity_at(56), 3);
+  EXPECT_EQ(entity_at(80), 3);
+  EXPECT_NE(result.ids.at(56, 5), result.ids.at(80, 5));
+  EXPECT_EQ(segments_with(8).segments.size(), 3u) << "7 columns hold no square of 8";
 }
 
 TEST(FuseMasks, DoesNotDependOnEntityNumbers) {

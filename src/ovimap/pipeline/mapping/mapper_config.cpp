@@ -48,6 +48,7 @@ MapperConfig mapper_preset(const std::string& name) {
     throw Error(concat("there is no preset '", name, "'; accepted is default or reference"));
   config.segment = reference_segment_depth_config();
   config.association.association = AssociationRule::kOneToOne;
+  config.association.assoc_min_share = 0.f;
   config.instance.instances = InstanceReading::kEntityVotes;
   config.instance.merging.merge_max_dissent = 1e6f;  // the paper counts no dissent
   config.depth.enabled = false;
@@ -55,6 +56,7 @@ MapperConfig mapper_preset(const std::string& name) {
   config.map.min_mesh_weight = 1e-4f;
   config.map.label_band_voxels = static_cast<float>(config.map.truncation_voxels);
   config.mask_fusion.min_entity_px = kNeverSoMany;
+  config.mask_fusion.split_core_px = kNeverSoMany;
   config.summary.min_instance_voxels = 1;
   config.summary.min_instance_views = 1;
   config.network_mask_interval = 1;
