@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <exception>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "ovimap/eval/scenes/labelled_scene.h"
