@@ -18,7 +18,7 @@ namespace {
 constexpr int kTurns = 18;  // of the box, over a right angle
 constexpr int kFoundPercent = 50;
 
-ThingSize size_of(const std::vector<Eigen::Vector3f>& points) {
+MeasuredSize size_of(const std::vector<Eigen::Vector3f>& points) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   std::array<float, 3> best{};
   float least = kInfinity;
@@ -55,12 +55,12 @@ void count(RecallGroup& group, bool found) {
 
 }  // namespace
 
-std::map<std::int32_t, ThingSize> thing_sizes(std::span<const Eigen::Vector3f> points,
+std::map<std::int32_t, MeasuredSize> measured_sizes(std::span<const Eigen::Vector3f> points,
                                               std::span<const std::int32_t> labels) {
   std::map<std::int32_t, std::vector<Eigen::Vector3f>> points_of;
   for (std::size_t i = 0; i < points.size(); ++i)
     if (labels[i] > 0) points_of[labels[i]].push_back(points[i]);
-  std::map<std::int32_t, ThingSize> sizes;
+  std::map<std::int32_t, MeasuredSize> sizes;
   for (const auto& [id, own] : points_of) sizes[id] = size_of(own);
   return sizes;
 }

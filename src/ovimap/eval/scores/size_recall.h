@@ -17,14 +17,14 @@ class ConfigFields;
 
 /// What a thing measures: of the smallest upright box, turned about the vertical, round what is
 /// seen of it.
-struct ThingSize {
+struct MeasuredSize {
   float litres = 0;
   float thickness_m = 0;  ///< the least of its three sides
   float breadth_m = 0;    ///< the middle one
 };
 
 /// By id; of labels above 0. `points` in metres, z up, as long as `labels`.
-std::map<std::int32_t, ThingSize> thing_sizes(std::span<const Eigen::Vector3f> points,
+std::map<std::int32_t, MeasuredSize> measured_sizes(std::span<const Eigen::Vector3f> points,
                                               std::span<const std::int32_t> labels);
 
 struct SizeGroupsConfig {
@@ -38,7 +38,7 @@ void list_fields(SizeGroupsConfig& config, ConfigFields& fields);
 struct SizedScene {
   std::vector<std::int32_t> truth;       ///< id per vertex, things that are not scored included
   std::vector<std::uint32_t> predicted;  ///< as in LabelledScene
-  std::map<std::int32_t, ThingSize> sizes;
+  std::map<std::int32_t, MeasuredSize> sizes;
   std::set<std::int32_t> unscored;   ///< too small or too little seen
   std::set<std::int32_t> structure;  ///< walls, floors and ceilings: no things
 };

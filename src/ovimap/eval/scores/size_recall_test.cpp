@@ -24,7 +24,7 @@ TEST(SizeRecallTest, BoxesTurnWithTheThing) {
   SizedScene scene;
   std::vector<Eigen::Vector3f> points;
   add_box(scene, points, 3, {0.4f, 0.1f, 0.02f}, 1, 0.5235988f);  // 30 degrees: a step of the turns
-  const ThingSize size = thing_sizes(points, scene.truth).at(3);
+  const MeasuredSize size = measured_sizes(points, scene.truth).at(3);
   EXPECT_NEAR(size.litres, 0.8f, 0.01f);
   EXPECT_NEAR(size.thickness_m, 0.02f, 1e-4f);
   EXPECT_NEAR(size.breadth_m, 0.1f, 1e-3f);
@@ -39,7 +39,7 @@ TEST(SizeRecallTest, ThingsCountInTheirGroups) {
   add_box(scene, points, 4, {1, 1, 0.5f}, 13);           // shares the object of the last: neither
   add_box(scene, points, 5, {0.02f, 0.02f, 0.02f}, 15);  // not scored, found
   add_box(scene, points, 6, {4, 0.02f, 2.5f}, 0);        // a wall
-  scene.sizes = thing_sizes(points, scene.truth);
+  scene.sizes = measured_sizes(points, scene.truth);
   scene.unscored = {5};
   scene.structure = {6};
   // Two of the eight points of thing 3 are lost, so that the other has more of their object.

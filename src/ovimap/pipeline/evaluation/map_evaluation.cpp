@@ -77,7 +77,7 @@ void count_views(const MapDocument& map, int min_views, EvaluatedScene& scene) {
 SizedScene sized_scene(const Truth& truth, std::vector<std::uint32_t> predicted) {
   SizedScene scene{truth.instances,
                    std::move(predicted),
-                   thing_sizes(truth.mesh.vertices, truth.instances),
+                   measured_sizes(truth.mesh.vertices, truth.instances),
                    truth.unscored,
                    {}};
   for (const auto& [id, name] : truth.instance_names)
