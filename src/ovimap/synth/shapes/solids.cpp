@@ -96,6 +96,7 @@ void add_turned(TexturedMesh& mesh, const Eigen::Vector3f& base,
   // Each ring of quads has vertices of its own, so that the profile's corners stay sharp.
   for (std::size_t k = 0; k + 1 < profile.size(); ++k) {
     const Eigen::Vector2f along = profile[k + 1] - profile[k];
+    if (along.isZero()) continue;  // two points that are one have no ring between them
     const Eigen::Vector2f out = Eigen::Vector2f(along.y(), -along.x()).normalized();
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
     for (const std::size_t ring : {k, k + 1})
