@@ -69,7 +69,7 @@ TEST_F(QueryProgramTest, EncodesTheWordsOfVerdictsOnceForAllProcesses) {
   };
   const std::string first = with_cache("cache");
   const auto files = stored();
-  ASSERT_EQ(files.size(), 1u);
+  ASSERT_EQ(files.size(), 2u);  // the words that calibrate, and those that compete
   EXPECT_EQ(with_cache("cache"), first);
   EXPECT_EQ(stored(), files) << "encoding them again would have replaced the file";
   fixture::write_text(path("file"), "where a folder of caches should be");

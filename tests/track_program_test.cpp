@@ -9,7 +9,7 @@ namespace {
 class TrackProgramTest : public ProgramTest {
  protected:
   TrackProgramTest() {
-    sequence_.depth_camera = sequence_.color_camera = {160, 120, 140.f, 140.f, 79.5f, 59.5f};
+    sequence_.depth_camera = sequence_.color_camera = {320, 240, 280.f, 280.f, 159.5f, 119.5f};
     sequence_.frames = 20;
     std::filesystem::create_directories(path("unposed"));
     fixture::write_folder(path("unposed"), sequence_);
@@ -20,7 +20,7 @@ class TrackProgramTest : public ProgramTest {
   }
   /// Makes a frame one of darkness: nothing near enough to be depth.
   void cover(int frame) const {
-    const Image<std::uint16_t> dark(160, 120, 20);  // 2 cm
+    const Image<std::uint16_t> dark(320, 240, 20);  // 2 cm
     write_file(path("unposed") / "depth" / concat(frame, ".png"), encode_png(dark));
   }
   static constexpr const char* kRun =

@@ -62,14 +62,17 @@ void read_resize(const Json& processor, const std::filesystem::path& file, Image
 }
 
 void read_values(const Json& processor, const std::filesystem::path& file, ImageInputSpec& spec) {
-  const float scale = flag(processor, "do_rescale", true)
-                          ? processor.value("rescale_factor", 1.f / kBrightest)
-                          : 1.f;
+  // In double, so that 0.5 of 255 is 127.5.
+  const double scale = flag(processor, "do_rescale", true)
+                           ? processor.value("rescale_factor", 1. / kBrightest)
+                           : 1.;
   if (!(scale > 0)) fault(file, "'rescale_factor' must be positive");
   const bool normalised = flag(processor, "do_normalize", true);
   for (std::size_t i = 0; i < 3; ++i) {
-    spec.mean[i] = normalised ? processor.at("image_mean").at(i).get<float>() / scale : 0.f;
-    spec.std[i] = (normalised ? processor.at("image_std").at(i).get<float>() : 1.f) / scale;
+    const double mean = normalised ? processor.at("image_mean").at(i).get<double>() : 0;
+    const double deviation = normalised ? processor.at("image_std").at(i).get<double>() : 1;
+    spec.mean[i] = static_cast<float>(mean / scale);
+    spec.std[i] = static_cast<float>(deviation / scale);
     if (!(spec.std[i] > 0)) fault(file, "'image_std' must be positive");
   }
 }

@@ -111,7 +111,7 @@ std::string origin_of(const std::string& url) {
                 part_of(parsed.get(), CURLUPART_PORT, CURLU_DEFAULT_PORT));
 }
 
-HttpClient::HttpClient(const HubConfig& config, const HubAccess& access)
+TransferClient::TransferClient(const HubConfig& config, const HubAccess& access)
     : config_(config),
       token_origin_(origin_of(access.endpoint)),
       token_(access.token),
@@ -119,14 +119,14 @@ HttpClient::HttpClient(const HubConfig& config, const HubAccess& access)
   if (!handle_) throw Error("libcurl cannot start; is there memory left?");
 }
 
-HttpClient::~HttpClient() = default;
+TransferClient::~TransferClient() = default;
 
-HttpReply HttpClient::get(const std::string& url, std::uint64_t first_byte, const ByteSink& sink,
+TransferReply TransferClient::get(const std::string& url, std::uint64_t first_byte, const ByteSink& sink,
                           const std::function<bool()>& keep_going) const {
   std::string at = url;
   for (int i = 0; i <= kMostRedirects; ++i) {
     std::string redirect;
-    HttpReply reply = request(at, first_byte, sink, keep_going, redirect);
+    TransferReply reply = request(at, first_byte, sink, keep_going, redirect);
     if (redirect.empty()) return reply;
     if (origin_of(at).starts_with("https:") && !origin_of(redirect).starts_with("https:")) {
       reply.fault = "it redirects from https to an address without";
@@ -137,7 +137,7 @@ HttpReply HttpClient::get(const std::string& url, std::uint64_t first_byte, cons
   return {{}, concat("it redirects more than ", kMostRedirects, " times"), {}, ""};
 }
 
-HttpReply HttpClient::request(const std::string& url, std::uint64_t first_byte,
+TransferReply TransferClient::request(const std::string& url, std::uint64_t first_byte,
                               const ByteSink& sink, const std::function<bool()>& keep_going,
                               std::string& redirect) const {
   CURL* handle = handle_.get();
@@ -150,7 +150,7 @@ HttpReply HttpClient::request(const std::string& url, std::uint64_t first_byte,
   }
   const CURLcode done = curl_easy_perform(handle);
 
-  HttpReply reply;
+  TransferReply reply;
   reply.head = head_of(handle);
   if (done != CURLE_OK)
     reply.fault = transfer.stopped ? "it was stopped" : curl_easy_strerror(done);

@@ -19,7 +19,7 @@ struct HttpHead {
   std::uint64_t from = 0;  ///< the body's first byte in the whole: 0 but for status 206
 };
 
-struct HttpReply {
+struct TransferReply {
   HttpHead head;
   std::string fault;  ///< why the transfer broke; empty when the body came whole
   std::optional<double> retry_after_s;
@@ -35,19 +35,19 @@ std::string origin_of(const std::string& url);
 /// GET over libcurl. Redirects are followed, never from https to http; the token goes to its own
 /// origin alone, so that where a hub sends a client on to never sees it. Proxies are those of the
 /// environment (https_proxy, no_proxy).
-class HttpClient {
+class TransferClient {
  public:
-  HttpClient(const HubConfig& config, const HubAccess& access);
-  ~HttpClient();
+  TransferClient(const HubConfig& config, const HubAccess& access);
+  ~TransferClient();
 
   /// Asks for the bytes of `url` from `first_byte` on. `keep_going` is asked about once a second;
   /// false ends the transfer.
-  HttpReply get(
+  TransferReply get(
       const std::string& url, std::uint64_t first_byte, const ByteSink& sink,
       const std::function<bool()>& keep_going = [] { return true; }) const;
 
  private:
-  HttpReply request(const std::string& url, std::uint64_t first_byte, const ByteSink& sink,
+  TransferReply request(const std::string& url, std::uint64_t first_byte, const ByteSink& sink,
                     const std::function<bool()>& keep_going, std::string& redirect) const;
 
   HubConfig config_;

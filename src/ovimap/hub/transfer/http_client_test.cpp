@@ -7,7 +7,7 @@
 namespace ovimap {
 namespace {
 
-TEST(HttpClient, KnowsOrigins) {
+TEST(TransferClient, KnowsOrigins) {
   EXPECT_EQ(origin_of("https://hub.example/a/b"), "https://hub.example:443");
   EXPECT_EQ(origin_of("https://hub.example:443/c"), origin_of("https://hub.example"));
   EXPECT_NE(origin_of("http://hub.example"), origin_of("https://hub.example"));

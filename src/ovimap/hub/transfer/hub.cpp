@@ -20,25 +20,25 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kStopped = "it was stopped";  // what HttpClient says of a user's wish
+constexpr const char* kStopped = "it was stopped";  // what TransferClient says of a user's wish
 constexpr int kMostPages = 100;  // of a list of files; a hub that never ends it is broken
 
 // HTTP statuses that mean something here (RFC 9110).
 constexpr long kUnauthorised = 401, kForbidden = 403, kNotFound = 404, kRangeWrong = 416,
                kTimedOut = 408, kTooMany = 429;
 
-bool is_good(const HttpReply& reply) {
+bool is_good(const TransferReply& reply) {
   return reply.fault.empty() && reply.head.status / 100 == 2;
 }
 
 /// Whether another try may go better.
-bool may_pass(const HttpReply& reply) {
+bool may_pass(const TransferReply& reply) {
   if (reply.fault == kStopped) return false;
   const long status = reply.head.status;
   return !reply.fault.empty() || status == kTimedOut || status == kTooMany || status / 100 == 5;
 }
 
-[[noreturn]] void refuse(const std::string& url, const HttpReply& reply, int tries, bool token) {
+[[noreturn]] void refuse(const std::string& url, const TransferReply& reply, int tries, bool token) {
   const long status = reply.head.status;
   const std::string tried = tries > 1 ? concat(" (tried ", tries, " times)") : "";
   if (reply.fault == kStopped)
@@ -119,16 +119,16 @@ Hub::Hub(const HubConfig& config, const HubAccess& access)
     : config_(config), access_(access), client_(config, access) {}
 
 bool Hub::answers() const {
-  const HttpReply reply =
+  const TransferReply reply =
       client_.get(access_.endpoint + "/", 0, [](const HttpHead&, auto) { return false; });
   return reply.head.status != 0;
 }
 
-HttpReply Hub::ask(const std::string& url, const std::function<HttpReply()>& request,
+TransferReply Hub::ask(const std::string& url, const std::function<TransferReply()>& request,
                    const std::function<bool()>& keep_going) const {
   double wait_s = config_.first_wait_s;
   for (int tries = 1;; ++tries, wait_s *= 2) {
-    const HttpReply reply = request();
+    const TransferReply reply = request();
     if (is_good(reply)) return reply;
     const double asked_s = reply.retry_after_s.value_or(0);
     if (!may_pass(reply) || tries >= config_.attempts || asked_s > config_.longest_wait_s)
@@ -147,7 +147,7 @@ std::string Hub::get_text(const std::string& url, std::string* next_url) const {
       return text.size() <= kLargeDocument;
     });
   };
-  const HttpReply reply = ask(url, request, [] { return true; });
+  const TransferReply reply = ask(url, request, [] { return true; });
   if (next_url) *next_url = reply.next_url;
   return text;
 }
@@ -182,8 +182,8 @@ void Hub::transfer(const std::string& url, const HubFile& file, const fs::path& 
   std::uint64_t there = 0;
   const auto request = [&] {
     PartialFile partial(target, file.bytes);
-    if (partial.bytes() == file.bytes) return HttpReply{{200, 0}, "", {}, ""};
-    const HttpReply reply = client_.get(
+    if (partial.bytes() == file.bytes) return TransferReply{{200, 0}, "", {}, ""};
+    const TransferReply reply = client_.get(
         url, partial.bytes(),
         [&](const HttpHead& head, std::span<const char> bytes) {
           return partial.write(head.from, bytes) && progress(file, partial.bytes());
@@ -193,7 +193,7 @@ void Hub::transfer(const std::string& url, const HubFile& file, const fs::path& 
     if (!partial.fault().empty()) throw Error(partial.fault());
     if (reply.head.status == kRangeWrong) partial.restart();
     if (is_good(reply) && partial.bytes() != file.bytes)
-      return HttpReply{
+      return TransferReply{
           reply.head, concat("only ", partial.bytes(), " of ", file.bytes, " bytes came"), {}, ""};
     return reply;
   };

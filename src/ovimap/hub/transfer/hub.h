@@ -53,14 +53,14 @@ class Hub {
 
  private:
   std::string get_text(const std::string& url, std::string* next_url) const;
-  HttpReply ask(const std::string& url, const std::function<HttpReply()>& request,
+  TransferReply ask(const std::string& url, const std::function<TransferReply()>& request,
                 const std::function<bool()>& keep_going) const;
   void transfer(const std::string& url, const HubFile& file, const std::filesystem::path& target,
                 const FetchProgress& progress) const;
 
   HubConfig config_;
   HubAccess access_;
-  HttpClient client_;
+  TransferClient client_;
 };
 
 }  // namespace ovimap

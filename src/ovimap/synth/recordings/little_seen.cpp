@@ -28,7 +28,8 @@ std::vector<int> frames_by_id(const SynthSequence& sequence, std::size_t ids, fl
   std::vector<int> frames(ids + 1, 0);
   for (std::int64_t position = 0; position < sequence.size(); ++position) {
     std::vector<int> pixels(ids + 1, 0);
-    for (const std::uint16_t id : *sequence.truth_ids(position)) ++pixels[id];
+    const auto truth = sequence.truth_ids(position);  // outlives the loop over what it holds
+    for (const std::uint16_t id : *truth) ++pixels[id];
     for (std::size_t id = 1; id <= ids; ++id)
       frames[id] += static_cast<float>(pixels[id]) >= least_pixels ? 1 : 0;
   }
