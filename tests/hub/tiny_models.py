@@ -202,7 +202,10 @@ def clip_tokenizer():
 
 
 def gemma_tokenizer():
-    pairs, pieces = merges_of([word for name in WORDS for word in (name, "▁" + name)])
+    pieces = merges_of([word for name in WORDS for word in (name, "▁" + name)])[1]
+    # Converted from SentencePiece, as Gemma's is: a piece may be made of any two that there are.
+    cuts = [(piece[:i], piece[i:]) for piece in pieces for i in range(1, len(piece))]
+    pairs = [pair for pair in cuts if set(pair) <= set(pieces)]
     special = ["<pad>", "<eos>", "<bos>", "<unk>"]
     bytes_ = [f"<0x{i:02X}>" for i in range(256)]
     vocab = {piece: i for i, piece in enumerate(dict.fromkeys([*special, *bytes_, "▁", *pieces]))}
