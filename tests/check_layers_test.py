@@ -76,6 +76,14 @@ class CheckLayersTest(unittest.TestCase):
                 (root / f"src/ovimap/base/s{number}.h").write_text("\n")
             self.assertIn("give them rooms", check_layers.check(root)[0])
 
+    def test_refuses_two_types_of_one_name(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            for name in ("base/a", "image/b", "image/b_fixture"):
+                (root / f"src/ovimap/{name}.h").parent.mkdir(parents=True, exist_ok=True)
+                (root / f"src/ovimap/{name}.h").write_text("class Other;\nstruct Reply : Base {\n  struct Inner {};\n};\n")
+            self.assertEqual(check_layers.name_offences(root), ["src/ovimap/image/b.h: src/ovimap/base/a.h defines a 'Reply' as well"])
+
     def test_tests_may_use_googletest_and_sources_may_not(self):
         self.assertEqual(self.offences("src/ovimap/image/a_test.cpp", "#include <gtest/gtest.h>\n"), [])
         self.assertEqual(len(self.offences("src/ovimap/image/a.cpp", "#include <gtest/gtest.h>\n")), 1)

@@ -10,6 +10,7 @@ ROW = re.compile(r"^\| (\d+) \| (\w+) \| [^|]* \| ([^|]*) \|$")
 ROOM = re.compile(r"^\| (\w+)/(\w+) \| [^|]* \|$")
 MOST_SOURCES = 24  # in one folder, tests and fixtures aside: what a newcomer can still look over
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]')
+TYPE = re.compile(r"^(?:struct|class|enum class) (\w+)[^;]*\{", re.MULTILINE)
 HEADERS = {"unzip": "minizip", "sentencepiece_processor": "sentencepiece"}  # where it is not the library's name
 TEST_LIBRARIES = {"gtest"}
 FLAT = {"apps", "python"}  # one file per subcommand or binding
@@ -76,6 +77,18 @@ def offence(module, include, table, is_test):
     return f"{module} may not use {include}; its row does not list it"
 
 
+def name_offences(root):
+    """Types of one name in two headers: all are of one namespace, so a program would have one of them for both."""
+    headers = [file for file in sorted((root / "src/ovimap").rglob("*.h")) if not is_test_source(file)]
+    first, found = {}, []
+    for file in headers:
+        for name in TYPE.findall(file.read_text()):
+            other = first.setdefault(name, file)
+            if other != file:
+                found.append(f"{file.relative_to(root)}: {other.relative_to(root)} defines a '{name}' as well")
+    return found
+
+
 def check(root):
     text = (root / "ARCHITECTURE.md").read_text()
     table, rooms = read_table(text), read_rooms(text)
@@ -103,7 +116,7 @@ def check(root):
                     reason = room_offence(module, room, match[2], rooms)
                 if reason:
                     found.append(f"{file.relative_to(root)}:{number}: {reason}")
-    return found
+    return found + name_offences(root)
 
 
 if __name__ == "__main__":
