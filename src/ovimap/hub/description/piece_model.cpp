@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/hub/description/piece_model.h"
 
-#include <bit>
 #include <cstdint>
 #include <map>
 #include <unordered_map>
@@ -10,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ovimap/base/error.h"
+#include "ovimap/inference/models/proto_writer.h"
 
 namespace ovimap {
 
@@ -18,38 +18,6 @@ namespace {
 using Json = nlohmann::json;
 
 enum PieceType { kNormal = 1, kUnknown = 2, kControl = 3, kUserDefined = 4, kByte = 6 };
-
-/// The wire format of protocol buffers, as far as a SentencePiece model needs it.
-class Message {
- public:
-  Message& number(int field, std::uint64_t value) {
-    varint(static_cast<std::uint64_t>(field) << 3);
-    varint(value);
-    return *this;
-  }
-  Message& real(int field, float value) {
-    constexpr int kFixed32 = 5, kBytes = 4, kBitsPerByte = 8;
-    varint(static_cast<std::uint64_t>(field) << 3 | kFixed32);
-    const auto bits = std::bit_cast<std::uint32_t>(value);
-    for (int i = 0; i < kBytes; ++i) text_ += static_cast<char>(bits >> (kBitsPerByte * i) & 0xFF);
-    return *this;
-  }
-  Message& bytes(int field, const std::string& value) {
-    constexpr int kDelimited = 2;
-    varint(static_cast<std::uint64_t>(field) << 3 | kDelimited);
-    varint(value.size());
-    text_ += value;
-    return *this;
-  }
-  const std::string& text() const { return text_; }
-
- private:
-  void varint(std::uint64_t value) {
-    for (; value > 0x7F; value >>= 7) text_ += static_cast<char>(0x80 | (value & 0x7F));
-    text_ += static_cast<char>(value);
-  }
-  std::string text_;
-};
 
 bool is_byte(const std::string& piece) {
   constexpr std::size_t kLength = 6;  // "<0x0A>"
@@ -111,7 +79,7 @@ std::string piece_model(const Json& tokenizer) {
   const Json& vocabulary = model.at("vocab");
   const auto ranks = merge_ranks(model.at("merges"));
   const Pieces pieces = pieces_of(tokenizer);
-  Message whole;
+  ProtoWriter whole;
   std::int64_t unknown_id = 0;
   for (const auto& [id, listed] : pieces.by_id) {
     // Gemma's conversion writes this byte as the character.
@@ -124,13 +92,13 @@ std::string piece_model(const Json& tokenizer) {
         type == kUserDefined
             ? 0.f
             : -static_cast<float>(rank == ranks.end() ? ranks.size() : rank->second);
-    whole.bytes(1, Message().bytes(1, piece).real(2, score).number(3, type).text());
+    whole.bytes(1, ProtoWriter().bytes(1, piece).real(2, score).number(3, type).text());
   }
   // Begin, end and padding are put around texts by model.yaml's ids: -1 here, none.
   constexpr int kModelType = 3, kVocabularySize = 4, kByteFallback = 35, kUnknownId = 40,
                 kBeginId = 41, kEndId = 42, kPadId = 43, kBytePair = 2;
   const auto none = static_cast<std::uint64_t>(-1);
-  whole.bytes(2, Message()
+  whole.bytes(2, ProtoWriter()
                      .number(kModelType, kBytePair)
                      .number(kVocabularySize, pieces.by_id.size())
                      .number(kByteFallback, 1)
@@ -140,7 +108,7 @@ std::string piece_model(const Json& tokenizer) {
                      .number(kPadId, none)
                      .text());
   constexpr int kName = 1, kDummyPrefix = 3, kFewerBlanks = 4, kEscape = 5;
-  whole.bytes(3, Message()
+  whole.bytes(3, ProtoWriter()
                      .bytes(kName, "identity")
                      .number(kDummyPrefix, 0)
                      .number(kFewerBlanks, 0)

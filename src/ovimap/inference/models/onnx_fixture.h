@@ -9,32 +9,9 @@
 #include <vector>
 
 #include "ovimap/inference/models/onnx_session.h"
+#include "ovimap/inference/models/proto_writer.h"
 
 namespace ovimap {
-
-/// The wire format of protocol buffers, as far as ONNX files need it.
-class ProtoWriter {
- public:
-  ProtoWriter& number(int field, std::uint64_t value) {
-    varint(static_cast<std::uint64_t>(field) << 3);
-    varint(value);
-    return *this;
-  }
-  ProtoWriter& bytes(int field, std::string_view value) {
-    varint(static_cast<std::uint64_t>(field) << 3 | 2);
-    varint(value.size());
-    text_ += value;
-    return *this;
-  }
-  const std::string& text() const { return text_; }
-
- private:
-  void varint(std::uint64_t value) {
-    for (; value > 0x7F; value >>= 7) text_ += static_cast<char>(0x80 | (value & 0x7F));
-    text_ += static_cast<char>(value);
-  }
-  std::string text_;
-};
 
 /// A graph that is put together node by node. Field numbers are those of onnx.proto.
 class OnnxGraph {
