@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cctype>
 #include <cstdio>
 
 #include "kept_settings.h"
 #include "mapping_run.h"
+#include "ovimap/base/ascii.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/base/version.h"
 #include "ovimap/io/map_file/map_file.h"
@@ -142,12 +142,6 @@ std::string heading(const ReproduceOptions& options, const Reproduction& made) {
                 options.mapping.encoder, ", percent, scenes pooled: ", made.found.scenes.size(),
                 " of ", made.dataset.scenes.size(), ". ", version(), " (", commit(),
                 "). Published figures are the paper's and its rivals', as the paper prints them.");
-}
-
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
 }
 
 /// Writes what was measured on a data set; returns its table.

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <sstream>
 
+#include "ovimap/base/ascii.h"
 #include "ovimap/base/error.h"
 
 namespace ovimap {
@@ -15,13 +15,6 @@ namespace {
 
 /// What follows tells more of a thing that is named before it.
 constexpr std::array kAfterThing = {" of ", " with ", " for ", " from ", " to ", " without "};
-
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-  return lower;
-}
 
 std::vector<std::string> parts_of(const std::string& text, char separator) {
   std::vector<std::string> parts;

@@ -12,6 +12,7 @@
 #include <charconv>
 #include <limits>
 
+#include "ovimap/base/ascii.h"
 #include "ovimap/base/error.h"
 
 namespace ovimap {
@@ -93,13 +94,6 @@ void read_target(std::string_view target, HttpRequest& request) {
       request.query.try_emplace(percent_decoded(pair.substr(0, equals), true),
                                 percent_decoded(value, true));
   }
-}
-
-std::string lower_case(std::string_view text) {
-  std::string result(text);
-  for (char& letter : result)
-    if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
-  return result;
 }
 
 std::string_view view(boost::beast::string_view text) {
