@@ -51,11 +51,6 @@ bool within(const OrientedBox& deck, const OrientedBox& box) {
   });
 }
 
-bool collide(const OrientedBox& a, const OrientedBox& b) {
-  return std::min(a.top_m, b.top_m) > std::max(a.bottom_m, b.bottom_m) &&
-         footprint_overlap(a, b) > 0;
-}
-
 /// One deck and what lies on it so far.
 class StrewnDeck {
  public:
@@ -64,7 +59,7 @@ class StrewnDeck {
     // The piece that has the deck reaches into the space above it only with its own backs and
     // sides.
     for (const OrientedBox& box : taken)
-      if (box.bottom_m > deck.bottom_m - 0.01f && collide(box, deck)) taken_.push_back(box);
+      if (box.bottom_m > deck.bottom_m - 0.01f && overlap(box, deck) > 0) taken_.push_back(box);
   }
 
   std::optional<OrientedBox> place(const RoomModel& model) {
@@ -142,7 +137,7 @@ class StrewnDeck {
 
   bool free(const OrientedBox& box) const {
     return std::none_of(taken_.begin(), taken_.end(),
-                        [&](const OrientedBox& other) { return collide(box, other); });
+                        [&](const OrientedBox& other) { return overlap(box, other) > 0; });
   }
 
   OrientedBox deck_;
