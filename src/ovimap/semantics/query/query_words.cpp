@@ -264,6 +264,15 @@ std::optional<SizeBound> take_size(Words& words) {
   return std::nullopt;
 }
 
+std::string take_writing(Words& words) {
+  constexpr std::string_view kMark = "text:";
+  if (words.empty() || !lower_case(words.back()).starts_with(kMark)) return {};
+  std::string writing = words.back().substr(kMark.size());
+  std::erase(writing, '"');
+  if (!writing.empty()) words = without_fillers(words.first(words.size() - 1));
+  return writing;
+}
+
 std::string singular(Words words) {
   std::string text = joined(words.first(words.size() - 1));
   return text + (text.empty() ? "" : " ") + singular(words.back());
