@@ -212,7 +212,12 @@ inline bool same_view(const ObjectView& a, const ObjectView& b) {
          a.directions.center_in_world == b.directions.center_in_world &&
          a.crop.image_jpeg == b.crop.image_jpeg && a.crop.mask_png == b.crop.mask_png &&
          (a.crop.empty() || (a.crop.object_px.min() == b.crop.object_px.min() &&
-                             a.crop.object_px.max() == b.crop.object_px.max()));
+                             a.crop.object_px.max() == b.crop.object_px.max())) &&
+         std::equal(a.writing.begin(), a.writing.end(), b.writing.begin(), b.writing.end(),
+                    [](const WrittenLine& x, const WrittenLine& y) {
+                      return x.text == y.text && x.confidence == y.confidence &&
+                             x.box_px.min() == y.box_px.min() && x.box_px.max() == y.box_px.max();
+                    });
 }
 
 inline bool same_look(const SuperPointLook& a, const SuperPointLook& b) {

@@ -266,10 +266,14 @@ std::optional<SizeBound> take_size(Words& words) {
 
 std::string take_writing(Words& words) {
   constexpr std::string_view kMark = "text:";
-  if (words.empty() || !lower_case(words.back()).starts_with(kMark)) return {};
-  std::string writing = words.back().substr(kMark.size());
+  const auto marked = [&](const std::string& word) {
+    return word.size() > kMark.size() && lower_case(word).starts_with(kMark);
+  };
+  if (words.empty() || !(marked(words.back()) || marked(words.front()))) return {};
+  const bool last = marked(words.back());
+  std::string writing = (last ? words.back() : words.front()).substr(kMark.size());
   std::erase(writing, '"');
-  if (!writing.empty()) words = without_fillers(words.first(words.size() - 1));
+  words = last ? without_fillers(words.first(words.size() - 1)) : words.subspan(1);
   return writing;
 }
 
