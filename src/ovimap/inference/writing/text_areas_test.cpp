@@ -38,7 +38,9 @@ TEST_P(TurnedLine, IsFoundAsItLies) {
   EXPECT_NEAR(areas[0].length_px, truth.length_px, 3.f);
   EXPECT_NEAR(areas[0].height_px, truth.height_px, 3.f);
   EXPECT_GT(std::abs(areas[0].along.dot(truth.along)), 0.995f);
-  if (std::abs(GetParam()) < 70.f) EXPECT_GT(areas[0].along.x(), 0.f);
+  if (std::abs(GetParam()) < 70.f) {
+    EXPECT_GT(areas[0].along.x(), 0.f);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(TextAreas, TurnedLine, testing::Values(0.f, 20.f, -35.f, 60.f, 90.f));
