@@ -44,6 +44,7 @@ Action add_report(CLI::App& command);
 Action add_masks(CLI::App& command);
 Action add_models(CLI::App& command);
 Action add_reembed(CLI::App& command);
+Action add_read(CLI::App& command);
 Action add_embed(CLI::App& command);
 Action add_ablate(CLI::App& command);
 Action add_reproduce(CLI::App& command);
@@ -90,6 +91,9 @@ struct ProgramConfig {
   MemoryConfig memory;
 };
 void list_fields(ProgramConfig& config, ConfigFields& fields);
+
+/// Sets what --set named, "a.b=c" each. Throws Error for what is unknown.
+void apply_settings(const std::vector<std::string>& settings, ConfigFields& fields);
 
 /// Preset, then file, then settings. Throws Error for what is unknown.
 ProgramConfig read_program_config(const MappingOptions& options);

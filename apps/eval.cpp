@@ -25,11 +25,7 @@ EvaluationConfig evaluation_config(const EvalOptions& options) {
   EvaluationConfig config;
   ConfigFields fields;
   fields.group("eval", [&](ConfigFields& inner) { list_fields(config, inner); });
-  for (const std::string& setting : options.settings) {
-    const std::size_t equals = setting.find('=');
-    if (equals == std::string::npos) throw Error("--set takes name=value, not '" + setting + "'");
-    fields.set(setting.substr(0, equals), setting.substr(equals + 1));
-  }
+  apply_settings(options.settings, fields);
   return config;
 }
 

@@ -18,12 +18,7 @@ HubConfig read_hub_config(const std::vector<std::string>& settings) {
   HubConfig config;
   ConfigFields fields;
   fields.group("hub", [&](ConfigFields& f) { list_fields(config, f); });
-  for (const std::string& setting : settings) {
-    const std::size_t equals = setting.find('=');
-    if (equals == std::string::npos)
-      throw Error("--set takes name=value, not '" + setting + "', such as hub.attempts=10");
-    fields.set(setting.substr(0, equals), setting.substr(equals + 1));
-  }
+  apply_settings(settings, fields);
   return config;
 }
 

@@ -60,6 +60,8 @@ constexpr CommandEntry kCommands[] = {
 #endif
     {"reembed", "give a map's objects the embeddings of another encoder",
      "reembed demo/tiny.ovimap --encoder default", add_reembed},
+    {"read", "read what is written on a map's objects, for query 'text:\"exit\"'",
+     "read demo/tiny.ovimap", add_read},
     {"embed", "embeddings for a finished mesh with instance ids",
      "embed gt demo/tiny/room -o truth.ovimap", add_embed},
     {"report", "write a map as one HTML page: pictures, objects, timings",

@@ -81,6 +81,15 @@ void list_fields(ProgramConfig& config, ConfigFields& fields) {
   fields.group("memory", [&](ConfigFields& f) { list_fields(config.memory, f); });
 }
 
+void apply_settings(const std::vector<std::string>& settings, ConfigFields& fields) {
+  for (const std::string& setting : settings) {
+    const std::size_t equals = setting.find('=');
+    if (equals == std::string::npos)
+      throw Error("--set takes name=value, not '" + setting + "'; `ovimap config` lists the names");
+    fields.set(setting.substr(0, equals), setting.substr(equals + 1));
+  }
+}
+
 ProgramConfig read_program_config(const MappingOptions& options) {
   ProgramConfig config;
   config.mapper = mapper_preset(options.preset);
@@ -88,12 +97,7 @@ ProgramConfig read_program_config(const MappingOptions& options) {
   ConfigFields fields;
   list_fields(config, fields);
   if (!options.config_file.empty()) load_config(options.config_file, fields);
-  for (const std::string& setting : options.settings) {
-    const std::size_t equals = setting.find('=');
-    if (equals == std::string::npos)
-      throw Error("--set takes name=value, not '" + setting + "'; `ovimap config` lists the names");
-    fields.set(setting.substr(0, equals), setting.substr(equals + 1));
-  }
+  apply_settings(options.settings, fields);
   if (!options.max_memory.empty()) config.memory.max_mb = parse_megabytes(options.max_memory);
   return config;
 }

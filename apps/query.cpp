@@ -34,11 +34,7 @@ QueryConfig query_config(const QueryOptions& options) {
   QueryConfig config;
   ConfigFields fields;
   fields.group("query", [&](ConfigFields& inner) { list_fields(config, inner); });
-  for (const std::string& setting : options.settings) {
-    const std::size_t equals = setting.find('=');
-    if (equals == std::string::npos) throw Error("--set takes name=value, not '" + setting + "'");
-    fields.set(setting.substr(0, equals), setting.substr(equals + 1));
-  }
+  apply_settings(options.settings, fields);
   if (options.top > 0) config.top_k = options.top;
   return config;
 }

@@ -3,8 +3,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # Sets up what the program needs and does not find: Debian packages, .venv, ONNX Runtime in .deps, the packages of the
 # viewer, the default mask model and the default image-text encoder in .models. Does nothing for what is there already.
-# Usage: tools/setup.sh [--no-models] [--tests] [--fuzz]
-#   --no-models: without them; --tests: also what tests, benchmarks and the Python package need; --fuzz: also clang with libFuzzer
+# Usage: tools/setup.sh [--no-models] [--writing] [--tests] [--fuzz]
+#   --no-models: without them; --writing: also the model that reads writing; --tests: that and what tests, benchmarks and
+#   the Python package need; --fuzz: also clang with libFuzzer
 set -euo pipefail
 
 ROOT="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
@@ -14,6 +15,7 @@ VENV="$ROOT/.venv"
 ORT="$ROOT/.deps/onnxruntime"
 MODEL="$ROOT/.models/mobilesam"
 ENCODER="$ROOT/.models/default-encoder"
+READER="$ROOT/.models/pp-ocr"
 VALIDATOR="$ROOT/.deps/gltf-validator"
 ORT_VERSION=1.21.1       # the library; the headers below must not be newer
 ORT_HEADER_PACKAGE=libonnxruntime-dev
@@ -271,6 +273,31 @@ set_up_encoder() {
     "$VENV/bin/python" "$TOOLS/models/build_default_encoder.py" "$SCRATCH/encoder" "$ENCODER"
 }
 
+# ---------------------------------------------------------------------------------- model for writing
+
+download_reader() {
+  "$VENV/bin/pip" download -q --disable-pip-version-check --no-deps --only-binary=:all: \
+    -d "$SCRATCH/reader" rapidocr==3.10.0
+}
+
+# The marking model.yaml comes last.
+unpack_reader() {
+  "$VENV/bin/python" -m zipfile -e "$SCRATCH"/reader/rapidocr-*.whl "$SCRATCH/reader" &&
+    mkdir -p "$READER" &&
+    cp "$SCRATCH/reader/rapidocr/models/PP-OCRv6_det_small.onnx" "$READER/detector.onnx" &&
+    cp "$SCRATCH/reader/rapidocr/models/PP-OCRv6_rec_small.onnx" "$READER/speller.onnx" &&
+    cp "$TOOLS/models/pp-ocr.yaml" "$READER/model.yaml"
+}
+
+set_up_reader() {
+  have_model_of "$TOOLS/models/pp-ocr.yaml" "$READER" && return
+  say "fetching the model that reads writing, PP-OCR, into .models"
+  quietly "the model that reads writing cannot be fetched; check the network and pip's index" download_reader
+  quietly "the model that reads writing cannot be unpacked" unpack_reader
+  have_model_of "$TOOLS/models/pp-ocr.yaml" "$READER" ||
+    fail "the model that reads writing is not the one of tools/models/pp-ocr.yaml; remove .models/pp-ocr and run again"
+}
+
 # ------------------------------------------------------------------------------------------- viewer
 
 VIEWER="$ROOT/viewer"
@@ -291,13 +318,15 @@ set_up_viewer() {
 }
 
 MODELS=yes
+WRITING=no
 TESTS=no
 for argument in "$@"; do
   case "$argument" in
     --no-models) MODELS=no ;;
-    --tests) TESTS=yes; PACKAGE_LISTS+=("$TOOLS/debian-packages-tests.txt") ;;
+    --writing) WRITING=yes ;;
+    --tests) TESTS=yes; WRITING=yes; PACKAGE_LISTS+=("$TOOLS/debian-packages-tests.txt") ;;
     --fuzz) PACKAGE_LISTS+=("$TOOLS/debian-packages-fuzz.txt") ;;
-    *) fail "unknown argument '$argument'; accepted are --no-models, --tests and --fuzz" ;;
+    *) fail "unknown argument '$argument'; accepted are --no-models, --writing, --tests and --fuzz" ;;
   esac
 done
 set_up_packages
@@ -308,5 +337,6 @@ set_up_viewer
 if [ "$MODELS" = yes ]; then
   set_up_model
   set_up_encoder
+  [ "$WRITING" = no ] || set_up_reader
 fi
 say "everything is there"

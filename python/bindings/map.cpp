@@ -40,6 +40,7 @@ struct Instances {
   std::vector<float> boxes, centroids;
   std::vector<std::int64_t> points, views;
   std::vector<std::string> names;
+  std::vector<std::vector<std::string>> writing;
 };
 
 Instances instances_of(const SavedMap& map) {
@@ -53,6 +54,9 @@ Instances instances_of(const SavedMap& map) {
     all.views.push_back(instance.views);
     const auto name = map.info().names.find(instance.id);
     all.names.push_back(name == map.info().names.end() ? "" : name->second);
+    std::vector<std::string>& texts = all.writing.emplace_back();
+    if (const auto read = map.info().writing.find(instance.id); read != map.info().writing.end())
+      for (const WrittenLine& line : read->second) texts.push_back(line.text);
   }
   return all;
 }
@@ -92,6 +96,8 @@ void bind_instances(nb::module_& module) {
           },
           "int64 [objects]: frames in which it was seen")
       .def_ro("names", &Instances::names, "given by people; empty strings otherwise")
+      .def_ro("writing", &Instances::writing,
+              "texts that `ovimap read` read on each, surest first")
       .def("__repr__", [](const Instances& all) {
         const auto named = std::count_if(all.names.begin(), all.names.end(),
                                          [](const std::string& name) { return !name.empty(); });

@@ -23,6 +23,7 @@ from bodies import Bodies
 from camera import Camera
 from crowds import Crowds
 from framing import Framing
+from handshakes import Handshakes, write_certificate
 from served import TRIES, KeptWaiting, Server
 from strangers import Strangers
 import wire
@@ -53,8 +54,8 @@ def tried_again(case):
     return run
 
 
-class Attacked(Strangers, Bodies, Crowds):
-    """Cases against a server, which is started anew after one that it did not survive."""
+class Attacked:
+    """Cases are run against a server, which is started anew after one that it did not survive."""
 
     is_live = False
 
@@ -107,19 +108,34 @@ class Attacked(Strangers, Bodies, Crowds):
             raise
 
 
-class StillMap(Framing, Attacked, unittest.TestCase):
-    """A map that stays as it is. How requests are cut apart is the same with any map, so it is tried here alone."""
-
+class WithStillMap(Attacked):
     @classmethod
-    def start(cls):
+    def served_map(cls):
         made, served = cls.folder / "made.ovimap", cls.folder / "served.ovimap"
         if not made.exists():
             ovimap("run", cls.room, "--masks", "gt", "--encoder", "none", "-o", made, "--set", "map.voxel_size_m=0.03")
         shutil.copy(made, served)  # an attack may have changed the last one
-        return Server(PROGRAM, served)
+        return served
 
 
-class LiveMap(Attacked, unittest.TestCase):
+class StillMap(Framing, Strangers, Bodies, Crowds, WithStillMap, unittest.TestCase):
+    """A map that stays as it is. How requests are cut apart is the same with any map, so it is tried here alone."""
+
+    @classmethod
+    def start(cls):
+        return Server(PROGRAM, cls.served_map())
+
+
+class EncryptedMap(Handshakes, WithStillMap, unittest.TestCase):
+    """The same behind TLS: what happens before a request is one."""
+
+    @classmethod
+    def start(cls):
+        certificate, key = write_certificate(cls.folder)
+        return Server(PROGRAM, cls.served_map(), "--tls-cert", certificate, "--tls-key", key, certificate=certificate)
+
+
+class LiveMap(Strangers, Bodies, Crowds, Attacked, unittest.TestCase):
     """A map that is made of a camera's frames meanwhile."""
 
     is_live = True

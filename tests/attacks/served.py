@@ -7,7 +7,6 @@ server under attack may take longer by ten times what that one takes. And what a
 kept the client waiting is tried anew, and fails the third time.
 """
 import contextlib
-import http.client
 import json
 import os
 import pathlib
@@ -17,6 +16,8 @@ import subprocess
 import sys
 import threading
 import time
+
+import witness
 
 HERE = pathlib.Path(__file__).parent
 MOST_GROWTH_BYTES = 64 << 20
@@ -35,10 +36,10 @@ class KeptWaiting(AssertionError):
 class Witness:
     """The normal client, in a process of its own from now on."""
 
-    def __init__(self, port):
+    def __init__(self, port, certificate):
         self._echo = subprocess.Popen([sys.executable, HERE / "echo.py"], stdout=subprocess.PIPE, text=True)
         echo_port = self._echo.stdout.readline().strip()
-        self._client = subprocess.Popen([sys.executable, HERE / "witness.py", str(port), echo_port], stdout=subprocess.PIPE, text=True)
+        self._client = subprocess.Popen([sys.executable, HERE / "witness.py", str(port), echo_port, *([certificate] if certificate else [])], stdout=subprocess.PIPE, text=True)
         self._lines = queue.SimpleQueue()
         threading.Thread(target=self._read, daemon=True).start()
 
@@ -79,22 +80,23 @@ def fault_of(requests, mapping):
 
 
 class Server:
-    """`ovimap serve ARGUMENTS`, and its normal client."""
+    """`ovimap serve ARGUMENTS`, and its normal client. `certificate`: that of a server of encrypted connections."""
 
-    def __init__(self, program, *arguments):
+    def __init__(self, program, *arguments, certificate=None):
+        self.context = witness.trusting(certificate)
         self.process = subprocess.Popen([program, "serve", *map(str, arguments), "--port", "0", "--viewer", "none", "--json"],
                                         stdout=subprocess.PIPE, text=True)  # fmt: skip
         self.port = json.loads(self.process.stdout.readline())["port"]
         self.instances = [entry["id"] for entry in self.get("/api/instances")["instances"]]
         self.names = self.named()
-        self.witness = Witness(self.port)
+        self.witness = Witness(self.port, certificate)
         time.sleep(0.5)
         self.witness.requests()
         self.start_bytes = self.resident("VmRSS")
 
     def ask(self, method, path, body=None, headers=None):
         """As a normal client; (status, value)."""
-        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=20)
+        connection = witness.connection_to(self.port, self.context, timeout=20)
         try:
             connection.request(method, path, body, headers or {})
             reply = connection.getresponse()

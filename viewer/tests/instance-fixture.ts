@@ -8,6 +8,7 @@ export function instance(id: number, more: Partial<Instance> = {}): Instance {
     name: '',
     label: null,
     guesses: [],
+    writing: [],
     class: null,
     color: [id, 0, 0],
     box: { min: [0, 0, 0], max: [1, 2, 3] },

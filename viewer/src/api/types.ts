@@ -51,6 +51,13 @@ export interface Instance {
   /** Nothing may change it before the lock is undone. */
   locked: boolean;
   crops: number[];
+  /** What was read on it, surest first; empty in maps that nobody had read. */
+  writing: WrittenLine[];
+}
+
+export interface WrittenLine {
+  text: string;
+  confidence: number;
 }
 
 export interface Neighbor {

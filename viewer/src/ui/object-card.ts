@@ -209,7 +209,16 @@ function facts(instance: Instance, detail: InstanceDetail | null): HTMLElement {
     ...entry('Position', placeOf(instance)),
     ...entry('Seen in', plural(instance.views, 'frame')),
     ...entry('Surface', plural(instance.points, 'voxel')),
+    ...(instance.writing.length > 0 ? entry('Reads', writingOf(instance)) : []),
   );
+}
+
+const MOST_LINES = 6;
+
+/** “EXIT”, “Mobile” … */
+function writingOf({ writing }: Instance): string {
+  const lines = writing.slice(0, MOST_LINES).map((line) => `“${line.text}”`);
+  return lines.join(', ') + (writing.length > MOST_LINES ? ' …' : '');
 }
 
 function guesses(instance: Instance): HTMLElement {

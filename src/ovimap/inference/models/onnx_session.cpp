@@ -199,6 +199,13 @@ const TensorInfo& OnnxSession::output(const std::string& name) const {
   return find_tensor(outputs_, name, "output", file_);
 }
 
+std::string OnnxSession::metadata(const std::string& key) const {
+  const Ort::AllocatorWithDefaultOptions allocator;
+  const auto value = impl_->session.GetModelMetadata().LookupCustomMetadataMapAllocated(
+      key.c_str(), allocator);
+  return value ? value.get() : "";
+}
+
 std::vector<FloatTensor> OnnxSession::run(std::span<const TensorInput> inputs,
                                           std::span<const std::string> output_names) const {
   std::vector<const char*> input_names, wanted;

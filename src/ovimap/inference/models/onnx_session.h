@@ -68,6 +68,9 @@ class OnnxSession {
   const TensorInfo& input(const std::string& name) const;
   const TensorInfo& output(const std::string& name) const;
 
+  /// What the file says under that key of its metadata; empty when it says nothing.
+  std::string metadata(const std::string& key) const;
+
   /// The wanted float outputs, in the order of `output_names`. Throws Error with the runtime's
   /// reason when the network cannot be run on these inputs.
   std::vector<FloatTensor> run(std::span<const TensorInput> inputs,

@@ -65,6 +65,15 @@ Json relation_list(std::span<const ObjectRelation> relations) {
   return list;
 }
 
+Json writing_value(const MapInfo& info) {
+  Json objects = Json::object();
+  for (const auto& [id, lines] : info.writing)
+    for (const WrittenLine& line : lines)
+      objects[std::to_string(id)].push_back(
+          {{"text", line.text}, {"confidence", json_number(line.confidence)}});
+  return {{"reader", info.writing_reader}, {"objects", objects}};
+}
+
 Json info_value(const std::filesystem::path& path, const MapInfo& info) {
   Json document;
   document["map"] = path.string();
@@ -73,6 +82,7 @@ Json info_value(const std::filesystem::path& path, const MapInfo& info) {
   document["mask_frames"] = info.mask_frames;
   document["instances"] = instance_list(info.instances, info.names);
   document["hidden"] = Json::array();
+  if (!info.writing_reader.empty()) document["writing"] = writing_value(info);
   for (const InstanceSummary& instance : info.hidden) document["hidden"].push_back(instance.id);
   document["locked"] = info.locked;
   document["voxel_size_m"] = json_number(info.voxel_size_m);

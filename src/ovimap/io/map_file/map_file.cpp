@@ -19,6 +19,7 @@
 #include "ovimap/io/map_tables/map_file_record.h"
 #include "ovimap/io/map_tables/map_file_rows.h"
 #include "ovimap/io/map_tables/map_file_semantics.h"
+#include "ovimap/semantics/words/written_words.h"
 
 namespace ovimap {
 
@@ -133,6 +134,27 @@ void place_blocks(SQLite::Database& database, std::uint64_t blocks, VoxelMap& ma
   places.expect_end();
 }
 
+/// What was read on each object, by its super-points' views.
+std::map<InstanceId, std::vector<WrittenLine>> writing_of_instances(
+    SQLite::Database& database, std::span<const InstanceSummary> instances) {
+  std::map<InstanceId, std::vector<WrittenLine>> result;
+  if (!has_table(database, map_tables::kWriting)) return result;
+  const LabelForest forest = read_forest(database);
+  std::map<Label, std::vector<WrittenLine>> by_root;
+  for (auto& [view, lines] : read_writing(database, forest)) {
+    std::vector<WrittenLine>& known = by_root[forest.root(view.super_point)];
+    known.insert(known.end(), lines.begin(), lines.end());
+  }
+  for (const InstanceSummary& instance : instances) {
+    std::vector<WrittenLine> lines;
+    for (const Label label : instance.super_points)
+      if (const auto read = by_root.find(label); read != by_root.end())
+        lines.insert(lines.end(), read->second.begin(), read->second.end());
+    if (!lines.empty()) result.emplace(instance.id, surest_readings(std::move(lines)));
+  }
+  return result;
+}
+
 MapInfo read_info(SQLite::Database& database, const OpenMap& file) {
   MapRecord record;
   const MapMeta meta = read_meta(database, record);
@@ -153,6 +175,8 @@ MapInfo read_info(SQLite::Database& database, const OpenMap& file) {
   info.hidden = std::move(record.hidden);
   info.locked = std::move(record.locked);
   info.names = std::move(record.names);
+  info.writing_reader = std::move(record.semantics.writing_reader);
+  info.writing = writing_of_instances(database, info.instances);
   info.encoder = std::move(record.semantics.encoder);
   info.up = record.up;
   info.depth_camera = record.depth_camera;

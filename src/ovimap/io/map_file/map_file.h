@@ -22,6 +22,8 @@ struct MapInfo {
   std::vector<InstanceSummary> hidden;     ///< objects that people hid; not in `instances`
   std::set<InstanceId> locked;             ///< objects that must stay as they are
   std::map<InstanceId, std::string> names;
+  std::string writing_reader;              ///< what read the writing; empty: nothing did
+  std::map<InstanceId, std::vector<WrittenLine>> writing;  ///< of those on which some was read
   EncoderIdentity encoder;                        ///< of the embeddings; no name: there are none
   Eigen::Vector3f up = Eigen::Vector3f::UnitZ();  ///< in the world
   PinholeCamera depth_camera;

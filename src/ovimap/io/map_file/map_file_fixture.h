@@ -127,6 +127,9 @@ inline MapDocument random_document(int block_count, std::uint32_t seed) {
   look.views.resize(2);
   look.views[0] = {5, 900, Eigen::Vector3f(0, 0.6f, -0.8f), {{1, 2}, {3}, {}}, 1, {}};
   look.views[0].crop.object_px = {Eigen::Vector2i(0, 1), Eigen::Vector2i(2, 3)};
+  look.views[0].writing = {{"EXIT \xC3\xA9", 0.75f, {Eigen::Vector2i(0, 1), Eigen::Vector2i(2, 2)}},
+                           {"2", 1.f, {Eigen::Vector2i(1, 1), Eigen::Vector2i(1, 1)}}};
+  document.semantics.writing_reader = "reader";
   ViewDirections& directions = look.views[0].directions;
   directions.center_in_world = {1.f / 3, 2, -3};
   directions.bins = BinSet(document.semantics.views.grid(document.depth_camera).bins());
@@ -209,7 +212,12 @@ inline bool same_view(const ObjectView& a, const ObjectView& b) {
          a.directions.center_in_world == b.directions.center_in_world &&
          a.crop.image_jpeg == b.crop.image_jpeg && a.crop.mask_png == b.crop.mask_png &&
          (a.crop.empty() || (a.crop.object_px.min() == b.crop.object_px.min() &&
-                             a.crop.object_px.max() == b.crop.object_px.max()));
+                             a.crop.object_px.max() == b.crop.object_px.max())) &&
+         std::equal(a.writing.begin(), a.writing.end(), b.writing.begin(), b.writing.end(),
+                    [](const WrittenLine& x, const WrittenLine& y) {
+                      return x.text == y.text && x.confidence == y.confidence &&
+                             x.box_px.min() == y.box_px.min() && x.box_px.max() == y.box_px.max();
+                    });
 }
 
 inline bool same_look(const SuperPointLook& a, const SuperPointLook& b) {

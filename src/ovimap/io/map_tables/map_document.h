@@ -36,6 +36,7 @@ struct SemanticRecord {
   ViewSelectionConfig views;
   CropConfig crops;
   SuperPointLooks looks;
+  std::string writing_reader = {};  ///< what read the writing in the crops; empty: nothing did
 };
 
 /// What a map says that no frame changes: where it comes from, and what people told it.

@@ -54,6 +54,9 @@ void list_meta(MapRecord& record, VoxelMapConfig& map_config, ConfigFields& fiel
                 "numbers of an embedding");
     encoder.add("digest", record.semantics.encoder.digest, "SHA-256 over the model's files");
   });
+  fields.group("writing", [&](ConfigFields& writing) {
+    writing.add("reader", record.semantics.writing_reader, "model that read what is written");
+  });
   fields.group("views", [&](ConfigFields& views) { list_fields(record.semantics.views, views); });
   fields.group("crops", [&](ConfigFields& crops) { list_fields(record.semantics.crops, crops); });
   fields.group("map", [&](ConfigFields& map) { list_fields(map_config, map); });
@@ -87,6 +90,7 @@ void write_meta(SQLite::Database& database, const MapRecord& record, const MapMe
   plain.depth_camera = record.depth_camera;
   plain.instance_config = record.instance_config;
   plain.semantics.encoder = record.semantics.encoder;
+  plain.semantics.writing_reader = record.semantics.writing_reader;
   plain.semantics.views = record.semantics.views;
   plain.semantics.crops = record.semantics.crops;
   VoxelMapConfig map_config = meta.map_config;

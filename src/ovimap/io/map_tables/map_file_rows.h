@@ -86,6 +86,12 @@ inline constexpr MapTable kSuperPointViews{
     "center_y REAL, center_z REAL, bins BLOB NOT NULL, embedding BLOB NOT NULL, crop_jpeg BLOB NOT "
     "NULL, crop_mask_png BLOB NOT NULL, min_x INTEGER NOT NULL, min_y INTEGER NOT NULL, max_x "
     "INTEGER NOT NULL, max_y INTEGER NOT NULL, PRIMARY KEY (label, frame)"};
+/// Read in the views' crops; not in maps in which nothing was read.
+inline constexpr MapTable kWriting{
+    "writing", "label, frame, line, text, confidence, min_x, min_y, max_x, max_y",
+    "label INTEGER NOT NULL, frame INTEGER NOT NULL, line INTEGER NOT NULL, text TEXT NOT NULL, "
+    "confidence REAL NOT NULL, min_x INTEGER NOT NULL, min_y INTEGER NOT NULL, max_x INTEGER NOT "
+    "NULL, max_y INTEGER NOT NULL, PRIMARY KEY (label, frame, line)"};
 inline constexpr MapTable kEmbeddings{"embeddings", "instance, embedding",
                                       "instance INTEGER PRIMARY KEY, embedding BLOB NOT NULL"};
 inline constexpr MapTable kSurfaces{"surfaces", "instance, points",
@@ -144,7 +150,7 @@ inline constexpr MapTable kChecks{
 inline constexpr const MapTable* kAll[] = {
     &kMeta, &kInstances, &kInstanceSuperPoints, &kInstanceNames, &kInstanceAliases, &kSuperPoints,
     &kSuperPointFrames, &kVotes, &kLabelPairs, &kEntitySightings, &kLabelForest, &kFrames,
-    &kSuperPointLooks, &kSuperPointViews, &kEmbeddings, &kSurfaces, &kBlocks, &kKeptFrames,
+    &kSuperPointLooks, &kSuperPointViews, &kWriting, &kEmbeddings, &kSurfaces, &kBlocks, &kKeptFrames,
     &kInstanceRecords, &kAppearances, &kViews, &kEdits, &kCorrectedInstances,
     &kCorrectedSuperPoints, &kCorrectedNames, &kCorrectedSurfaces, &kCorrectedEmbeddings,
     &kCorrectedFlags, &kChecks};

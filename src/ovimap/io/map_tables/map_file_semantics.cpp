@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <cmath>
+#include <optional>
 
 #include "ovimap/io/map_tables/map_file_record.h"
 #include "ovimap/io/map_tables/map_file_rows.h"
@@ -67,6 +68,20 @@ void insert_view(RowWriter& rows, const ObjectView& view) {
               std::span<const std::uint8_t>(view.crop.image_jpeg),
               std::span<const std::uint8_t>(view.crop.mask_png), crop ? low.x() : 0,
               crop ? low.y() : 0, crop ? high.x() : 0, crop ? high.y() : 0);
+}
+
+void write_writing(SQLite::Database& database, const SuperPointLooks& looks) {
+  std::optional<RowWriter> rows;  // the table is made for its first line
+  for (const auto& [label, look] : looks)
+    for (const ObjectView& view : look.views)
+      for (std::size_t line = 0; line < view.writing.size(); ++line) {
+        if (!rows) rows.emplace(database, kWriting);
+        const WrittenLine& read = view.writing[line];
+        const auto &low = read.box_px.min(), &high = read.box_px.max();
+        rows->insert(view.super_point, view.frame, line, read.text, read.confidence, low.x(),
+                     low.y(), high.x(), high.y());
+      }
+  if (rows) rows->finish();
 }
 
 constexpr float kSteps = 65535.f;
@@ -138,6 +153,7 @@ void write_semantics(SQLite::Database& database, const MapRecord& record) {
   for (const auto& [label, look] : record.semantics.looks)
     for (const ObjectView& view : look.views) insert_view(views, view);
   views.finish();
+  write_writing(database, record.semantics.looks);
   write_embeddings(database, record, kEmbeddings);
 }
 
@@ -177,6 +193,27 @@ void take_picture(RowReader& rows, const EncoderIdentity& encoder, ObjectView& v
   if (!view.crop.empty()) view.crop.object_px = {corners[0], corners[1]};
 }
 
+std::map<ViewKey, std::vector<WrittenLine>> read_writing(SQLite::Database& database,
+                                                         const LabelForest& forest) {
+  std::map<ViewKey, std::vector<WrittenLine>> writing;
+  if (!has_table(database, kWriting)) return writing;
+  RowReader rows(database, kWriting);
+  while (rows.next()) {
+    const Label label = take_label(rows, forest);
+    std::vector<WrittenLine>& lines = writing[{rows.integer<std::int64_t>(), label}];
+    rows.integer<std::int64_t>();  // their order
+    WrittenLine line;
+    line.text = rows.text();
+    line.confidence = static_cast<float>(rows.real());
+    if (line.text.empty() || !(line.confidence >= 0.f && line.confidence <= 1.f))
+      rows.fail("has a line without text or with a confidence beyond 0 to 1");
+    for (Eigen::Vector2i* corner : {&line.box_px.min(), &line.box_px.max()})
+      for (int& coordinate : *corner) coordinate = rows.integer<int>();
+    lines.push_back(std::move(line));
+  }
+  return writing;
+}
+
 SuperPointLooks read_looks(SQLite::Database& database, const LabelForest& forest,
                            const SemanticRecord& settings, const PinholeCamera& depth_camera) {
   const SphereGrid grid = settings.views.grid(depth_camera);
@@ -189,6 +226,7 @@ SuperPointLooks read_looks(SQLite::Database& database, const LabelForest& forest
     look.offered = looks.integer<int>();
     look.queries = looks.integer<int>();
   }
+  auto writing = read_writing(database, forest);
   RowReader views(database, kSuperPointViews);
   while (views.next()) {
     ObjectView view;
@@ -199,10 +237,12 @@ SuperPointLooks read_looks(SQLite::Database& database, const LabelForest& forest
       coordinate = static_cast<float>(views.real());
     view.directions.bins = take_bins(views, grid);
     take_picture(views, settings.encoder, view);
+    if (auto lines = writing.extract(view.key())) view.writing = std::move(lines.mapped());
     const auto look = result.find(forest.root(view.super_point));
     if (look == result.end()) views.fail("has a view of a super-point without look");
     insert_view(look->second, std::move(view));
   }
+  if (!writing.empty()) throw Error("table writing has a line of no view");
   return result;
 }
 

@@ -22,6 +22,10 @@ void write_semantics(SQLite::Database& database, const MapRecord& record);
 SuperPointLooks read_looks(SQLite::Database& database, const LabelForest& forest,
                            const SemanticRecord& settings, const PinholeCamera& depth_camera);
 
+/// What was read in the views; nothing in most maps.
+std::map<ViewKey, std::vector<WrittenLine>> read_writing(SQLite::Database& database,
+                                                         const LabelForest& forest);
+
 /// The last columns of a row of views.
 void take_picture(RowReader& rows, const EncoderIdentity& encoder, ObjectView& view);
 /// Directions that were seen: none, or of the map's own grid.

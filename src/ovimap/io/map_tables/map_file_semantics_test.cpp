@@ -47,6 +47,22 @@ TEST_F(MapFileSemantics, FusesByTheMapsOwnRule) {
   EXPECT_NEAR(read_searchable_map(root_ / "a.ovimap").embeddings(0, 0), 0.70711f, 1e-5f);
 }
 
+TEST_F(MapFileSemantics, TellsWhatIsWrittenWithoutTheViews) {
+  MapDocument saved = random_document(5, 1);
+  save_map(root_ / "a.ovimap", saved);
+  const MapInfo info = read_map_info(root_ / "a.ovimap");
+  EXPECT_EQ(info.writing_reader, "reader");
+  ASSERT_EQ(info.writing.size(), 1u);
+  const auto& lines = info.writing.begin()->second;
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_EQ(lines[0].text, "2");  // the surer first
+  EXPECT_EQ(lines[1].text, "EXIT \xC3\xA9");
+  EXPECT_EQ(lines[1].box_px.max(), Eigen::Vector2i(2, 2));
+  saved.semantics.looks[1].views[0].writing[0].confidence = 2.f;
+  save_map(root_ / "b.ovimap", saved);
+  EXPECT_THROW(read_map_info(root_ / "b.ovimap"), Error);
+}
+
 TEST_F(MapFileSemantics, RefusesEmbeddingsThatCannotBe) {
   MapDocument saved = random_document(5, 1);
   saved.semantics.looks[1].views[0].embedding = Eigen::Vector2f(1, 0);

@@ -78,6 +78,7 @@ void append_looks(MapRecord& map_a, const MapRecord& map_b, const Pose& a_from_b
   SemanticRecord& a = map_a.semantics;
   const SemanticRecord& b = map_b.semantics;
   if (a.encoder.name.empty()) a.encoder = b.encoder;
+  if (a.writing_reader.empty()) a.writing_reader = b.writing_reader;
   const Eigen::Isometry3f pose = a_from_b.cast<float>();
   // Directions are those of the old frame and grid: what was seen counts again from nothing.
   const bool others = !pose.linear().isIdentity(1e-4f) ||

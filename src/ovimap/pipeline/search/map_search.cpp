@@ -37,6 +37,13 @@ QueryScene scene_of(const SearchableMap& map, const SearchIndex& index,
         scene.shapes[i] = shape_of_points(ground, surface->second, config);
     }
   });
+  if (!map.info.writing_reader.empty()) {
+    scene.writing.resize(index.size());
+    for (std::size_t i = 0; i < index.size(); ++i)
+      if (const auto lines = map.info.writing.find(index.object(i).id);
+          lines != map.info.writing.end())
+        scene.writing[i] = lines->second;
+  }
   std::vector<Pose> cameras;
   for (const FrameLogEntry& frame : map.frames) cameras.push_back(frame.world_from_camera);
   if (!cameras.empty()) scene.viewpoint = mean_viewpoint(ground, cameras);
@@ -102,6 +109,12 @@ MapSearch make_map_search(const MapRecord& corrected, MapInfo info,
   info.hidden = corrected.hidden;
   info.locked = corrected.locked;
   info.names = corrected.names;
+  info.writing_reader = corrected.semantics.writing_reader;
+  info.writing.clear();
+  for (const InstanceSummary& instance : corrected.instances)
+    if (auto lines = writing_of(appearance_of(corrected.semantics.looks, instance.super_points));
+        !lines.empty())
+      info.writing.emplace(instance.id, std::move(lines));
   info.encoder = corrected.semantics.encoder;
   info.up = corrected.up;
   info.frames = static_cast<std::int64_t>(corrected.frames.size());

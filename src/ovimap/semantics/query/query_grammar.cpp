@@ -10,6 +10,7 @@ namespace ovimap {
 
 namespace {
 
+constexpr const char* kAnyThing = "anything";
 constexpr std::size_t kMaxRelations = 16;  // in one query; more is no question but a text
 
 std::optional<QueryPhrase> parse_words(Words words, bool colors);
@@ -27,10 +28,16 @@ std::optional<Color> take_color(Words& words) {
   return color;
 }
 
-/// `[number] [superlative] [color] things [size]`, at least one thing.
+/// `[number] [superlative] [color] things [size] [text:"WRITING"]`, at least one thing or writing.
 std::optional<QueryPhrase> parse_things(Words words, bool colors) {
   words = without_articles(words);
   QueryPhrase phrase;
+  phrase.writing = take_writing(words);
+  if (words.empty() && !phrase.writing.empty()) {
+    phrase.things = kAnyThing;
+    phrase.anything = true;
+    return phrase;
+  }
   if (words.size() > 1) phrase.count = number_of(words[0]);
   if (phrase.count > 0) words = without_articles(words.subspan(1));
   if (words.size() > 1) phrase.superlative = superlative_of(words[0]);
@@ -150,6 +157,7 @@ std::string describe(const QueryPhrase& phrase) {
   if (phrase.size)
     text += concat(phrase.size->more ? " more" : " less", " than ", phrase.size->bound_m, " m ",
                    side_name(phrase.size->side));
+  if (!phrase.writing.empty()) text += concat(" with the text \"", phrase.writing, "\"");
   if (!phrase.relation) return text;
   text += std::string(phrase.negated ? " not " : " ") + relation_name(*phrase.relation) + " ";
   if (phrase.same_kind) return text + "two of " + describe(phrase.anchors[0]);

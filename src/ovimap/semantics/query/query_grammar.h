@@ -21,14 +21,15 @@ struct SizeBound {
   float bound_m = 0;
 };
 
-/// A query as understood: `[number] [superlative] [color] things [size] [[not] relation anchor [and
-/// anchor]]`. With things alone it is free text.
+/// A query as understood: `[number] [superlative] [color] things [size] [text:"WRITING"] [[not]
+/// relation anchor [and anchor]]`. With things alone it is free text.
 struct QueryPhrase {
   bool how_many = false;  ///< "how many chairs"
   int count = 0;          ///< "two chairs"; 0: not said
   std::optional<Superlative> superlative;
   std::optional<Color> color;
   std::optional<SizeBound> size;
+  std::string writing;    ///< what is written on it: text:"exit"; empty: not said
   std::string things;     ///< what is looked for; terms may be separated by commas
   bool anything = false;  ///< "object", "anything": geometry alone decides
   std::optional<Relation> relation;
@@ -37,7 +38,8 @@ struct QueryPhrase {
   bool same_kind = false;            ///< "between the chairs"
 
   bool free_text() const {
-    return !superlative && !relation && !color && !size && !how_many && count == 0;
+    return !superlative && !relation && !color && !size && !how_many && count == 0 &&
+           writing.empty();
   }
 };
 

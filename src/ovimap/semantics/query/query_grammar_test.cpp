@@ -55,6 +55,18 @@ TEST(QueryGrammar, ReadsSizes) {
     EXPECT_TRUE(parse_query(text).free_text()) << text;
 }
 
+TEST(QueryGrammar, ReadsWriting) {
+  EXPECT_EQ(reading("text:\"emergency exit\""), "[anything] with the text \"emergency exit\"");
+  EXPECT_EQ(reading("TEXT:exit"), "[anything] with the text \"exit\"");
+  EXPECT_EQ(reading("red box with the lid text:C++ on the shelf"),
+            "red [box with the lid] with the text \"C++\" on [shelf]");
+  EXPECT_EQ(reading("two books text:\"on tables\""), "2 [book] with the text \"on tables\"");
+  EXPECT_EQ(reading("text:exit sign"), "[sign] with the text \"exit\"");
+  EXPECT_EQ(parse_query("mug on the text:news").anchors.at(0).writing, "news");
+  for (const char* text : {"text:", "text: exit", "a text", "a text:exit sign here"})
+    EXPECT_TRUE(parse_query(text).free_text()) << text;
+}
+
 TEST(QueryGrammar, ReadsNumbers) {
   EXPECT_EQ(reading("the two mugs"), "2 [mug]");
   EXPECT_EQ(reading("3 red boxes on the shelf"), "3 red [box] on [shelf]");

@@ -51,11 +51,13 @@ void require_embedding_length(const SearchIndex& index, Eigen::Index length,
 
 TextMatcher::TextMatcher(const SearchIndex& index, ImageTextEncoder& encoder,
                          const QueryConfig& config, Embeddings vocabulary,
-                         std::span<const ObjectMeasures> measures)
+                         std::span<const ObjectMeasures> measures,
+                         std::span<const std::vector<WrittenLine>> writing)
     : index_(index),
       encoder_(encoder),
       config_(config),
       prompts_(prompts_of(encoder, config)),
+      writing_(writing.begin(), writing.end()),
       vocabulary_(std::move(vocabulary)) {
   require_embeddings(index);
   require_embedding_length(index, encoder.identity().dimension,
@@ -102,7 +104,20 @@ MatchScores TextMatcher::scores_of(const std::string& text, const Eigen::VectorX
   TextScores weighed = evidence_->weigh(text, row, scores.standard);
   scores.standard = std::move(weighed.standard);
   scores.log_odds = std::move(weighed.log_odds);
+  add_writing(text, scores);
   return scores;
+}
+
+/// What says "Dedalus" on it is the Dedalus box, whatever it looks like.
+void TextMatcher::add_writing(const std::string& text, MatchScores& scores) const {
+  const std::vector<std::u32string> words = written_words(text);
+  for (std::size_t i = 0; i < writing_.size(); ++i) {
+    if (writing_[i].empty()) continue;
+    const float said =
+        config_.evidence.writing_weight * match_writing(words, writing_[i]).share;
+    scores.standard[static_cast<Eigen::Index>(i)] += said;
+    scores.log_odds[static_cast<Eigen::Index>(i)] += said;
+  }
 }
 
 std::vector<std::string> TextMatcher::vocabulary_texts() {

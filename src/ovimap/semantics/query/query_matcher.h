@@ -9,6 +9,7 @@
 
 #include "ovimap/semantics/query/query_config.h"
 #include "ovimap/semantics/query/search_index.h"
+#include "ovimap/semantics/words/written_words.h"
 
 namespace ovimap {
 
@@ -27,9 +28,11 @@ class TextMatcher {
  public:
   /// `vocabulary`: embeddings of vocabulary_texts(); encoded here when it has no rows. Throws Error
   /// when the map has no embeddings or they are of another length than the encoder's or the
-  /// vocabulary's. `measures`: of each object, or none where sizes are not known.
+  /// vocabulary's. `measures`: of each object, or none where sizes are not known. `writing`: on each
+  /// object, or none where it was not read.
   TextMatcher(const SearchIndex& index, ImageTextEncoder& encoder, const QueryConfig& config,
-              Embeddings vocabulary, std::span<const ObjectMeasures> measures = {});
+              Embeddings vocabulary, std::span<const ObjectMeasures> measures = {},
+              std::span<const std::vector<WrittenLine>> writing = {});
 
   /// The unrelated words that calibrate the verdict.
   static std::vector<std::string> vocabulary_texts();
@@ -66,6 +69,7 @@ class TextMatcher {
   MatchScores scores_of(const std::string& text, const Eigen::VectorXf& row) const;
   MatchScores joined(std::span<const std::string> texts, const Embeddings& rows,
                      TermRule rule) const;
+  void add_writing(const std::string& text, MatchScores& scores) const;
   void weigh_evidence(std::span<const ObjectMeasures> measures);
   void apply_negatives(const MatchScores& negative, MatchScores& scores) const;
 
@@ -73,6 +77,7 @@ class TextMatcher {
   ImageTextEncoder& encoder_;
   QueryConfig config_;
   std::vector<std::string> prompts_;
+  std::vector<std::vector<WrittenLine>> writing_;
   Embeddings vocabulary_;
   std::optional<ScoreCalibration> calibration_;
   std::optional<TextEvidence> evidence_;

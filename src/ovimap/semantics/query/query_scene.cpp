@@ -9,6 +9,7 @@
 #include "ovimap/base/error.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/semantics/query/query_text.h"
+#include "ovimap/semantics/words/written_words.h"
 
 namespace ovimap {
 
@@ -70,6 +71,14 @@ void rate_size(const ObjectMeasures& measures, const SizeBound& size, Rating& ra
   const float excess = std::log(std::max(side_m, 1e-3f) / size.bound_m) / kDeviation;
   rating.score *= 1.f / (1.f + std::exp(size.more ? -excess : excess));
   add_evidence(rating.evidence, concat(std::round(100.f * side_m) / 100.f, " m ", side_name(size.side)));
+}
+
+/// What reads as half of the words is the border.
+void rate_writing(std::span<const std::u32string> wanted, std::span<const WrittenLine> lines,
+                  Rating& rating) {
+  const WritingMatch match = match_writing(wanted, lines);
+  rating.score *= match.share;
+  if (match.line) add_evidence(rating.evidence, concat("reads \"", match.line->text, "\""));
 }
 
 std::vector<std::size_t> positive(const Eigen::VectorXf& scores) {
@@ -165,14 +174,25 @@ PhraseMatch PhraseSearch::match_things(const QueryPhrase& phrase,
 void PhraseSearch::apply_attributes(const QueryPhrase& phrase, PhraseMatch& result) const {
   const bool colored = phrase.color && scene_.colors;
   const auto measures = phrase.size ? measure_objects(scene_.shapes) : std::vector<ObjectMeasures>{};
+  const std::vector<std::u32string> written = written_words(phrase.writing);
+  if (!phrase.writing.empty()) require_writing(phrase.writing);
   for (const std::size_t i : positive(result.scores)) {
     Rating rating;
     if (colored) rate_color(scene_.colors->shares()[i], *phrase.color, rating);
     if (phrase.size) rate_size(measures[i], *phrase.size, rating);
+    if (!phrase.writing.empty()) rate_writing(written, scene_.writing[i], rating);
     at(result.scores, i) *= rating.score;
     result.holds[i] = result.holds[i] && rating.score >= kBorder;
     if (!rating.evidence.empty()) add_evidence(result.evidence[i], rating.evidence);
   }
+}
+
+void PhraseSearch::require_writing(const std::string& wanted) const {
+  if (written_words(wanted).empty())
+    throw Error(concat("text:\"", wanted, "\" has no letter or number to look for"));
+  if (scene_.writing.empty())
+    throw Error(concat("what is written in this map was not read, so text:\"", wanted,
+                       "\" cannot be looked for; run `ovimap read` on it"));
 }
 
 void PhraseSearch::rate_by_text(const QueryPhrase& phrase, Role role, PhraseMatch& result) const {

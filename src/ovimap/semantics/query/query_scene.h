@@ -19,6 +19,7 @@ struct QueryScene {
   std::vector<ObjectShape> shapes;  ///< of each object of the index, by position
   GroundViewpoint viewpoint;        ///< for left, right, in front and behind
   std::shared_ptr<const ObjectColors> colors;  ///< of each object; null: not known
+  std::vector<std::vector<WrittenLine>> writing;  ///< on each object; empty: none was read
 };
 
 /// A scene of the objects' boxes, exact where an axis of the world is up.
@@ -58,11 +59,12 @@ class PhraseSearch {
                            Role role) const;
   PhraseMatch match_things(const QueryPhrase& phrase, const std::vector<std::string>& negatives,
                            Role role) const;
-  /// Lowers what has not the colour or the size that was asked for.
+  /// Lowers what has not the colour, the size or the writing that was asked for.
   void apply_attributes(const QueryPhrase& phrase, PhraseMatch& result) const;
   /// Takes away whatever one of the negatives is found to be.
   void leave_out(const std::vector<std::string>& negatives, PhraseMatch& result) const;
   const TextMatcher& needed_matcher(const std::string& what) const;
+  void require_writing(const std::string& wanted) const;
   void rate_by_text(const QueryPhrase& phrase, Role role, PhraseMatch& result) const;
   void apply_pairs(const QueryPhrase& phrase, const PhraseMatch& anchors,
                    PhraseMatch& result) const;

@@ -192,6 +192,28 @@ TEST_F(QuerySceneTest, WithoutEncoderOnlyGeometryCanBeAsked) {
   EXPECT_THROW(engine.find({"tallest chair", {}}), Error);
 }
 
+TEST_F(QuerySceneTest, FindsWhatIsWritten) {
+  EXPECT_THROW(engine_->find({"text:hot", {}}), Error);  // nobody read it
+  QueryScene scene = scene_of_boxes(index_, Eigen::Vector3f::UnitZ());
+  scene.writing.resize(index_.size());
+  scene.writing[3] = {{"HOT", 0.9f, {}}};       // mug 4
+  scene.writing[10] = {{"Dedalus", 0.8f, {}}};  // bucket 11
+  const QueryEngine engine(index_, &encoder_, {}, Embeddings{}, scene);
+  const QueryAnswer hot = engine.find({"text:\"hot\"", {}});
+  EXPECT_EQ(hot.verdict, Verdict::kFound);
+  ASSERT_EQ(hot.matches.size(), 1u);
+  EXPECT_EQ(hot.matches[0].id, 4u);
+  EXPECT_EQ(hot.matches[0].evidence, "reads \"HOT\"");
+  EXPECT_EQ(engine.find({"mug text:hot", {}}).matches.at(0).id, 4u);
+  EXPECT_EQ(engine.find({"text:\"cold\"", {}}).verdict, Verdict::kNotInMap);
+  EXPECT_THROW(engine.find({"text:\"...\"", {}}), Error);
+  // A word that no picture shows is evidence where it is written.
+  EXPECT_EQ(engine.find({"the dedalus bucket", {}}).matches.at(0).id, 11u);
+  EXPECT_GT(engine.find({"dedalus", {}}).matches.at(0).standard_score,
+            engine_->find({"dedalus", {}}).matches.at(0).standard_score + 1.f);
+  EXPECT_EQ(engine.find({"dedalus", {}}).matches.at(0).id, 11u);
+}
+
 TEST_F(QuerySceneTest, ThreadsDoNotChangeTheAnswer) {
   const QueryAnswer many = engine_->find({"anything near the table", {}, true});
   const ThreadLimit one(1);

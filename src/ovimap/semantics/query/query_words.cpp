@@ -264,6 +264,19 @@ std::optional<SizeBound> take_size(Words& words) {
   return std::nullopt;
 }
 
+std::string take_writing(Words& words) {
+  constexpr std::string_view kMark = "text:";
+  const auto marked = [&](const std::string& word) {
+    return word.size() > kMark.size() && lower_case(word).starts_with(kMark);
+  };
+  if (words.empty() || !(marked(words.back()) || marked(words.front()))) return {};
+  const bool last = marked(words.back());
+  std::string writing = (last ? words.back() : words.front()).substr(kMark.size());
+  std::erase(writing, '"');
+  words = last ? without_fillers(words.first(words.size() - 1)) : words.subspan(1);
+  return writing;
+}
+
 std::string singular(Words words) {
   std::string text = joined(words.first(words.size() - 1));
   return text + (text.empty() ? "" : " ") + singular(words.back());

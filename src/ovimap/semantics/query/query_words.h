@@ -50,6 +50,9 @@ int number_of(const std::string& word);
 /// Takes "[that is] longer than 1.5 m" off the end.
 std::optional<SizeBound> take_size(Words& words);
 
+/// Takes text:"WRITING" or text:WRITING off the end or the front; what is written, or nothing.
+std::string take_writing(Words& words);
+
 /// With its last word in the singular, as good as it goes without a dictionary.
 std::string singular(Words words);
 

@@ -44,6 +44,8 @@ void list_fields(EvidenceConfig& config, ConfigFields& fields) {
              "weight of size and place beside the picture; 0: the picture alone");
   fields.add("most_size_ratio", config.most_size_ratio, 0.f, 100.f,
              "what size and place may say at most, log likelihood");
+  fields.add("writing_weight", config.writing_weight, 0.f, 100.f,
+             "what a text that is written on the object adds to its score; 0: nothing");
   fields.add("competition", config.competition, 0.f, 1.f,
              "how much better words for an object take from a text; 0: nothing");
   fields.add("odds_scale", config.odds_scale, 0.01f, 100.f,

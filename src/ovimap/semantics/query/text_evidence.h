@@ -20,6 +20,7 @@ class ConfigFields;
 struct EvidenceConfig {
   float size_weight = 0.5f;        ///< of size and place beside the picture; 0: the picture alone
   float most_size_ratio = 3.f;     ///< what they may say at most, in log likelihood
+  float writing_weight = 3.f;      ///< of words that are written on the object; 0: none
   float competition = 0.5f;        ///< how much other words for an object take from a text; 0: none
   float odds_scale = 1.f;          ///< probability of a match: sigmoid(scale * log odds + offset)
   float odds_offset = 2.3f;        ///< fitted on generated rooms (docs/experiments.md)

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "ovimap/inference/encoders/image_text_encoder.h"
+#include "ovimap/inference/writing/writing_reader.h"
 #include "ovimap/instance/instance_summary.h"
 #include "ovimap/semantics/views/object_crop.h"
 #include "ovimap/semantics/views/sphere_grid.h"
@@ -58,6 +59,7 @@ struct ObjectView {
   StoredCrop crop;            ///< empty unless among the super-point's largest
   Label super_point = kNoLabel;
   ViewDirections directions;
+  std::vector<WrittenLine> writing = {};  ///< read in the crop, within its pixels
 
   ViewKey key() const { return {frame, super_point}; }
 };
@@ -81,6 +83,9 @@ struct Appearance {
 
 /// The look of an object that consists of these super-points (roots).
 Appearance appearance_of(const SuperPointLooks& looks, std::span<const Label> super_points);
+
+/// What is written on it, by all its views: surest_readings.
+std::vector<WrittenLine> writing_of(const Appearance& appearance);
 
 /// One embedding of the views that have one, of length 1; empty when none has.
 Eigen::VectorXf fuse_views(std::span<const ObjectView* const> views, const ViewFusion& fusion);

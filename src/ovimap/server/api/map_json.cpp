@@ -93,6 +93,16 @@ json crops_of(const MapSnapshot& now, const InstanceSummary& instance) {
   return ordinals;
 }
 
+/// Readings of what is written on it, surest first.
+json writing_of(const MapSnapshot& now, InstanceId id) {
+  json list = json::array();
+  const auto& known = now.objects->info.writing;
+  if (const auto lines = known.find(id); lines != known.end())
+    for (const WrittenLine& line : lines->second)
+      list.push_back({{"text", line.text}, {"confidence", number(line.confidence)}});
+  return list;
+}
+
 json instance_json(const MapSnapshot& now, std::size_t position) {
   const InstanceSummary& instance = now.record->instances[position];
   return {{"id", instance.id},
@@ -106,7 +116,8 @@ json instance_json(const MapSnapshot& now, std::size_t position) {
           {"points", instance.points},
           {"views", instance.views},
           {"locked", now.record->locked.contains(instance.id)},
-          {"crops", crops_of(now, instance)}};
+          {"crops", crops_of(now, instance)},
+          {"writing", writing_of(now, instance.id)}};
 }
 
 std::size_t position_of(const MapSnapshot& now, InstanceId id) {

@@ -23,6 +23,11 @@ ConnectionConfig connection_config_of(const ServerConfig& config) {
   return connection;
 }
 
+/// Encrypted connections keep buffers of their own before anybody said a word.
+std::size_t allowed(int connections, const ServerConfig& config) {
+  return static_cast<std::size_t>(config.encrypted() ? connections / 2 : connections);
+}
+
 const ServerConfig& checked(const ServerConfig& config) {
   if (!config.token.empty()) check_token(config.token);
   if (config.token.empty() && !is_loopback(config.host))
@@ -41,8 +46,7 @@ struct HttpServer::Parts : ConnectionHost {
         connection(connection_config_of(given)),
         requests(map, given, intake),
         loop({given.host, given.port, given.tls_certificate, given.tls_key}),
-        table(static_cast<std::size_t>(given.max_connections),
-              static_cast<std::size_t>(given.max_connections_of_one)),
+        table(allowed(given.max_connections, given), allowed(given.max_connections_of_one, given)),
         // Each connection asks for one thing at a time.
         little(kLittleThreads, static_cast<std::size_t>(given.max_connections)),
         large(kLargeThreads, static_cast<std::size_t>(given.max_connections)),
