@@ -269,7 +269,10 @@ def test_a_pose_that_says_nothing_is_not_sent(sender):
     assert (sender.taken, sender.skipped) == (0, 0)
 
 
-def test_depth_is_encoded_without_loss(sender):
+@pytest.mark.parametrize("compress", [False, True])
+def test_depth_is_encoded_without_loss(sender, compress):
+    assert not sender._compress_depth  # on one machine
+    sender._compress_depth = compress
     random = np.random.default_rng(5)
     for shape in ((2, 4), (1, 1), (37, 3), (480, 640)):
         depth = random.integers(0, 65536, shape).astype(np.uint16)
