@@ -413,6 +413,7 @@ def test_oak_messages_become_a_rig_and_images():
 def test_orbbec_frames_become_a_rig_and_images():
     ob = pytest.importorskip("pyorbbecsdk", reason="pyorbbecsdk2 is not installed; docs/cameras.md says how")
     from ovimap.cameras.orbbec import images_of, rig_of_frames
+    ob.Context.set_logger_to_file(ob.OBLogLevel.NONE, "")  # else it leaves a folder Log here
 
     def frame(kind, pixels, focal, **lens):
         form, said = (ob.OBFormat.Y16, ob.OBFrameType.DEPTH_FRAME) if kind == "depth" else (ob.OBFormat.RGB, ob.OBFrameType.COLOR_FRAME)
