@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._ovimap import Error
+from .distortion import distortion_of
 
 IMAGES = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")
 CAMERA = "sensor_msgs/msg/CameraInfo"
@@ -95,6 +96,26 @@ def distortion_notice(topic: str, info: Any) -> str:
     if abs(largest) < LEAST_DISTORTION or "rect" in topic:
         return ""
     return f"{topic} is distorted (its largest coefficient is {largest:g}), which is not corrected; rectified images give sharper maps"
+
+
+ROS_LENSES = {"plumb_bob": ("brown_conrady", 5), "rational_polynomial": ("brown_conrady", 8), "equidistant": ("kannala_brandt", 4),
+              "fisheye": ("kannala_brandt", 4)}  # fmt: skip
+
+
+def lens_of(topic: str, info: Any) -> dict[str, Any]:
+    """The key `distortion` of a camera file for the images of a topic; empty where they have none. Raises Error for a lens that is not read.
+
+    Images that were rectified come with the camera_info of those that were not, so the topic's name decides."""
+    numbers = np.asarray(field_of(info, "d"), np.float64).ravel().tolist()
+    if "rect" in topic or (not any(numbers) and info.distortion_model not in ("equidistant", "fisheye")):
+        return {}
+    model, count = ROS_LENSES.get(info.distortion_model, ("", 0))
+    if not model or any(numbers[count:]):
+        raise Error(
+            f"the lens of {topic} has the model '{info.distortion_model}' with {len(numbers)} coefficients, which is not read; accepted are "
+            f"{', '.join(ROS_LENSES)}, or record rectified images"
+        )
+    return distortion_of(model, (numbers + count * [0.0])[:count])
 
 
 def vector(value: Any) -> tuple[float, float, float]:

@@ -26,9 +26,9 @@ from .bag_messages import (
     POSES,
     TRANSFORMS,
     Bag,
-    distortion_notice,
     field_of,
     is_depth,
+    lens_of,
     quaternion,
     raw_color,
     raw_depth,
@@ -79,6 +79,7 @@ class Stream:
                 f"{self.info_topic} holds no calibration ({info.width}x{info.height}, fx {k[0]:g}, fy {k[4]:g}); calibrate the "
                 "camera, give its driver the result, and record the bag anew"
             )
+        lens_of(self.topic, info)  # what is not read is told before the images are
         self.info = info
 
     def check_clock(self, time_ns: int, received_ns: int) -> None:
@@ -155,7 +156,7 @@ def convert(bag: str | os.PathLike[str], out: str | os.PathLike[str], *, topics:
     """Writes a bag's frames as a folder that ovimap.open_source reads: colour, depth, poses.txt, camera.yaml.
 
     bag: a .bag file, a ROS 2 bag's folder, or an .mcap file. Poses come from tf, odometry or stamped poses; images
-    stay as they were compressed. Returns {"source", "frames", "left_out", "color", "depth", "world", "notices"}.
+    stay as they were compressed. Returns {"source", "frames", "left_out", "color", "depth", "world"}.
     Raises Error for a bag that is cut off, whose clock jumps, or that lacks images, camera_info with a calibration or
     poses, and where `topics` must choose; OSError for a folder that cannot be written.
     """
@@ -290,7 +291,6 @@ def _write_folder(folder: pathlib.Path, color: Stream, depth: Stream, tree: Tran
         )
     (folder / "poses.txt").write_text("".join(lines))
     offset = _color_from_depth(tree, color, depth)
-    notices = [notice for stream in (color, depth) if (notice := distortion_notice(stream.topic, stream.info))]
     (folder / "camera.yaml").write_text(_camera_text(color, depth, offset))
     return {
         "source": str(folder),
@@ -299,7 +299,6 @@ def _write_folder(folder: pathlib.Path, color: Stream, depth: Stream, tree: Tran
         "color": color.topic,
         "depth": depth.topic,
         "world": world,
-        "notices": notices,
     }
 
 
@@ -347,7 +346,8 @@ def _camera_text(color: Stream, depth: Stream, offset: Matrix) -> str:
         k = field_of(stream.info, "k")
         figures = {"fx": k[0], "fy": k[4], "cx": k[2], "cy": k[5]}
         text = ", ".join(f"{name}: {float(value)!r}" for name, value in figures.items())
-        return f"{{width: {stream.info.width}, height: {stream.info.height}, {text}{more}}}"
+        lens = "".join(f", {key}: {json.dumps(value)}" for key, value in lens_of(stream.topic, stream.info).items())
+        return f"{{width: {stream.info.width}, height: {stream.info.height}, {text}{lens}{more}}}"
 
     turn = ", ".join(repr(float(value)) for value in rotation_vector_of(offset))
     shift = ", ".join(repr(float(value)) for value in offset[:3, 3])
@@ -366,8 +366,6 @@ def main(arguments: list[str] | None = None) -> int:
 def _command(options: argparse.Namespace) -> int:
     topics = Topics(options.color, options.depth, options.poses, options.world)
     done = convert(options.bag, options.out, topics=topics)
-    for notice in done["notices"]:
-        print(f"ovimap-bag: {notice}", file=sys.stderr)
     print(json.dumps(done) if options.json else f"{done['source']}: {done['frames']} frames, {done['left_out']} left out")
     return DONE
 

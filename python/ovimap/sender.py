@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
 """Sends a camera's frames to `ovimap serve --live http -o MAP` (docs/live.md). Needs NumPy alone, and Pillow for
-pictures that come as arrays: this file may be copied to the machine that has the camera."""
+colour that comes as arrays: this file may be copied to the machine that has the camera."""
 
 from __future__ import annotations
 
@@ -10,9 +10,11 @@ import io
 import json
 import selectors
 import ssl
+import struct
 import time
 import urllib.parse
 import uuid
+import zlib
 from collections.abc import Mapping
 from typing import Any
 
@@ -43,6 +45,7 @@ class FrameSender:
         alike, as a dict or a PinholeCamera; or what camera.yaml may hold: {"camera": {...}}, or "depth_camera", "color_camera",
         "color_from_depth", "poses".
     jpeg_quality: of colour that comes as an array.
+    compress_depth: of depth that comes as an array; None: unless the server is on this machine, where it would cost more than it saves.
     cafile: PEM file of the certificates to trust, for a server with one of its own ("https://..."); else the system's.
 
     Raises ValueError for an address or camera that is not whole, SendError when the server refuses the camera, OSError when it
@@ -50,7 +53,7 @@ class FrameSender:
     """
 
     def __init__(self, url: str, camera: Mapping[str, Any] | object, *, jpeg_quality: int = 92, timeout_s: float = 20,
-                 cafile: str | None = None) -> None:  # fmt: skip
+                 cafile: str | None = None, compress_depth: bool | None = None) -> None:  # fmt: skip
         parts = _address(url)
         tokens = urllib.parse.parse_qs(parts.query).get("token")
         self._headers = {"Authorization": f"Bearer {tokens[0]}"} if tokens else {}
@@ -65,6 +68,7 @@ class FrameSender:
         both: dict[str, Any] = rig.get("camera", {})
         self._units_per_m = float({**both, **rig.get("depth_camera", {})}.get("depth_scale", 1000))
         self._jpeg_quality = jpeg_quality
+        self._compress_depth = not _is_this_machine(host) if compress_depth is None else compress_depth
         self.taken = self.skipped = 0
         self._heard = 0.0  # when the last answer came
         self._post_json("/api/camera", rig)
@@ -124,7 +128,7 @@ class FrameSender:
             raise TypeError(f"color must be uint8 or the bytes of a JPEG or PNG; it is {_type_of(color)}")
         if color.ndim != 3 or color.shape[2] != 3:
             raise ValueError(f"color must be [height, width, 3], red first; its shape is {list(color.shape)}")
-        return _encoded(color, "JPEG", quality=self._jpeg_quality, subsampling=0)
+        return _jpeg(color, self._jpeg_quality)
 
     def _depth(self, depth: npt.NDArray[Any] | bytes) -> bytes:
         if isinstance(depth, bytes):
@@ -136,7 +140,7 @@ class FrameSender:
         if depth.dtype.kind == "f":
             units = depth.astype(np.float64) * self._units_per_m
             depth = np.where((units > 0) & (units < 65535), np.rint(units), 0)
-        return _encoded(depth.astype(np.uint16), "PNG", compress_level=1)
+        return _gray_png(depth.astype(np.uint16), compress=self._compress_depth)
 
     def _offer(self, body: bytes, headers: dict[str, str]) -> bool:
         status, reply = self._ask("POST", "/api/frames", body, headers, again=False)
@@ -249,15 +253,39 @@ def _type_of(picture: Any) -> str:
     return picture.dtype.name if isinstance(picture, np.ndarray) else type(picture).__name__
 
 
-def _encoded(picture: npt.NDArray[Any], kind: str, **options: int) -> bytes:
+def _jpeg(picture: npt.NDArray[np.uint8], quality: int) -> bytes:
     try:
         from PIL import Image
     except ModuleNotFoundError as fault:
-        message = "sending arrays needs Pillow; run `pip install pillow`, or send the bytes of JPEG and PNG files"
+        message = "sending colour as an array needs Pillow; run `pip install pillow`, or send the bytes of JPEG and PNG files"
         raise ModuleNotFoundError(message, name=fault.name) from None
     out = io.BytesIO()
-    Image.fromarray(np.ascontiguousarray(picture)).save(out, kind, **options)
+    Image.fromarray(np.ascontiguousarray(picture)).save(out, "JPEG", quality=quality, subsampling=0)
     return out.getvalue()
+
+
+def _is_this_machine(host: str) -> bool:
+    return host in ("localhost", "::1") or host.startswith("127.")
+
+
+def _gray_png(picture: npt.NDArray[np.uint16], *, compress: bool) -> bytes:
+    """Compressed as small as what libraries make at their fastest, in less than half the time: rows are filtered at once (each less the
+    one above), and as depth is too noisy for repetitions none are looked for."""
+    height, width = picture.shape
+    stored = picture.astype(">u2").view(np.uint8).reshape(height, 2 * width)
+    rows = np.empty((height, 1 + 2 * width), np.uint8)
+    rows[:, 0] = 2 if compress else 0  # the filter's number
+    rows[:, 1:] = stored
+    if compress:
+        rows[1:, 1:] -= stored[:-1]
+    deflate = zlib.compressobj(1 if compress else 0, zlib.DEFLATED, zlib.MAX_WBITS, zlib.DEF_MEM_LEVEL, zlib.Z_HUFFMAN_ONLY)
+    header = struct.pack(">IIBBBBB", width, height, 16, 0, 0, 0, 0)
+    chunks = ((b"IHDR", header), (b"IDAT", deflate.compress(rows.tobytes()) + deflate.flush()), (b"IEND", b""))
+    return b"\x89PNG\r\n\x1a\n" + b"".join(_chunk(name, content) for name, content in chunks)
+
+
+def _chunk(name: bytes, content: bytes) -> bytes:
+    return struct.pack(">I", len(content)) + name + content + struct.pack(">I", zlib.crc32(content, zlib.crc32(name)))
 
 
 def _multipart(parts: dict[str, bytes]) -> tuple[bytes, str]:

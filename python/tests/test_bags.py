@@ -5,11 +5,14 @@ import dataclasses
 import json
 import subprocess
 import sys
+import types
 
 import numpy as np
 import ovimap
 import pytest
+import yaml
 from bag_fixture import START_NS, STEP_NS, Options, Shot, record
+from ovimap.bag_messages import lens_of
 from ovimap.bags import Stream, Topics, convert, main
 from ovimap.transforms import between, matrix_of, quaternion_of
 from PIL import Image
@@ -229,11 +232,36 @@ def test_an_output_that_cannot_be_written_is_one_line(shots, camera, tmp_path, c
     assert not (tmp_path / "full").exists()
 
 
-def test_what_is_not_corrected_is_told(shots, camera, tmp_path, capsys):
-    bag = str(record(tmp_path / "a", shots[:3], camera, Options(distortion=0.1)))
-    assert main([bag, str(tmp_path / "out")]) == 0
-    said, told = capsys.readouterr()
-    assert "3 frames" in said and "ovimap-bag: /depth/image is distorted (its largest coefficient is 0.1)" in told
+def test_the_lens_of_camera_info_is_taken_along(shots, camera, tmp_path):
+    read = {}
+    for distortion in (0.0, 0.1):
+        bag, out = record(tmp_path / f"a{distortion}", shots[:3], camera, Options(distortion=distortion)), tmp_path / f"out{distortion}"
+        convert(bag, out)
+        given = yaml.safe_load((out / "camera.yaml").read_text())
+        lenses = [given[name].get("distortion") for name in ("color_camera", "depth_camera")]
+        assert lenses == 2 * [{"model": "brown_conrady", "coefficients": 5 * [0.1]} if distortion else None]
+        read[distortion] = list(ovimap.open_source(out).frames())
+    assert len(read[0.1]) == 3 and not np.array_equal(read[0.0][0].depth, read[0.1][0].depth)
+
+
+@pytest.mark.parametrize("topic, model, d, expected", [
+    ("/a/image_raw", "plumb_bob", [0.1, 0, 0, 0.2], ("brown_conrady", [0.1, 0, 0, 0.2, 0])),
+    ("/a/image_raw", "rational_polynomial", [1, 2, 3, 4, 5, 6, 7, 8, 0, 0, 0, 0], ("brown_conrady", [1, 2, 3, 4, 5, 6, 7, 8])),
+    ("/a/image_raw", "equidistant", [0, 0, 0, 0], ("kannala_brandt", [0, 0, 0, 0])),
+    ("/a/image_rect", "plumb_bob", [0.1, 0, 0, 0.2, 0], None),
+    ("/a/image_raw", "plumb_bob", [0, 0, 0, 0, 0], None),
+    ("/a/image_raw", "", [], None),
+])  # fmt: skip
+def test_lenses_by_ross_names(topic, model, d, expected):
+    info = types.SimpleNamespace(distortion_model=model, d=np.array(d, np.float64))
+    found = lens_of(topic, info).get("distortion")
+    assert found == (expected and {"model": expected[0], "coefficients": expected[1]})
+
+
+@pytest.mark.parametrize("model, d", [("scaramuzza", [1, 2]), ("rational_polynomial", 8 * [0] + 4 * [0.1])])
+def test_lenses_that_are_not_read_are_told(model, d):
+    with pytest.raises(ovimap.Error, match=f"the lens of /a has the model '{model}' with {len(d)} coefficients, which is not read"):
+        lens_of("/a", types.SimpleNamespace(distortion_model=model, D=np.array(d, np.float64)))
 
 
 def test_rotations_survive_as_quaternions():

@@ -4,6 +4,7 @@
 import contextlib
 import http.server
 import importlib.util
+import io
 import json
 import os
 import pathlib
@@ -19,6 +20,7 @@ import numpy as np
 import ovimap
 import pytest
 from ovimap.sender import FrameSender, SendError
+from PIL import Image
 
 PROGRAM = os.environ.get("OVIMAP_PROGRAM")
 FRAMES = 12
@@ -267,21 +269,33 @@ def test_a_pose_that_says_nothing_is_not_sent(sender):
     assert (sender.taken, sender.skipped) == (0, 0)
 
 
-def test_the_file_works_alone_and_needs_pillow_for_arrays_only(tmp_path):
+@pytest.mark.parametrize("compress", [False, True])
+def test_depth_is_encoded_without_loss(sender, compress):
+    assert not sender._compress_depth  # on one machine
+    sender._compress_depth = compress
+    random = np.random.default_rng(5)
+    for shape in ((2, 4), (1, 1), (37, 3), (480, 640)):
+        depth = random.integers(0, 65536, shape).astype(np.uint16)
+        assert np.array_equal(decoded(sender, depth), depth)
+        assert np.array_equal(np.asarray(Image.open(io.BytesIO(sender._depth(depth)))), depth)
+
+
+def test_the_file_works_alone_and_needs_pillow_for_colour_as_arrays_only(tmp_path):
     script = """
 import sys, numpy
 sys.modules["PIL"] = None  # as where it is not installed
 from sender import FrameSender
 sender = FrameSender(sys.argv[1], dict(width=4, height=2, fx=5, fy=5, cx=1.5, cy=0.5))
 print(sender.send(b"color", b"depth", numpy.eye(4)))
-sender.send(b"color", numpy.ones((2, 4)), numpy.eye(4))
+print(sender.send(b"color", numpy.ones((2, 4)), numpy.eye(4)))
+sender.send(numpy.zeros((2, 4, 3), numpy.uint8), b"depth", numpy.eye(4))
 """
     shutil.copy(pathlib.Path(ovimap.__file__).with_name("sender.py"), tmp_path)
     server = Scripted(lambda path, count: 200)
     done = subprocess.run([sys.executable, "-c", script, server.address], cwd=tmp_path, capture_output=True, text=True, env={"PATH": ""})
     server.end()
-    assert done.stdout == "True\n" and "ovimap" not in done.stderr
-    assert done.stderr.splitlines()[-1].startswith("ModuleNotFoundError: sending arrays needs Pillow; run `pip install pillow`")
+    assert done.stdout == "True\nTrue\n" and "ovimap" not in done.stderr
+    assert done.stderr.splitlines()[-1].startswith("ModuleNotFoundError: sending colour as an array needs Pillow; run `pip install pillow`")
 
 
 def test_a_frame_whose_answer_is_lost_is_not_sent_twice():

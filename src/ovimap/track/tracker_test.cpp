@@ -53,6 +53,17 @@ TEST_F(TrackerTest, FollowsEveryThirdFrame) {
   }
 }
 
+TEST_F(TrackerTest, TakesImagesOfAnySize) {
+  camera_.camera = {64, 48, 56.f, 56.f, 31.5f, 23.5f};
+  for (int i = 0; i < 10; ++i) {
+    const TrackedFrame& tracked = see(fixture::room_pose(i));
+    ASSERT_TRUE(tracked.tracked) << i;
+    EXPECT_LT(off_m(tracked, fixture::room_pose(i)), 0.05) << i;
+  }
+  camera_.camera = {1, 1, 1.f, 1.f, 0.f, 0.f};
+  EXPECT_FALSE(see(fixture::room_pose(10)).tracked);
+}
+
 TEST_F(TrackerTest, FollowsAFastPan) {  // 120 degrees a second at 30 frames a second
   for (int i = 0; i < 30; ++i) {
     Pose pose = fixture::room_pose(0);

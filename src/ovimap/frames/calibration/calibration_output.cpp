@@ -93,8 +93,12 @@ std::string calibrated_text(const std::filesystem::path& present,
     root["depth_camera"] = flow_map();
     set_camera(root["depth_camera"], calibration.depth_camera);
   }
+  const YAML::Node given = root["color_camera"];
+  const YAML::Node lens =
+      given && given["distortion"] ? YAML::Clone(given["distortion"]) : YAML::Node();
   root["color_camera"] = flow_map();
   set_camera(root["color_camera"], calibration.found.camera);
+  if (lens.IsMap()) root["color_camera"]["distortion"] = lens;
   const Pose& offset = calibration.found.color_from_depth;
   const Eigen::AngleAxisd rotation(offset.linear());
   root["color_from_depth"] = flow_map();

@@ -229,7 +229,8 @@ TEST(ColorCalibration, TextKeepsTheOtherKeys) {
   EXPECT_EQ(rig.depth_units_per_m, 1000);
 
   fixture::write_text(file,
-                      "depth_camera: {fx: 300, depth_scale: 5000}\ncolor_camera: {fx: 7}\n"
+                      "depth_camera: {fx: 300, depth_scale: 5000}\n"
+                      "color_camera: {fx: 7, distortion: {coefficients: [.1, 0, 0, 0, 0]}}\n"
                       "poses: {direction: camera_from_world}\n");
   fixture::write_text(file, calibrated_text(file, result));
   CameraRig kept;
@@ -238,6 +239,7 @@ TEST(ColorCalibration, TextKeepsTheOtherKeys) {
   EXPECT_EQ(kept.depth_units_per_m, 5000);
   EXPECT_EQ(kept.poses.direction, PoseConvention::Direction::kCameraFromWorld);
   EXPECT_EQ(kept.color_camera, result.found.camera);
+  EXPECT_EQ(kept.color_lens, (Lens{Lens::Model::kBrownConrady, {.1}}));
 
   fixture::write_text(file, "depth_camera: {fx: [\n");
   EXPECT_THROW(calibrated_text(file, result), Error);

@@ -17,8 +17,10 @@ bool is_given(const PinholeCamera& camera) {
 }
 
 CameraRig completed(CameraRig rig) {
-  if (!is_given(rig.color_camera)) rig.color_camera = rig.depth_camera;
-  if (!is_given(rig.depth_camera)) rig.depth_camera = rig.color_camera;
+  if (!is_given(rig.color_camera))
+    rig.color_camera = rig.depth_camera, rig.color_lens = rig.depth_lens;
+  if (!is_given(rig.depth_camera))
+    rig.depth_camera = rig.color_camera, rig.depth_lens = rig.color_lens;
   const auto check = [](const PinholeCamera& camera, const char* name) {
     if (!camera.valid())
       throw Error(concat("the ", name,
@@ -77,7 +79,7 @@ DepthImage DepthUnits::metres(const Image<std::uint16_t>& stored) const {
 }
 
 FrameDecoder::FrameDecoder(const CameraRig& rig, const FrameSourceConfig& config)
-    : rig_(completed(rig)), config_(config), units_(rig_, config) {}
+    : rig_(completed(rig)), config_(config), units_(rig_, config), rectification_(rig_) {}
 
 Frame FrameDecoder::decode(std::span<const std::uint8_t> color, std::span<const std::uint8_t> depth,
                            const std::optional<Eigen::Matrix4d>& pose) const {
@@ -95,6 +97,7 @@ Frame FrameDecoder::decode(std::span<const std::uint8_t> color, std::span<const 
     throw Error(
         concat("depth has no value from ", config_.min_depth_m, " to ", config_.max_depth_m, " m"));
   frame.color = named("color", [&] { return decode_color(color, frame.color_camera); });
+  rectification_.apply(frame);
   return frame;
 }
 

@@ -9,6 +9,7 @@
 
 #include "ovimap/frames/frame/camera_rig.h"
 #include "ovimap/frames/frame/frame_source.h"
+#include "ovimap/frames/frame/rectification.h"
 
 namespace ovimap {
 
@@ -34,10 +35,10 @@ class DepthUnits {
 };
 
 /// Makes frames of what a camera's driver hands over: encoded images and poses as the rig's
-/// convention gives them. Thread-safe.
+/// convention gives them, rectified. Thread-safe.
 class FrameDecoder {
  public:
-  /// Throws Error when a camera of the rig is not known whole. One that is missing is taken to be
+  /// Throws Error when a camera of the rig is not known whole or its distortion cannot be its own. One that is missing is taken to be
   /// the other, where both have images of one size.
   FrameDecoder(const CameraRig& rig, const FrameSourceConfig& config = {});
 
@@ -54,6 +55,7 @@ class FrameDecoder {
   CameraRig rig_;
   FrameSourceConfig config_;
   DepthUnits units_;
+  RigRectification rectification_;
 };
 
 }  // namespace ovimap

@@ -41,6 +41,28 @@ TEST(FrameDecoder, GivesWhatTheReadersGive) {
   EXPECT_EQ(made.world_from_camera.matrix(), read.world_from_camera.matrix());
 }
 
+TEST(FrameDecoder, RectifiesAsReadersDo) {
+  fixture::Sequence sequence;
+  const fixture::TemporaryFolder folder;
+  fixture::write_seven_scenes(folder.path(), sequence);
+  const Frame bent = *open_frame_source(folder.path())->read(3).frame;
+  fixture::write_text(folder.path() / "camera.yaml",
+                      "camera: {distortion: {coefficients: [-.3, .1, .001, .002, -.01]}}\n");
+  const FrameRead straight = open_frame_source(folder.path())->read(3);
+  ASSERT_TRUE(straight.frame) << straight.fault;
+  const Frame& read = *straight.frame;
+  CameraRig rig = rig_of(sequence);
+  rig.depth_lens = {Lens::Model::kBrownConrady, {-.3, .1, .001, .002, -.01}};
+  const Frame made =
+      FrameDecoder(rig).decode(encode_png(sequence.color(3)), encode_png(sequence.stored_depth(3)),
+                               sequence.pose(3));
+  EXPECT_EQ(made.color, read.color);
+  EXPECT_EQ(made.depth, read.depth);
+  EXPECT_EQ(made.color, Rectification(rig.depth_camera, rig.depth_lens, "").color(bent.color));
+  EXPECT_EQ(made.depth, Rectification(rig.depth_camera, rig.depth_lens, "").depth(bent.depth));
+  EXPECT_NE(made.depth, bent.depth);
+}
+
 TEST(FrameDecoder, SaysWhatIsWrongWithAFrame) {
   fixture::Sequence sequence;
   const FrameDecoder decoder(rig_of(sequence));

@@ -23,6 +23,7 @@ constexpr double kLargest = std::numeric_limits<float>::max();
 const std::vector<std::string> kDirections = {"world_from_camera", "camera_from_world"};
 const std::vector<std::string> kAxes = {"opencv", "opengl", "ros"};
 const std::vector<std::string> kCameras = {"depth", "color"};
+const std::vector<std::string> kLensModels = {"none", "brown_conrady", "kannala_brandt"};
 
 /// One mapping of a calibration file, with its dotted name for messages.
 class Section {
@@ -60,6 +61,19 @@ class Section {
     Eigen::Vector3d vector;
     for (int i = 0; i < 3; ++i) vector[i] = number(key, list[i], -kLargest, kLargest, false);
     return vector;
+  }
+
+  /// As many finite numbers as one of `counts`, or none where the key is absent.
+  std::vector<double> read_numbers(const std::string& key, const std::vector<std::size_t>& counts,
+                                   const std::string& accepted) const {
+    const YAML::Node list = node_[key];
+    const std::size_t count = list.IsDefined() && list.IsSequence() ? list.size() : 0;
+    if (std::find(counts.begin(), counts.end(), count) == counts.end())
+      fail(dotted(key), has(key) ? text_of(list) : "", accepted);
+    std::vector<double> numbers;
+    for (const YAML::Node& item : list)
+      numbers.push_back(number(key, item, -kLargest, kLargest, false));
+    return numbers;
   }
 
   void read_list(const std::string& key, std::vector<std::uint16_t>& values) const {
@@ -119,7 +133,22 @@ class Section {
   YAML::Node node_;
 };
 
-void read_camera(const Section& section, PinholeCamera& camera) {
+Lens read_lens(const Section& section) {
+  section.check_keys({"model", "coefficients"});
+  Lens lens;
+  lens.model = Lens::Model::kBrownConrady;
+  section.read_choice("model", lens.model, kLensModels);
+  if (lens.model == Lens::Model::kStraight) return lens;
+  const bool fisheye = lens.model == Lens::Model::kKannalaBrandt;
+  const std::vector<double> numbers =
+      fisheye ? section.read_numbers("coefficients", {4}, "a list of 4 numbers: k1, k2, k3, k4")
+              : section.read_numbers("coefficients", {5, 8},
+                                     "a list of 5 or 8 numbers: k1, k2, p1, p2, k3, and k4, k5, k6");
+  std::copy(numbers.begin(), numbers.end(), lens.coefficients.begin());
+  return lens;
+}
+
+void read_camera(const Section& section, PinholeCamera& camera, Lens& lens) {
   constexpr double kAboveZero = std::numeric_limits<float>::min();
   section.read("width", camera.width, 1, double{kLargestSide_px});
   section.read("height", camera.height, 1, double{kLargestSide_px});
@@ -127,6 +156,7 @@ void read_camera(const Section& section, PinholeCamera& camera) {
   section.read("fy", camera.fy, kAboveZero, kLargest);
   section.read("cx", camera.cx, -kLargest, kLargest);
   section.read("cy", camera.cy, -kLargest, kLargest);
+  if (section.has("distortion")) lens = read_lens(section.section("distortion"));
 }
 
 void read_depth_storage(const Section& section, CameraRig& rig) {
@@ -148,26 +178,27 @@ Pose rigid(const Eigen::Vector3d& rotation, const Eigen::Vector3d& translation) 
 }
 
 void apply(const Section& root, CameraRig& rig) {
-  static const std::vector<std::string> kCameraKeys = {"width", "height", "fx", "fy", "cx", "cy"};
-  static const std::vector<std::string> kDepthKeys = {"width", "height", "fx",          "fy",
-                                                      "cx",    "cy",     "depth_scale", "invalid"};
+  static const std::vector<std::string> kCameraKeys = {"width", "height", "fx",        "fy",
+                                                       "cx",    "cy",     "distortion"};
+  static const std::vector<std::string> kDepthKeys = {
+      "width", "height", "fx", "fy", "cx", "cy", "distortion", "depth_scale", "invalid"};
   root.check_keys({"camera", "depth_camera", "color_camera", "color_from_depth", "poses"});
   if (root.has("camera")) {
     const Section camera = root.section("camera");
     camera.check_keys(kDepthKeys);
-    read_camera(camera, rig.color_camera);
-    read_camera(camera, rig.depth_camera);
+    read_camera(camera, rig.color_camera, rig.color_lens);
+    read_camera(camera, rig.depth_camera, rig.depth_lens);
     read_depth_storage(camera, rig);
   }
   if (root.has("depth_camera")) {
     const Section camera = root.section("depth_camera");
     camera.check_keys(kDepthKeys);
-    read_camera(camera, rig.depth_camera);
+    read_camera(camera, rig.depth_camera, rig.depth_lens);
     read_depth_storage(camera, rig);
   }
   if (root.has("color_camera")) {
     root.section("color_camera").check_keys(kCameraKeys);
-    read_camera(root.section("color_camera"), rig.color_camera);
+    read_camera(root.section("color_camera"), rig.color_camera, rig.color_lens);
   }
   if (root.has("color_from_depth")) {
     const Section offset = root.section("color_from_depth");
@@ -185,11 +216,22 @@ void apply(const Section& root, CameraRig& rig) {
   }
 }
 
-std::string camera_text(const PinholeCamera& camera) {
+std::string lens_text(const Lens& lens) {
+  if (lens.model == Lens::Model::kStraight) return "";
+  std::ostringstream text;
+  text << std::setprecision(std::numeric_limits<double>::max_digits10)
+       << ", distortion: {model: " << kLensModels[static_cast<std::size_t>(lens.model)]
+       << ", coefficients: [";
+  const std::size_t count = lens.model == Lens::Model::kKannalaBrandt ? 4 : 8;
+  for (std::size_t i = 0; i < count; ++i) text << (i == 0 ? "" : ", ") << lens.coefficients[i];
+  return text.str() + "]}";
+}
+
+std::string camera_text(const PinholeCamera& camera, const Lens& lens) {
   std::ostringstream text;
   text << std::setprecision(std::numeric_limits<float>::max_digits10) << "width: " << camera.width
        << ", height: " << camera.height << ", fx: " << camera.fx << ", fy: " << camera.fy
-       << ", cx: " << camera.cx << ", cy: " << camera.cy;
+       << ", cx: " << camera.cx << ", cy: " << camera.cy << lens_text(lens);
   return text.str();
 }
 
@@ -232,11 +274,11 @@ void apply_calibration(const std::string& yaml, const std::string& name, CameraR
 std::string calibration_text(const CameraRig& rig) {
   std::ostringstream text;
   text << std::setprecision(std::numeric_limits<double>::max_digits10);
-  text << "depth_camera: {" << camera_text(rig.depth_camera)
+  text << "depth_camera: {" << camera_text(rig.depth_camera, rig.depth_lens)
        << ", depth_scale: " << rig.depth_units_per_m << ", invalid: [";
   for (std::size_t i = 0; i < rig.invalid_depth.size(); ++i)
     text << (i == 0 ? "" : ", ") << rig.invalid_depth[i];
-  text << "]}\ncolor_camera: {" << camera_text(rig.color_camera) << "}\n"
+  text << "]}\ncolor_camera: {" << camera_text(rig.color_camera, rig.color_lens) << "}\n"
        << "# x_in_color = R * x_in_depth + t; rotation as a rotation vector (radians), translation "
           "in metres\n"
        << "color_from_depth: {rotation_vector: "

@@ -64,13 +64,30 @@ TEST(CameraRig, TextReadsBackAsTheSameRig) {
   rig.depth_units_per_m = 6553.5;
   rig.invalid_depth = {0, 7, 65535};
   rig.poses.axes = PoseConvention::Axes::kOpenGl;
+  rig.color_lens = {Lens::Model::kKannalaBrandt, {.05, -.02, .006, 1. / 3}};
+  rig.depth_lens = {Lens::Model::kBrownConrady, {.1, -.2, .01, .02, .03, 0, 1e-7, -4}};
   const CameraRig back = applied(calibration_text(rig));
+  EXPECT_EQ(back.color_lens, rig.color_lens);
+  EXPECT_EQ(back.depth_lens, rig.depth_lens);
   EXPECT_EQ(back.depth_camera, rig.depth_camera);
   EXPECT_EQ(back.color_camera, rig.color_camera);
   EXPECT_TRUE(back.color_from_depth.isApprox(rig.color_from_depth, 1e-14));
   EXPECT_EQ(back.depth_units_per_m, rig.depth_units_per_m);
   EXPECT_EQ(back.invalid_depth, rig.invalid_depth);
   EXPECT_EQ(back.poses.axes, rig.poses.axes);
+}
+
+TEST(CameraRig, ReadsTheLensOfEachCameraAndOfBoth) {
+  const Lens five{Lens::Model::kBrownConrady, {.1, -.2, .01, .02, .03}};
+  CameraRig rig = applied("camera: {distortion: {coefficients: [.1, -.2, .01, .02, .03]}}");
+  EXPECT_EQ(rig.color_lens, five);
+  EXPECT_EQ(rig.depth_lens, five);
+  rig = applied(
+      "depth_camera: {distortion: {model: none}}\n"
+      "color_camera: {distortion: {model: kannala_brandt, coefficients: [1, 2, 3, 4]}}\n",
+      rig);
+  EXPECT_EQ(rig.depth_lens, Lens{});
+  EXPECT_EQ(rig.color_lens, (Lens{Lens::Model::kKannalaBrandt, {1, 2, 3, 4}}));
 }
 
 TEST(CameraRig, StoredPosesAreTakenToTheDepthCamera) {
@@ -112,6 +129,18 @@ TEST(CameraRig, FaultsNameKeyValueAndRemedy) {
                 .find("color_from_depth.translation"),
             std::string::npos);
   EXPECT_NE(fault_of("depth_camera: {invalid: [70000]}").find("'70000'"), std::string::npos);
+  const auto lens_fault = [](const std::string& lens) {
+    return fault_of("color_camera: {distortion: {" + lens + "}}");
+  };
+  EXPECT_NE(lens_fault("coefficients: [1, 2, 3, 4]")
+                .find("color_camera.distortion.coefficients is '[1, 2, 3, 4]'; accepted is a list "
+                      "of 5 or 8 numbers"),
+            std::string::npos);
+  EXPECT_NE(lens_fault("model: kannala_brandt").find("a list of 4 numbers"), std::string::npos);
+  EXPECT_NE(lens_fault("model: division").find("none or brown_conrady or kannala_brandt"),
+            std::string::npos);
+  EXPECT_NE(lens_fault("coefficients: [1, 2, 3, 4, x]").find("'x'"), std::string::npos);
+  EXPECT_NE(lens_fault("k1: 3").find("no key 'color_camera.distortion.k1'"), std::string::npos);
   EXPECT_NE(fault_of("depth_camera: 5").find("a mapping"), std::string::npos);
   EXPECT_NE(fault_of("poses: {axes: blender}").find("opencv or opengl or ros"), std::string::npos);
   EXPECT_NE(fault_of("a: [1, 2\nb: }").find("is not YAML"), std::string::npos);

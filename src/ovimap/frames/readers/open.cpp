@@ -46,10 +46,13 @@ const Reader& find_reader(const std::filesystem::path& folder) {
 
 /// Cameras that the user gives go before those that a recording has for each frame.
 void override_cameras(const std::filesystem::path& folder, Recording& recording) {
-  const PinholeCamera color = recording.rig.color_camera, depth = recording.rig.depth_camera;
+  const CameraRig assumed = recording.rig;
   for (const char* name : {"camera.yaml", "calibration.yaml"})
     if (std::filesystem::exists(folder / name)) apply_calibration(folder / name, recording.rig);
-  if (color == recording.rig.color_camera && depth == recording.rig.depth_camera) return;
+  const CameraRig& rig = recording.rig;
+  if (assumed.color_camera == rig.color_camera && assumed.depth_camera == rig.depth_camera &&
+      assumed.color_lens == rig.color_lens && assumed.depth_lens == rig.depth_lens)
+    return;
   for (RecordedFrame& frame : recording.frames) frame.camera.reset();
 }
 

@@ -7,6 +7,7 @@
 
 #include "ovimap/frames/decoding/depth_decoding.h"
 #include "ovimap/frames/decoding/frame_decoder.h"
+#include "ovimap/frames/frame/rectification.h"
 #include "ovimap/frames/recording/number_text.h"
 #include "ovimap/frames/recording/rig_completion.h"
 #include "ovimap/image/codec.h"
@@ -67,6 +68,7 @@ class RecordingSource : public FrameSource {
       : recording_(std::move(recording)),
         config_(config),
         units_(recording_.rig, config),
+        rectification_(recording_.rig),
         posed_(posed) {}
 
   std::string kind() const override { return recording_.kind; }
@@ -93,7 +95,7 @@ class RecordingSource : public FrameSource {
       throw Error(concat(record.truth.string(), " is ", ids.width(), "x", ids.height(),
                          ", expected ", camera.width, "x", camera.height,
                          " like the colour images"));
-    return ids;
+    return rectification_.color_ids(std::move(ids));
   }
 
  private:
@@ -123,6 +125,7 @@ class RecordingSource : public FrameSource {
     const std::string name = label(record.color, record.color_part, record);
     frame.color = load(name, record.color, record.color_part,
                        [&](const Bytes& bytes) { return decode_color(bytes, frame.color_camera); });
+    rectification_.apply(frame);
     return frame;
   }
 
@@ -190,6 +193,7 @@ class RecordingSource : public FrameSource {
   Recording recording_;
   FrameSourceConfig config_;
   DepthUnits units_;
+  RigRectification rectification_;
   bool posed_;
 };
 

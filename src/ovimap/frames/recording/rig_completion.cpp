@@ -70,6 +70,7 @@ void copy_single_camera(const std::filesystem::path& folder, CameraRig& rig) {
                        ", but the other images are ", other.width, "x", other.height,
                        "; give both depth_camera and color_camera in camera.yaml"));
   other = given;
+  (has_depth ? rig.color_lens : rig.depth_lens) = has_depth ? rig.depth_lens : rig.color_lens;
 }
 
 }  // namespace

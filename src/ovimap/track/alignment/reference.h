@@ -42,6 +42,6 @@ Reference make_reference(const TrackPyramid& pyramid, const Image<float>& model,
                          const Pose& world_from_camera);
 
 /// The level whose pixels are the surface's pieces.
-inline constexpr std::size_t kSurfaceLevel = 1;
+inline constexpr std::size_t kSurfaceLevel = kFewestLevels - 1;
 
 }  // namespace ovimap

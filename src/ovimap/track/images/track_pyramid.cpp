@@ -115,7 +115,7 @@ TrackLevel halved(const TrackLevel& fine) {
 }  // namespace
 
 void add_coarser_levels(TrackPyramid& pyramid) {
-  while (pyramid.back().camera.width >= 2 * kCoarsestWidth_px)
+  while (pyramid.size() < kFewestLevels || pyramid.back().camera.width >= 2 * kCoarsestWidth_px)
     pyramid.push_back(halved(pyramid.back()));
 }
 

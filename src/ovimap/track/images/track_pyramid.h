@@ -20,13 +20,14 @@ struct TrackLevel {
 using TrackPyramid = std::vector<TrackLevel>;
 
 inline constexpr int kFinestWidth_px = 320;   ///< at most so wide is the finest level, as a rule
-inline constexpr int kCoarsestWidth_px = 40;  ///< no level is narrower
+inline constexpr int kCoarsestWidth_px = 40;  ///< no further level is narrower
+inline constexpr std::size_t kFewestLevels = 2;  ///< of images of any size
 inline constexpr float kOneSurface = 0.05f;  ///< depths that differ by a smaller share are averaged
 
 /// The frame's depth and colour, shrunk by averages of what is one surface.
 TrackPyramid make_pyramid(const Frame& frame);
 
-/// Adds levels until the next would be narrower than kCoarsestWidth_px.
+/// Adds levels until there are kFewestLevels and the next would be narrower than kCoarsestWidth_px.
 void add_coarser_levels(TrackPyramid& pyramid);
 
 /// Intensity between pixels, bilinear; -1 where a neighbour is unknown or outside.

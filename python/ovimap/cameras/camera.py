@@ -1,0 +1,136 @@
+# SPDX-FileCopyrightText: 2026 The ovimap authors
+# SPDX-License-Identifier: Apache-2.0
+"""What every camera gives, and the way of its images from the threads of its library to the one that sends them."""
+
+from __future__ import annotations
+
+import collections
+import pathlib
+import threading
+import time
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from .._ovimap import Error
+from ..transforms import Matrix, rotation_vector_of
+
+WAITING_IMAGES = 8  # half a dozen frames' delay is worse than a frame left out
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """Which camera, and what of it."""
+
+    serial: str = ""  # "": the only one
+    file: pathlib.Path | None = None  # a recording instead
+    width: int = 640
+    height: int = 480
+    fps: int = 30
+
+
+@dataclass(frozen=True)
+class Image:
+    """color: uint8 [height, width, 3], red first; else depth: uint16 [height, width] in the camera's units."""
+
+    kind: str
+    time_s: float  # by the camera's clock
+    pixels: npt.NDArray[Any]
+
+
+class CameraLost(Exception):
+    """It sends no more; the text is a sentence's end, as "was unplugged"."""
+
+
+class Camera(Protocol):
+    """A camera that is plugged in, or its recording."""
+
+    name: str
+    serial: str
+    rig: dict[str, Any]  # as FrameSender takes it
+    recorded: bool  # it waits for whoever takes its images
+
+    def start(self, feed: Feed) -> None:
+        """Puts images into the feed from now on, and ends it when there are no more."""
+
+    def close(self) -> None: ...
+
+
+class Feed:
+    """Images between threads.
+
+    waits: where the images of a recording find no room its thread waits; a camera goes on, and its oldest image is dropped."""
+
+    def __init__(self, *, waits: bool) -> None:
+        self.dropped = 0
+        self._waits = waits
+        self._images: collections.deque[Image] = collections.deque()
+        self._changed = threading.Condition()
+        self._ended = self._closed = False
+        self._fault = ""
+
+    def put(self, image: Image) -> None:
+        with self._changed:
+            while self._waits and len(self._images) >= WAITING_IMAGES and not self._closed:
+                self._changed.wait()
+            if len(self._images) >= WAITING_IMAGES:
+                self._images.popleft()
+                self.dropped += 1
+            self._images.append(image)
+            self._changed.notify_all()
+
+    def end(self, fault: str = "") -> None:
+        """No more come; `fault`: as CameraLost has it, where that was not meant."""
+        with self._changed:
+            self._ended, self._fault = True, self._fault or fault
+            self._changed.notify_all()
+
+    def close(self) -> None:
+        """Nobody takes any more: threads that wait go on."""
+        with self._changed:
+            self._closed = True
+            self._changed.notify_all()
+
+    def images(self, patience_s: float) -> Iterator[Image]:
+        """Until the feed ends. Raises CameraLost when that was not meant, and when no image comes within patience_s."""
+        while True:
+            with self._changed:
+                end = time.monotonic() + patience_s
+                while not self._images and not self._ended and time.monotonic() < end:
+                    self._changed.wait(max(0.0, end - time.monotonic()))
+                if not self._images:
+                    if self._ended and not self._fault:
+                        return
+                    raise CameraLost(self._fault or f"has sent no image for {patience_s:g} s")
+                image = self._images.popleft()
+                self._changed.notify_all()
+            yield image
+
+
+def chosen_serial(maker: str, serials: list[str], wanted: str, hint: str) -> str:
+    """The serial number that is meant. Raises Error where that is none or several; `hint` ends the sentence on an absent camera."""
+    listed = ", ".join(sorted(set(serials)))
+    if not serials:
+        raise Error(f"no {maker} camera is plugged in; {hint}")
+    if wanted and wanted not in serials:
+        raise Error(f"no {maker} camera has the serial number {wanted}; plugged in: {listed}")
+    serial = wanted or serials[0]
+    if not wanted and len(set(serials)) > 1:
+        raise Error(f"{len(serials)} {maker} cameras are plugged in ({listed}); choose one with --serial")
+    if serials.count(serial) > 1:
+        raise Error(f"{serials.count(serial)} {maker} cameras have the serial number {serial}; unplug all but the one you mean")
+    return serial
+
+
+def rig_of(depth: Mapping[str, Any], color: Mapping[str, Any], color_from_depth: Matrix) -> dict[str, Any]:
+    """color_from_depth: [4, 4], metres."""
+    turn, shift = rotation_vector_of(color_from_depth).tolist(), color_from_depth[:3, 3].tolist()
+    return {"depth_camera": dict(depth), "color_camera": dict(color), "color_from_depth": {"rotation_vector": turn, "translation": shift}}
+
+
+def units_per_m(unit_m: float) -> float:
+    """Of a depth unit that passed through 32 bits: 0.0002500000118 m are 4000 a metre."""
+    return float(np.round(1 / unit_m, 2))
