@@ -8,14 +8,15 @@ https://design.ros2.org/articles/topic_and_service_names.html says the same of n
 
 from __future__ import annotations
 
+import functools
 import os
 import uuid
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from cyclonedds.core import DDSException, ReadCondition, SampleState, ViewState, InstanceState, WaitSet
-from cyclonedds.domain import DomainParticipant
+from cyclonedds.core import DDSException, InstanceState, ReadCondition, SampleState, ViewState, WaitSet
+from cyclonedds.domain import Domain, DomainParticipant
 from cyclonedds.pub import DataWriter
 from cyclonedds.qos import Policy, Qos
 from cyclonedds.sub import DataReader
@@ -27,6 +28,10 @@ from . import types
 
 MOST_DOMAIN = 232  # above it the ports of DDS leave 16 bits
 TAKEN_AT_ONCE = 16
+# What peers say of the structure of types is not looked at, as ROS 2 itself goes by names: Fast DDS describes types in another way
+# than Cyclone DDS, so the same message would not be taken for the same. The numbers are RTI's, eProsima's, Cyclone's and Gurum's.
+SETTINGS = """<CycloneDDS><Domain><Compatibility><IgnoreTypeInformation>1.1,1.15,1.16,1.18</IgnoreTypeInformation></Compatibility>
+</Domain></CycloneDDS>"""
 
 
 @dataclass(frozen=True)
@@ -148,6 +153,7 @@ class Node:
     def __init__(self, domain: int | None = None) -> None:
         number = _domain(domain)
         try:
+            _begin(number)
             self._participant = DomainParticipant(number, qos=Qos(Policy.Userdata(b"enclave=/;")))
         except DDSException as fault:
             raise Error(f"DDS cannot begin in domain {number} ({fault}); check CYCLONEDDS_URI and that the machine has a network "
@@ -217,6 +223,12 @@ class Client:
             header, reply = split_header(sample.data)
             if header[:8] == self._id:
                 yield int.from_bytes(header[8:], "little"), types.decode(self._replies.name, reply)
+
+
+@functools.cache
+def _begin(number: int) -> Domain:
+    """Once a process and domain; what CYCLONEDDS_URI says stands before ours."""
+    return Domain(number, ",".join(filter(None, (os.environ.get("CYCLONEDDS_URI"), SETTINGS))))
 
 
 def _hash_data(name: str) -> str:

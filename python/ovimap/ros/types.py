@@ -69,6 +69,10 @@ class Sample(IdlStruct):
     def deserialize(cls, data: bytes, has_header: bool = True, use_version_2: Any = None) -> Sample:
         return sample(cls, data)
 
+    @classmethod
+    def deserialize_key(cls, data: bytes, has_header: bool = True, use_version_2: Any = None) -> Sample:
+        return sample(cls, b"")  # what says that a publisher is gone; ROS 2 has no keys
+
 
 def sample(kind: type[Sample], data: bytes) -> Sample:
     """data: with its encapsulation, as it goes over the wire."""
