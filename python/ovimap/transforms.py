@@ -19,7 +19,7 @@ def matrix_of(position: tuple[float, float, float], quaternion: tuple[float, flo
     """[4, 4] of a position in metres and a quaternion (x, y, z, w) of any length above 0."""
     length = float(np.linalg.norm(quaternion))
     if not length > 1e-6 or not np.isfinite(length):
-        raise Error(f"a transform has the quaternion {quaternion}, which is no rotation; record the bag anew")
+        raise Error(f"a transform has the quaternion {quaternion}, which is no rotation; mend what publishes it")
     x, y, z, w = (value / length for value in quaternion)
     matrix = np.eye(4)
     matrix[:3, :3] = [
@@ -118,7 +118,7 @@ class TransformTree:
         while names[-1] in self.links:
             parent = self.links[names[-1]].parent
             if parent in names:
-                raise Error(f"the transforms of the bag form a circle at frame '{parent}'; record the bag anew")
+                raise Error(f"the transforms form a circle at frame '{parent}'; mend what publishes them")
             names.append(parent)
         return names
 
@@ -128,8 +128,8 @@ class TransformTree:
         common = next((name for name in up if name in down), None)
         if common is None:
             raise Error(
-                f"the bag's transforms do not connect the frames '{source}' and '{target}' (known: "
-                f"{', '.join(sorted(self.links)) or 'none'}); record /tf and /tf_static"
+                f"the transforms do not connect the frames '{source}' and '{target}' (known: "
+                f"{', '.join(sorted(self.links)) or 'none'}); record or publish /tf and /tf_static"
             )
         first = self._ancestor_from(common, source, time_ns)
         second = self._ancestor_from(common, target, time_ns)

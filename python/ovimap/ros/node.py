@@ -30,7 +30,10 @@ MOST_DOMAIN = 232  # above it the ports of DDS leave 16 bits
 TAKEN_AT_ONCE = 16
 # What peers say of the structure of types is not looked at, as ROS 2 itself goes by names: Fast DDS describes types in another way
 # than Cyclone DDS, so the same message would not be taken for the same. The numbers are RTI's, eProsima's, Cyclone's and Gurum's.
-SETTINGS = """<CycloneDDS><Domain><Compatibility><IgnoreTypeInformation>1.1,1.15,1.16,1.18</IgnoreTypeInformation></Compatibility>
+# An image comes as hundreds of packets at once; as many as the system allows are to wait for us.
+SETTINGS = """<CycloneDDS><Domain>
+<Compatibility><IgnoreTypeInformation>1.1,1.15,1.16,1.18</IgnoreTypeInformation></Compatibility>
+<Internal><SocketReceiveBufferSize min="default" max="16MB"/></Internal>
 </Domain></CycloneDDS>"""
 
 
