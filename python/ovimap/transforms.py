@@ -85,6 +85,12 @@ class Link:
         self.times_ns.insert(at, time_ns)
         self.matrices.insert(at, matrix)
 
+    def forget(self, before_ns: int) -> None:
+        """What is older, but for the newest of it: between that and the next may lie what is asked for."""
+        keep = max(bisect.bisect_left(self.times_ns, before_ns) - 1, 0)
+        if not self.static:
+            del self.times_ns[:keep], self.matrices[:keep]
+
     def at(self, time_ns: int) -> Matrix | None:
         """None where no pose is near enough in time on both sides."""
         if self.static:
@@ -112,6 +118,10 @@ class TransformTree:
         if link.parent == parent:
             link.add(time_ns, matrix)
 
+    def forget(self, before_ns: int) -> None:
+        for link in self.links.values():
+            link.forget(before_ns)
+
     def chain(self, frame: str) -> list[str]:
         """The frame, its parent and so on up to the root."""
         names = [frame.lstrip("/")]
@@ -134,6 +144,12 @@ class TransformTree:
         first = self._ancestor_from(common, source, time_ns)
         second = self._ancestor_from(common, target, time_ns)
         return None if first is None or second is None else np.asarray(np.linalg.inv(second) @ first)
+
+    def known_until_ns(self, target: str, source: str) -> int | None:
+        """The latest time for which there are transforms between both; None where that holds for all times."""
+        up, down = self.chain(source), self.chain(target)
+        moving = [self.links[name] for name in set(up) ^ set(down) if name in self.links and not self.links[name].static]
+        return min((link.times_ns[-1] for link in moving), default=None)
 
     def _ancestor_from(self, ancestor: str, frame: str, time_ns: int) -> Matrix | None:
         result = np.eye(4)

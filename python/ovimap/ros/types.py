@@ -39,11 +39,12 @@ def store() -> Typestore:
     """The definitions of ROS 2 Jazzy and those above."""
     made = get_typestore(Stores.ROS2_JAZZY)
     for name, text in DEFINITIONS.items():
-        made.register(get_types_from_msg(text, name))
+        [parsed] = get_types_from_msg(text, name).values()  # rosbags has messages alone, and renames the parts of services
+        made.register({name: parsed})
     return made
 
 
-def make(name: str, **fields: Any) -> Any:
+def make(name: str, /, **fields: Any) -> Any:
     """A message of that type; all fields are to be given."""
     return store().types[name](**fields)
 
