@@ -51,14 +51,13 @@ def cloud_message(cloud: Cloud, header: Any) -> Any:
 
 def name_of(thing: dict[str, Any]) -> str:
     """What people called it, else what it clearly is."""
-    return thing["name"] or thing["label"] or NOBODY
+    label = thing["label"] or {}
+    return str(thing["name"] or label.get("name") or NOBODY)
 
 
 def certainty_of(thing: dict[str, Any]) -> float:
-    """1 where people said what it is, the guess's cosine where its looks do, else 0."""
-    if thing["name"]:
-        return 1.0
-    return float(thing["guesses"][0]["cosine"]) if thing["label"] and thing["guesses"] else 0.0
+    """1 where people said what it is, else the label's share."""
+    return 1.0 if thing["name"] else float((thing["label"] or {}).get("share") or 0)
 
 
 def detections_message(things: list[dict[str, Any]], header: Any, scores: dict[int, float] | None = None) -> Any:
