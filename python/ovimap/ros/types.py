@@ -39,9 +39,18 @@ def store() -> Typestore:
     """The definitions of ROS 2 Jazzy and those above."""
     made = get_typestore(Stores.ROS2_JAZZY)
     for name, text in DEFINITIONS.items():
-        [parsed] = get_types_from_msg(text, name).values()  # rosbags has messages alone, and renames the parts of services
-        made.register({name: parsed})
+        made.register({name: _parsed(name, text)})
     return made
+
+
+def register(name: str, text: str) -> None:
+    """A further type, by what its .msg file says, or its .srv file on one side of the line."""
+    store().register({name: _parsed(name, text)})
+
+
+def _parsed(name: str, text: str) -> Any:
+    [parsed] = get_types_from_msg(text, name).values()  # rosbags has messages alone, and renames the parts of services
+    return parsed
 
 
 def make(name: str, /, **fields: Any) -> Any:
