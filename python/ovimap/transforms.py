@@ -146,10 +146,10 @@ class TransformTree:
         return None if first is None or second is None else np.asarray(np.linalg.inv(second) @ first)
 
     def known_until_ns(self, target: str, source: str) -> int | None:
-        """The latest time for which there are transforms between both; None where that holds for all times."""
+        """The latest time for which there are transforms between both, 0 for no time; None where nothing moves between them."""
         up, down = self.chain(source), self.chain(target)
         moving = [self.links[name] for name in set(up) ^ set(down) if name in self.links and not self.links[name].static]
-        return min((link.times_ns[-1] for link in moving), default=None)
+        return min((link.times_ns[-1] if link.times_ns else 0 for link in moving), default=None)
 
     def _ancestor_from(self, ancestor: str, frame: str, time_ns: int) -> Matrix | None:
         result = np.eye(4)

@@ -17,13 +17,12 @@ from ..bag_messages import CAMERA, IMAGES, ODOMETRY, POSES, camera_of, color_of,
 from ..sender import FrameSender, SendError
 from ..transforms import Matrix, rotation_vector_of
 from .node import SENSOR_DATA, STATIC_TRANSFORMS, TRANSFORMS, Node, Quality, Subscription, qualified
-from .pairing import Pair, Pairing, Poses
+from .pairing import CLOCK_BACK_NS, Pair, Pairing, Poses
 from .reporter import Reporter
 
 TRANSFORM = "tf2_msgs/msg/TFMessage"
 MILLIMETRES = 1000  # what 16-bit depth counts by ROS' convention (REP 118)
 FLOAT_UNITS = 5000  # to which depth in metres is rounded: 0.2 mm, up to 13 m
-CLOCK_BACK_NS = 1_000_000_000  # less is disorder on the way, more is a clock that was set back
 PATIENCE_S = 5.0  # until it is said what is missing
 RETRY_S = 1.0  # between tries to reach a server that is gone
 
@@ -62,6 +61,7 @@ class Stream:
     frame: str = ""
     newest_ns: int = 0
     publishers: int = 0
+    told: bool = False  # that there are too many or none any more
     since: float = field(default_factory=time.monotonic)
 
 
@@ -73,10 +73,10 @@ class Mapping:
         quality = Quality(depth=5) if options.reliable else SENSOR_DATA
         self._color = self._stream(options.color, options.color_info, False, quality)
         self._depth = self._stream(options.depth, options.depth_info, True, quality)
-        self.poses = Poses(options.world)
         self._transforms = [(node.subscription(TRANSFORM, "/tf", TRANSFORMS), False),
                             (node.subscription(TRANSFORM, "/tf_static", STATIC_TRANSFORMS), True)]
-        topic = options.poses if options.poses not in ("tf", "none") else ""
+        topic = qualified(options.poses) if options.poses not in ("tf", "none") else ""
+        self.poses = Poses(options.world, topic)
         self._given = [node.subscription(kind, topic, SENSOR_DATA) for kind in (ODOMETRY, *POSES)] if topic else []
         self._pairing, self._waiting = Pairing(), list[Pair]()
         self.sender: FrameSender | None = None
@@ -148,16 +148,16 @@ class Mapping:
             return
         back = stream.newest_ns - time_ns
         if back > CLOCK_BACK_NS:
-            self._begin_anew(stream, back)
+            self._begin_anew(stream, time_ns)
         stream.newest_ns, stream.frame = max(stream.newest_ns, time_ns), message.header.frame_id.lstrip("/")
         self._pairing.add(time_ns, message, depth=stream.depth)
 
-    def _begin_anew(self, stream: Stream, back_ns: int) -> None:
-        self._report.say(f"the clock of {stream.topic} went back by {back_ns / 1e9:.3f} s (a bag in a loop, a simulation begun anew?); what "
+    def _begin_anew(self, stream: Stream, time_ns: int) -> None:
+        self._report.say(f"the clock of {stream.topic} went back by {(stream.newest_ns - time_ns) / 1e9:.3f} s (a bag in a loop, a simulation begun anew?); what "
                          "waits is dropped, transforms are learned anew, and the map goes on")
         self._report.counts["times the clock went back"] += 1
         self._pairing, self._waiting = Pairing(unpaired=self._pairing.unpaired), []
-        self.poses.forget()
+        self.poses.set_back(time_ns)
         self._color.newest_ns = self._depth.newest_ns = 0
 
     def _send_due(self) -> None:
@@ -270,8 +270,9 @@ class Mapping:
             self._report.say(f"the publisher of {stream.topic} is gone; what it sends when it comes back is taken")
         elif now > 1:
             self._report.say(f"{now} publishers send images on {stream.topic}, which are taken for one camera's; stop all but one")
-        elif stream.newest_ns:
+        elif stream.told:
             self._report.say(f"{stream.topic} has one publisher again")
+        stream.told = now != 1
         stream.publishers, stream.since = now, time.monotonic()
 
     def _tell_what_is_missing(self) -> None:

@@ -16,6 +16,7 @@ MAX_GAP_NS = 20_000_000  # colour and depth farther apart do not belong together
 KEPT_IMAGES = 60  # that wait for their counterpart or their pose; the oldest go
 KEPT_TRANSFORMS_NS = 10_000_000_000  # as tf2 keeps them
 MAX_WAIT_NS = 1_000_000_000  # for a transform, on the images' clock
+CLOCK_BACK_NS = 1_000_000_000  # less is disorder on the way, more is a clock that was set back
 
 
 @dataclass
@@ -68,14 +69,16 @@ def _time(entry: tuple[int, Any]) -> int:
 class Poses:
     """Where frames are in the world: by tf, or by a topic of poses that is used in its place.
 
-    world: None for the root of the transforms, which is settled when the first pose is asked for."""
+    world: None for the root of the transforms, which is settled when the first pose is asked for. topic: of poses; "" for none."""
 
-    def __init__(self, world: str | None = None) -> None:
-        self.wanted, self.world = world and world.lstrip("/"), ""
+    def __init__(self, world: str | None = None, topic: str = "") -> None:
+        self.wanted, self.world, self.topic = world and world.lstrip("/"), "", topic
         self.tree = TransformTree()
         self._given: tuple[str, Link] | None = None  # of the topic of poses: which frame, and where it was
 
     def add_transforms(self, message: Any, *, static: bool) -> None:
+        for entry in message.transforms:
+            _restart(self.tree.links.get(entry.child_frame_id.lstrip("/")), stamp_ns(entry.header))
         add_transforms(self.tree, message, static=static)
         self._prefer_given()
         if not static and message.transforms:
@@ -86,6 +89,7 @@ class Poses:
         child = (getattr(message, "child_frame_id", "") or camera).lstrip("/")
         if self._given is None or self._given[0] != child:
             self._given = child, Link(message.header.frame_id.lstrip("/"), static=False)
+        _restart(self._given[1], stamp_ns(message.header))
         self._given[1].add(stamp_ns(message.header), pose_of(message))
         self._given[1].forget(stamp_ns(message.header) - KEPT_TRANSFORMS_NS)
         self._prefer_given()
@@ -94,10 +98,10 @@ class Poses:
         if self._given is not None:
             self.tree.links[self._given[0]] = self._given[1]
 
-    def forget(self) -> None:
-        """What moves: the clock went back. What stands still stays."""
-        self.tree.links = {child: link for child, link in self.tree.links.items() if link.static}
-        self._given = None
+    def set_back(self, time_ns: int) -> None:
+        """The clock went back to that time: what moves is learned anew."""
+        for link in self.tree.links.values():
+            _restart(link, time_ns)
 
     def at(self, frame: str, time_ns: int) -> Matrix | None:
         """world_from_frame; None where it is not known for this time. Raises Error where it cannot come to be known as things are."""
@@ -114,6 +118,8 @@ class Poses:
     def _settle_world(self, frame: str) -> None:
         if self.world:
             return
+        if self.topic and self._given is None:
+            raise Error(f"no pose came on {self.topic}; publish Odometry, PoseStamped or PoseWithCovarianceStamped there")
         chain = self.tree.chain(frame)
         if self.wanted is not None and self.wanted not in chain:
             raise Error(f"the transforms do not connect the camera's frame '{frame}' with the world '{self.wanted}' (its ancestors: "
@@ -123,3 +129,10 @@ class Poses:
             raise Error(f"nothing moves the camera's frame '{frame}' in /tf (known: {' -> '.join(chain)}); start what localizes the robot, "
                         "give a topic of poses as --poses, or --poses none where the server tracks the camera")
         self.world = world
+
+
+def _restart(link: Link | None, time_ns: int) -> None:
+    """Forgets where a frame was, if that was long after this time."""
+    if link is not None and not link.static and link.times_ns and link.times_ns[-1] - time_ns > CLOCK_BACK_NS:
+        link.times_ns.clear()
+        link.matrices.clear()
