@@ -23,6 +23,7 @@ from .reporter import Reporter
 TRANSFORM = "tf2_msgs/msg/TFMessage"
 MILLIMETRES = 1000  # what 16-bit depth counts by ROS' convention (REP 118)
 FLOAT_UNITS = 5000  # to which depth in metres is rounded: 0.2 mm, up to 13 m
+KEPT_RELIABLE = 30  # images that wait for us where none is to be lost: a second of them
 PATIENCE_S = 5.0  # until it is said what is missing
 RETRY_S = 1.0  # between tries to reach a server that is gone
 
@@ -70,7 +71,7 @@ class Mapping:
 
     def __init__(self, node: Node, options: Options, open_sender: Callable[[dict[str, Any]], FrameSender], reporter: Reporter) -> None:
         self.node, self._options, self._open, self._report = node, options, open_sender, reporter
-        quality = Quality(depth=5) if options.reliable else SENSOR_DATA
+        quality = Quality(depth=KEPT_RELIABLE) if options.reliable else SENSOR_DATA
         self._color = self._stream(options.color, options.color_info, False, quality)
         self._depth = self._stream(options.depth, options.depth_info, True, quality)
         self._transforms = [(node.subscription(TRANSFORM, "/tf", TRANSFORMS), False),
