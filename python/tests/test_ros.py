@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """ovimap-ros as a process between a robot (these tests, or a real ROS 2) and a map server: all that goes over DDS is checked for values."""
 import contextlib
+import itertools
 import json
 import os
 import pathlib
@@ -142,7 +143,7 @@ class Robot:
         until(lambda: all(one.subscribers for one in (self.color, self.depth, self.tf, self.tf_static, *self.infos)))
 
     def send(self, number, metres=False):
-        frame, time_ns, optical = self.recorded[number], 10**18 + number * 33_000_000, f"{self.name}_optical"
+        frame, time_ns, optical = self.recorded[number % FRAMES], 10**18 + number * 33_000_000, f"{self.name}_optical"
         for out in self.infos:
             out.publish(info(frame.camera, optical))
         pose = np.array(frame.world_from_camera) @ np.linalg.inv(moved(0.25))
@@ -160,14 +161,20 @@ def test_a_robots_images_are_mapped_and_the_map_comes_back(node, room, tmp_path,
     objects = node.subscription("sensor_msgs/msg/PointCloud2", f"/{robot.name}/objects", LATCHED)
     with live_server(out) as server, ovimap_ros(server.address, *robot.topics(), "--name", robot.name) as bridge:
         robot.wait_for_listener()
-        for number in range(FRAMES):
-            robot.send(number, metres)
+        numbers = itertools.count()
+
+        def map_after_a_frame():
+            robot.send(next(numbers), metres)
             time.sleep(0.25)  # the map is handed out about once a second, while frames come
-        cloud = until(lambda: next((cloud for cloud in objects.take() if cloud.width), None))
+            return next((cloud for cloud in objects.take() if cloud.width), None)
+
+        cloud = until(map_after_a_frame)
         found = first(node.subscription("vision_msgs/msg/Detection3DArray", f"/{robot.name}/detections", LATCHED))
         bridge.end()
-        assert bridge.lines[-1].endswith(f"{FRAMES} frames sent, 0 skipped; the map is saved\n"), bridge.lines
-        assert json.loads(server.process.stdout.readline())["saved"]["frames"] == FRAMES
+        sent = next(numbers)
+        assert [line.removeprefix("ovimap-ros: ") for line in bridge.lines] == [
+            "poses are in the frame 'map'; --world names another\n", f"{sent} frames sent, 0 skipped; the map is saved\n"]  # fmt: skip
+        assert json.loads(server.process.stdout.readline())["saved"]["frames"] == sent
     assert cloud.header.frame_id == found.header.frame_id == "map"
     points = cloud.data.view(POINT)
     assert {str(number) for number in np.unique(points["instance"])} - {"0"}

@@ -179,15 +179,12 @@ class Mapping:
 
     def _send(self, pair: Pair) -> bool:
         """False where its transform may still come."""
-        pose = None
-        if self._options.poses != "none":
-            pose = self._pose(pair)
-            if pose is None:
-                if self.poses.may_come(self._depth.frame, pair.time_ns, self._depth.newest_ns):
-                    return False
-                self._report.count("without a transform", f"no transform of '{self._depth.frame}' at the time of an image; publish /tf as "
-                                   "often as images come, on the same clock; such images are left out and counted")
-                return True
+        pose, fault = self._pose(pair) if self._options.poses != "none" else (None, "")
+        if fault:
+            if self.poses.may_come(self._depth.frame, pair.time_ns, self._depth.newest_ns):
+                return False
+            self._report.count("without a transform", f"{fault}; images without are left out and counted", where=fault)
+            return True
         color = self._guarded("refused", self._color.topic, color_of, pair.color, self._color.topic)
         depth = self._guarded("refused", self._depth.topic, self._depth_picture, pair.depth)
         if color is not None and depth is not None:
@@ -200,14 +197,16 @@ class Mapping:
             raise Error(f"{self._depth.topic} changes between depth in metres and in millimetres; let one publisher send one encoding")
         return depth_of(message, self._depth.topic)
 
-    def _pose(self, pair: Pair) -> Matrix | None:
+    def _pose(self, pair: Pair) -> tuple[Matrix | None, str]:
+        """The pose, or None and why."""
         try:
             pose = self.poses.at(self._depth.frame, pair.time_ns)
-            self._report.once("world", f"poses are in the frame '{self.poses.world}'; --world names another")
-            return pose
         except Error as fault:
-            self._report.once("unconnected", f"{fault}; images are left out until then")
-            return None
+            return None, str(fault)
+        if pose is None:
+            return None, (f"no transform of '{self._depth.frame}' at the time of an image; publish /tf as often as images come, on the same clock")
+        self._report.once("world", f"poses are in the frame '{self.poses.world}'; --world names another")
+        return pose, ""
 
     def _post(self, color: Any, depth: Any, pose: Matrix | None, seconds: float) -> None:
         assert self.sender is not None
