@@ -248,19 +248,23 @@ class Mapping:
     def _make_rig(self, first: Pair) -> dict[str, Any] | None:
         self._units = FLOAT_UNITS if _in_metres(first.depth) else MILLIMETRES
         color, depth = camera_of(self._color.info, self._color.info_topic), camera_of(self._depth.info, self._depth.info_topic)
-        offset: Matrix | None = np.eye(4)
-        if self._color.frame != self._depth.frame:
-            try:
-                offset = self.poses.tree.target_from(self._color.frame, self._depth.frame, first.time_ns)
-            except Error:
-                offset = None
-            if offset is None:
-                self._report.once("offset", f"no transform from '{self._depth.frame}' to '{self._color.frame}' yet; publish /tf_static of the "
-                                  "camera, or send depth that is aligned to colour")
-                return None
+        offset = self._color_from_depth(first.time_ns)
+        if offset is None:
+            self._report.once("offset", f"no transform from '{self._depth.frame}' to '{self._color.frame}' yet; publish /tf_static of the "
+                              "camera, or send depth that is aligned to colour")
+            return None
         turn, shift = rotation_vector_of(offset).tolist(), offset[:3, 3].tolist()
         return {"depth_camera": {**depth, "depth_scale": self._units}, "color_camera": color,
                 "color_from_depth": {"rotation_vector": turn, "translation": shift}}
+
+    def _color_from_depth(self, time_ns: int) -> Matrix | None:
+        """None where tf does not say."""
+        if self._color.frame == self._depth.frame:
+            return np.eye(4)
+        try:
+            return self.poses.tree.target_from(self._color.frame, self._depth.frame, time_ns)
+        except Error:
+            return None
 
     def _tell_of_publishers(self, stream: Stream) -> None:
         now = sum(subscription.publishers for subscription in stream.images)

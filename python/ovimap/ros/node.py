@@ -108,11 +108,11 @@ class Subscription:
         """Messages; None for one whose bytes cannot be read."""
         for sample in self._samples():
             try:
-                yield types.decode(self.name, sample.data)
+                yield types.decode(self.name, types.bytes_of(sample))
             except Exception:  # whatever another program wrote
                 yield None
 
-    def _samples(self) -> Iterator[Any]:
+    def _samples(self) -> Iterator[types.Sample]:
         while True:
             taken = self.reader.take(N=TAKEN_AT_ONCE)
             yield from (sample for sample in taken if isinstance(sample, types.Sample))
@@ -129,7 +129,7 @@ class Service(Subscription):
 
     def serve(self) -> None:
         for sample in self._samples():
-            header, request = split_header(sample.data)
+            header, request = split_header(types.bytes_of(sample))
             try:
                 asked = types.decode(self.name, request)
             except Exception:  # whatever another program wrote
@@ -223,7 +223,7 @@ class Client:
     def answers(self) -> Iterator[tuple[int, Any]]:
         """(number of the request, reply) of what came since, to this client."""
         for sample in self._replies._samples():
-            header, reply = split_header(sample.data)
+            header, reply = split_header(types.bytes_of(sample))
             if header[:8] == self._id:
                 yield int.from_bytes(header[8:], "little"), types.decode(self._replies.name, reply)
 

@@ -12,10 +12,11 @@ import functools
 from typing import Any
 
 from cyclonedds.idl import IdlStruct, make_idl_struct
-from cyclonedds.idl import types as idl
+from cyclonedds.idl import types as _types
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from rosbags.typesys.store import Typestore
 
+idl: Any = _types  # which types cannot see that its classes are subscripted
 QUERY = "ovimap_msgs/srv/Query"
 
 # vision_msgs 4 (since ROS 2 Humble), which is no part of ROS' core, and our service.
@@ -73,7 +74,7 @@ class Sample(IdlStruct):
     """Bytes of a message, read when they are asked for. Its subclasses are the types that Cyclone DDS knows."""
 
     def serialize(self, buffer: Any = None, endianness: Any = None, use_version_2: Any = None) -> bytes:
-        return self.data
+        return bytes_of(self)
 
     @classmethod
     def deserialize(cls, data: bytes, has_header: bool = True, use_version_2: Any = None) -> Sample:
@@ -87,8 +88,14 @@ class Sample(IdlStruct):
 def sample(kind: type[Sample], data: bytes) -> Sample:
     """data: with its encapsulation, as it goes over the wire."""
     made = object.__new__(kind)
-    made.data = data
+    vars(made)["data"] = data
     return made
+
+
+def bytes_of(made: Sample) -> bytes:
+    """With their encapsulation."""
+    data: bytes = vars(made)["data"]
+    return data
 
 
 def encode(name: str, message: Any) -> bytes:
@@ -104,13 +111,15 @@ def decode(name: str, data: bytes) -> Any:
 @functools.cache
 def message_type(name: str) -> type[Sample]:
     """How Cyclone DDS sees a message."""
-    return _struct(name, _fields(name), (Sample,))
+    kind: type[Sample] = _struct(name, _fields(name), (Sample,))
+    return kind
 
 
 @functools.cache
 def service_type(name: str) -> type[Sample]:
     """... a request or a reply, which has a header."""
-    return _struct(name, SERVICE_HEADER + _fields(name), (Sample,))
+    kind: type[Sample] = _struct(name, SERVICE_HEADER + _fields(name), (Sample,))
+    return kind
 
 
 def _struct(name: str, fields: list[tuple[str, Any]], bases: tuple[type, ...] = ()) -> Any:
