@@ -11,14 +11,17 @@ import signal
 import sys
 import threading
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from concurrent.futures import ThreadPoolExecutor
+from typing import TYPE_CHECKING
 
 from .._ovimap import Error
 from ..command_line import DONE, run_command
 from ..sender import FrameSender, SendError
+from .reporter import Reporter
 
 if TYPE_CHECKING:
     from .mapping import Mapping
+    from .publishing import Publishing
 
 WAIT_S = 0.05  # for messages, before what is late is looked at
 UPDATE_S = 1.0  # between looks at whether the map changed
@@ -31,8 +34,6 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
-    from .reporter import Reporter
-
     if bool(options.color) != bool(options.depth):
         raise Error("frames need colour and depth: give both --color and --depth, or neither")
     if options.color and not _is_address(options.map):
@@ -40,19 +41,16 @@ def _run(options: argparse.Namespace) -> int:
     reporter, stop = Reporter(), threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stop.set())
-    with _address_of(options.map) as address:
+    with _address_of(options.map) as address, ThreadPoolExecutor(1) as pool:  # a question may take longer than images wait
         mapping = _mapping(options, address, reporter)
-        world = options.world or "map"
-        publishing = threading.Thread(target=_publish, args=(options, address, mapping, world, reporter, stop), name="map")
-        if not options.no_publish:
-            publishing.start()
+        publishing = None if options.no_publish else pool.submit(_publish, options, address, mapping, reporter, stop)
         try:
             _map(mapping, stop)
         finally:
             stop.set()
-            if not options.no_publish:
-                publishing.join()
             _finish(mapping, reporter)
+        if publishing is not None:
+            publishing.result()
     return DONE
 
 
@@ -71,7 +69,7 @@ def _address_of(text: str) -> Iterator[str]:
         yield address
 
 
-def _mapping(options: argparse.Namespace, address: str, reporter: Any) -> Mapping | None:
+def _mapping(options: argparse.Namespace, address: str, reporter: Reporter) -> Mapping | None:
     from .mapping import Mapping, Options
     from .node import Node
 
@@ -90,14 +88,14 @@ def _map(mapping: Mapping | None, stop: threading.Event) -> None:
             mapping.step()
 
 
-def _publish(options: argparse.Namespace, address: str, mapping: Mapping | None, world: str, reporter: Any, stop: threading.Event) -> None:
-    """On a thread of its own: a question may take longer than images wait."""
+def _publish(options: argparse.Namespace, address: str, mapping: Mapping | None, reporter: Reporter, stop: threading.Event) -> None:
+    """Until it is to stop; the command ends with it."""
     from .node import Node
     from .publishing import Publishing
     from .served import MapServer
 
     def frame() -> str:
-        return world if mapping is None or options.poses == "none" else mapping.poses.world
+        return options.world or "map" if mapping is None or options.poses == "none" else mapping.poses.world
 
     try:
         publishing = Publishing(Node(options.domain), MapServer(address, options.cafile), frame, reporter, name=options.name,
@@ -107,19 +105,18 @@ def _publish(options: argparse.Namespace, address: str, mapping: Mapping | None,
         while not stop.is_set():
             publishing.update()
             publishing.serve(UPDATE_S)
-    except Error as fault:
-        reporter.say(str(fault))
+    finally:
         stop.set()
 
 
-def _grid(publishing: Any, options: argparse.Namespace, reporter: Any) -> None:
+def _grid(publishing: Publishing, options: argparse.Namespace, reporter: Reporter) -> None:
     try:
         publishing.publish_grid(pathlib.Path(options.map))
     except Error as fault:
         reporter.say(f"no grid: {fault}")
 
 
-def _finish(mapping: Mapping | None, reporter: Any) -> None:
+def _finish(mapping: Mapping | None, reporter: Reporter) -> None:
     said = []
     if mapping is not None:
         try:

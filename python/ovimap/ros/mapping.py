@@ -79,7 +79,8 @@ class Mapping:
         topic = qualified(options.poses) if options.poses not in ("tf", "none") else ""
         self.poses = Poses(options.world, topic)
         self._given = [node.subscription(kind, topic, SENSOR_DATA) for kind in (ODOMETRY, *POSES)] if topic else []
-        self._pairing, self._waiting = Pairing(), list[Pair]()
+        self._pairing = Pairing()
+        self._waiting: list[Pair] = []
         self.sender: FrameSender | None = None
         self._rig: dict[str, Any] | None = None
         self._units = MILLIMETRES

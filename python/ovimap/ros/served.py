@@ -11,6 +11,7 @@ import signal
 import ssl
 import struct
 import subprocess
+import tempfile
 import urllib.error
 import urllib.parse
 import urllib.request
@@ -157,12 +158,13 @@ def serving(path: pathlib.Path) -> Iterator[str]:
     if not path.is_file():
         raise Error(f"there is no map '{path}'; give a map file, or the address that `ovimap serve` printed")
     command = [find_program(), "serve", str(path), "--port", "0", "--viewer", "none", "--json"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-        assert process.stdout is not None and process.stderr is not None
+    with tempfile.TemporaryFile("w+") as said, subprocess.Popen(command, stdout=subprocess.PIPE, stderr=said, text=True) as process:
+        assert process.stdout is not None
         try:
             line = process.stdout.readline()
             if not line:
-                raise Error(process.stderr.read().strip().splitlines()[-1])
+                said.seek(0)
+                raise Error(next(iter(said.read().strip().splitlines()[::-1]), f"'{path}' cannot be served"))
             yield str(parse_json(line)["address"])
         finally:
             process.send_signal(signal.SIGINT)

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes written.json: messages as a real ROS 2 serializes them, and the hashes that its own generator gives their types.
 
-    python -m venv .ros2 && .ros2/bin/pip install -r python/tests/ros2/requirements.txt
-    .ros2/bin/python python/tests/ros2/write_messages.py python/tests/ros2/written.json
+    python -m venv .venv-ros2 && .venv-ros2/bin/pip install -r python/tests/ros2/requirements.txt
+    .venv-ros2/bin/python python/tests/ros2/write_messages.py python/tests/ros2/written.json
 """
 import array
 import importlib
