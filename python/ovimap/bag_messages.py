@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
-"""Messages of ROS 1 bags, ROS 2 bags and MCAP files as plain values."""
+"""Messages of ROS as plain values, whether a bag holds them (ROS 1, ROS 2, MCAP) or they come from a robot (ovimap.ros)."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ._ovimap import Error
+from ._ovimap import Error, decode_gray_png
 from .distortion import distortion_of
+from .transforms import Matrix, TransformTree, matrix_of
 
 IMAGES = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")
 CAMERA = "sensor_msgs/msg/CameraInfo"
 TRANSFORMS = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")
 ODOMETRY = "nav_msgs/msg/Odometry"
 POSES = ("geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/PoseWithCovarianceStamped")
-LEAST_DISTORTION = 1e-3  # smaller coefficients move no pixel of a usual image by one
 STORAGE = (".bag", ".mcap", ".db3")
 CUT_OFF = "it is cut off or was never closed; try `rosbag reindex`, `ros2 bag reindex` or `mcap recover`"
 
@@ -87,15 +87,19 @@ def field_of(info: Any, name: str) -> Any:
     return getattr(info, name) if hasattr(info, name) else getattr(info, name.upper())  # ROS 1 has capitals
 
 
-def distortion_notice(topic: str, info: Any) -> str:
-    """What to tell of images whose camera_info says that the lens bends straight lines; empty where it does not.
+def camera_of(info: Any, topic: str, images: str) -> dict[str, Any]:
+    """width, height, fx, fy, cx and cy of a CameraInfo message of `topic`, pixels, and the lens of the topic of its images.
 
-    Images that were rectified come with the camera_info of those that were not, so the topic's name decides."""
-    coefficients = np.asarray(field_of(info, "d"), np.float64).ravel()
-    largest = max(coefficients.tolist(), key=abs, default=0.0)
-    if abs(largest) < LEAST_DISTORTION or "rect" in topic:
-        return ""
-    return f"{topic} is distorted (its largest coefficient is {largest:g}), which is not corrected; rectified images give sharper maps"
+    Raises Error for one without calibration, or with a lens that is not read."""
+    k = field_of(info, "k")
+    if not (min(info.width, info.height, k[0], k[4]) > 0 and np.isfinite(k).all()):
+        raise Error(
+            f"{topic} holds no calibration ({info.width}x{info.height}, fx {k[0]:g}, fy {k[4]:g}); calibrate the "
+            "camera, give its driver the result, and record the bag anew or start the driver again"
+        )
+    figures = {"fx": k[0], "fy": k[4], "cx": k[2], "cy": k[5]}
+    size = {"width": int(info.width), "height": int(info.height)}
+    return {**size, **{name: float(value) for name, value in figures.items()}, **lens_of(images, info)}
 
 
 ROS_LENSES = {"plumb_bob": ("brown_conrady", 5), "rational_polynomial": ("brown_conrady", 8), "equidistant": ("kannala_brandt", 4),
@@ -126,6 +130,19 @@ def quaternion(value: Any) -> tuple[float, float, float, float]:
     return (value.x, value.y, value.z, value.w)
 
 
+def pose_of(message: Any) -> Matrix:
+    """[4, 4] of a PoseStamped, PoseWithCovarianceStamped or Odometry message."""
+    pose = message.pose.pose if hasattr(message.pose, "pose") else message.pose
+    return matrix_of(vector(pose.position), quaternion(pose.orientation))
+
+
+def add_transforms(tree: TransformTree, message: Any, *, static: bool) -> None:
+    """Those of a message of /tf or /tf_static. Raises Error for what is no rotation."""
+    for entry in message.transforms:
+        pose = matrix_of(vector(entry.transform.translation), quaternion(entry.transform.rotation))
+        tree.add(entry.header.frame_id, entry.child_frame_id, stamp_ns(entry.header), pose, static=static)
+
+
 def is_depth(message: Any) -> bool:
     """By the encoding, which raw and compressed images both name."""
     if hasattr(message, "encoding"):
@@ -133,7 +150,35 @@ def is_depth(message: Any) -> bool:
     return "compressedDepth" in message.format or message.format.startswith(("16UC1", "32FC1"))
 
 
+JPEG, PNG = b"\xff\xd8", b"\x89PNG"
 CHANNELS = {"rgb8": 3, "bgr8": 3, "rgba8": 4, "bgra8": 4, "mono8": 1, "8UC1": 1, "8UC3": 3}
+
+
+def color_of(message: Any, topic: str) -> npt.NDArray[np.uint8] | bytes:
+    """An Image as uint8 [height, width, 3], red first; a CompressedImage as the bytes of its JPEG or PNG."""
+    if hasattr(message, "encoding"):
+        return raw_color(message, topic)
+    data = bytes(message.data)
+    if not data.startswith((JPEG, PNG)):
+        raise Error(f"an image of {topic} is compressed as '{message.format}'; accepted are JPEG and PNG")
+    return data
+
+
+def depth_of(message: Any, topic: str) -> npt.NDArray[Any] | bytes:
+    """uint16 millimetres or float32 metres [height, width], or the bytes of a PNG that holds millimetres."""
+    if hasattr(message, "encoding"):
+        return raw_depth(message, topic)
+    data, image_format = bytes(message.data), message.format
+    if "compressedDepth" not in image_format:
+        return bytes(color_of(message, topic))
+    header, png = np.frombuffer(data[4:12], "<f4"), data[12:]  # what compression, then two numbers for depth in metres
+    if not png.startswith(PNG):
+        raise Error(f"an image of {topic} is compressed as '{image_format}', which holds no PNG; record or send it as 16UC1")
+    if not image_format.startswith("32FC1"):
+        return png
+    stored = decode_gray_png(png).astype(np.float32)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(stored > 0, header[0] / (stored - header[1]), np.float32(0)).astype(np.float32)
 
 
 def raw_color(message: Any, topic: str) -> npt.NDArray[np.uint8]:
@@ -152,6 +197,8 @@ def raw_color(message: Any, topic: str) -> npt.NDArray[np.uint8]:
 
 def raw_depth(message: Any, topic: str) -> npt.NDArray[Any]:
     """uint16 millimetres or float32 metres [height, width]."""
+    if not is_depth(message):
+        raise Error(f"{topic} has the encoding '{message.encoding}', which is no depth; accepted are 16UC1, mono16 and 32FC1")
     size = 4 if message.encoding == "32FC1" else 2
     kind = np.dtype(np.float32 if size == 4 else np.uint16).newbyteorder(">" if message.is_bigendian else "<")
     rows = np.ascontiguousarray(_rows(message, topic, message.width * size))
@@ -164,6 +211,6 @@ def _rows(message: Any, topic: str, used: int) -> npt.NDArray[np.uint8]:
     if message.step < used or data.size < message.height * message.step:
         raise Error(
             f"an image of {topic} has {data.size} bytes, too few for {message.width}x{message.height} "
-            f"{message.encoding}; record the bag anew"
+            f"{message.encoding}; record or send it anew"
         )
     return data[: message.height * message.step].reshape(message.height, message.step)[:, :used]

@@ -18,25 +18,25 @@ from typing import Any
 
 import numpy as np
 
-from ._ovimap import Error, decode_gray_png, encode_png
+from ._ovimap import Error, encode_png
 from .bag_messages import (
     CAMERA,
     IMAGES,
+    JPEG,
     ODOMETRY,
     POSES,
     TRANSFORMS,
     Bag,
-    field_of,
+    add_transforms,
+    camera_of,
+    color_of,
+    depth_of,
     is_depth,
-    lens_of,
-    quaternion,
-    raw_color,
-    raw_depth,
+    pose_of,
     stamp_ns,
-    vector,
 )
 from .command_line import DONE, run_command
-from .transforms import Matrix, TransformTree, matrix_of, quaternion_of, rotation_vector_of
+from .transforms import Matrix, TransformTree, quaternion_of, rotation_vector_of
 
 MILLIMETRES = 1000  # what 16-bit depth counts by ROS's convention (REP 118)
 FLOAT_UNITS = 5000  # to which depth in metres is rounded: 0.2 mm, up to 13 m
@@ -67,19 +67,14 @@ class Stream:
     frame: str = ""
     units: int = MILLIMETRES
     info: Any = None
+    camera: dict[str, float] = field(default_factory=dict)
     times_ns: list[int] = field(default_factory=list)
     files: list[pathlib.Path] = field(default_factory=list)
     clock_offset_ns: int | None = None
     pending: deque[Future[pathlib.Path]] = field(default_factory=deque)
 
     def see_camera(self, info: Any) -> None:
-        k = field_of(info, "k")
-        if not (min(info.width, info.height, k[0], k[4]) > 0 and np.isfinite(k).all()):
-            raise Error(
-                f"{self.info_topic} holds no calibration ({info.width}x{info.height}, fx {k[0]:g}, fy {k[4]:g}); calibrate the "
-                "camera, give its driver the result, and record the bag anew"
-            )
-        lens_of(self.topic, info)  # what is not read is told before the images are
+        self.camera = camera_of(info, self.info_topic, self.topic)
         self.info = info
 
     def check_clock(self, time_ns: int, received_ns: int) -> None:
@@ -118,11 +113,10 @@ class Stream:
             self.files.append(self.pending.popleft().result())
 
     def encode(self, message: Any) -> tuple[bytes, str]:
-        if not hasattr(message, "encoding"):
-            return self.encode_compressed(message)
-        if not self.depth:
-            return encode_png(raw_color(message, self.topic)), ".png"
-        return self.encode_depth(raw_depth(message, self.topic))
+        picture = depth_of(message, self.topic) if self.depth else color_of(message, self.topic)
+        if isinstance(picture, bytes):
+            return picture, ".jpg" if picture.startswith(JPEG) else ".png"
+        return self.encode_depth(picture) if self.depth else (encode_png(picture), ".png")
 
     def encode_depth(self, depth: Any) -> tuple[bytes, str]:
         if depth.dtype == np.uint16:
@@ -130,26 +124,6 @@ class Stream:
         self.units = FLOAT_UNITS
         units = np.nan_to_num(depth * np.float32(FLOAT_UNITS), nan=0, posinf=0, neginf=0)
         return encode_png(np.where((units > 0) & (units < 65535), np.rint(units), 0).astype(np.uint16)), ".png"
-
-    def encode_compressed(self, message: Any) -> tuple[bytes, str]:
-        data = bytes(message.data)
-        if "compressedDepth" in message.format:
-            return self.encode_compressed_depth(data, message.format)
-        for magic, ending in ((b"\xff\xd8", ".jpg"), (b"\x89PNG", ".png")):
-            if data.startswith(magic):
-                return data, ending
-        raise Error(f"an image of {self.topic} is compressed as '{message.format}'; accepted are JPEG and PNG")
-
-    def encode_compressed_depth(self, data: bytes, image_format: str) -> tuple[bytes, str]:
-        """A header of 12 bytes, then a PNG; of metres it holds a / (depth - b), rounded."""
-        header, png = np.frombuffer(data[4:12], "<f4"), data[12:]
-        if not png.startswith(b"\x89PNG"):
-            raise Error(f"an image of {self.topic} is compressed as '{image_format}', which holds no PNG; record it as 16UC1")
-        if not image_format.startswith("32FC1"):
-            return png, ".png"
-        stored = decode_gray_png(png).astype(np.float32)
-        with np.errstate(divide="ignore"):
-            return self.encode_depth(np.where(stored > 0, header[0] / (stored - header[1]), 0))
 
 
 def convert(bag: str | os.PathLike[str], out: str | os.PathLike[str], *, topics: Topics | None = None) -> dict[str, Any]:
@@ -235,10 +209,7 @@ def _read(bag: Bag, color: Stream, depth: Stream, chosen: Topics) -> TransformTr
         if topic in streams:
             streams[topic].write(message, received_ns)
         elif topic in transforms:
-            for entry in message.transforms:
-                pose = matrix_of(vector(entry.transform.translation), quaternion(entry.transform.rotation))
-                static = topic.endswith("static")
-                tree.add(entry.header.frame_id, entry.child_frame_id, stamp_ns(entry.header), pose, static=static)
+            add_transforms(tree, message, static=topic.endswith("static"))
         elif topic in odometry:
             _add_pose(given[topic], bag.types[topic], message)
         for stream in streams.values():
@@ -260,9 +231,8 @@ def _add_links(tree: TransformTree, given: dict[str, TransformTree], camera: str
 
 
 def _add_pose(tree: TransformTree, kind: str, message: Any) -> None:
-    pose = message.pose if kind == POSES[0] else message.pose.pose
     child = message.child_frame_id if kind == ODOMETRY else ""  # a pose names no child: the camera's
-    tree.add(message.header.frame_id, child, stamp_ns(message.header), matrix_of(vector(pose.position), quaternion(pose.orientation)))
+    tree.add(message.header.frame_id, child, stamp_ns(message.header), pose_of(message))
 
 
 def _write_folder(folder: pathlib.Path, color: Stream, depth: Stream, tree: TransformTree, chosen: Topics) -> dict[str, Any]:
@@ -343,11 +313,7 @@ def _color_from_depth(tree: TransformTree, color: Stream, depth: Stream) -> Matr
 
 def _camera_text(color: Stream, depth: Stream, offset: Matrix) -> str:
     def camera(stream: Stream, more: str = "") -> str:
-        k = field_of(stream.info, "k")
-        figures = {"fx": k[0], "fy": k[4], "cx": k[2], "cy": k[5]}
-        text = ", ".join(f"{name}: {float(value)!r}" for name, value in figures.items())
-        lens = "".join(f", {key}: {json.dumps(value)}" for key, value in lens_of(stream.topic, stream.info).items())
-        return f"{{width: {stream.info.width}, height: {stream.info.height}, {text}{lens}{more}}}"
+        return "{" + ", ".join(f"{name}: {json.dumps(value)}" for name, value in stream.camera.items()) + more + "}"
 
     turn = ", ".join(repr(float(value)) for value in rotation_vector_of(offset))
     shift = ", ".join(repr(float(value)) for value in offset[:3, 3])

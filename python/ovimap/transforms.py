@@ -19,7 +19,7 @@ def matrix_of(position: tuple[float, float, float], quaternion: tuple[float, flo
     """[4, 4] of a position in metres and a quaternion (x, y, z, w) of any length above 0."""
     length = float(np.linalg.norm(quaternion))
     if not length > 1e-6 or not np.isfinite(length):
-        raise Error(f"a transform has the quaternion {quaternion}, which is no rotation; record the bag anew")
+        raise Error(f"a transform has the quaternion {quaternion}, which is no rotation; mend what publishes it")
     x, y, z, w = (value / length for value in quaternion)
     matrix = np.eye(4)
     matrix[:3, :3] = [
@@ -85,6 +85,12 @@ class Link:
         self.times_ns.insert(at, time_ns)
         self.matrices.insert(at, matrix)
 
+    def forget(self, before_ns: int) -> None:
+        """What is older, but for the newest of it: between that and the next may lie what is asked for."""
+        keep = max(bisect.bisect_left(self.times_ns, before_ns) - 1, 0)
+        if not self.static:
+            del self.times_ns[:keep], self.matrices[:keep]
+
     def at(self, time_ns: int) -> Matrix | None:
         """None where no pose is near enough in time on both sides."""
         if self.static:
@@ -112,13 +118,17 @@ class TransformTree:
         if link.parent == parent:
             link.add(time_ns, matrix)
 
+    def forget(self, before_ns: int) -> None:
+        for link in self.links.values():
+            link.forget(before_ns)
+
     def chain(self, frame: str) -> list[str]:
         """The frame, its parent and so on up to the root."""
         names = [frame.lstrip("/")]
         while names[-1] in self.links:
             parent = self.links[names[-1]].parent
             if parent in names:
-                raise Error(f"the transforms of the bag form a circle at frame '{parent}'; record the bag anew")
+                raise Error(f"the transforms form a circle at frame '{parent}'; mend what publishes them")
             names.append(parent)
         return names
 
@@ -128,12 +138,18 @@ class TransformTree:
         common = next((name for name in up if name in down), None)
         if common is None:
             raise Error(
-                f"the bag's transforms do not connect the frames '{source}' and '{target}' (known: "
-                f"{', '.join(sorted(self.links)) or 'none'}); record /tf and /tf_static"
+                f"the transforms do not connect the frames '{source}' and '{target}' (known: "
+                f"{', '.join(sorted(self.links)) or 'none'}); record or publish /tf and /tf_static"
             )
         first = self._ancestor_from(common, source, time_ns)
         second = self._ancestor_from(common, target, time_ns)
         return None if first is None or second is None else np.asarray(np.linalg.inv(second) @ first)
+
+    def known_until_ns(self, target: str, source: str) -> int | None:
+        """The latest time for which there are transforms between both, 0 for no time; None where nothing moves between them."""
+        up, down = self.chain(source), self.chain(target)
+        moving = [self.links[name] for name in set(up) ^ set(down) if name in self.links and not self.links[name].static]
+        return min((link.times_ns[-1] if link.times_ns else 0 for link in moving), default=None)
 
     def _ancestor_from(self, ancestor: str, frame: str, time_ns: int) -> Matrix | None:
         result = np.eye(4)

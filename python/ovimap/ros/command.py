@@ -1,0 +1,159 @@
+# SPDX-FileCopyrightText: 2026 The ovimap authors
+# SPDX-License-Identifier: Apache-2.0
+"""The command ovimap-ros: a robot's images into a map, and a map for a robot, without ROS (docs/robots.md)."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import pathlib
+import signal
+import sys
+import threading
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from typing import TYPE_CHECKING
+
+from .._ovimap import Error
+from ..command_line import DONE, run_command
+from ..sender import FrameSender, SendError
+from .reporter import Reporter
+
+if TYPE_CHECKING:
+    from .mapping import Mapping
+    from .publishing import Publishing
+
+WAIT_S = 0.05  # for messages, before what is late is looked at
+UPDATE_S = 1.0  # between looks at whether the map changed
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Runs the command; returns its exit code."""
+    options = _parser().parse_args(arguments)
+    return run_command("ovimap-ros", options, extra="ros", packages=("cyclonedds", "rosbags", "PIL"))
+
+
+def _run(options: argparse.Namespace) -> int:
+    if bool(options.color) != bool(options.depth):
+        raise Error("frames need colour and depth: give both --color and --depth, or neither")
+    if options.color and not _is_address(options.map):
+        raise Error(f"'{options.map}' is no address; frames go to `ovimap serve --live http -o MAP`: give what it printed")
+    reporter, stop = Reporter(), threading.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: stop.set())
+    with _address_of(options.map) as address, ThreadPoolExecutor(1) as pool:  # a question may take longer than images wait
+        mapping = _mapping(options, address, reporter)
+        publishing = None if options.no_publish else pool.submit(_publish, options, address, mapping, reporter, stop)
+        try:
+            _map(mapping, stop)
+        finally:
+            stop.set()
+            _finish(mapping, reporter)
+        if publishing is not None:
+            publishing.result()
+    return DONE
+
+
+def _is_address(text: str) -> bool:
+    return not pathlib.Path(text).exists() and not text.endswith(".ovimap")
+
+
+@contextlib.contextmanager
+def _address_of(text: str) -> Iterator[str]:
+    from .served import serving
+
+    if _is_address(text):
+        yield text
+        return
+    with serving(pathlib.Path(text)) as address:
+        yield address
+
+
+def _mapping(options: argparse.Namespace, address: str, reporter: Reporter) -> Mapping | None:
+    from .mapping import Mapping, Options
+    from .node import Node
+
+    if not options.color:
+        return None
+    wanted = Options(options.color, options.depth, options.color_info, options.depth_info, options.poses, options.world, options.reliable)
+    return Mapping(Node(options.domain), wanted, lambda rig: FrameSender(address, rig, cafile=options.cafile), reporter)
+
+
+def _map(mapping: Mapping | None, stop: threading.Event) -> None:
+    while not stop.is_set():
+        if mapping is None:
+            stop.wait(UPDATE_S)
+        else:
+            mapping.node.wait(WAIT_S)
+            mapping.step()
+
+
+def _publish(options: argparse.Namespace, address: str, mapping: Mapping | None, reporter: Reporter, stop: threading.Event) -> None:
+    """Until it is to stop; the command ends with it."""
+    from .node import Node
+    from .publishing import Publishing
+    from .served import MapServer
+
+    def frame() -> str:
+        return options.world or "map" if mapping is None or options.poses == "none" else mapping.poses.world
+
+    try:
+        publishing = Publishing(Node(options.domain), MapServer(address, options.cafile), frame, reporter, name=options.name,
+                                most_points=options.points, simulated_clock=options.sim_time)
+        if not _is_address(options.map) and not options.no_grid:
+            _grid(publishing, options, reporter)
+        while not stop.is_set():
+            publishing.update()
+            publishing.serve(UPDATE_S)
+    finally:
+        stop.set()
+
+
+def _grid(publishing: Publishing, options: argparse.Namespace, reporter: Reporter) -> None:
+    try:
+        publishing.publish_grid(pathlib.Path(options.map))
+    except Error as fault:
+        reporter.say(f"no grid: {fault}")
+
+
+def _finish(mapping: Mapping | None, reporter: Reporter) -> None:
+    said = []
+    if mapping is not None:
+        try:
+            said.append(mapping.finish())
+        except (SendError, OSError) as fault:
+            said.append(str(fault))
+    if summary := reporter.summary():
+        said.append(summary)
+    if said:
+        reporter.say("; ".join(said))
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="ovimap-ros", description="speaks ROS 2 without ROS: sends a robot's images to a map server, publishes what a map holds",
+        epilog="example: ovimap-ros http://localhost:8080/ --color /camera/color/image_raw --depth /camera/aligned_depth_to_color/image_raw")
+    parser.add_argument("map", metavar="MAP|URL", help="a map file, or the address that `ovimap serve` printed")
+    frames = parser.add_argument_group("frames, for `ovimap serve --live http -o MAP`")
+    frames.add_argument("--color", metavar="TOPIC", help="of Image or CompressedImage (JPEG, PNG)")
+    frames.add_argument("--depth", metavar="TOPIC", help="of Image (16UC1, 32FC1) or CompressedImage (compressedDepth, PNG)")
+    frames.add_argument("--color-info", metavar="TOPIC", help="of CameraInfo; default: camera_info beside the images")
+    frames.add_argument("--depth-info", metavar="TOPIC", help="likewise")
+    frames.add_argument("--poses", default="tf", metavar="tf|TOPIC|none",
+                        help="tf, a topic of Odometry or stamped poses instead, or none where the server tracks the camera")  # fmt: skip
+    frames.add_argument("--world", metavar="FRAME", help="frame that poses are given in; default: the root of the transforms, or map")
+    frames.add_argument("--reliable", action="store_true", help="ask for images again that were lost; their publisher must offer it")
+    out = parser.add_argument_group("what is published")
+    out.add_argument("--name", default="/ovimap", help="before the names of topics and of the service (/ovimap)")
+    out.add_argument("--points", type=int, default=500_000, help="most points of the cloud (500000)")
+    out.add_argument("--sim-time", action="store_true", help="stamp messages with the time of /clock")
+    out.add_argument("--no-grid", action="store_true", help="leave the occupancy grid out")
+    out.add_argument("--no-publish", action="store_true", help="send frames alone")
+    parser.add_argument("--domain", type=int, help="of DDS; default: ROS_DOMAIN_ID, or 0")
+    parser.add_argument("--cafile", metavar="PEM", help="certificates to trust, for a server of https with one of its own")
+    parser.set_defaults(command=_run)
+    return parser
+
+
+if __name__ == "__main__":
+    sys.exit(main())

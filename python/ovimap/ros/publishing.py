@@ -1,0 +1,112 @@
+# SPDX-FileCopyrightText: 2026 The ovimap authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a map holds, for other nodes: published anew when it changes, and a service that is asked in words."""
+
+from __future__ import annotations
+
+import pathlib
+import time
+from collections.abc import Callable
+from typing import Any
+
+from .._ovimap import Error
+from .grid import grid_of
+from .messages import (
+    CLOUD,
+    DETECTIONS,
+    GRID,
+    MARKERS,
+    TRANSFORM,
+    cloud_message,
+    detections_message,
+    frames_message,
+    grid_message,
+    header_of,
+    markers_message,
+)
+from .node import CLOCK, LATCHED, STATIC_TRANSFORMS, Node
+from .reporter import Reporter
+from .served import MapServer
+from .types import QUERY, make
+
+SIMULATED_CLOCK = "rosgraph_msgs/msg/Clock"
+
+
+class Clock:
+    """The time that messages are stamped with: the machine's, or what /clock says."""
+
+    def __init__(self, node: Node, simulated: bool) -> None:
+        self._ticks = node.subscription(SIMULATED_CLOCK, "/clock", CLOCK) if simulated else None
+        self._latest_ns = 0
+
+    def now_ns(self) -> int:
+        if self._ticks is None:
+            return time.time_ns()
+        for tick in self._ticks.take():
+            if tick is not None:
+                self._latest_ns = tick.clock.sec * 1_000_000_000 + tick.clock.nanosec
+        return self._latest_ns
+
+
+class Publishing:
+    """Publishes under `name`, "/ovimap" as a rule: objects, detections, markers, grid; and the service query.
+
+    frame: gives the world's frame by now, in which all of it is; "" while there is none. most_points: of the cloud."""
+
+    def __init__(self, node: Node, server: MapServer, frame: Callable[[], str], reporter: Reporter, *, name: str = "/ovimap",
+                 most_points: int = 500_000, simulated_clock: bool = False) -> None:  # fmt: skip
+        self._node, self._server, self._frame, self._report, self._most_points = node, server, frame, reporter, most_points
+        self._clock = Clock(node, simulated_clock)
+        self._out = {kind: node.publisher(kind, f"{name}/{topic}", LATCHED)
+                     for kind, topic in ((CLOUD, "objects"), (DETECTIONS, "detections"), (MARKERS, "markers"), (GRID, "grid"))}
+        self._frames = node.publisher(TRANSFORM, "/tf_static", STATIC_TRANSFORMS)
+        self._service = node.service(QUERY, f"{name}/query", self._answer)
+        self._published: tuple[Any, ...] = ()
+
+    def serve(self, seconds: float) -> None:
+        """Answers queries for that long."""
+        end = time.monotonic() + seconds
+        while (left := end - time.monotonic()) > 0:
+            self._node.wait(left)
+            self._service.serve()
+
+    def update(self) -> None:
+        """Publishes the map if it is another than last time. What the server refuses is said once."""
+        try:
+            about, frame = self._server.about(), self._frame()
+            state = (about["version"], about["mesh_version"], frame)
+            if not frame or state == self._published:
+                return
+            self._publish(frame)
+            self._published = state
+            self._report.again("map")
+        except Error as fault:
+            self._report.once("map", str(fault))
+
+    def publish_grid(self, map_file: pathlib.Path) -> None:
+        self._out[GRID].publish(grid_message(grid_of(map_file), self._header()))
+
+    def _publish(self, frame: str) -> None:
+        things, header = self._server.objects(), self._header()
+        self._out[CLOUD].publish(cloud_message(self._server.cloud(self._most_points), header))
+        self._out[DETECTIONS].publish(detections_message(things, header))
+        self._out[MARKERS].publish(markers_message(things, header))
+        if any(thing["name"] for thing in things):
+            self._frames.publish(frames_message(things, header))
+
+    def _header(self) -> Any:
+        return header_of(self._frame(), self._clock.now_ns())
+
+    def _answer(self, request: Any) -> Any:
+        """Of the service: what matches, best first, with its probability; the message says how it was understood, or what is wrong."""
+        header = self._header()
+        try:
+            said = self._server.query(request.text)
+            scores = {match["id"]: float(match["probability"] or 0) for match in said["matches"]}
+            things = {thing["id"]: thing for thing in self._server.objects()}
+        except Error as fault:
+            return make(f"{QUERY}_Response", found=False, message=str(fault), matches=detections_message([], header))
+        matching = [things[number] for number in scores if number in things]
+        message = said["reason"] or said["reading"] or said["verdict"]
+        return make(f"{QUERY}_Response", found=said["verdict"] == "found", message=message,
+                    matches=detections_message(matching, header, scores))

@@ -1,0 +1,282 @@
+# SPDX-FileCopyrightText: 2026 The ovimap authors
+# SPDX-License-Identifier: Apache-2.0
+"""ovimap-ros as a process between a robot (these tests, or a real ROS 2) and a map server: all that goes over DDS is checked for values."""
+import contextlib
+import itertools
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import numpy as np
+import ovimap
+import pytest
+
+pytest.importorskip("cyclonedds", reason="cyclonedds is not installed; tools/setup.sh --tests installs it")
+pytest.importorskip("rosbags")
+from ovimap.ros import messages, types
+from ovimap.ros.messages import POINT, header_of
+from ovimap.ros.node import CLOCK, LATCHED, SENSOR_DATA, STATIC_TRANSFORMS, TRANSFORMS, Node, Quality
+from ros_fixture import image, info, moved, transforms
+
+PROGRAM = os.environ.get("OVIMAP_PROGRAM")
+ROS2 = os.environ.get("OVIMAP_ROS2_PYTHON")
+DOMAIN = 1 + os.getpid() % 100
+FRAMES = 10
+WRITTEN = json.loads((pathlib.Path(__file__).parent / "ros2/written.json").read_text())["messages"]
+RELIABLE = Quality(depth=30)
+# This machine alone, without multicast, which many places forbid.
+LOOPBACK = """<CycloneDDS><Domain><General><Interfaces><NetworkInterface address="127.0.0.1"/></Interfaces>
+<AllowMulticast>false</AllowMulticast></General><Discovery><ParticipantIndex>auto</ParticipantIndex>
+<MaxAutoParticipantIndex>40</MaxAutoParticipantIndex><Peers><Peer address="127.0.0.1"/></Peers></Discovery></Domain></CycloneDDS>"""
+needs_program = pytest.mark.skipif(not PROGRAM, reason="the program was not built; set OVIMAP_PROGRAM")
+
+
+@pytest.fixture(scope="module", autouse=True)
+def loopback():
+    os.environ.setdefault("CYCLONEDDS_URI", LOOPBACK)
+
+
+@pytest.fixture(scope="module")
+def node(loopback):
+    return Node(DOMAIN)
+
+
+class Program:
+    """A process whose lines on stderr are kept; Ctrl-C ends it."""
+
+    def __init__(self, *command, stdout=None):
+        self.process = subprocess.Popen(command, stdout=stdout, stderr=subprocess.PIPE, text=True)
+        self.lines = []
+        self._reading = threading.Thread(target=lambda: self.lines.extend(self.process.stderr), daemon=True)
+        self._reading.start()
+
+    def __enter__(self):
+        return self
+
+    def end(self):
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGINT)
+        code = self.process.wait(timeout=60)
+        self._reading.join()
+        return code
+
+    def __exit__(self, kind, *_):
+        self.end()
+        if kind:
+            print(*self.lines)  # pytest shows it
+        for stream in (self.process.stdout, self.process.stderr):
+            if stream:
+                stream.close()
+
+
+def ovimap_ros(*options):
+    return Program(sys.executable, "-m", "ovimap.ros.command", "--domain", str(DOMAIN), *map(str, options))
+
+
+@contextlib.contextmanager
+def live_server(out):
+    with Program(PROGRAM, "serve", "http", "--live", "-o", str(out), "--set", "live.queue=60", "--port", "0", "--viewer", "none", "--json", stdout=subprocess.PIPE) as program:
+        program.address = json.loads(program.process.stdout.readline())["address"]
+        yield program
+
+
+def until(what, seconds=60):
+    """Its value, once it is one; waits long, for machines that do much else."""
+    end = time.monotonic() + seconds
+    while not (value := what()):
+        assert time.monotonic() < end, "it did not happen"
+        time.sleep(0.02)
+    return value
+
+
+def first(subscription):
+    return until(lambda: next(subscription.take(), None))
+
+
+def test_bytes_of_ros_pass_and_others_do_not(node):
+    other = Node(DOMAIN)
+    for number, entry in enumerate(WRITTEN):
+        if entry["type"].startswith("std_srvs"):
+            continue
+        writer = other.publisher(entry["type"], f"/bytes{number}", RELIABLE)
+        reader = node.subscription(entry["type"], f"/bytes{number}", RELIABLE)
+        until(lambda: writer.subscribers and reader.publishers)
+        data = bytes.fromhex(entry["cdr"])
+        writer.publish_bytes(data)
+        message = first(reader)
+        assert types.encode(entry["type"], message) == types.encode(entry["type"], types.decode(entry["type"], data)), entry["type"]
+        with contextlib.suppress(Exception):  # the writer may see it already
+            writer.publish_bytes(data[: len(data) // 2 // 4 * 4])
+        writer.publish_bytes(data)
+        assert first(reader) is not None, "what is cut off is not read as something else"
+
+
+def test_a_late_subscriber_gets_what_is_latched(node):
+    writer = Node(DOMAIN).publisher("rosgraph_msgs/msg/Clock", "/latched", LATCHED)
+    for second in (1, 2):
+        writer.publish(types.make("rosgraph_msgs/msg/Clock", clock=messages.stamp_of(second * 10**9)))
+    assert first(node.subscription("rosgraph_msgs/msg/Clock", "/latched", LATCHED)).clock.sec == 2
+
+
+class Robot:
+    """Publishes a recording's frames; colour as JPEG where asked."""
+
+    def __init__(self, node, room, name):
+        self.node, self.name, self.recorded = node, name, list(ovimap.open_source(room).frames(f":{FRAMES}"))
+        self.color = node.publisher("sensor_msgs/msg/Image", f"/{name}/color/image", RELIABLE)
+        self.depth = node.publisher("sensor_msgs/msg/Image", f"/{name}/depth/image", RELIABLE)
+        self.infos = [node.publisher("sensor_msgs/msg/CameraInfo", f"/{name}/{kind}/camera_info", RELIABLE) for kind in ("color", "depth")]
+        self.tf = node.publisher("tf2_msgs/msg/TFMessage", "/tf", TRANSFORMS)
+        self.tf_static = node.publisher("tf2_msgs/msg/TFMessage", "/tf_static", STATIC_TRANSFORMS)
+        self.tf_static.publish(transforms((f"{name}_base", f"{name}_optical", 1, moved(0.25))))
+
+    def topics(self):
+        return "--color", f"/{self.name}/color/image", "--depth", f"/{self.name}/depth/image", "--reliable"
+
+    def wait_for_listener(self):
+        until(lambda: all(one.subscribers for one in (self.color, self.depth, self.tf, self.tf_static, *self.infos)))
+
+    def send(self, number, metres=False):
+        frame, time_ns, optical = self.recorded[number % FRAMES], 10**18 + number * 33_000_000, f"{self.name}_optical"
+        for out in self.infos:
+            out.publish(info(frame.camera, optical))
+        pose = np.array(frame.world_from_camera) @ np.linalg.inv(moved(0.25))
+        self.tf.publish(transforms(("map", f"{self.name}_base", time_ns, pose)))
+        depth = np.array(frame.depth) if metres else np.rint(np.array(frame.depth) * 1000).astype(np.uint16)
+        self.color.publish(image(time_ns, np.array(frame.color), "rgb8", optical))
+        self.depth.publish(image(time_ns, depth, "32FC1" if metres else "16UC1", optical))
+
+
+@needs_program
+@pytest.mark.parametrize("metres", [False, True])
+def test_a_robots_images_are_mapped_and_the_map_comes_back(node, room, tmp_path, metres):
+    robot = Robot(node, room, f"robot{int(metres)}")
+    out = tmp_path / "ros.ovimap"
+    objects = node.subscription("sensor_msgs/msg/PointCloud2", f"/{robot.name}/objects", LATCHED)
+    with live_server(out) as server, ovimap_ros(server.address, *robot.topics(), "--name", robot.name) as bridge:
+        robot.wait_for_listener()
+        numbers = itertools.count()
+
+        def map_after_a_frame():
+            robot.send(next(numbers), metres)
+            time.sleep(0.25)  # the map is handed out about once a second, while frames come
+            return next((cloud for cloud in objects.take() if cloud.width), None)
+
+        cloud = until(map_after_a_frame)
+        found = first(node.subscription("vision_msgs/msg/Detection3DArray", f"/{robot.name}/detections", LATCHED))
+        bridge.end()
+        sent = next(numbers)
+        assert [line.removeprefix("ovimap-ros: ") for line in bridge.lines] == [
+            "poses are in the frame 'map'; --world names another\n", f"{sent} frames sent, 0 skipped; the map is saved\n"]  # fmt: skip
+        assert json.loads(server.process.stdout.readline())["saved"]["frames"] == sent
+    assert cloud.header.frame_id == found.header.frame_id == "map"
+    points = cloud.data.view(POINT)
+    assert {str(number) for number in np.unique(points["instance"])} - {"0"}
+    depth, camera, pose = (np.array(robot.recorded[0].depth), robot.recorded[0].camera, np.array(robot.recorded[0].world_from_camera))
+    z = depth[camera.height // 2, camera.width // 2]
+    seen = pose @ [(camera.width // 2 - camera.cx) / camera.fx * z, (camera.height // 2 - camera.cy) / camera.fy * z, z, 1]
+    near = np.linalg.norm(np.stack([points["x"], points["y"], points["z"]], 1) - seen[:3], axis=1).min()
+    assert near < 0.03, "the surface is where the camera saw it"
+    assert len(ovimap.Map.open(out)) > 0
+
+
+@pytest.fixture(scope="module")
+def named_map(saved_map, tmp_path_factory):
+    """A copy of the map with one object that people named."""
+    path = tmp_path_factory.mktemp("named") / "room.ovimap"
+    shutil.copyfile(saved_map, path)
+    number = int(ovimap.Map.open(path).instances.ids[3])
+    subprocess.run([PROGRAM, "edit", path, "rename", str(number), "Tea pot"], check=True, capture_output=True)
+    return path, number
+
+
+@needs_program
+def test_what_a_map_holds_is_published(node, named_map):
+    path, named = named_map
+    with ovimap_ros(path, "--name", "/kept", "--world", "house", "--sim-time") as bridge:
+        clock = node.publisher("rosgraph_msgs/msg/Clock", "/clock", CLOCK)
+        until(lambda: clock.publish(types.make("rosgraph_msgs/msg/Clock", clock=messages.stamp_of(5 * 10**9))) or clock.subscribers)
+        cloud, found, markers, grid = (first(node.subscription(kind, f"/kept/{topic}", LATCHED)) for kind, topic in (
+            (messages.CLOUD, "objects"), (messages.DETECTIONS, "detections"), (messages.MARKERS, "markers"), (messages.GRID, "grid")))
+        frames = node.subscription(messages.TRANSFORM, "/tf_static", STATIC_TRANSFORMS)
+        frame = until(lambda: next((entry for message in frames.take() for entry in message.transforms if entry.child_frame_id.startswith("object/")), None))
+        assert bridge.end() == 0 and bridge.lines == []
+    instances = ovimap.Map.open(path).instances
+    assert [int(one.id) for one in found.detections] == instances.ids.tolist() and found.header.frame_id == "house"
+    for one, box in zip(found.detections, instances.boxes):
+        center, size = one.bbox.center.position, one.bbox.size
+        assert np.allclose([[center.x, center.y, center.z], [size.x, size.y, size.z]], [box.mean(0), box[1] - box[0]], atol=1e-3)
+    [tea] = [one for one in found.detections if one.id == str(named)]
+    assert (tea.results[0].hypothesis.class_id, tea.results[0].hypothesis.score) == ("Tea pot", 1.0)
+    assert (frame.child_frame_id, frame.header.frame_id) == (f"object/tea_pot_{named}", "house")
+    shift, middle = frame.transform.translation, instances.boxes[3].mean(0)
+    assert np.allclose([shift.x, shift.y, shift.z], middle, atol=1e-3)
+    assert [field.name for field in cloud.fields] == ["x", "y", "z", "rgb", "instance"] and cloud.point_step == POINT.itemsize == 20
+    points = cloud.data.view(POINT)
+    assert set(np.unique(points["instance"])) <= set(instances.ids.tolist()) and len(points) == cloud.width > 10_000
+    inside = points[points["instance"] == named]
+    xyz = np.stack([inside["x"], inside["y"], inside["z"]], 1)
+    assert (xyz >= instances.boxes[3][0] - 0.02).all() and (xyz <= instances.boxes[3][1] + 0.02).all()
+    assert markers.markers[0].action == messages.DELETE_ALL and len(markers.markers) == 1 + 2 * len(instances)
+    assert {marker.text for marker in markers.markers} >= {f"Tea pot {named}"}
+    assert (grid.info.width * grid.info.height, set(np.unique(grid.data))) == (len(grid.data), {-1, 0, 100})
+
+
+@needs_program
+def test_the_grid_is_that_of_map_server(named_map, tmp_path):
+    from ovimap.ros.grid import grid_of
+    pillow = pytest.importorskip("PIL.Image")
+    grid = grid_of(named_map[0])
+    subprocess.run([PROGRAM, "export", named_map[0], tmp_path / "grid.yaml"], check=True, capture_output=True)
+    picture = np.array(pillow.open(tmp_path / "grid.png"))
+    assert np.array_equal(grid.cells[::-1] == 100, picture == 0) and np.array_equal(grid.cells[::-1] == 0, picture == 254)
+    assert grid.cell_m == 0.05 and np.allclose(grid.world_from_grid @ grid.world_from_grid.T, np.eye(3), atol=1e-5)
+
+
+@needs_program
+def test_a_service_answers_in_words(node, named_map):
+    client = node.client(types.QUERY, "/asked/query")
+    with ovimap_ros(named_map[0], "--name", "/asked", "--no-grid"):
+        until(lambda: client.ready)
+
+        def ask(text):
+            number = client.ask(types.make(f"{types.QUERY}_Request", text=text))
+            got, reply = until(lambda: next(client.answers(), None))
+            assert got == number
+            return reply
+
+        reply = until(lambda: (answer := ask("chair")).matches.detections and answer)  # the encoder may still be opened
+        expected = ovimap.Map.open(named_map[0]).query("chair")
+        assert reply.found and [int(one.id) for one in reply.matches.detections] == [match.id for match in expected.matches]
+        assert np.allclose([one.results[0].hypothesis.score for one in reply.matches.detections], [match.probability for match in expected.matches], atol=1e-6)
+        nothing = ask("")
+        assert not nothing.found and nothing.message and not nothing.matches.detections
+
+
+@needs_program
+def test_publishers_that_double_and_vanish_are_told(room, tmp_path, node):
+    with live_server(tmp_path / "a.ovimap") as server, ovimap_ros(server.address, "--color", "/two/c", "--depth", "/two/d", "--no-publish") as bridge:
+        publishers = [Node(DOMAIN).publisher("sensor_msgs/msg/Image", "/two/c", SENSOR_DATA) for _ in range(2)]
+        until(lambda: any("2 publishers send images on /two/c" in line for line in bridge.lines))
+        publishers.clear()
+        until(lambda: any("the publisher of /two/c is gone" in line for line in bridge.lines))
+        bridge.end()
+        assert "no frame was sent" in bridge.lines[-1]
+
+
+@pytest.mark.parametrize(("options", "said"), [
+    (("http://localhost:1", "--color", "/c"), "frames need colour and depth"),
+    (("none.ovimap",), "there is no map 'none.ovimap'"),
+    (("room.ovimap", "--color", "/c", "--depth", "/d"), "'room.ovimap' is no address"),
+    (("http://localhost:1", "--no-publish", "--color", "/c", "--depth", "/d", "--domain", "233"), "'233' is no domain of DDS"),
+])  # fmt: skip
+def test_what_the_user_can_mend_is_one_line(options, said):
+    with ovimap_ros(*options) as bridge:
+        assert bridge.process.wait(timeout=60) == 2 and bridge.end() == 2
+    assert len(bridge.lines) == 1 and said in bridge.lines[0]
