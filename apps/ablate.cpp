@@ -12,6 +12,7 @@
 #include "mapping_run.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/base/version.h"
+#include "ovimap/image/codec.h"
 #include "ovimap/io/map_file/map_file.h"
 #include "ovimap/io/truth/truth.h"
 #include "ovimap/pipeline/report/map_pictures.h"

@@ -103,7 +103,7 @@ int calibrate(const CalibrateOptions& options) {
       result.verdict == Verdict::kFound || (result.verdict == Verdict::kAligned && options.force);
   if (writes) {
     const std::string text = calibrated_text(present, result);
-    write_file(out, std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
+    write_text(out, text);
   }
   if (!options.picture.empty() && !result.positions.empty())
     write_file(options.picture, encode_png(calibration_picture(*source, result)));

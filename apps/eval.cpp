@@ -29,10 +29,6 @@ EvaluationConfig evaluation_config(const EvalOptions& options) {
   return config;
 }
 
-void write_markdown(const std::filesystem::path& path, const std::string& text) {
-  write_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-}
-
 int eval(const EvalOptions& options) {
   if (options.maps.size() != options.truths.size())
     throw Error(concat(options.maps.size(), " maps but ", options.truths.size(),
@@ -50,7 +46,7 @@ int eval(const EvalOptions& options) {
   const ProtocolChoice protocols{options.protocol != "reference", options.protocol != "standard"};
   const EvalTable table = table_of(evaluation, config, protocols);
   const std::string tables = eval_markdown(evaluation, table, config.sizes);
-  if (!options.markdown.empty()) write_markdown(options.markdown, tables);
+  if (!options.markdown.empty()) write_text(options.markdown, tables);
   if (options.json)
     print_json(eval_json(evaluation, table));
   else

@@ -23,10 +23,6 @@ namespace ovimap::apps {
 
 namespace {
 
-void write_text(const std::filesystem::path& path, const std::string& text) {
-  write_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-}
-
 /// The map's mesh with instance ids as labels, coloured as --what says.
 Mesh colored_mesh(const MapDocument& document, const ExportOptions& options) {
   Mesh mesh = mesh_of(document, options.map);

@@ -56,7 +56,7 @@ void export_class_json(const ExportOptions& options) {
     instance["class"] = {{"id", label.id}, {"name", label.name}, {"score", guess->second.score}};
   }
   const std::string text = json_text(document) + "\n";
-  write_file(options.out, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  write_text(options.out, text);
 }
 
 }  // namespace ovimap::apps

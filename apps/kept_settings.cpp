@@ -25,8 +25,4 @@ void require_same_settings(const std::filesystem::path& folder, const std::strin
                        "another folder"));
 }
 
-void write_text(const std::filesystem::path& path, const std::string& text) {
-  write_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-}
-
 }  // namespace ovimap::apps

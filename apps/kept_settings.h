@@ -16,6 +16,4 @@ std::string settings_text(const MappingOptions& mapping);
 /// Writes settings.txt, or throws Error when the one that is there says something else.
 void require_same_settings(const std::filesystem::path& folder, const std::string& settings);
 
-void write_text(const std::filesystem::path& path, const std::string& text);
-
 }  // namespace ovimap::apps

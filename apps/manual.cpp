@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <fstream>
 
 #include "ovimap/base/error.h"
 #include "ovimap/base/version.h"
+#include "ovimap/image/codec.h"
 #include "program.h"
 
 namespace ovimap::apps {
@@ -20,9 +20,7 @@ Commands commands_of(const CLI::App& app) {
 
 void write(const fs::path& file, const std::string& text) {
   fs::create_directories(file.parent_path());
-  std::ofstream stream(file);
-  stream << text << std::flush;
-  if (!stream) throw Error(concat("cannot write '", file.string(), "'"));
+  write_text(file, text);
 }
 
 // ---------------------------------------------------------------------------------- man pages

@@ -68,7 +68,7 @@ int write_report(const ReportOptions& options) {
   const MapDocument document = load_corrected_map(options.map);
   const MapReport report = make_report(document, classes, options);
   const std::string html = map_report_html(document, report, options.config);
-  write_file(options.out, {reinterpret_cast<const std::uint8_t*>(html.data()), html.size()});
+  write_text(options.out, html);
   const std::size_t named = report.names ? report.names->guesses.size() : 0;
   if (options.json)
     print_json({{"map", options.map.string()},

@@ -8,6 +8,7 @@
 #include "ovimap/base/ascii.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/base/version.h"
+#include "ovimap/image/codec.h"
 #include "ovimap/io/map_file/map_file.h"
 #include "ovimap/pipeline/report/map_pictures.h"
 #include "reproduce_report.h"

@@ -66,10 +66,6 @@ std::string draw_model(const PortraitStudio& studio, const std::filesystem::path
   return lines;
 }
 
-void write_text(const std::filesystem::path& path, const std::string& text) {
-  write_file(path, Bytes(text.begin(), text.end()));
-}
-
 std::string notice(const std::vector<FurnitureEntry>& entries) {
   std::set<std::string> lines;
   for (const FurnitureEntry& entry : entries)

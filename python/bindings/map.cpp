@@ -148,10 +148,6 @@ void bind_mesh(nb::module_& module) {
       });
 }
 
-void write_text(const std::filesystem::path& path, const std::string& text) {
-  write_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-}
-
 std::string objects_json(const SavedMap& map) {
   std::vector<InstanceId> ids;
   for (const SearchObject& object : map.index().objects()) ids.push_back(object.id);

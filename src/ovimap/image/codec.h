@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "ovimap/image/image.h"
@@ -44,6 +45,7 @@ Bytes encode_jpeg(const RgbImage& image, int quality);
 /// the old one. Both throw Error naming the path and the system's reason.
 Bytes read_file(const std::filesystem::path& path);
 void write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
+void write_text(const std::filesystem::path& path, std::string_view text);
 
 /// Throws what write_file would throw for a target that cannot be written, so that long work learns
 /// of it before it starts. Changes nothing.

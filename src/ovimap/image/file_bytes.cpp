@@ -127,4 +127,8 @@ void write_file(const std::filesystem::path& path, std::span<const std::uint8_t>
   }
 }
 
+void write_text(const std::filesystem::path& path, std::string_view text) {
+  write_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
 }  // namespace ovimap

@@ -45,10 +45,6 @@ class TemporaryFolder {
   fs::path path_;
 };
 
-inline void write_text(const fs::path& file, const std::string& text) {
-  write_file(file, std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
-}
-
 inline std::string padded(int number, int digits) {
   char text[32];
   std::snprintf(text, sizeof(text), "%0*d", digits, number);

@@ -4,7 +4,6 @@
 
 #include <sentencepiece_processor.h>
 
-#include <fstream>
 #include <map>
 
 #include <nlohmann/json.hpp>
@@ -12,6 +11,7 @@
 #include "ovimap/base/bounded_json.h"
 #include "ovimap/base/error.h"
 #include "ovimap/hub/description/piece_model.h"
+#include "ovimap/image/codec.h"
 
 namespace ovimap {
 
@@ -27,13 +27,6 @@ constexpr const char* kMerges = "merges.txt";
 
 [[noreturn]] void fault(const fs::path& file, const std::string& what) {
   throw Error(concat(file.string(), ": ", what, "; this model cannot be used"));
-}
-
-void write_text(const fs::path& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw Error(concat("cannot write ", file.string(), "; is the disk full?"));
 }
 
 /// A token as settings name it: "</s>" or {"content": "</s>", ...}.

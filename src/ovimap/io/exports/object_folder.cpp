@@ -8,6 +8,7 @@
 #include <cctype>
 
 #include "ovimap/base/error.h"
+#include "ovimap/image/codec.h"
 #include "ovimap/io/exports/instance_json.h"
 #include "ovimap/io/exports/instance_json_value.h"
 #include "ovimap/io/mesh/mesh_pieces.h"
@@ -19,10 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-void write_text(const fs::path& path, const std::string& text) {
-  write_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-}
 
 fs::path plain(const fs::path& folder) {
   return folder.has_filename() ? fs::absolute(folder) : fs::absolute(folder).parent_path();

@@ -21,10 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void write_text(const fs::path& path, const std::string& text) {
-  write_file(path, Bytes(text.begin(), text.end()));
-}
-
 fs::path numbered(const fs::path& folder, const char* stem, std::int64_t number,
                   const char* ending) {
   std::array<char, 32> digits{};

@@ -67,7 +67,7 @@ void write_grid_slice(const std::filesystem::path& path, const OccupancyGrid& gr
   write_file(path.parent_path() / image, encode_png(slice.occupancy));
   write_file(path.parent_path() / esdf, encode_png(in_millimetres(slice.distance_m)));
   const std::string yaml = grid_yaml(grid, slice, image, esdf);
-  write_file(path, {reinterpret_cast<const std::uint8_t*>(yaml.data()), yaml.size()});
+  write_text(path, yaml);
 }
 
 std::filesystem::path layer_path(const std::filesystem::path& path, float height_m) {
