@@ -78,12 +78,28 @@ TEST_F(TextCacheTest, TellsListsAndModelsApart) {
   EXPECT_EQ(asked_, 399);
 }
 
-TEST_F(TextCacheTest, NeverStoresQueries) {
+TEST_F(TextCacheTest, RemembersQueriesButNeverStoresThem) {
   const auto one = encoder();
-  one->encode_texts(list(3));
-  one->encode_texts(list(3));
-  EXPECT_EQ(asked_, 6);
+  const Embeddings rows = one->encode_texts(list(3));
+  EXPECT_EQ(one->encode_texts(list(3)), rows);
+  EXPECT_EQ(asked_, 3);
+  EXPECT_NE(one->encode_texts(list(3, "other")), rows);
+  EXPECT_NE(one->encode_texts(list(2)).rows(), rows.rows());
+  EXPECT_EQ(asked_, 8);
   EXPECT_TRUE(files().empty());
+}
+
+TEST_F(TextCacheTest, ForgetsTheQueriesThatWereNotAskedForTheLongest) {
+  const auto one = encoder();
+  const auto ask = [&](std::size_t number) { one->encode_texts(list(1, std::to_string(number))); };
+  for (std::size_t i = 0; i < kRecentTextLists; ++i) ask(i);
+  ask(0);
+  EXPECT_EQ(asked_, static_cast<int>(kRecentTextLists));
+  ask(kRecentTextLists);  // "1" goes
+  ask(0);
+  EXPECT_EQ(asked_, static_cast<int>(kRecentTextLists) + 1);
+  ask(1);
+  EXPECT_EQ(asked_, static_cast<int>(kRecentTextLists) + 2);
 }
 
 TEST_F(TextCacheTest, DoesWithoutDamagedFiles) {
