@@ -43,6 +43,7 @@ RgbImage place_picture(Mesh mesh, std::uint32_t id, const Eigen::Vector3f& up) {
   PictureConfig config;
   config.coloring = MeshColoring::kColors;
   config.longest_side_px = kLongestSidePx;
+  config.supersampling = 1;  // asked for while somebody waits
   return top_down(mesh, upward, config, top_m + kAboveM);
 }
 
