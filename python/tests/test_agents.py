@@ -3,6 +3,7 @@
 """Agents ask maps over the Model Context Protocol, with the library's own client: files, servers, maps that are being made."""
 import base64
 import os
+import pathlib
 import shutil
 import subprocess
 import sys
@@ -164,6 +165,16 @@ def test_corrections_only_where_they_are_allowed(copy):
         in_one_line(agent.rename(map="room", object=4000000000, name="x"), "no object")
         in_one_line(agent.rename(map="room", object=chair, name="a\nb"))
         in_one_line(agent.rename(map="room", object=chair, name="x" * 201), "'name'")
+
+
+def test_the_session_of_the_page_can_be_played(copy):
+    script = pathlib.Path(__file__).parents[2] / "tools" / "agent_session.py"
+    done = subprocess.run([sys.executable, script, copy], capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    told = done.stdout
+    assert 'find(map="room", text="elephant")' in told and '"found": false' in told and "[picture, image/jpeg" in told
+    assert "has no object 999999" in told and '"title": "fruit bowl"' in told
+    assert not any(ovimap.Map.open(copy).instances.names)  # it took its name back
 
 
 def test_several_maps_are_told_apart(copy, saved_map):

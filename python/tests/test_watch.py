@@ -175,6 +175,28 @@ def test_a_thousand_queries_at_once(saved_map):
     assert backend.verdicts(words) == verdicts
 
 
+def states_of(backend, change):
+    """Whether it has another afterwards."""
+    before = backend.state()
+    change(backend)
+    return before != backend.state()
+
+
+@needs_program
+def test_names_alone_are_no_reason_to_ask_again(saved_map, tmp_path):
+    pytest.importorskip("mcp")  # of which the fixture has more
+    from agent_fixture import serving
+
+    copy = shutil.copy(saved_map, tmp_path / "room.ovimap")
+    first, second = (match.id for match in ovimap.Map.open(copy).query("chair").matches[:2])
+    with serving(copy) as server:
+        for backend in (open_map(server.address), open_map(copy)):
+            assert backend.find("chair").found  # the server is ready
+            assert not states_of(backend, lambda backend: backend.rename(first, "throne"))
+            assert states_of(backend, lambda backend: backend.merge(second, first))
+            backend.undo(0)
+
+
 class Hook:
     """A program that takes events."""
 

@@ -75,7 +75,7 @@ class MapBackend(abc.ABC):
 
     @abc.abstractmethod
     def state(self) -> tuple[str, bool]:
-        """What changes whenever objects may have changed, and whether the map is being made."""
+        """What changes whenever an object does, apart from its name, and whether the map is being made."""
 
     @abc.abstractmethod
     def verdicts(self, texts: Sequence[str]) -> list[Verdict]:
