@@ -75,18 +75,25 @@ class RecentLists {
     if (entries_.contains(key)) return;  // two asked at once
     order_.push_front({std::move(key), rows});
     entries_.emplace(order_.front().key, order_.begin());
-    if (order_.size() <= kRecentTextLists) return;
-    entries_.erase(order_.back().key);
-    order_.pop_back();
+    bytes_ += order_.front().bytes();
+    while (bytes_ > kRecentTextBytes) {
+      bytes_ -= order_.back().bytes();
+      entries_.erase(order_.back().key);
+      order_.pop_back();
+    }
   }
 
  private:
   struct Entry {
     std::string key;
     Embeddings rows;
+    std::size_t bytes() const {
+      return key.size() + static_cast<std::size_t>(rows.size()) * sizeof(float);
+    }
   };
   std::mutex mutex_;
   std::list<Entry> order_;  ///< latest first
+  std::size_t bytes_ = 0;
   std::unordered_map<std::string_view, std::list<Entry>::iterator> entries_;
 };
 

@@ -91,15 +91,19 @@ TEST_F(TextCacheTest, RemembersQueriesButNeverStoresThem) {
 
 TEST_F(TextCacheTest, ForgetsTheQueriesThatWereNotAskedForTheLongest) {
   const auto one = encoder();
-  const auto ask = [&](std::size_t number) { one->encode_texts(list(1, std::to_string(number))); };
-  for (std::size_t i = 0; i < kRecentTextLists; ++i) ask(i);
+  constexpr int kFit = 4;  // of texts so long that a fifth does not
+  const auto ask = [&](int number) {
+    const auto letter = static_cast<char>('a' + number);
+    one->encode_texts(list(1, std::string(kRecentTextBytes / (kFit + 1) + 1000, letter)));
+  };
+  for (int i = 0; i < kFit; ++i) ask(i);
   ask(0);
-  EXPECT_EQ(asked_, static_cast<int>(kRecentTextLists));
-  ask(kRecentTextLists);  // "1" goes
+  EXPECT_EQ(asked_, kFit);
+  ask(kFit);  // the second goes
   ask(0);
-  EXPECT_EQ(asked_, static_cast<int>(kRecentTextLists) + 1);
+  EXPECT_EQ(asked_, kFit + 1);
   ask(1);
-  EXPECT_EQ(asked_, static_cast<int>(kRecentTextLists) + 2);
+  EXPECT_EQ(asked_, kFit + 2);
 }
 
 TEST_F(TextCacheTest, DoesWithoutDamagedFiles) {
