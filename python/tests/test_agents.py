@@ -2,11 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Agents ask maps over the Model Context Protocol, with the library's own client: files, servers, maps that are being made."""
 import base64
+import contextlib
+import http.server
 import os
 import pathlib
 import shutil
 import subprocess
 import sys
+import threading
 import time
 import urllib.error
 import urllib.request
@@ -17,6 +20,7 @@ import pytest
 mcp = pytest.importorskip("mcp")
 from agent_fixture import agent_over_http, agent_over_stdio, http_server, needs_program, serving  # noqa: E402
 from ovimap import mcp_command  # noqa: E402
+from ovimap.agents import MapFault, open_map  # noqa: E402
 
 
 @pytest.fixture
@@ -247,6 +251,61 @@ def test_a_map_that_is_being_made(room, tmp_path):
             in_one_line(agent.find(map="live", text="chair"), "does not answer")
             in_one_line(agent.look(map="live", object=1), "does not answer")
             assert "does not answer" in agent.maps().value[0]["why_not_searchable"]
+
+
+@contextlib.contextmanager
+def another_program(*answers):
+    """Answers requests one after the other with (status, body), the last one again and again."""
+    waiting = list(answers)
+
+    class Handler(http.server.BaseHTTPRequestHandler):
+        def do_GET(self):
+            status, body = waiting.pop(0) if len(waiting) > 1 else waiting[0]
+            self.send_response(status)
+            self.send_header("Retry-After", "0")
+            self.end_headers()
+            self.wfile.write(body)
+
+        do_POST = do_GET
+
+        def log_message(self, *_):
+            pass
+
+    with http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        yield f"http://127.0.0.1:{server.server_address[1]}/"
+        server.shutdown()
+
+
+@pytest.mark.parametrize(
+    ("answer", "words"),
+    [
+        ((200, b"<html>"), "no JSON object"),
+        ((200, b"[1]"), "no JSON object"),
+        ((200, b"{}"), "not understood"),
+        ((200, b'{"version": 1, "instances": [{"id": "x"}], "matches": 3, "search": 0}'), "not understood"),
+        ((200, b'{"a":' * 100_000), "no JSON object"),
+        ((200, b"\xff\xfe"), "no JSON object"),
+        ((500, b""), "answered 500"),
+        ((404, b'{"error": "two\\nlines"}'), "two lines"),
+        ((404, b'{"error": 3}'), "answered 404"),
+    ],
+)
+def test_another_program_at_that_port_is_one_line(answer, words):
+    with another_program(answer) as address:
+        asked = open_map(address)
+        for question in (asked.summary, asked.objects, asked.state, lambda: asked.find("mug"), lambda: asked.describe(1), lambda: asked.relations(1)):
+            with pytest.raises(MapFault) as fault:
+                question()
+            assert words in str(fault.value) and "\n" not in str(fault.value)
+
+
+def test_a_busy_server_is_asked_again():
+    busy, ready = (429, b'{"error": "wait a second"}'), (200, b'{"edit": 7}')
+    with another_program(busy, (503, b""), ready) as address:
+        assert open_map(address).undo(3) == 7
+    with another_program(busy) as address, pytest.raises(MapFault, match="wait a second"):
+        open_map(address).undo(3)
 
 
 @needs_program

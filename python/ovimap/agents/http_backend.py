@@ -23,6 +23,9 @@ TIMEOUT_S = 20.0
 QUIET_S = 15.0  # the server says something on the event stream every 5 seconds
 BACK_OFF_S = 1.0  # before a server that went away is asked for events again
 MOST_TEXTS = 100  # in one request
+BUSY = (429, 503)  # the request was not looked at
+TRIES = 4
+MOST_PAUSE_S = 2
 NOTHING_YET = "no object has an embedding yet"  # how the server begins why a map that was just begun cannot be searched
 Given = ParamSpec("Given")
 Result = TypeVar("Result")
@@ -197,7 +200,18 @@ class HttpBackend(MapBackend):
         return http.client.HTTPConnection(host, self._parts.port, timeout=timeout_s)
 
     def _ask(self, method: str, path: str, body: bytes | None = None, headers: dict[str, str] | None = None) -> tuple[str, bytes]:
-        """ETag and body of the answer; no body where nothing changed (304)."""
+        """ETag and body of the answer; no body where nothing changed (304). A server that has too much to do is asked again."""
+        for _ in range(TRIES):
+            status, head, text = self._once(method, path, body, headers)
+            if status not in BUSY:
+                break
+            said = head.get("Retry-After", "")
+            time.sleep(min(int(said), MOST_PAUSE_S) if said.isdigit() else 1)
+        if status >= 400:
+            raise MapFault(_refusal(status, text))
+        return head.get("ETag", ""), text
+
+    def _once(self, method: str, path: str, body: bytes | None, headers: dict[str, str] | None) -> tuple[int, http.client.HTTPMessage, bytes]:
         connection = self._connection(TIMEOUT_S)
         try:
             connection.request(method, path, body, {**self._headers, **(headers or {})})
@@ -208,9 +222,7 @@ class HttpBackend(MapBackend):
             raise MapFault(said) from None
         finally:
             connection.close()
-        if reply.status >= 400:
-            raise MapFault(_refusal(reply.status, text))
-        return reply.headers.get("ETag", ""), text
+        return reply.status, reply.headers, text
 
 
 class _Events(threading.Thread):
