@@ -356,6 +356,7 @@ void bind_map(nb::module_& module) {
       nb::sig("def note_skipped(made: Map, faults: list[str]) -> None"),
       "What Map.skipped says: \"FILE: REASON\" of each frame that was left out.");
   bind_query(module, map);
+  bind_objects(module, map);
 }
 
 }  // namespace ovimap::python

@@ -7,11 +7,13 @@
 #include <filesystem>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "ovimap/frames/frame/frame_source.h"
 #include "ovimap/pipeline/search/map_search.h"
+#include "ovimap/semantics/classes/object_names.h"
 #include "ovimap/semantics/query/query_engine.h"
 
 namespace ovimap::python {
@@ -34,6 +36,24 @@ class SavedMap {
   /// Thread-safe. `words`: whether the question needs the encoder.
   const QueryEngine& engine(bool words);
 
+  /// The map as its file is by now. An encoder that is open already stays open for it.
+  std::shared_ptr<SavedMap> reopened();
+
+  /// What objects are called where nobody named them, by position; empty where that cannot be told:
+  /// there are no embeddings, or their encoder is not on this machine. Thread-safe.
+  const std::vector<ObjectName>& guessed_names();
+
+  /// The JPEG files of the pictures that the map keeps of an object, by frame. Thread-safe. Throws
+  /// Error for an unknown id.
+  std::vector<Bytes> crops(InstanceId id);
+
+  /// Where an object is, drawn from above. Reads the voxels the first time. Thread-safe. Throws
+  /// Error for an unknown id and for a map without voxels.
+  RgbImage place(InstanceId id);
+
+  /// Position of an object. Throws Error for an unknown id.
+  std::size_t position(InstanceId id) const;
+
   /// Frames that were left out when it was made, where that is known.
   std::vector<FaultCount> skipped;
 
@@ -52,9 +72,17 @@ class SavedMap {
   std::mutex mutex_;  ///< guards what follows
   std::shared_ptr<ImageTextEncoder> encoder_;
   std::unique_ptr<QueryEngine> word_engine_, object_engine_;
+
+  std::mutex details_mutex_;  ///< guards what follows
+  std::optional<std::vector<ObjectName>> names_;
+  std::optional<SuperPointLooks> looks_;
+  std::optional<Mesh> surface_;
 };
 
 /// Adds the questions to Map.
 void bind_query(nb::module_& module, nb::class_<SavedMap>& map);
+
+/// Adds to Map what is known of single objects, and corrections.
+void bind_objects(nb::module_& module, nb::class_<SavedMap>& map);
 
 }  // namespace ovimap::python

@@ -22,6 +22,8 @@ from ._ovimap import (
     MaskPrompt,
     MaskSource,
     Mesh,
+    ObjectFacts,
+    ObjectRelation,
     PinholeCamera,
     QueryAnswer,
     QueryMatch,
@@ -39,6 +41,7 @@ from ._ovimap import (
     version,
 )
 from .commands import eval, run, synth
+from .watching import WatchEvent, watch
 
 __version__ = version()
 __all__ = [
@@ -61,11 +64,14 @@ __all__ = [
     "MaskPrompt",
     "MaskSource",
     "Mesh",
+    "ObjectFacts",
+    "ObjectRelation",
     "PinholeCamera",
     "QueryAnswer",
     "QueryMatch",
     "Setting",
     "StageSummary",
+    "WatchEvent",
     "__version__",
     "calibrate",
     "check",
@@ -80,4 +86,5 @@ __all__ = [
     "settings",
     "synth",
     "version",
+    "watch",
 ]

@@ -1,13 +1,16 @@
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
 """A saved map: objects and surface as arrays, questions, exports, scores."""
+import io
 import json
+import shutil
 import threading
 
 import numpy as np
 import ovimap
 import pytest
 import trimesh
+from PIL import Image
 
 
 @pytest.fixture(scope="module")
@@ -71,6 +74,65 @@ def test_questions_by_object_and_by_picture(opened, room):
     assert opened.query_like(ovimap.open_source(room)[0].color).query == "picture"
     with pytest.raises(ovimap.Error, match="999999"):
         opened.query_like(999999)
+
+
+def test_an_object_is_described(opened):
+    chair = opened.query("chair").matches[0]
+    facts = opened.describe(chair.id)
+    assert (facts.id, facts.name, facts.label) == (chair.id, "", "chair") and 0 < facts.label_share <= 1
+    assert opened.guess_names()[chair.row] == (facts.label, facts.label_share) and len(opened.guess_names()) == len(opened)
+    box = opened.instances.boxes[chair.row]
+    assert facts.height_m == pytest.approx(box[1][2] - box[0][2], abs=0.1) and 0 < facts.footprint_m2 < 4
+    shares = [share for _, share in facts.colors]
+    assert shares == sorted(shares, reverse=True) and 0.1 <= shares[-1] and sum(shares) <= 1.01
+    assert opened.up[2] == pytest.approx(1, abs=0.05)
+    for ask in (opened.describe, opened.crops, opened.place):
+        with pytest.raises(ovimap.Error, match="999999"):
+            ask(999999)
+
+
+def test_relations_are_those_of_the_export(opened, tmp_path):
+    opened.export(tmp_path / "a.json")
+    listed = json.loads((tmp_path / "a.json").read_text())["relations"]
+    assert [(said.object, said.relation, said.anchor, said.evidence) for said in opened.relations()] == [
+        (said["object"], said["relation"], said["anchor"], said["evidence"]) for said in listed
+    ]
+    assert listed
+
+
+def test_pictures_of_an_object_and_of_its_place(opened):
+    thing = opened.query("anything on the table").matches[0]
+    crops = opened.crops(thing.id)
+    assert 0 < len(crops) and len(set(crops)) == len(crops) and all(crop.startswith(b"\xff\xd8") for crop in crops)
+    place = np.array(Image.open(io.BytesIO(opened.place(thing.id)))).astype(int)
+    red = (place[..., 0] > 2 * place[..., 1]) & (place[..., 0] > 2 * place[..., 2])
+    rows, columns = np.nonzero(red)
+    scale = max(place.shape) / np.ptp(opened.mesh().vertices[:, :2], axis=0).max()  # pixels in a metre, margins left out
+    width = np.ptp(opened.instances.boxes[thing.row], axis=0)[:2].max()
+    assert max(np.ptp(rows), np.ptp(columns)) == pytest.approx(width * scale, rel=0.25)
+
+
+def test_corrections_are_kept_in_the_map(saved_map, tmp_path):
+    path = shutil.copy(saved_map, tmp_path / "a.ovimap")
+    opened = ovimap.Map.open(path)
+    chair, other = (match.id for match in opened.query("chair").matches[:2])
+    first = opened.rename(chair, "throne")
+    assert opened.describe(chair).name == "" and opened.reopened().describe(chair).name == "throne"
+    assert ovimap.Map.open(path).describe(chair).name == "throne"
+    second = opened.merge(other, chair)
+    assert second == first + 1 and other not in opened.reopened().instances.ids
+    assert opened.undo() == second + 1 and other in opened.reopened().instances.ids
+    opened.undo(first)
+    again = opened.reopened()
+    assert again.describe(chair).name == "" and [match.id for match in again.query("chair").matches[:2]] == [chair, other]
+    for wrong in (lambda: opened.undo(99), lambda: opened.merge(chair, chair), lambda: opened.rename(999999, "x")):
+        with pytest.raises(ovimap.Error):
+            wrong()
+
+
+def test_a_map_without_encoder_names_nothing(saved_map):
+    opened = ovimap.Map.open(saved_map, encoder="none")
+    assert opened.guess_names() == [] and opened.describe(int(opened.instances.ids[0])).label == ""
 
 
 def test_several_threads_may_ask_at_once(saved_map):

@@ -7,8 +7,11 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <list>
 #include <map>
 #include <mutex>
+#include <string_view>
+#include <unordered_map>
 
 #include "ovimap/base/error.h"
 #include "ovimap/inference/models/sha256.h"
@@ -55,6 +58,45 @@ void write_rows(const std::filesystem::path& file, const Embeddings& rows) {
   std::filesystem::remove(partial, fault);
 }
 
+/// Rows of lists of texts; the one that was not asked for the longest goes first. Whole lists, since
+/// a text encoded beside others may differ in its last bits. Thread-safe.
+class RecentLists {
+ public:
+  std::optional<Embeddings> find(const std::string& key) {
+    const std::lock_guard lock(mutex_);
+    const auto known = entries_.find(key);
+    if (known == entries_.end()) return std::nullopt;
+    order_.splice(order_.begin(), order_, known->second);
+    return known->second->rows;
+  }
+
+  void keep(std::string key, const Embeddings& rows) {
+    const std::lock_guard lock(mutex_);
+    if (entries_.contains(key)) return;  // two asked at once
+    order_.push_front({std::move(key), rows});
+    entries_.emplace(order_.front().key, order_.begin());
+    bytes_ += order_.front().bytes();
+    while (bytes_ > kRecentTextBytes) {
+      bytes_ -= order_.back().bytes();
+      entries_.erase(order_.back().key);
+      order_.pop_back();
+    }
+  }
+
+ private:
+  struct Entry {
+    std::string key;
+    Embeddings rows;
+    std::size_t bytes() const {
+      return key.size() + static_cast<std::size_t>(rows.size()) * sizeof(float);
+    }
+  };
+  std::mutex mutex_;
+  std::list<Entry> order_;  ///< latest first
+  std::size_t bytes_ = 0;
+  std::unordered_map<std::string_view, std::list<Entry>::iterator> entries_;
+};
+
 class ListKeeper : public ImageTextEncoder {
  public:
   ListKeeper(std::unique_ptr<ImageTextEncoder> encoder, std::filesystem::path folder)
@@ -68,7 +110,7 @@ class ListKeeper : public ImageTextEncoder {
   }
 
   Embeddings encode_texts(std::span<const std::string> texts) override {
-    if (texts.size() < kShortestList) return encoder_->encode_texts(texts);
+    if (texts.size() < kShortestList) return recent_or_encode(texts);
     const std::string key = key_of(identity(), texts);
     {
       const std::lock_guard lock(mutex_);
@@ -80,6 +122,15 @@ class ListKeeper : public ImageTextEncoder {
   }
 
  private:
+  Embeddings recent_or_encode(std::span<const std::string> texts) {
+    std::string key;
+    for (const std::string& text : texts) key += concat(text.size(), ":", text);
+    if (auto known = recent_.find(key)) return std::move(*known);
+    Embeddings rows = encoder_->encode_texts(texts);
+    recent_.keep(std::move(key), rows);
+    return rows;
+  }
+
   Embeddings read_or_encode(const std::string& key, std::span<const std::string> texts) {
     if (folder_.empty()) return encoder_->encode_texts(texts);
     const std::filesystem::path file = folder_ / (key + ".embeddings");
@@ -95,6 +146,7 @@ class ListKeeper : public ImageTextEncoder {
   const std::filesystem::path folder_;
   std::mutex mutex_;
   std::map<std::string, Embeddings> lists_;
+  RecentLists recent_;
 };
 
 }  // namespace

@@ -78,12 +78,32 @@ TEST_F(TextCacheTest, TellsListsAndModelsApart) {
   EXPECT_EQ(asked_, 399);
 }
 
-TEST_F(TextCacheTest, NeverStoresQueries) {
+TEST_F(TextCacheTest, RemembersQueriesButNeverStoresThem) {
   const auto one = encoder();
-  one->encode_texts(list(3));
-  one->encode_texts(list(3));
-  EXPECT_EQ(asked_, 6);
+  const Embeddings rows = one->encode_texts(list(3));
+  EXPECT_EQ(one->encode_texts(list(3)), rows);
+  EXPECT_EQ(asked_, 3);
+  EXPECT_NE(one->encode_texts(list(3, "other")), rows);
+  EXPECT_NE(one->encode_texts(list(2)).rows(), rows.rows());
+  EXPECT_EQ(asked_, 8);
   EXPECT_TRUE(files().empty());
+}
+
+TEST_F(TextCacheTest, ForgetsTheQueriesThatWereNotAskedForTheLongest) {
+  const auto one = encoder();
+  constexpr int kFit = 4;  // of texts so long that a fifth does not
+  const auto ask = [&](int number) {
+    const auto letter = static_cast<char>('a' + number);
+    one->encode_texts(list(1, std::string(kRecentTextBytes / (kFit + 1) + 1000, letter)));
+  };
+  for (int i = 0; i < kFit; ++i) ask(i);
+  ask(0);
+  EXPECT_EQ(asked_, kFit);
+  ask(kFit);  // the second goes
+  ask(0);
+  EXPECT_EQ(asked_, kFit + 1);
+  ask(1);
+  EXPECT_EQ(asked_, kFit + 2);
 }
 
 TEST_F(TextCacheTest, DoesWithoutDamagedFiles) {

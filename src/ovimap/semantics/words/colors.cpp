@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "ovimap/base/error.h"
 #include "ovimap/base/parallel.h"
 
 namespace ovimap {
@@ -75,10 +76,19 @@ const std::vector<Eigen::Vector3f>& focal_oklab() {
   return points;
 }
 
+/// Empty where the picture cannot be read: it costs one object its colours, not all of them.
+ObjectCrop readable(const StoredCrop& stored) {
+  try {
+    return restore_crop(stored);
+  } catch (const Error&) {
+    return {};
+  }
+}
+
 std::vector<Eigen::Vector3f> samples_of(const StoredCrop& stored) {
   std::vector<Eigen::Vector3f> samples;
   if (stored.empty()) return samples;
-  const ObjectCrop crop = restore_crop(stored);
+  const ObjectCrop crop = readable(stored);
   std::vector<std::size_t> on_object;
   for (std::size_t i = 0; i < crop.mask.size(); ++i)
     if (crop.mask[i] != 0) on_object.push_back(i);

@@ -52,6 +52,19 @@ TEST(ObjectColors, NamesPlainColors) {
   EXPECT_EQ(main_color(colors.shares().back()), "");
 }
 
+TEST(ObjectColors, ADamagedPictureCostsItsOwnObjectAlone) {
+  const ObjectColors colors([] {
+    std::vector<StoredCrop> crops;
+    for (const auto& [name, color] : kPatches) crops.push_back(patch(color));
+    crops.push_back(crops[0]);
+    crops.back().image_jpeg = {1, 2, 3};
+    return crops;
+  });
+  for (std::size_t i = 0; i < kPatches.size(); ++i)
+    EXPECT_EQ(main_color(colors.shares()[i]), kPatches[i].first);
+  EXPECT_EQ(main_color(colors.shares().back()), "");
+}
+
 TEST(ObjectColors, TakesWarmLightOut) {
   const auto crops = [](float red, float blue) {
     std::vector<StoredCrop> all;

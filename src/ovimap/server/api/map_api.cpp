@@ -8,7 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "ovimap/base/error.h"
+#include "ovimap/image/codec.h"
 #include "ovimap/io/exports/glb.h"
+#include "ovimap/io/pictures/place_picture.h"
 #include "ovimap/server/api/correction_json.h"
 #include "ovimap/server/api/event_stream.h"
 #include "ovimap/server/api/map_json.h"
@@ -89,6 +91,49 @@ HttpReply answer_query(const ServedMap& map, const HttpRequest& request) {
   } catch (const Error& error) {  // the object is there, but nobody knows what it looks like
     return fault(409, error.what());
   }
+}
+
+/// One answer for each text, in order; a text that cannot be asked for has its fault instead. What
+/// is not in the map has no matches: this is for many texts that are asked again and again.
+HttpReply answer_queries(const ServedMap& map, const HttpRequest& request) {
+  const json body = body_of(request);
+  check_keys(body, {"texts"});
+  const std::vector<std::string> texts = texts_field(body, "texts");
+  if (texts.empty()) throw BadRequest(400, "'texts' is missing: a list of what to look for");
+  const std::uint64_t version = map.snapshot()->version;
+  json answers = json::array();
+  for (const std::string& text : texts) {
+    MapQuestion question;
+    question.query.text = text;
+    try {
+      json answer = answer_json(map.ask(question));
+      if (answer["verdict"] != verdict_name(Verdict::kFound)) answer["matches"] = json::array();
+      answers.push_back(std::move(answer));
+    } catch (const SearchUnavailable&) {  // of all texts alike
+      throw;
+    } catch (const Error& error) {
+      answers.push_back({{"query", text}, {"error", error.what()}});
+    }
+  }
+  return json_reply({{"version", version}, {"answers", answers}});
+}
+
+HttpReply show_place(const ServedMap& map, const HttpRequest& request) {
+  constexpr int kQuality = 85;
+  const InstanceId id = instance_of(request);
+  const auto now = map.snapshot();
+  if (!now->index().find(id))
+    return fault(404, concat("the map has no object ", id, "; GET /api/instances lists them"));
+  Bytes jpeg;
+  try {
+    Mesh surface = labelled_surface(map.mesh(), now->instance_of_label, now->hidden());
+    jpeg = encode_jpeg(place_picture(std::move(surface), id, now->record->up), kQuality);
+  } catch (const Error& error) {  // the object is there, but nothing of it was meshed
+    return fault(409, error.what());
+  }
+  HttpReply reply = text_reply(200, "image/jpeg", std::string(jpeg.begin(), jpeg.end()));
+  reply.headers["Cache-Control"] = "private, no-cache";
+  return reply;
 }
 
 int level_of(const std::string& text, int status) {
@@ -195,6 +240,10 @@ Router map_api(ServedMap& map, FrameApi& frames) {
   get("/api/instances/{id}", [&map](Request r) { return show_instance(map, r); });
   get_large("/api/instances/{id}/crops/{ordinal}",
             [&map](Request r) { return show_crop(map, r); });
+  add("GET", "/api/instances/{id}/place", BodyType::kNone, RouteCost::kWork,
+      [&map](Request r) { return show_place(map, r); });
+  add("GET", "/api/relations", BodyType::kNone, RouteCost::kWork,
+      [&map](Request) { return json_reply(relations_json(map)); });
   get("/api/mesh", [&map](Request r) { return list_chunks(map, r); });
   get_large("/api/mesh/{level}/{x}/{y}/{z}", [&map](Request r) { return show_chunk(map, r); });
   get("/api/cameras", [&map](Request) { return json_reply(cameras_json(map)); });
@@ -204,6 +253,7 @@ Router map_api(ServedMap& map, FrameApi& frames) {
   add("GET", "/api/export.glb", BodyType::kNone, RouteCost::kWork,
       [&map, kept = std::make_shared<KeptGlb>()](Request) { return export_glb(map, *kept); });
   work("/api/query", [&map](Request r) { return answer_query(map, r); });
+  work("/api/queries", [&map](Request r) { return answer_queries(map, r); });
   work("/api/corrections", [&map](Request r) { return correct(map, r); });
   work("/api/camera", [&frames](Request r) { return frames.camera(r); });
   add("POST", "/api/frames", BodyType::kFrame, RouteCost::kFrame,

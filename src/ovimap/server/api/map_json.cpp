@@ -12,6 +12,9 @@
 #include "ovimap/io/map_tables/map_file_record.h"
 #include "ovimap/io/pictures/palette.h"
 #include "ovimap/server/api/correction_json.h"
+#include "ovimap/semantics/query/query_grammar.h"
+#include "ovimap/semantics/relations/scene_relations.h"
+#include "ovimap/semantics/words/main_colors.h"
 #include "ovimap/server/api/neighbors.h"
 
 namespace ovimap {
@@ -120,6 +123,14 @@ json instance_json(const MapSnapshot& now, std::size_t position) {
           {"writing", writing_of(now, instance.id)}};
 }
 
+json colors_json(const QueryScene& scene, std::size_t position) {
+  json list = json::array();
+  if (!scene.colors || position >= scene.colors->shares().size()) return list;
+  for (const auto& [color, share] : main_colors(scene.colors->shares()[position]))
+    list.push_back({{"name", color_name(color)}, {"share", number(share)}});
+  return list;
+}
+
 std::size_t position_of(const MapSnapshot& now, InstanceId id) {
   if (const auto position = now.index().find(id)) return *position;
   throw Error(concat("the map has no object ", id, "; GET /api/instances lists those it has"));
@@ -195,6 +206,7 @@ json instance_detail_json(const ServedMap& map, InstanceId id) {
   detail["super_points"] = now->record->instances[position].super_points;
   detail["height_m"] = number(shape.height_m());
   detail["footprint_m2"] = number(area_m2(shape.footprint));
+  detail["colors"] = colors_json(scene, position);
   detail["neighbors"] = json::array();
   for (const Neighbor& other : neighbors_of(now->index(), scene, position, map.relations()))
     detail["neighbors"].push_back({{"id", other.id},
@@ -220,6 +232,21 @@ json answer_json(const MapAnswer& answered) {
           {now->index().object(i).id, number(answer.relevance[static_cast<Eigen::Index>(i)])});
   }
   return result;
+}
+
+json relations_json(const ServedMap& map) {
+  const auto now = map.snapshot();
+  std::vector<InstanceId> ids;
+  for (const SearchObject& object : now->index().objects()) ids.push_back(object.id);
+  json list = json::array();
+  for (const ObjectRelation& relation :
+       find_relations(ids, now->objects->scene.shapes, map.relations()))
+    list.push_back({{"object", relation.object},
+                    {"relation", relation_name(relation.relation)},
+                    {"anchor", relation.anchor},
+                    {"score", number(relation.score)},
+                    {"evidence", relation.evidence}});
+  return {{"version", now->version}, {"relations", list}};
 }
 
 json mesh_json(const ServedMap& map, int level, std::uint64_t since) {

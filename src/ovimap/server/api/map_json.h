@@ -20,6 +20,8 @@ nlohmann::json corrections_json(const ServedMap& map);
 /// Throws Error where the map has no such object.
 nlohmann::json instance_detail_json(const ServedMap& map, InstanceId id);
 nlohmann::json answer_json(const MapAnswer& answered);
+/// How all objects stand to each other, as find_relations says.
+nlohmann::json relations_json(const ServedMap& map);
 nlohmann::json mesh_json(const ServedMap& map, int level, std::uint64_t since);
 nlohmann::json cameras_json(const ServedMap& map);
 

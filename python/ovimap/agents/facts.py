@@ -1,0 +1,154 @@
+# SPDX-FileCopyrightText: 2026 The ovimap authors
+# SPDX-License-Identifier: Apache-2.0
+"""What is said of maps and their objects. Lengths are metres in the map's world frame; None: not known.
+
+The texts below the fields are what an agent reads of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+Point = tuple[float, float, float]
+_DOCUMENTED: dict[str, bool] = {"use_attribute_docstrings": True}
+
+
+@dataclass(frozen=True)
+class MapSummary:
+    """A map at this moment."""
+
+    __pydantic_config__: ClassVar[dict[str, bool]] = _DOCUMENTED
+    map: str
+    """what to call it in the other tools"""
+    being_made: bool
+    """a camera still moves through it: objects come, change and merge"""
+    objects: int
+    frames: int
+    """pictures with depth that it is made of"""
+    searchable: bool
+    """find() works"""
+    why_not_searchable: str
+    """a sentence; empty where it is"""
+    up: Point
+    """direction away from the floor"""
+    lowest: Point | None
+    """corner of the box around all objects"""
+    highest: Point | None
+    """the opposite corner"""
+
+
+@dataclass(frozen=True)
+class MapObject:
+    """An object of a map."""
+
+    __pydantic_config__: ClassVar[dict[str, bool]] = _DOCUMENTED
+    id: int
+    title: str
+    """the name that a person gave it, else what it looks like, else "object\""""
+    named: bool
+    """a person gave the name"""
+    center: Point | None
+    size: Point | None
+    """of its box along the axes of the world"""
+
+
+@dataclass(frozen=True)
+class Match(MapObject):
+    """An object that may be what was asked for."""
+
+    probability: float | None
+    """that it is what was asked for"""
+    score: float
+    """standard deviations above unrelated things"""
+    evidence: str
+    """why a relation holds"""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a map says to a question."""
+
+    __pydantic_config__: ClassVar[dict[str, bool]] = _DOCUMENTED
+    map: str
+    text: str
+    found: bool
+    """False: it is not in the map, and the matches are only what comes nearest"""
+    reading: str
+    """how a phrase was understood, as "[mug] on [table]"; empty: as a plain name"""
+    reason: str
+    """why a phrase was not found"""
+    matches: list[Match]
+    """best first"""
+
+
+@dataclass(frozen=True)
+class Relation:
+    """How one object stands to another: "object RELATION anchor"."""
+
+    __pydantic_config__: ClassVar[dict[str, bool]] = _DOCUMENTED
+    object: int
+    object_title: str
+    relation: str
+    """on, in, above, beside or near; beside and near hold both ways"""
+    anchor: int
+    anchor_title: str
+    evidence: str
+
+
+@dataclass(frozen=True)
+class Relations:
+    """All relations of one object."""
+
+    __pydantic_config__: ClassVar[dict[str, bool]] = _DOCUMENTED
+    map: str
+    of: int
+    relations: list[Relation]
+
+
+@dataclass(frozen=True)
+class ColorShare:
+    """A colour of an object."""
+
+    name: str
+    share: float
+
+
+@dataclass(frozen=True)
+class Description(MapObject):
+    """What a map knows of one object."""
+
+    map: str
+    looks_like: str
+    """what it clearly is by looks and size, else "object"; empty: not known yet"""
+    colors: list[ColorShare]
+    """of its surface, largest share first"""
+    height_m: float | None
+    footprint_m2: float | None
+    """seen from above"""
+    views: int
+    """frames in which it was seen"""
+    pictures: int
+    """that the map keeps of it; look() shows them"""
+    relations: list[Relation]
+
+
+@dataclass(frozen=True)
+class ObjectList:
+    """Objects of a map, largest first."""
+
+    __pydantic_config__: ClassVar[dict[str, bool]] = _DOCUMENTED
+    map: str
+    total: int
+    """objects that the map has"""
+    objects: list[MapObject]
+
+
+@dataclass(frozen=True)
+class Correction:
+    """A line of a map's log of corrections."""
+
+    __pydantic_config__: ClassVar[dict[str, bool]] = _DOCUMENTED
+    map: str
+    correction: int
+    """its number, by which undo() takes it back"""
+    done: str

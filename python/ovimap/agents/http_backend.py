@@ -1,0 +1,295 @@
+# SPDX-FileCopyrightText: 2026 The ovimap authors
+# SPDX-License-Identifier: Apache-2.0
+"""A map behind `ovimap serve`, finished or being made (docs/http-api.md)."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import http.client
+import json
+import ssl
+import threading
+import time
+import urllib.parse
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple, ParamSpec, TypeVar
+
+from ..sender import _address
+from .backend import MapBackend, MapFault, Verdict, checked_text, closest_first, extent, largest_first, point, rounded, share, spread
+from .facts import Answer, ColorShare, Description, MapObject, MapSummary, Match, Relation
+
+TIMEOUT_S = 20.0
+QUIET_S = 15.0  # the server says something on the event stream every 5 seconds
+BACK_OFF_S = 1.0  # before a server that went away is asked for events again
+MOST_TEXTS = 100  # in one request
+BUSY = (429, 503)  # the request was not looked at
+TRIES = 4
+MOST_PAUSE_S = 2
+NOTHING_YET = "no object has an embedding yet"  # how the server begins why a map that was just begun cannot be searched
+Given = ParamSpec("Given")
+Result = TypeVar("Result")
+
+
+class _Listed(NamedTuple):
+    etag: str
+    objects: dict[int, MapObject]
+    digest: str  # of what queries depend on
+
+
+def _understood(method: Callable[Given, Result]) -> Callable[Given, Result]:
+    """What another program at that port answers is a fault like any other."""
+
+    @functools.wraps(method)
+    def asked(*arguments: Given.args, **options: Given.kwargs) -> Result:
+        try:
+            return method(*arguments, **options)
+        except (KeyError, IndexError, TypeError, AttributeError):
+            raise MapFault("the server's answer is not understood; is it `ovimap serve` of this version?") from None
+
+    return asked
+
+
+class HttpBackend(MapBackend):
+    def __init__(self, url: str, *, name: str = "", token: str = "", cafile: str | None = None) -> None:
+        try:
+            self._parts = _address(url)
+        except ValueError as fault:
+            raise MapFault(str(fault)) from None
+        super().__init__(name or self._parts.netloc)
+        given = urllib.parse.parse_qs(self._parts.query).get("token")
+        shown = token or (given[0] if given else "")
+        self._headers = {"Authorization": f"Bearer {shown}"} if shown else {}
+        self._trust = ssl.create_default_context(cafile=cafile) if self._parts.scheme == "https" else None
+        self._lock = threading.Lock()  # guards what follows
+        self._listed: _Listed | None = None
+        self._events: _Events | None = None
+
+    @_understood
+    def summary(self) -> MapSummary:
+        about = self._get("/api/map")
+        things = list(self._objects().values())
+        low, high = extent(things)
+        search = about["search"]
+        return MapSummary(
+            self.name, about["live"], len(things), about["frames"], search["state"] != "unavailable", search["reason"],
+            point(about["up"]) or (0.0, 0.0, 1.0), low, high,
+        )  # fmt: skip
+
+    @_understood
+    def objects(self) -> list[MapObject]:
+        return largest_first(list(self._objects().values()))
+
+    @_understood
+    def find(self, text: str, exclude: Sequence[str] = ()) -> Answer:
+        checked_text(text)
+        said = self._post("/api/query", {"text": text, "not": list(exclude)})
+        objects = self._objects()
+        matches = [
+            Match(**vars(objects[match["id"]]), probability=share(match["probability"]), score=rounded(match["standard_score"]), evidence=match["evidence"])
+            for match in said["matches"]
+            if match["id"] in objects  # a map that is being made may have lost one since
+        ]
+        return Answer(self.name, said["query"], said["verdict"] == "found", said["reading"], said["reason"], matches)
+
+    @_understood
+    def describe(self, id: int) -> Description:
+        said = self._get(f"/api/instances/{id}")
+        thing = _object(said)
+        return Description(
+            **vars(thing), map=self.name, looks_like=(said["label"] or {}).get("name", ""),
+            colors=[ColorShare(color["name"], rounded(color["share"])) for color in said["colors"]],
+            height_m=said["height_m"], footprint_m2=said["footprint_m2"], views=said["views"], pictures=len(said["crops"]),
+            relations=self.relations(id),
+        )  # fmt: skip
+
+    @_understood
+    def relations(self, id: int) -> list[Relation]:
+        objects = self._objects()
+        if id not in objects:
+            raise MapFault(f"map '{self.name}' has no object {id}; objects() lists those it has")
+        found = []
+        for said in self._get("/api/relations")["relations"]:
+            object, anchor = said["object"], said["anchor"]
+            if id in (object, anchor) and object in objects and anchor in objects:
+                found.append(Relation(object, objects[object].title, said["relation"], anchor, objects[anchor].title, said["evidence"]))
+        return closest_first(found)
+
+    @_understood
+    def crops(self, id: int, most: int) -> list[bytes]:
+        ordinals = self._get(f"/api/instances/{id}")["crops"]
+        return [self._ask("GET", f"/api/instances/{id}/crops/{ordinals[i]}")[1] for i in spread(len(ordinals), most)]
+
+    def place(self, id: int) -> bytes:
+        return self._ask("GET", f"/api/instances/{id}/place")[1]
+
+    def rename(self, id: int, name: str) -> int:
+        return self._correct({"kind": "rename", "instance": id, "name": name})
+
+    def merge(self, id: int, into: int) -> int:
+        return self._correct({"kind": "merge", "instance": id, "into": into})
+
+    def undo(self, correction: int) -> int:
+        return self._correct({"kind": "undo", "edit": correction})
+
+    @_understood
+    def state(self) -> tuple[str, bool]:
+        about = self._get("/api/map")
+        self._objects()
+        with self._lock:
+            digest = self._listed.digest if self._listed else ""
+        return f"{digest} {about['search']['state']}", about["live"]
+
+    @_understood
+    def verdicts(self, texts: Sequence[str]) -> list[Verdict]:
+        about = self._get("/api/map")
+        if about["live"] and (about["search"]["state"] == "preparing" or about["search"]["reason"].startswith(NOTHING_YET)):
+            return [Verdict(False, None) for _ in texts]
+        objects, verdicts = self._objects(), []
+        for first in range(0, len(texts), MOST_TEXTS):
+            said = self._post("/api/queries", {"texts": list(texts[first : first + MOST_TEXTS])})
+            verdicts += [_verdict(answer, objects) for answer in said["answers"]]
+        return verdicts
+
+    def wait(self, timeout_s: float) -> bool:
+        with self._lock:
+            if self._events is None or not self._events.is_alive():
+                self._events = _Events(self._connection(QUIET_S), self._headers)
+                self._events.start()
+            events = self._events
+        changed = events.changed.wait(timeout_s)
+        events.changed.clear()  # what comes from now on is seen next time
+        return changed
+
+    def close(self) -> None:
+        with self._lock:
+            if self._events is not None:
+                self._events.end()
+                self._events = None
+
+    @_understood
+    def _objects(self) -> dict[int, MapObject]:
+        """Asked for again only where they changed."""
+        with self._lock:
+            known = self._listed
+        etag, body = self._ask("GET", "/api/instances", headers={"If-None-Match": known.etag} if known else {})
+        if known and not body:
+            return known.objects
+        entries = _parsed(body)["instances"]
+        listed = _Listed(etag, {entry["id"]: _object(entry) for entry in entries}, _digest(entries))
+        with self._lock:
+            self._listed = listed
+        return listed.objects
+
+    @_understood
+    def _correct(self, edit: dict[str, Any]) -> int:
+        number: int = self._post("/api/corrections", edit)["edit"]
+        return number
+
+    def _get(self, path: str) -> dict[str, Any]:
+        return _parsed(self._ask("GET", path)[1])
+
+    def _post(self, path: str, value: Any) -> dict[str, Any]:
+        body = json.dumps(value).encode()
+        return _parsed(self._ask("POST", path, body, {"Content-Type": "application/json"})[1])
+
+    def _connection(self, timeout_s: float) -> http.client.HTTPConnection:
+        host = self._parts.hostname or "localhost"
+        if self._trust is not None:
+            return http.client.HTTPSConnection(host, self._parts.port, timeout=timeout_s, context=self._trust)
+        return http.client.HTTPConnection(host, self._parts.port, timeout=timeout_s)
+
+    def _ask(self, method: str, path: str, body: bytes | None = None, headers: dict[str, str] | None = None) -> tuple[str, bytes]:
+        """ETag and body of the answer; no body where nothing changed (304). A server that has too much to do is asked again."""
+        for _ in range(TRIES):
+            status, head, text = self._once(method, path, body, headers)
+            if status not in BUSY:
+                break
+            said = head.get("Retry-After", "")
+            time.sleep(min(int(said), MOST_PAUSE_S) if said.isdigit() else 1)
+        if status >= 400:
+            raise MapFault(_refusal(status, text))
+        return head.get("ETag", ""), text
+
+    def _once(self, method: str, path: str, body: bytes | None, headers: dict[str, str] | None) -> tuple[int, http.client.HTTPMessage, bytes]:
+        connection = self._connection(TIMEOUT_S)
+        try:
+            connection.request(method, path, body, {**self._headers, **(headers or {})})
+            reply = connection.getresponse()
+            text = reply.read()
+        except (OSError, http.client.HTTPException) as fault:
+            said = f"the server {self._parts.netloc} does not answer ({fault or type(fault).__name__}); is `ovimap serve` running there?"
+            raise MapFault(said) from None
+        finally:
+            connection.close()
+        return reply.status, reply.headers, text
+
+
+class _Events(threading.Thread):
+    """Listens to the server's events until the connection ends."""
+
+    def __init__(self, connection: http.client.HTTPConnection, headers: dict[str, str]) -> None:
+        super().__init__(name="ovimap-events", daemon=True)
+        self.changed = threading.Event()
+        self._connection, self._headers, self._ended = connection, headers, False
+
+    def run(self) -> None:
+        try:
+            self._connection.request("GET", "/api/events", headers=self._headers)
+            reply = self._connection.getresponse()
+            while reply.status == 200 and (line := reply.readline()):
+                if line.strip() in (b"event: hello", b"event: map", b"event: reset"):
+                    self.changed.set()
+        except (OSError, http.client.HTTPException, ValueError, AttributeError):  # the latter: closed by end()
+            pass
+        finally:
+            self._connection.close()
+        if not self._ended:
+            time.sleep(BACK_OFF_S)  # then wait() listens anew
+        self.changed.set()
+
+    def end(self) -> None:
+        self._ended = True
+        self._connection.close()
+
+
+def _digest(entries: list[dict[str, Any]]) -> str:
+    """Changes when an object comes, goes, moves or is seen anew, and not with names."""
+    seen = [[entry[key] for key in ("id", "box", "centroid", "points", "views", "crops")] for entry in entries]
+    return hashlib.blake2b(json.dumps(seen).encode(), digest_size=16).hexdigest()
+
+
+def _object(said: dict[str, Any]) -> MapObject:
+    low, high = said["box"]["min"], said["box"]["max"]
+    known = None not in low and None not in high
+    center = point((a + b) / 2 for a, b in zip(low, high)) if known else None
+    size = point(b - a for a, b in zip(low, high)) if known else None
+    guess = (said["label"] or {}).get("name", "")
+    return MapObject(said["id"], said["name"] or guess or "object", bool(said["name"]), center, size)
+
+
+def _verdict(answer: dict[str, Any], objects: dict[int, MapObject]) -> Verdict:
+    if "error" in answer:
+        return Verdict(False, None, fault=answer["error"])
+    if answer["verdict"] != "found" or not answer["matches"]:
+        return Verdict(False, None)
+    best = answer["matches"][0]
+    return Verdict(True, objects.get(best["id"]), share(best["probability"]))
+
+
+def _parsed(text: bytes) -> dict[str, Any]:
+    try:
+        value = json.loads(text)
+    except (ValueError, RecursionError):
+        value = None
+    if not isinstance(value, dict):
+        raise MapFault("the server's answer is no JSON object; is it `ovimap serve`?")
+    return value
+
+
+def _refusal(status: int, text: bytes) -> str:
+    try:
+        said = _parsed(text).get("error")
+    except MapFault:
+        said = None
+    return " ".join(said.split()) if isinstance(said, str) else f"the server answered {status}"

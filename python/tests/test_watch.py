@@ -1,0 +1,348 @@
+# SPDX-FileCopyrightText: 2026 The ovimap authors
+# SPDX-License-Identifier: Apache-2.0
+"""Standing queries: told once when a thing is found, once when it is gone, and nothing in between."""
+import contextlib
+import http.server
+import itertools
+import json
+import os
+import queue
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+
+import ovimap
+import pytest
+from ovimap import watch_command
+from ovimap.agents.backend import MapFault, Verdict, open_map
+from ovimap.agents.facts import MapObject
+from ovimap.watching import MOST_REST_S, WORK_SHARE, Watch
+
+PROGRAM = os.environ.get("OVIMAP_PROGRAM")
+needs_program = pytest.mark.skipif(not PROGRAM, reason="the program was not built; set OVIMAP_PROGRAM")
+PATIENCE_S = 120  # a busy machine is slow
+
+
+class Scripted:
+    """A map whose states and verdicts the test decides."""
+
+    name = "room"
+
+    def __init__(self, live):
+        self.live, self.version, self.fault, self.asked = live, 1, "", []
+        self.found = {}  # query -> id of its object, or a sentence why it cannot be asked
+
+    def state(self):
+        if self.fault:
+            raise MapFault(self.fault)
+        return str(self.version), self.live
+
+    def verdicts(self, texts):
+        self.asked.append(list(texts))
+        return [self._verdict(self.found.get(text)) for text in texts]
+
+    def _verdict(self, said):
+        if isinstance(said, str):
+            return Verdict(False, None, fault=said)
+        return Verdict(True, MapObject(said, "mug", False, (0, 0, 0), (1, 1, 1)), 0.9) if said else Verdict(False, None)
+
+    def close(self):
+        pass
+
+
+class Watching:
+    """A watch on a scripted map, and what it told."""
+
+    def __init__(self, *queries, live=True):
+        self.map, self.told, self.now = Scripted(live), [], 1000.0
+        self.watch = Watch(self.map, queries, lambda event: self.told.append(event), hold_s=3)
+
+    def after(self, seconds, **found):
+        """The map changes, then time goes by; what was told meanwhile, in short."""
+        self.map.version += 1
+        self.map.found = {query.replace("_", " "): said for query, said in found.items()}
+        before = len(self.told)
+        self.watch.step(self.now)
+        for _ in range(4):
+            self.now += seconds / 4
+            self.watch.step(self.now)
+        return [(event.event, event.query) for event in self.told[before:]]
+
+
+def test_it_is_told_once_when_it_is_found_and_once_when_it_is_gone():
+    watching = Watching("mug", "fire extinguisher")
+    assert watching.after(9) == []
+    assert watching.after(9, fire_extinguisher=7) == [("found", "fire extinguisher")]
+    assert (watching.told[-1].object.id, watching.told[-1].probability, watching.told[-1].map) == (7, 0.9, "room")
+    assert watching.after(9, fire_extinguisher=7) == []
+    assert watching.after(9) == [("gone", "fire extinguisher")]
+    assert watching.told[-1].object.id == 7
+    assert watching.after(9, fire_extinguisher=7, mug=3) == [("found", "mug"), ("found", "fire extinguisher")]
+
+
+def test_what_does_not_last_is_not_told():
+    watching = Watching("mug")
+    for _ in range(5):
+        assert watching.after(1, mug=7) == watching.after(1) == []
+    assert watching.after(9, mug=7) == [("found", "mug")]
+    for _ in range(5):
+        assert watching.after(1) == watching.after(1, mug=7) == []
+
+
+def test_on_a_finished_map_nothing_is_waited_for():
+    assert Watching("mug", live=False).after(0, mug=7) == [("found", "mug")]
+
+
+def test_an_object_that_merges_into_another_is_the_same():
+    watching = Watching("mug")
+    assert watching.after(9, mug=12) == [("found", "mug")]
+    assert watching.after(9, mug=7) == []  # 12 is part of 7 by now
+    assert watching.after(9) == [("gone", "mug")] and watching.told[-1].object.id == 7
+
+
+def test_the_map_is_asked_only_when_it_changed():
+    watching = Watching(*(f"thing {i}" for i in range(1000)))
+    watching.after(50)
+    watching.after(50)
+    assert [len(texts) for texts in watching.map.asked] == [1000, 1000]
+
+
+def test_a_change_while_it_rests_is_seen_afterwards(monkeypatch):
+    watching = Watching("mug", live=False)
+    monkeypatch.setattr("ovimap.watching.time.monotonic", lambda clock=itertools.count(): next(clock))  # rounds of a second
+    watching.watch.step(watching.now)
+    watching.map.version, watching.map.found = 5, {"mug": 7}
+    watching.watch.step(watching.now + 1, changed=True)
+    assert watching.told == []
+    watching.watch.step(watching.now + MOST_REST_S, changed=False)
+    assert [event.event for event in watching.told] == ["found"]
+
+
+def test_asking_takes_a_small_share_of_the_time(monkeypatch):
+    watching = Watching("mug")
+    for spent_s, rest_s in ((0.2, 0.2 / WORK_SHARE), (30, MOST_REST_S)):
+        clock = itertools.count(0, spent_s)  # a round looks at it before and after
+        monkeypatch.setattr("ovimap.watching.time.monotonic", lambda clock=clock: next(clock))
+        before = len(watching.map.asked)
+        for _ in range(400):
+            watching.after(1)
+        assert len(watching.map.asked) - before == pytest.approx(400 / rest_s, rel=0.3)
+
+
+def test_a_map_that_does_not_answer_is_told_of_once():
+    watching = Watching("mug")
+    watching.after(9, mug=7)
+    watching.map.fault = "the server went away"
+    assert watching.after(9, mug=7) == [("fault", "")]
+    assert watching.told[-1].fault == "the server went away"
+    watching.map.fault = ""
+    assert watching.after(9, mug=7) == []  # it is there as before
+    watching.map.fault = "the server went away"
+    assert watching.after(9) == [("fault", "")]
+    watching.map.fault = ""
+    assert watching.after(9) == [("gone", "mug")]
+
+
+def test_a_query_that_cannot_be_asked_leaves_the_others_alone():
+    watching = Watching("mug", ",")
+    assert watching.after(9, mug=7, **{",": "the query ',' names nothing"}) == [("fault", ","), ("found", "mug")]
+    assert watching.after(9, mug=7, **{",": "the query ',' names nothing"}) == []
+
+
+def test_the_callback_ends_it(saved_map):
+    told = []
+    ovimap.watch(saved_map, ["chair", "table"], lambda event: told.append(event) or False)
+    assert [(event.event, event.query) for event in told] == [("found", "chair")]
+    assert told[0].object.title == "chair" and told[0].as_dict()["object"]["id"] == told[0].object.id
+
+
+@pytest.mark.parametrize(
+    ("path", "queries", "words"),
+    [("nowhere.ovimap", ["mug"], "nowhere"), ("", [], "nothing to watch"), ("", ["mug", " "], "empty"), ("", ["x" * 2001], "2000"), ("ftp://a", ["mug"], "ftp")],
+)
+def test_what_cannot_be_watched_is_an_error(saved_map, path, queries, words):
+    with pytest.raises(ovimap.Error, match=words):
+        ovimap.watch(path or saved_map, queries, print)
+
+
+def test_a_thousand_queries_at_once(saved_map):
+    words = ["chair", *(f"thing number {i}" for i in range(999))]
+    backend = open_map(saved_map)
+    verdicts = backend.verdicts(words)
+    assert len(verdicts) == 1000 and verdicts[0].found and not any(verdict.fault for verdict in verdicts)
+    assert backend.verdicts(words) == verdicts
+
+
+def states_of(backend, change):
+    """Whether it has another afterwards."""
+    before = backend.state()
+    change(backend)
+    return before != backend.state()
+
+
+@needs_program
+def test_names_alone_are_no_reason_to_ask_again(saved_map, tmp_path):
+    pytest.importorskip("mcp")  # of which the fixture has more
+    from agent_fixture import serving
+
+    copy = shutil.copy(saved_map, tmp_path / "room.ovimap")
+    first, second = (match.id for match in ovimap.Map.open(copy).query("chair").matches[:2])
+    with serving(copy) as server:
+        for backend in (open_map(server.address), open_map(copy)):
+            assert backend.find("chair").found  # the server is ready
+            assert not states_of(backend, lambda backend: backend.rename(first, "throne"))
+            assert states_of(backend, lambda backend: backend.merge(second, first))
+            backend.undo(0)
+
+
+class Hook:
+    """A program that takes events."""
+
+    def __init__(self, refuse=0, status=200):
+        self.events, self.tries = queue.Queue(), 0
+        hook = self
+
+        class Handler(http.server.BaseHTTPRequestHandler):
+            def do_POST(self):
+                body = self.rfile.read(int(self.headers["Content-Length"]))
+                hook.tries += 1
+                taken = hook.tries > refuse
+                self.send_response(status if taken else 500)
+                self.send_header("Location", "/elsewhere")
+                self.end_headers()
+                if taken:
+                    hook.events.put((self.path, self.headers["Content-Type"], json.loads(body)))
+
+            def log_message(self, *_):
+                pass
+
+        self.server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+        self.address = f"http://127.0.0.1:{self.server.server_address[1]}/found?by=me"
+        threading.Thread(target=self.server.serve_forever, daemon=True).start()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.server.shutdown()
+        self.server.server_close()
+
+
+def test_events_go_to_a_webhook_again_until_it_takes_them(monkeypatch):
+    monkeypatch.setattr(watch_command, "FIRST_PAUSE_S", 0.01)
+    with Hook(refuse=2) as hook:
+        webhook = watch_command.Webhook(hook.address)
+        webhook.send({"event": "found"})
+        webhook.send({"event": "gone"})
+        webhook.close()
+        assert [hook.events.get(timeout=PATIENCE_S)[2]["event"] for _ in range(2)] == ["found", "gone"] and hook.tries == 4
+
+
+def test_a_webhook_that_takes_nothing_costs_a_line(monkeypatch, capsys):
+    monkeypatch.setattr(watch_command, "FIRST_PAUSE_S", 0.01)
+    with Hook(status=302) as hook:  # nor is a redirection followed
+        webhook = watch_command.Webhook(hook.address)
+        webhook.send({"event": "found"})
+        webhook.close()
+        assert hook.tries == watch_command.TRIES
+    webhook = watch_command.Webhook(hook.address)  # nobody is there any more
+    webhook.send({"event": "gone"})
+    webhook.close()
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 2 and "302" in lines[0] and '"found"' in lines[0] and '"gone"' in lines[1]
+
+
+@pytest.mark.parametrize(
+    "url", ["http://example.com/x", "http://192.168.1.2/x", "https://localhost.example.com/", "http://127.0.0.1.example.com/", "http://[2001:db8::1]/", "http://0.0.0.0/x"]
+)
+def test_events_leave_this_machine_only_when_told(url, saved_map, capsys):
+    assert watch_command.main([saved_map, "mug", "--webhook", url]) == 2
+    assert "--webhook-host" in capsys.readouterr().err
+    host = watch_command._checked(url, ["example.com", "192.168.1.2", "localhost.example.com", "127.0.0.1.example.com", "2001:db8::1", "0.0.0.0"])
+    assert host.hostname
+
+
+@pytest.mark.parametrize("url", ["", "localhost:9000", "file:///etc/passwd", "http://localhost:99999/", "http://local host/", "http://localhost/\r\nX: y"])
+def test_what_is_no_webhook_is_one_line(url, saved_map, capsys):
+    if url:
+        assert watch_command.main([saved_map, "mug", "--webhook", url]) == 2
+        assert len(capsys.readouterr().err.splitlines()) == 1
+    with pytest.raises(ovimap.Error, match="no address"):
+        watch_command._checked(url, [])
+
+
+def test_the_command_is_refused_in_one_line(saved_map, tmp_path, capsys):
+    for arguments, words in (
+        (["nowhere.ovimap", "mug"], "nowhere"),
+        ([saved_map], "nothing to watch"),
+        ([saved_map, ""], "empty"),
+        ([saved_map, "--file", str(tmp_path / "none")], "none"),
+        (["http://127.0.0.1:1/?token=secret", "mug"], "--map-token-file"),
+    ):
+        assert watch_command.main(arguments) == 2
+        said = capsys.readouterr()
+        assert said.out == "" and len(said.err.splitlines()) == 1 and words in said.err and "secret" not in said.err, said.err
+
+
+@contextlib.contextmanager
+def command(*arguments):
+    """`ovimap-watch`; gives a function that waits for its next line."""
+    with subprocess.Popen([sys.executable, "-m", "ovimap.watch_command", *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        lines = queue.Queue()
+        threading.Thread(target=lambda: [lines.put(line) for line in process.stdout], daemon=True).start()
+        try:
+            yield lambda: json.loads(lines.get(timeout=PATIENCE_S))
+        finally:
+            process.terminate()
+
+
+def test_the_command_writes_a_line_for_each_event_and_sends_it(saved_map, tmp_path):
+    (tmp_path / "words").write_text("elephant\n\nchair\n")
+    with Hook() as hook, command(f"home={saved_map}", "--file", tmp_path / "words", "--webhook", hook.address, "--once") as line:
+        told = line()
+        assert (told["event"], told["query"], told["map"], told["object"]["title"]) == ("found", "chair", "home", "chair")
+        assert hook.events.get(timeout=PATIENCE_S) == ("/found?by=me", "application/json", told)
+
+
+@needs_program
+def test_a_file_that_is_corrected_or_replaced(saved_map, tmp_path):
+    copy = shutil.copy(saved_map, tmp_path / "room.ovimap")
+    with command(copy, "chair") as line:
+        told = line()
+        hide(copy, "chair")
+        gone = line()
+        assert (told["event"], gone["event"]) == ("found", "gone")
+        os.remove(copy)
+        assert line()["event"] == "fault"
+        shutil.copy(saved_map, copy)
+        assert line()["event"] == "found"
+
+
+def hide(path, text):
+    """All that the text finds."""
+    while (answer := ovimap.Map.open(path).query(text)).found:
+        subprocess.run([PROGRAM, "edit", path, "hide", str(answer.matches[0].id)], check=True, capture_output=True)
+
+
+@needs_program
+def test_a_map_that_is_being_made_and_a_server_that_goes_away(room, tmp_path):
+    pytest.importorskip("mcp")  # of which the fixture has more
+    from agent_fixture import serving
+
+    out = tmp_path / "live.ovimap"
+    with serving("--live", room, "--masks", "gt", "--encoder", "default", "--fps", "8", "-o", out) as server:
+        with command(server.address, "chair", "elephant", "--hold", "0.5") as line:
+            told = line()
+            assert (told["event"], told["query"]) == ("found", "chair") and told["map"] == server.address.split("/")[2]
+            server.send_signal(signal.SIGINT)
+            assert line()["event"] == "fault"
+            server.wait(timeout=60)
+            port = server.address.split(":")[2].strip("/")
+            with serving(out, port=port):  # the finished map at the same place: the chair is there as before
+                asked = open_map(server.address)
+                while (answer := asked.find("chair")).found:
+                    asked._correct({"kind": "hide", "instance": answer.matches[0].id})
+                gone = line()
+                assert (gone["event"], gone["query"]) == ("gone", "chair")
