@@ -76,7 +76,7 @@ def _mapping(options: argparse.Namespace, address: str, reporter: Reporter) -> M
     if not options.color:
         return None
     wanted = Options(options.color, options.depth, options.color_info, options.depth_info, options.poses, options.world, options.reliable)
-    return Mapping(Node(options.domain), wanted, lambda rig: FrameSender(address, rig, cafile=options.cafile), reporter)
+    return Mapping(Node(options.domain, name="ovimap_frames"), wanted, lambda rig: FrameSender(address, rig, cafile=options.cafile), reporter)
 
 
 def _map(mapping: Mapping | None, stop: threading.Event) -> None:
@@ -98,7 +98,7 @@ def _publish(options: argparse.Namespace, address: str, mapping: Mapping | None,
         return options.world or "map" if mapping is None or options.poses == "none" else mapping.poses.world
 
     try:
-        publishing = Publishing(Node(options.domain), MapServer(address, options.cafile), frame, reporter, name=options.name,
+        publishing = Publishing(Node(options.domain, name="ovimap_map"), MapServer(address, options.cafile), frame, reporter, name=options.name,
                                 most_points=options.points, simulated_clock=options.sim_time)
         if not _is_address(options.map) and not options.no_grid:
             _grid(publishing, options, reporter)

@@ -23,7 +23,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._ovimap import Error
-from ..cluster.program import find_program
+from ..command_line import find_program
 from ..files import parse_json
 from ..sender import _address
 
