@@ -270,6 +270,21 @@ def test_publishers_that_double_and_vanish_are_told(room, tmp_path, node):
         assert "no frame was sent" in bridge.lines[-1]
 
 
+def test_a_configuration_that_is_none_is_one_line(monkeypatch):
+    monkeypatch.setenv("CYCLONEDDS_URI", "<CycloneDDS><Nothing/></CycloneDDS>")
+    with ovimap_ros("http://localhost:1") as bridge:
+        assert bridge.process.wait(timeout=60) == 2
+    assert "DDS cannot begin in domain" in bridge.lines[-1] and "check CYCLONEDDS_URI" in bridge.lines[-1]
+
+
+def test_without_cyclonedds_one_line_says_so(tmp_path):
+    (tmp_path / "cyclonedds.py").write_text("raise ModuleNotFoundError('no', name='cyclonedds')")
+    environment = os.environ | {"PYTHONPATH": f"{tmp_path}:{os.environ['PYTHONPATH']}"}
+    command = [sys.executable, "-m", "ovimap.ros.command", "http://localhost:1", "--color", "/c", "--depth", "/d"]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True)
+    assert done.returncode == 2 and done.stderr == "ovimap-ros: cyclonedds is not installed; pip install 'ovimap[ros]'\n"
+
+
 @pytest.mark.parametrize(("options", "said"), [
     (("http://localhost:1", "--color", "/c"), "frames need colour and depth"),
     (("none.ovimap",), "there is no map 'none.ovimap'"),

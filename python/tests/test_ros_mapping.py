@@ -1,8 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
 """Images, cameras and transforms of a robot become frames; what goes wrong is said once, counted, and costs only itself."""
-import os
-
 import numpy as np
 import ovimap
 import pytest
@@ -233,6 +231,13 @@ def test_publishers_that_come_and_go_are_told(robot):
         "/color/image has one publisher again"]  # fmt: skip
     robot.frame(1)
     assert len(robot.sent) == 2
+
+
+def test_images_of_another_camera_are_refused(robot):
+    robot.frame(0)
+    robot.frame(1, color=image(START + 33 * MS, COLOR, "rgb8", "other_optical"))
+    robot.frame(2)
+    assert len(robot.sent) == 2 and robot.counts["refused"] == 1 and "of the frame 'other_optical', those before were of 'optical'" in robot.said()[1]
 
 
 def test_images_without_time_are_refused(robot):

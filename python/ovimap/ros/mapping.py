@@ -148,10 +148,14 @@ class Mapping:
             self._report.count("refused", f"the images of {stream.topic} have no time stamps; set header.stamp where they are taken",
                                where=stream.topic)
             return
-        back = stream.newest_ns - time_ns
-        if back > CLOCK_BACK_NS:
+        frame = message.header.frame_id.lstrip("/")
+        if stream.frame and frame != stream.frame:
+            self._report.count("refused", f"an image of {stream.topic} is of the frame '{frame}', those before were of '{stream.frame}'; let one "
+                               "camera publish there, or start anew for another", where=f"{stream.topic} {frame}")
+            return
+        if stream.newest_ns - time_ns > CLOCK_BACK_NS:
             self._begin_anew(stream, time_ns)
-        stream.newest_ns, stream.frame = max(stream.newest_ns, time_ns), message.header.frame_id.lstrip("/")
+        stream.newest_ns, stream.frame = max(stream.newest_ns, time_ns), frame
         self._pairing.add(time_ns, message, depth=stream.depth)
 
     def _begin_anew(self, stream: Stream, time_ns: int) -> None:
