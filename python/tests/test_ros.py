@@ -212,6 +212,7 @@ def test_what_a_map_holds_is_published(node, named_map):
     for one, box in zip(found.detections, instances.boxes):
         center, size = one.bbox.center.position, one.bbox.size
         assert np.allclose([[center.x, center.y, center.z], [size.x, size.y, size.z]], [box.mean(0), box[1] - box[0]], atol=1e-3)
+    assert found.header.stamp.sec in (0, 5), "of /clock"
     [tea] = [one for one in found.detections if one.id == str(named)]
     assert (tea.results[0].hypothesis.class_id, tea.results[0].hypothesis.score) == ("Tea pot", 1.0)
     assert (frame.child_frame_id, frame.header.frame_id) == (f"object/tea_pot_{named}", "house")
@@ -226,6 +227,18 @@ def test_what_a_map_holds_is_published(node, named_map):
     assert markers.markers[0].action == messages.DELETE_ALL and len(markers.markers) == 1 + 2 * len(instances)
     assert {marker.text for marker in markers.markers} >= {f"Tea pot {named}"}
     assert (grid.info.width * grid.info.height, set(np.unique(grid.data))) == (len(grid.data), {-1, 0, 100})
+
+
+def test_a_simulated_clock_is_listened_to_while_nothing_else_happens(node):
+    """What is not taken would keep the process busy."""
+    from ovimap.ros.publishing import Publishing
+    from ovimap.ros.reporter import Reporter
+    from ovimap.ros.served import MapServer
+
+    publishing = Publishing(Node(DOMAIN), MapServer("http://localhost:1"), lambda: "", Reporter(), name="/idle", simulated_clock=True)
+    clock = node.publisher("rosgraph_msgs/msg/Clock", "/clock", CLOCK)
+    until(lambda: clock.publish(types.make("rosgraph_msgs/msg/Clock", clock=messages.stamp_of(7 * 10**9))) or publishing.serve(0.05) or
+          publishing._clock._latest_ns == 7 * 10**9)  # fmt: skip
 
 
 @needs_program

@@ -288,6 +288,12 @@ def test_a_server_that_is_gone_is_asked_again(capsys, monkeypatch):
     assert len(robot.sent) == 3 and robot.mapping.finish() == "3 frames sent, 0 skipped; the map is saved" and robot.sent.finished
 
 
+def test_what_waited_too_long_for_the_cameras_is_counted(capsys):
+    robot = Robot(capsys)
+    robot.frames(*range(KEPT_IMAGES + 3))
+    assert robot.counts == {"before the server was ready": 3}
+
+
 def test_nothing_was_sent(capsys):
     assert Robot(capsys).mapping.finish() == "no frame was sent"
 

@@ -17,7 +17,7 @@ from ovimap.transforms import TransformTree
 
 WRITTEN = json.loads((pathlib.Path(__file__).parent / "ros2/written.json").read_text())
 MESSAGES = WRITTEN["messages"]
-# A message of /tf of ROS 2's turtlesim, from the tests of foxglove/rosmsg2-serialization (src/MessageReader.test.ts; MIT, Foxglove).
+# A message of /tf of ROS 2's turtlesim, from the tests of foxglove/rosmsg2-serialization (ros2/NOTICE.md).
 TURTLE = bytes.fromhex(
     "0001000001000000286fae6169ddd73108000000747572746c6531000e000000747572746c65315f616865616400000000000000000000000000f03f"
     "00000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000f03f")  # fmt: skip

@@ -17,7 +17,7 @@ from ..bag_messages import CAMERA, IMAGES, ODOMETRY, POSES, camera_of, color_of,
 from ..sender import FrameSender, SendError
 from ..transforms import Matrix, rotation_vector_of
 from .node import SENSOR_DATA, STATIC_TRANSFORMS, TRANSFORMS, Node, Quality, Subscription, qualified
-from .pairing import CLOCK_BACK_NS, Pair, Pairing, Poses
+from .pairing import CLOCK_BACK_NS, KEPT_IMAGES, Pair, Pairing, Poses
 from .reporter import Reporter
 
 TRANSFORM = "tf2_msgs/msg/TFMessage"
@@ -174,7 +174,9 @@ class Mapping:
             self._report.once("without colour", f"depth of {self._depth.topic} has no colour of {self._color.topic} within 20 ms; let the "
                               "camera take both at once")
         if not self._waiting or not self._ready(self._waiting[0]):
-            del self._waiting[:-60]
+            if len(self._waiting) > KEPT_IMAGES:
+                self._report.counts["before the server was ready"] += len(self._waiting) - KEPT_IMAGES
+                del self._waiting[:-KEPT_IMAGES]
             return
         waiting, self._waiting = self._waiting, []
         for at, pair in enumerate(waiting):

@@ -39,13 +39,15 @@ class Clock:
         self._ticks = node.subscription(SIMULATED_CLOCK, "/clock", CLOCK) if simulated else None
         self._latest_ns = 0
 
-    def now_ns(self) -> int:
-        if self._ticks is None:
-            return time.time_ns()
-        for tick in self._ticks.take():
+    def listen(self) -> None:
+        """Takes what /clock said; what is not taken keeps the node awake."""
+        for tick in self._ticks.take() if self._ticks else ():
             if tick is not None:
                 self._latest_ns = tick.clock.sec * 1_000_000_000 + tick.clock.nanosec
-        return self._latest_ns
+
+    def now_ns(self) -> int:
+        self.listen()
+        return self._latest_ns if self._ticks else time.time_ns()
 
 
 class Publishing:
@@ -68,6 +70,7 @@ class Publishing:
         end = time.monotonic() + seconds
         while (left := end - time.monotonic()) > 0:
             self._node.wait(left)
+            self._clock.listen()
             self._service.serve()
 
     def update(self) -> None:
