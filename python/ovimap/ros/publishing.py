@@ -77,7 +77,7 @@ class Publishing:
         """Publishes the map if it is another than last time. What the server refuses is said once."""
         try:
             about, frame = self._server.about(), self._frame()
-            state = (about["version"], about["mesh_version"], frame)
+            state = (*(about[key] for key in ("title", "live", "content_hash", "version", "mesh_version")), frame)
             if not frame or state == self._published:
                 return
             self._publish(frame)
