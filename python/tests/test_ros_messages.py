@@ -98,6 +98,23 @@ def test_another_encoding_is_refused_by_name():
         bag_messages.color_of(read("sensor_msgs/msg/Image", "16UC1")[0], "/c")
 
 
+@pytest.mark.parametrize("change", [{"height": 0}, {"width": 0}, {"height": 3}, {"step": 8}, {"width": 2**31}])
+def test_a_picture_that_is_smaller_than_it_says_is_refused(change):
+    [message] = read("sensor_msgs/msg/Image", "rgb8")
+    for name, value in change.items():
+        setattr(message, name, value)
+    with pytest.raises(ovimap.Error, match="an image of /c has 22 bytes, too few for"):
+        bag_messages.color_of(message, "/c")
+
+
+@pytest.mark.parametrize("data", [b"", b"12345", bytes(11), bytes(12) + b"\xff\xd8"])
+def test_compressed_depth_that_holds_no_png_is_refused(data):
+    header = read("sensor_msgs/msg/Image")[0].header
+    message = types.make("sensor_msgs/msg/CompressedImage", header=header, format="32FC1; compressedDepth png", data=np.frombuffer(data, np.uint8))
+    with pytest.raises(ovimap.Error, match="which holds no PNG"):
+        bag_messages.depth_of(message, "/d")
+
+
 @pytest.mark.parametrize(("kind", "given", "metres"), [
     ("16UC1", [[1000, 0, 3]], None),
     ("32FC1", [[1000, 0, 4000]], [[100 / (1000 - 50), 0, 100 / (4000 - 50)]]),
