@@ -81,7 +81,8 @@ def ovimap_ros(*options):
 
 @contextlib.contextmanager
 def live_server(out):
-    with Program(PROGRAM, "serve", "http", "--live", "-o", str(out), "--set", "live.queue=60", "--port", "0", "--viewer", "none", "--json", stdout=subprocess.PIPE) as program:
+    command = PROGRAM, "serve", "http", "--live", "-o", str(out), "--set", "live.queue=60", "--port", "0", "--viewer", "none", "--json"
+    with Program(*command, stdout=subprocess.PIPE) as program:
         program.address = json.loads(program.process.stdout.readline())["address"]
         yield program
 
@@ -270,6 +271,27 @@ def test_a_service_answers_in_words(node, named_map):
         assert np.allclose([one.results[0].hypothesis.score for one in reply.matches.detections], [match.probability for match in expected.matches], atol=1e-6)
         nothing = ask("")
         assert not nothing.found and nothing.message and not nothing.matches.detections
+
+
+@needs_program
+def test_a_map_that_is_corrected_or_replaced_is_followed(node, named_map, tmp_path):
+    path = tmp_path / "changing.ovimap"
+    shutil.copyfile(named_map[0], path)
+    found = node.subscription(messages.DETECTIONS, "/changing/detections", LATCHED)
+
+    def names():
+        return {one.results[0].hypothesis.class_id for message in found.take() for one in message.detections}
+
+    with ovimap_ros(path, "--name", "/changing", "--no-grid") as bridge:
+        until(lambda: "Tea pot" in names())
+        subprocess.run([PROGRAM, "edit", path, "rename", str(named_map[1]), "Kettle"], check=True, capture_output=True)
+        until(lambda: "Kettle" in names())
+        path.rename(tmp_path / "away.ovimap")
+        until(lambda: any("there is no map" in line for line in bridge.lines))
+        shutil.copyfile(named_map[0], path)
+        until(lambda: "Tea pot" in names())
+        bridge.end()
+        assert len(bridge.lines) == 1
 
 
 @needs_program

@@ -159,7 +159,7 @@ class Mapping:
         self._pairing.add(time_ns, message, depth=stream.depth)
 
     def _begin_anew(self, stream: Stream, time_ns: int) -> None:
-        self._report.say(f"the clock of {stream.topic} went back by {(stream.newest_ns - time_ns) / 1e9:.3f} s (a bag in a loop, a simulation begun anew?); what "
+        self._report.say(f"the clock of {stream.topic} went back by {(stream.newest_ns - time_ns) / 1e9:.3f} s (a bag in a loop?); what "
                          "waits is dropped, transforms are learned anew, and the map goes on")
         self._report.counts["times the clock went back"] += 1
         self._pairing, self._waiting = Pairing(unpaired=self._pairing.unpaired), []

@@ -57,12 +57,17 @@ class Publishing:
 
     def __init__(self, node: Node, server: MapServer, frame: Callable[[], str], reporter: Reporter, *, name: str = "/ovimap",
                  most_points: int = 500_000, simulated_clock: bool = False) -> None:  # fmt: skip
-        self._node, self._server, self._frame, self._report, self._most_points = node, server, frame, reporter, most_points
+        self._node, self._frame, self._report, self._most_points = node, frame, reporter, most_points
+        self.follow(server)
         self._clock = Clock(node, simulated_clock)
         self._out = {kind: node.publisher(kind, f"{name}/{topic}", LATCHED)
                      for kind, topic in ((CLOUD, "objects"), (DETECTIONS, "detections"), (MARKERS, "markers"), (GRID, "grid"))}
         self._frames = node.publisher(TRANSFORM, "/tf_static", STATIC_TRANSFORMS)
         self._service = node.service(QUERY, f"{name}/query", self._answer)
+
+    def follow(self, server: MapServer) -> None:
+        """From now on that server's map."""
+        self._server = server
         self._published: tuple[Any, ...] = ()
 
     def serve(self, seconds: float) -> None:

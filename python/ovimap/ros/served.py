@@ -4,18 +4,12 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
-import pathlib
-import signal
 import ssl
 import struct
-import subprocess
-import tempfile
 import urllib.error
 import urllib.parse
 import urllib.request
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -23,7 +17,6 @@ import numpy as np
 import numpy.typing as npt
 
 from .._ovimap import Error
-from ..command_line import find_program
 from ..files import parse_json
 from ..sender import _address
 
@@ -152,21 +145,3 @@ def _chunk_of(data: bytes, listed: int) -> _Chunk:
     labels = np.frombuffer(data, "<u4", vertices, at + vertices * 12)
     points = (origin + steps[:, :3] * (edge / 65535)).astype(np.float32)
     return _Chunk(listed, points, colors[:, :3].copy(), labels.astype(np.uint32))
-
-
-@contextlib.contextmanager
-def serving(path: pathlib.Path) -> Iterator[str]:
-    """Serves a map file to this program alone; gives the address. Raises Error where it is no map."""
-    if not path.is_file():
-        raise Error(f"there is no map '{path}'; give a map file, or the address that `ovimap serve` printed")
-    command = [find_program(), "serve", str(path), "--port", "0", "--viewer", "none", "--json"]
-    with tempfile.TemporaryFile("w+") as said, subprocess.Popen(command, stdout=subprocess.PIPE, stderr=said, text=True) as process:
-        assert process.stdout is not None
-        try:
-            line = process.stdout.readline()
-            if not line:
-                said.seek(0)
-                raise Error(next(iter(said.read().strip().splitlines()[::-1]), f"'{path}' cannot be served"))
-            yield str(parse_json(line)["address"])
-        finally:
-            process.send_signal(signal.SIGINT)
