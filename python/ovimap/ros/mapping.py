@@ -287,10 +287,15 @@ class Mapping:
         stream.publishers, stream.since = now, time.monotonic()
 
     def _tell_what_is_missing(self) -> None:
+        for subscription in (*self._color.images, *self._depth.images, *(one for one, _ in self._transforms)):
+            if subscription.mismatched:
+                remedy = "leave --reliable out" if subscription.topic not in ("/tf", "/tf_static") else "publish it as tf2 does (docs/robots.md)"
+                self._report.once(f"quality {subscription.topic}", f"a publisher of {subscription.topic} offers less than is asked for (reliable "
+                                  f"delivery, of /tf_static also to late listeners), so nothing of it comes; {remedy}")
         for stream in (self._color, self._depth):
             if time.monotonic() - stream.since < PATIENCE_S:
                 continue
-            if not stream.publishers and not stream.newest_ns:
+            if not stream.publishers and not stream.newest_ns and not any(one.mismatched for one in stream.images):
                 self._report.once(f"no {stream.topic}", f"nobody publishes images on {stream.topic}; check the name (ros2 topic list), "
                                   "ROS_DOMAIN_ID, and that both sides see each other's network")
             elif stream.newest_ns and stream.info is None:

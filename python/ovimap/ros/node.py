@@ -106,6 +106,11 @@ class Subscription:
     def publishers(self) -> int:
         return len(self.reader.get_matched_publications())
 
+    @property
+    def mismatched(self) -> int:
+        """Publishers that offer less than we ask for, so nothing of theirs comes."""
+        return int(self.reader.get_requested_incompatible_qos_status().total_count)
+
     def take(self) -> Iterator[Any]:
         """Messages; None for one whose bytes cannot be read."""
         for sample in self._samples():
