@@ -171,14 +171,14 @@ def depth_of(message: Any, topic: str) -> npt.NDArray[Any] | bytes:
     data, image_format = bytes(message.data), message.format
     if "compressedDepth" not in image_format:
         return bytes(color_of(message, topic))
-    header, png = np.frombuffer(data[4:12], "<f4"), data[12:]  # what compression, then two numbers for depth in metres
+    png = data[12:]  # before it what compression, and two numbers for depth in metres
     if not png.startswith(PNG):
         raise Error(f"an image of {topic} is compressed as '{image_format}', which holds no PNG; record or send it as 16UC1")
     if not image_format.startswith("32FC1"):
         return png
-    stored = decode_gray_png(png).astype(np.float32)
+    stored, (a, b) = decode_gray_png(png).astype(np.float32), np.frombuffer(data[4:12], "<f4")
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(stored > 0, header[0] / (stored - header[1]), np.float32(0)).astype(np.float32)
+        return np.where(stored > 0, a / (stored - b), np.float32(0)).astype(np.float32)
 
 
 def raw_color(message: Any, topic: str) -> npt.NDArray[np.uint8]:
@@ -208,7 +208,7 @@ def raw_depth(message: Any, topic: str) -> npt.NDArray[Any]:
 def _rows(message: Any, topic: str, used: int) -> npt.NDArray[np.uint8]:
     """The bytes of the pixels, [height, used]: rows may be padded."""
     data = np.asarray(message.data, np.uint8)
-    if message.step < used or data.size < message.height * message.step:
+    if min(used, message.height) < 1 or message.step < used or data.size < message.height * message.step:
         raise Error(
             f"an image of {topic} has {data.size} bytes, too few for {message.width}x{message.height} "
             f"{message.encoding}; record or send it anew"

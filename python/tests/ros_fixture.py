@@ -70,7 +70,7 @@ class Topic:
     """In the place of a Subscription: `came` is what came since."""
 
     def __init__(self, name, topic):
-        self.name, self.topic, self.came, self.publishers = name, topic, [], 0
+        self.name, self.topic, self.came, self.publishers, self.mismatched = name, topic, [], 0, 0
 
     def take(self):
         came, self.came = self.came, []

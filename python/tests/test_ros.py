@@ -81,7 +81,8 @@ def ovimap_ros(*options):
 
 @contextlib.contextmanager
 def live_server(out):
-    with Program(PROGRAM, "serve", "http", "--live", "-o", str(out), "--set", "live.queue=60", "--port", "0", "--viewer", "none", "--json", stdout=subprocess.PIPE) as program:
+    command = PROGRAM, "serve", "http", "--live", "-o", str(out), "--set", "live.queue=60", "--port", "0", "--viewer", "none", "--json"
+    with Program(*command, stdout=subprocess.PIPE) as program:
         program.address = json.loads(program.process.stdout.readline())["address"]
         yield program
 
@@ -212,6 +213,7 @@ def test_what_a_map_holds_is_published(node, named_map):
     for one, box in zip(found.detections, instances.boxes):
         center, size = one.bbox.center.position, one.bbox.size
         assert np.allclose([[center.x, center.y, center.z], [size.x, size.y, size.z]], [box.mean(0), box[1] - box[0]], atol=1e-3)
+    assert found.header.stamp.sec in (0, 5), "of /clock"
     [tea] = [one for one in found.detections if one.id == str(named)]
     assert (tea.results[0].hypothesis.class_id, tea.results[0].hypothesis.score) == ("Tea pot", 1.0)
     assert (frame.child_frame_id, frame.header.frame_id) == (f"object/tea_pot_{named}", "house")
@@ -226,6 +228,18 @@ def test_what_a_map_holds_is_published(node, named_map):
     assert markers.markers[0].action == messages.DELETE_ALL and len(markers.markers) == 1 + 2 * len(instances)
     assert {marker.text for marker in markers.markers} >= {f"Tea pot {named}"}
     assert (grid.info.width * grid.info.height, set(np.unique(grid.data))) == (len(grid.data), {-1, 0, 100})
+
+
+def test_a_simulated_clock_is_listened_to_while_nothing_else_happens(node):
+    """What is not taken would keep the process busy."""
+    from ovimap.ros.publishing import Publishing
+    from ovimap.ros.reporter import Reporter
+    from ovimap.ros.served import MapServer
+
+    publishing = Publishing(Node(DOMAIN), MapServer("http://localhost:1"), lambda: "", Reporter(), name="/idle", simulated_clock=True)
+    clock = node.publisher("rosgraph_msgs/msg/Clock", "/clock", CLOCK)
+    until(lambda: clock.publish(types.make("rosgraph_msgs/msg/Clock", clock=messages.stamp_of(7 * 10**9))) or publishing.serve(0.05) or
+          publishing._clock._latest_ns == 7 * 10**9)  # fmt: skip
 
 
 @needs_program
@@ -260,14 +274,53 @@ def test_a_service_answers_in_words(node, named_map):
 
 
 @needs_program
-def test_publishers_that_double_and_vanish_are_told(room, tmp_path, node):
+def test_a_map_that_is_corrected_or_replaced_is_followed(node, named_map, tmp_path):
+    path = tmp_path / "changing.ovimap"
+    shutil.copyfile(named_map[0], path)
+    found = node.subscription(messages.DETECTIONS, "/changing/detections", LATCHED)
+
+    def names():
+        return {one.results[0].hypothesis.class_id for message in found.take() for one in message.detections}
+
+    with ovimap_ros(path, "--name", "/changing", "--no-grid") as bridge:
+        until(lambda: "Tea pot" in names())
+        subprocess.run([PROGRAM, "edit", path, "rename", str(named_map[1]), "Kettle"], check=True, capture_output=True)
+        until(lambda: "Kettle" in names())
+        path.rename(tmp_path / "away.ovimap")
+        until(lambda: any("there is no map" in line for line in bridge.lines))
+        shutil.copyfile(named_map[0], path)
+        until(lambda: "Tea pot" in names())
+        bridge.end()
+        assert len(bridge.lines) == 1
+
+
+@needs_program
+def test_publishers_that_double_vanish_or_do_not_fit_are_told(room, tmp_path, node):
     with live_server(tmp_path / "a.ovimap") as server, ovimap_ros(server.address, "--color", "/two/c", "--depth", "/two/d", "--no-publish") as bridge:
+        tf = node.publisher("tf2_msgs/msg/TFMessage", "/tf_static", TRANSFORMS)
+        until(lambda: any("a publisher of /tf_static offers less than is asked for" in line for line in bridge.lines))
+        del tf
         publishers = [Node(DOMAIN).publisher("sensor_msgs/msg/Image", "/two/c", SENSOR_DATA) for _ in range(2)]
         until(lambda: any("2 publishers send images on /two/c" in line for line in bridge.lines))
         publishers.clear()
         until(lambda: any("the publisher of /two/c is gone" in line for line in bridge.lines))
         bridge.end()
         assert "no frame was sent" in bridge.lines[-1]
+
+
+def test_a_configuration_that_is_none_is_one_line(monkeypatch):
+    monkeypatch.setenv("CYCLONEDDS_URI", "<CycloneDDS><Nothing/></CycloneDDS>")
+    with ovimap_ros("http://localhost:1") as bridge:
+        assert bridge.process.wait(timeout=60) == 2
+    assert "DDS cannot begin in domain" in bridge.lines[-1] and "check CYCLONEDDS_URI" in bridge.lines[-1]
+
+
+def test_without_cyclonedds_one_line_says_so(tmp_path):
+    (tmp_path / "cyclonedds.py").write_text("raise ModuleNotFoundError('no', name='cyclonedds')")
+    environment = os.environ | {"PYTHONPATH": f"{tmp_path}:{os.environ['PYTHONPATH']}"}
+    command = [sys.executable, "-m", "ovimap.ros.command", "http://localhost:1", "--color", "/c", "--depth", "/d"]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True)
+    assert done.returncode == 2 and done.stderr == "ovimap-ros: cyclonedds is not installed; pip install 'ovimap[ros]'\n"
 
 
 @pytest.mark.parametrize(("options", "said"), [

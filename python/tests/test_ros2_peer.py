@@ -46,6 +46,7 @@ def test_frames_of_rclpy_are_mapped_and_rclpy_reads_the_objects(room, tmp_path):
             told = peer(tmp_path / "frames.npz", "rcl", "objects", "markers")
         saved = json.loads(server.process.stdout.readline())["saved"]
     assert told["rmw"] == "rmw_fastrtps_cpp" and told["sent"] > 0
+    assert {"/ovimap_frames", "/ovimap_map"} <= set(told["nodes"])
     assert 0 < saved["frames"] <= told["sent"], bridge.lines
     objects = told["got"]["objects"]
     assert objects["width"] > 1000 and objects["bytes"] == objects["width"] * POINT.itemsize and objects["frame"] == "map"

@@ -1,8 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
 """Images, cameras and transforms of a robot become frames; what goes wrong is said once, counted, and costs only itself."""
-import os
-
 import numpy as np
 import ovimap
 import pytest
@@ -235,6 +233,13 @@ def test_publishers_that_come_and_go_are_told(robot):
     assert len(robot.sent) == 2
 
 
+def test_images_of_another_camera_are_refused(robot):
+    robot.frame(0)
+    robot.frame(1, color=image(START + 33 * MS, COLOR, "rgb8", "other_optical"))
+    robot.frame(2)
+    assert len(robot.sent) == 2 and robot.counts["refused"] == 1 and "of the frame 'other_optical', those before were of 'optical'" in robot.said()[1]
+
+
 def test_images_without_time_are_refused(robot):
     robot.frame(0, color=image(0, COLOR, "rgb8"))
     assert "the images of /color/image have no time stamps" in robot.said()[0] and robot.counts == {"refused": 1}
@@ -281,6 +286,12 @@ def test_a_server_that_is_gone_is_asked_again(capsys, monkeypatch):
     robot.sent.away = False
     robot.frame(2)
     assert len(robot.sent) == 3 and robot.mapping.finish() == "3 frames sent, 0 skipped; the map is saved" and robot.sent.finished
+
+
+def test_what_waited_too_long_for_the_cameras_is_counted(capsys):
+    robot = Robot(capsys)
+    robot.frames(*range(KEPT_IMAGES + 3))
+    assert robot.counts == {"before the server was ready": 3}
 
 
 def test_nothing_was_sent(capsys):

@@ -17,7 +17,7 @@ from ovimap.transforms import TransformTree
 
 WRITTEN = json.loads((pathlib.Path(__file__).parent / "ros2/written.json").read_text())
 MESSAGES = WRITTEN["messages"]
-# A message of /tf of ROS 2's turtlesim, from the tests of foxglove/rosmsg2-serialization (src/MessageReader.test.ts; MIT, Foxglove).
+# A message of /tf of ROS 2's turtlesim, from the tests of foxglove/rosmsg2-serialization (ros2/NOTICE.md).
 TURTLE = bytes.fromhex(
     "0001000001000000286fae6169ddd73108000000747572746c6531000e000000747572746c65315f616865616400000000000000000000000000f03f"
     "00000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000f03f")  # fmt: skip
@@ -96,6 +96,23 @@ def test_another_encoding_is_refused_by_name():
         bag_messages.depth_of(colour, "/d")
     with pytest.raises(ovimap.Error, match="/c has the encoding '16UC1', which is not read; accepted are rgb8"):
         bag_messages.color_of(read("sensor_msgs/msg/Image", "16UC1")[0], "/c")
+
+
+@pytest.mark.parametrize("change", [{"height": 0}, {"width": 0}, {"height": 3}, {"step": 8}, {"width": 2**31}])
+def test_a_picture_that_is_smaller_than_it_says_is_refused(change):
+    [message] = read("sensor_msgs/msg/Image", "rgb8")
+    for name, value in change.items():
+        setattr(message, name, value)
+    with pytest.raises(ovimap.Error, match="an image of /c has 22 bytes, too few for"):
+        bag_messages.color_of(message, "/c")
+
+
+@pytest.mark.parametrize("data", [b"", b"12345", bytes(11), bytes(12) + b"\xff\xd8"])
+def test_compressed_depth_that_holds_no_png_is_refused(data):
+    header = read("sensor_msgs/msg/Image")[0].header
+    message = types.make("sensor_msgs/msg/CompressedImage", header=header, format="32FC1; compressedDepth png", data=np.frombuffer(data, np.uint8))
+    with pytest.raises(ovimap.Error, match="which holds no PNG"):
+        bag_messages.depth_of(message, "/d")
 
 
 @pytest.mark.parametrize(("kind", "given", "metres"), [

@@ -17,6 +17,7 @@ from collections.abc import Callable, Sequence
 from typing import IO, Any
 
 from .._ovimap import Error
+from ..command_line import find_program
 
 TELL_S = 1.0  # between reports of how far the program is
 KEPT_CHARACTERS = 8192  # of what it says: its last line is among them
@@ -26,16 +27,6 @@ MENDABLE = 2  # exit code of what the user can mend
 
 class Crash(Exception):
     """The program was killed or met a defect: trying again may help."""
-
-
-def find_program(given: str = "") -> str:
-    """The program on this machine: given, else $OVIMAP_PROGRAM, else on the PATH. Raises Error where there is none."""
-    asked = given or os.environ.get("OVIMAP_PROGRAM") or "ovimap"
-    found = shutil.which(asked)
-    if not found:
-        raise Error(f"there is no program '{asked}' on {os.uname().nodename}; build it (make build) and name it, "
-                    "as the program or in OVIMAP_PROGRAM, by a path that every machine has")
-    return found
 
 
 def run_program(

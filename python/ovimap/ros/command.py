@@ -5,12 +5,10 @@
 from __future__ import annotations
 
 import argparse
-import contextlib
 import pathlib
 import signal
 import sys
 import threading
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING
 
@@ -18,6 +16,7 @@ from .._ovimap import Error
 from ..command_line import DONE, run_command
 from ..sender import FrameSender, SendError
 from .reporter import Reporter
+from .source import Source, is_address, open_source
 
 if TYPE_CHECKING:
     from .mapping import Mapping
@@ -36,14 +35,14 @@ def main(arguments: list[str] | None = None) -> int:
 def _run(options: argparse.Namespace) -> int:
     if bool(options.color) != bool(options.depth):
         raise Error("frames need colour and depth: give both --color and --depth, or neither")
-    if options.color and not _is_address(options.map):
+    if options.color and not is_address(options.map):
         raise Error(f"'{options.map}' is no address; frames go to `ovimap serve --live http -o MAP`: give what it printed")
     reporter, stop = Reporter(), threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stop.set())
-    with _address_of(options.map) as address, ThreadPoolExecutor(1) as pool:  # a question may take longer than images wait
-        mapping = _mapping(options, address, reporter)
-        publishing = None if options.no_publish else pool.submit(_publish, options, address, mapping, reporter, stop)
+    with ThreadPoolExecutor(1) as pool:  # a question may take longer than images wait
+        mapping = _mapping(options, reporter)
+        publishing = None if options.no_publish else pool.submit(_publish, options, mapping, reporter, stop)
         try:
             _map(mapping, stop)
         finally:
@@ -54,29 +53,14 @@ def _run(options: argparse.Namespace) -> int:
     return DONE
 
 
-def _is_address(text: str) -> bool:
-    return not pathlib.Path(text).exists() and not text.endswith(".ovimap")
-
-
-@contextlib.contextmanager
-def _address_of(text: str) -> Iterator[str]:
-    from .served import serving
-
-    if _is_address(text):
-        yield text
-        return
-    with serving(pathlib.Path(text)) as address:
-        yield address
-
-
-def _mapping(options: argparse.Namespace, address: str, reporter: Reporter) -> Mapping | None:
+def _mapping(options: argparse.Namespace, reporter: Reporter) -> Mapping | None:
     from .mapping import Mapping, Options
     from .node import Node
 
     if not options.color:
         return None
     wanted = Options(options.color, options.depth, options.color_info, options.depth_info, options.poses, options.world, options.reliable)
-    return Mapping(Node(options.domain), wanted, lambda rig: FrameSender(address, rig, cafile=options.cafile), reporter)
+    return Mapping(Node(options.domain, name="ovimap_frames"), wanted, lambda rig: FrameSender(options.map, rig, cafile=options.cafile), reporter)
 
 
 def _map(mapping: Mapping | None, stop: threading.Event) -> None:
@@ -88,8 +72,28 @@ def _map(mapping: Mapping | None, stop: threading.Event) -> None:
             mapping.step()
 
 
-def _publish(options: argparse.Namespace, address: str, mapping: Mapping | None, reporter: Reporter, stop: threading.Event) -> None:
-    """Until it is to stop; the command ends with it."""
+def _publish(options: argparse.Namespace, mapping: Mapping | None, reporter: Reporter, stop: threading.Event) -> None:
+    """Until it is to stop; the command ends with it. Raises Error for a map that is none from the beginning."""
+    publishing: Publishing | None = None
+    try:
+        while not stop.is_set():
+            try:
+                with open_source(options.map) as source:
+                    publishing = _publishing(options, source, mapping, reporter, publishing)
+                    while not stop.is_set() and not source.changed():
+                        publishing.update()
+                        publishing.serve(UPDATE_S)
+            except Error as fault:
+                if publishing is None:
+                    raise
+                reporter.once("source", f"{fault}; tried again every second")
+                stop.wait(UPDATE_S)
+    finally:
+        stop.set()
+
+
+def _publishing(options: argparse.Namespace, source: Source, mapping: Mapping | None, reporter: Reporter, before: Publishing | None) -> Publishing:
+    """That of before, if there is one, with the map as it is now."""
     from .node import Node
     from .publishing import Publishing
     from .served import MapServer
@@ -97,21 +101,20 @@ def _publish(options: argparse.Namespace, address: str, mapping: Mapping | None,
     def frame() -> str:
         return options.world or "map" if mapping is None or options.poses == "none" else mapping.poses.world
 
-    try:
-        publishing = Publishing(Node(options.domain), MapServer(address, options.cafile), frame, reporter, name=options.name,
-                                most_points=options.points, simulated_clock=options.sim_time)
-        if not _is_address(options.map) and not options.no_grid:
-            _grid(publishing, options, reporter)
-        while not stop.is_set():
-            publishing.update()
-            publishing.serve(UPDATE_S)
-    finally:
-        stop.set()
+    server = MapServer(source.address, options.cafile)
+    if before is not None:
+        before.follow(server)
+    made = before or Publishing(Node(options.domain, name="ovimap_map"), server, frame, reporter, name=options.name, most_points=options.points,
+                                simulated_clock=options.sim_time)  # fmt: skip
+    if source.file is not None and not options.no_grid:
+        _grid(made, source.file, reporter)
+    reporter.again("source")
+    return made
 
 
-def _grid(publishing: Publishing, options: argparse.Namespace, reporter: Reporter) -> None:
+def _grid(publishing: Publishing, file: pathlib.Path, reporter: Reporter) -> None:
     try:
-        publishing.publish_grid(pathlib.Path(options.map))
+        publishing.publish_grid(file)
     except Error as fault:
         reporter.say(f"no grid: {fault}")
 

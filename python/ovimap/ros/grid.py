@@ -14,7 +14,7 @@ import numpy.typing as npt
 from ruamel.yaml import YAML
 
 from .._ovimap import Error, decode_gray_png
-from ..cluster.program import find_program
+from ..command_line import find_program
 
 OCCUPIED, FREE, UNKNOWN = 100, 0, -1  # of nav_msgs/OccupancyGrid
 BLACK, WHITE = 0, 250  # what map_server's picture has for them; anything between is unknown

@@ -17,7 +17,7 @@ from ..bag_messages import CAMERA, IMAGES, ODOMETRY, POSES, camera_of, color_of,
 from ..sender import FrameSender, SendError
 from ..transforms import Matrix, rotation_vector_of
 from .node import SENSOR_DATA, STATIC_TRANSFORMS, TRANSFORMS, Node, Quality, Subscription, qualified
-from .pairing import CLOCK_BACK_NS, Pair, Pairing, Poses
+from .pairing import CLOCK_BACK_NS, KEPT_IMAGES, Pair, Pairing, Poses
 from .reporter import Reporter
 
 TRANSFORM = "tf2_msgs/msg/TFMessage"
@@ -143,14 +143,18 @@ class Mapping:
             self._report.count("refused", f"the images of {stream.topic} have no time stamps; set header.stamp where they are taken",
                                where=stream.topic)
             return
-        back = stream.newest_ns - time_ns
-        if back > CLOCK_BACK_NS:
+        frame = message.header.frame_id.lstrip("/")
+        if stream.frame and frame != stream.frame:
+            self._report.count("refused", f"an image of {stream.topic} is of the frame '{frame}', those before were of '{stream.frame}'; let one "
+                               "camera publish there, or start anew for another", where=f"{stream.topic} {frame}")
+            return
+        if stream.newest_ns - time_ns > CLOCK_BACK_NS:
             self._begin_anew(stream, time_ns)
-        stream.newest_ns, stream.frame = max(stream.newest_ns, time_ns), message.header.frame_id.lstrip("/")
+        stream.newest_ns, stream.frame = max(stream.newest_ns, time_ns), frame
         self._pairing.add(time_ns, message, depth=stream.depth)
 
     def _begin_anew(self, stream: Stream, time_ns: int) -> None:
-        self._report.say(f"the clock of {stream.topic} went back by {(stream.newest_ns - time_ns) / 1e9:.3f} s (a bag in a loop, a simulation begun anew?); what "
+        self._report.say(f"the clock of {stream.topic} went back by {(stream.newest_ns - time_ns) / 1e9:.3f} s (a bag in a loop?); what "
                          "waits is dropped, transforms are learned anew, and the map goes on")
         self._report.counts["times the clock went back"] += 1
         self._pairing, self._waiting = Pairing(unpaired=self._pairing.unpaired), []
@@ -165,7 +169,9 @@ class Mapping:
             self._report.once("without colour", f"depth of {self._depth.topic} has no colour of {self._color.topic} within 20 ms; let the "
                               "camera take both at once")
         if not self._waiting or not self._ready(self._waiting[0]):
-            del self._waiting[:-60]
+            if len(self._waiting) > KEPT_IMAGES:
+                self._report.counts["before the server was ready"] += len(self._waiting) - KEPT_IMAGES
+                del self._waiting[:-KEPT_IMAGES]
             return
         waiting, self._waiting = self._waiting, []
         for at, pair in enumerate(waiting):
@@ -276,10 +282,15 @@ class Mapping:
         stream.publishers, stream.since = now, time.monotonic()
 
     def _tell_what_is_missing(self) -> None:
+        for subscription in (*self._color.images, *self._depth.images, *(one for one, _ in self._transforms)):
+            if subscription.mismatched:
+                remedy = "leave --reliable out" if subscription.topic not in ("/tf", "/tf_static") else "publish it as tf2 does (docs/robots.md)"
+                self._report.once(f"quality {subscription.topic}", f"a publisher of {subscription.topic} offers less than is asked for (reliable "
+                                  f"delivery, of /tf_static also to late listeners), so nothing of it comes; {remedy}")
         for stream in (self._color, self._depth):
             if time.monotonic() - stream.since < PATIENCE_S:
                 continue
-            if not stream.publishers and not stream.newest_ns:
+            if not stream.publishers and not stream.newest_ns and not any(one.mismatched for one in stream.images):
                 self._report.once(f"no {stream.topic}", f"nobody publishes images on {stream.topic}; check the name (ros2 topic list), "
                                   "ROS_DOMAIN_ID, and that both sides see each other's network")
             elif stream.newest_ns and stream.info is None:

@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 from cyclonedds.core import DDSException, InstanceState, ReadCondition, SampleState, ViewState, WaitSet
 from cyclonedds.domain import Domain, DomainParticipant
 from cyclonedds.pub import DataWriter
@@ -26,6 +27,7 @@ from cyclonedds.util import duration
 from .._ovimap import Error
 from . import types
 
+GRAPH, GRAPH_TOPIC = "rmw_dds_common/msg/ParticipantEntitiesInfo", "ros_discovery_info"
 MOST_DOMAIN = 232  # above it the ports of DDS leave 16 bits
 TAKEN_AT_ONCE = 16
 # What peers say of the structure of types is not looked at, as ROS 2 itself goes by names: Fast DDS describes types in another way
@@ -104,6 +106,11 @@ class Subscription:
     def publishers(self) -> int:
         return len(self.reader.get_matched_publications())
 
+    @property
+    def mismatched(self) -> int:
+        """Publishers that offer less than we ask for, so nothing of theirs comes."""
+        return int(self.reader.get_requested_incompatible_qos_status().total_count)
+
     def take(self) -> Iterator[Any]:
         """Messages; None for one whose bytes cannot be read."""
         for sample in self._samples():
@@ -151,9 +158,9 @@ def with_header(header: bytes, data: bytes) -> bytes:
 
 
 class Node:
-    """One participant. domain: ROS_DOMAIN_ID where it is None, else 0. Raises Error where DDS cannot begin."""
+    """One participant with one node. domain: ROS_DOMAIN_ID where it is None, else 0. Raises Error where DDS cannot begin."""
 
-    def __init__(self, domain: int | None = None) -> None:
+    def __init__(self, domain: int | None = None, *, name: str = "ovimap") -> None:
         number = _domain(domain)
         try:
             _begin(number)
@@ -163,6 +170,12 @@ class Node:
                         "interface that is up") from None
         self._waiting = WaitSet(self._participant)
         self._conditions: list[Any] = []
+        self._name = name
+        self._readers: list[bytes] = []
+        self._writers: list[bytes] = []
+        graph = Topic(self._participant, GRAPH_TOPIC, types.message_type(GRAPH))
+        self._graph = Publisher(DataWriter(self._participant, graph, qos=_policies(LATCHED, _hash_data(GRAPH))), GRAPH)
+        self._tell_graph()
 
     def publisher(self, name: str, topic: str, quality: Quality) -> Publisher:
         kind = types.message_type(name)
@@ -191,14 +204,25 @@ class Node:
         self._waiting.wait(duration(seconds=seconds))
 
     def _writer(self, topic: str, kind: Any, quality: Quality, user_data: str) -> Any:
-        return DataWriter(self._participant, Topic(self._participant, topic, kind), qos=_policies(quality, user_data))
+        writer = DataWriter(self._participant, Topic(self._participant, topic, kind), qos=_policies(quality, user_data))
+        self._writers.append(writer.guid.bytes)
+        self._tell_graph()
+        return writer
 
     def _reader(self, topic: str, kind: Any, quality: Quality, user_data: str) -> Any:
         reader = DataReader(self._participant, Topic(self._participant, topic, kind), qos=_policies(quality, user_data))
         condition = ReadCondition(reader, SampleState.Any | ViewState.Any | InstanceState.Any)
         self._waiting.attach(condition)
         self._conditions.append(condition)  # they live as long as somebody holds them
+        self._readers.append(reader.guid.bytes)
+        self._tell_graph()
         return reader
+
+    def _tell_graph(self) -> None:
+        """Says which readers and writers are this node's, for `ros2 node list` and the like."""
+        mine = types.make("rmw_dds_common/msg/NodeEntitiesInfo", node_namespace="/", node_name=self._name,
+                          reader_gid_seq=[_gid(one) for one in self._readers], writer_gid_seq=[_gid(one) for one in self._writers])
+        self._graph.publish(types.make(GRAPH, gid=_gid(self._participant.guid.bytes), node_entities_info_seq=[mine]))
 
 
 class Client:
@@ -226,6 +250,10 @@ class Client:
             header, reply = split_header(types.bytes_of(sample))
             if header[:8] == self._id:
                 yield int.from_bytes(header[8:], "little"), types.decode(self._replies.name, reply)
+
+
+def _gid(guid: bytes) -> Any:
+    return types.make("rmw_dds_common/msg/Gid", data=np.frombuffer(guid, np.uint8))
 
 
 @functools.cache

@@ -39,13 +39,15 @@ class Clock:
         self._ticks = node.subscription(SIMULATED_CLOCK, "/clock", CLOCK) if simulated else None
         self._latest_ns = 0
 
-    def now_ns(self) -> int:
-        if self._ticks is None:
-            return time.time_ns()
-        for tick in self._ticks.take():
+    def listen(self) -> None:
+        """Takes what /clock said; what is not taken keeps the node awake."""
+        for tick in self._ticks.take() if self._ticks else ():
             if tick is not None:
                 self._latest_ns = tick.clock.sec * 1_000_000_000 + tick.clock.nanosec
-        return self._latest_ns
+
+    def now_ns(self) -> int:
+        self.listen()
+        return self._latest_ns if self._ticks else time.time_ns()
 
 
 class Publishing:
@@ -55,12 +57,17 @@ class Publishing:
 
     def __init__(self, node: Node, server: MapServer, frame: Callable[[], str], reporter: Reporter, *, name: str = "/ovimap",
                  most_points: int = 500_000, simulated_clock: bool = False) -> None:  # fmt: skip
-        self._node, self._server, self._frame, self._report, self._most_points = node, server, frame, reporter, most_points
+        self._node, self._frame, self._report, self._most_points = node, frame, reporter, most_points
+        self.follow(server)
         self._clock = Clock(node, simulated_clock)
         self._out = {kind: node.publisher(kind, f"{name}/{topic}", LATCHED)
                      for kind, topic in ((CLOUD, "objects"), (DETECTIONS, "detections"), (MARKERS, "markers"), (GRID, "grid"))}
         self._frames = node.publisher(TRANSFORM, "/tf_static", STATIC_TRANSFORMS)
         self._service = node.service(QUERY, f"{name}/query", self._answer)
+
+    def follow(self, server: MapServer) -> None:
+        """From now on that server's map."""
+        self._server = server
         self._published: tuple[Any, ...] = ()
 
     def serve(self, seconds: float) -> None:
@@ -68,13 +75,14 @@ class Publishing:
         end = time.monotonic() + seconds
         while (left := end - time.monotonic()) > 0:
             self._node.wait(left)
+            self._clock.listen()
             self._service.serve()
 
     def update(self) -> None:
         """Publishes the map if it is another than last time. What the server refuses is said once."""
         try:
             about, frame = self._server.about(), self._frame()
-            state = (about["version"], about["mesh_version"], frame)
+            state = (*(about[key] for key in ("title", "live", "content_hash", "version", "mesh_version")), frame)
             if not frame or state == self._published:
                 return
             self._publish(frame)

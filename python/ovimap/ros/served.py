@@ -4,18 +4,12 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
-import pathlib
-import signal
 import ssl
 import struct
-import subprocess
-import tempfile
 import urllib.error
 import urllib.parse
 import urllib.request
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -23,7 +17,6 @@ import numpy as np
 import numpy.typing as npt
 
 from .._ovimap import Error
-from ..cluster.program import find_program
 from ..files import parse_json
 from ..sender import _address
 
@@ -43,6 +36,7 @@ class Cloud:
 
 @dataclass
 class _Chunk:
+    version: int
     points: npt.NDArray[np.float32]
     colors: npt.NDArray[np.uint8]
     labels: npt.NDArray[np.uint32]
@@ -55,7 +49,7 @@ class MapServer:
     url: str
     cafile: str | None = None
     _chunks: dict[tuple[int, int, int], _Chunk] = field(default_factory=dict)
-    _mesh_version: int = 0
+    _identity: object = None
 
     def __post_init__(self) -> None:
         try:
@@ -68,7 +62,11 @@ class MapServer:
         self._trust = ssl.create_default_context(cafile=self.cafile) if parts.scheme == "https" else None
 
     def about(self) -> dict[str, Any]:
-        return self._json("/api/map")
+        said = self._json("/api/map")
+        identity = said["live"] or (said["title"], said["content_hash"])
+        if identity != self._identity:  # another map is served at the same address
+            self._chunks, self._identity = {}, identity
+        return said
 
     def objects(self) -> list[dict[str, Any]]:
         """Of each: id, name, label, box, centroid, color and more."""
@@ -82,16 +80,12 @@ class MapServer:
         """The objects' surface; only what changed is fetched. Where it has more points, every n-th."""
         listed = self._json("/api/mesh?level=0&since=0")
         places = {(chunk["x"], chunk["y"], chunk["z"]): chunk["version"] for chunk in listed["chunks"]}
-        for place in [*self._chunks]:
-            if place not in places:
-                del self._chunks[place]
-        newest = self._mesh_version
-        for place, version in places.items():
-            if version > self._mesh_version or place not in self._chunks:
-                self._chunks[place] = _chunk_of(self._bytes("/api/mesh/0/{}/{}/{}?since=0".format(*place)))
-            newest = max(newest, version)
-        self._mesh_version = newest
+        kept = {place: chunk for place, chunk in self._chunks.items() if places.get(place) == chunk.version}
+        self._chunks = {place: kept.get(place) or self._fetched(place, version) for place, version in places.items()}
         return self._objects_surface(most_points)
+
+    def _fetched(self, place: tuple[int, int, int], version: int) -> _Chunk:
+        return _chunk_of(self._bytes("/api/mesh/0/{}/{}/{}?since=0".format(*place)), version)
 
     def _objects_surface(self, most_points: int) -> Cloud:
         labels = self._json("/api/labels")
@@ -120,6 +114,7 @@ class MapServer:
         except urllib.error.HTTPError as fault:
             raise Error(_sentence(fault)) from None
         except OSError as fault:  # URLError too
+            self._identity = None  # who answers next may have another map
             raise Error(f"the map server {self._base} does not answer ({getattr(fault, 'reason', fault)}); is `ovimap serve` running?") from None
 
 
@@ -136,7 +131,7 @@ def _objects_of(labels: npt.NDArray[np.uint32], object_of: npt.NDArray[np.uint32
     return np.where(known, object_of[np.where(known, labels, 0)], 0).astype(np.uint32)
 
 
-def _chunk_of(data: bytes) -> _Chunk:
+def _chunk_of(data: bytes, listed: int) -> _Chunk:
     """Decodes a chunk (docs/http-api.md, "A chunk in bytes"). Raises Error for another format."""
     if len(data) < CHUNK_HEAD.size or data[:4] != b"OVMC":
         raise Error("the map server sent a surface that is none; use a server of the same version")
@@ -149,22 +144,4 @@ def _chunk_of(data: bytes) -> _Chunk:
     colors = np.frombuffer(data, np.uint8, vertices * 4, at + vertices * 8).reshape(-1, 4)
     labels = np.frombuffer(data, "<u4", vertices, at + vertices * 12)
     points = (origin + steps[:, :3] * (edge / 65535)).astype(np.float32)
-    return _Chunk(points, colors[:, :3].copy(), labels.astype(np.uint32))
-
-
-@contextlib.contextmanager
-def serving(path: pathlib.Path) -> Iterator[str]:
-    """Serves a map file to this program alone; gives the address. Raises Error where it is no map."""
-    if not path.is_file():
-        raise Error(f"there is no map '{path}'; give a map file, or the address that `ovimap serve` printed")
-    command = [find_program(), "serve", str(path), "--port", "0", "--viewer", "none", "--json"]
-    with tempfile.TemporaryFile("w+") as said, subprocess.Popen(command, stdout=subprocess.PIPE, stderr=said, text=True) as process:
-        assert process.stdout is not None
-        try:
-            line = process.stdout.readline()
-            if not line:
-                said.seek(0)
-                raise Error(next(iter(said.read().strip().splitlines()[::-1]), f"'{path}' cannot be served"))
-            yield str(parse_json(line)["address"])
-        finally:
-            process.send_signal(signal.SIGINT)
+    return _Chunk(listed, points, colors[:, :3].copy(), labels.astype(np.uint32))

@@ -80,7 +80,8 @@ def main():
             told[topic] |= {"texts": [marker.text for marker in message.markers if marker.text]}
         else:
             told[topic] |= {"cells": len(message.data), "size": message.info.width * message.info.height, "values": sorted(set(message.data))}
-    print(json.dumps({"rmw": rclpy.get_rmw_implementation_identifier(), "sent": number, "got": told}), flush=True)
+    nodes = sorted({f"{space}{name}" for name, space in node.get_node_names_and_namespaces()})
+    print(json.dumps({"nodes": nodes, "rmw": rclpy.get_rmw_implementation_identifier(), "sent": number, "got": told}), flush=True)
     rclpy.shutdown()
 
 
