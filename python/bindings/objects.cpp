@@ -128,7 +128,7 @@ void bind_values(nb::module_& module) {
       .def_ro("object", &ObjectRelation::object, "id")
       .def_prop_ro(
           "relation", [](const ObjectRelation& self) { return relation_name(self.relation); },
-          "on, in, above, beside or near")
+          "on, inside, above, beside or near")
       .def_ro("anchor", &ObjectRelation::anchor, "id")
       .def_ro("score", &ObjectRelation::score, "0.5 on the border to 1")
       .def_ro("evidence", &ObjectRelation::evidence, "\"0.02 m above the top of #3\"")
@@ -216,8 +216,8 @@ void bind_objects(nb::module_& module, nb::class_<SavedMap>& map) {
            "speaks for it, by row of `instances`; empty where the map has no embeddings or their "
            "encoder is missing.")
       .def("relations", &relations, nb::call_guard<WithoutGil>(),
-           "How the objects stand to each other: on, in, above, beside, near; docs/query.md says "
-           "when each holds. One relation a pair, the first of these that does.")
+           "How the objects stand to each other: on, inside, above, beside, near; docs/query.md "
+           "says when each holds. One relation a pair, the first of these that does.")
       .def("crops", &crops, nb::arg("id"),
            nb::sig("def crops(self, id: int) -> list[bytes]"),
            "The pictures that the map keeps of an object, as JPEG, in the order of frames. Raises "

@@ -131,7 +131,8 @@ class Watch:
         began_s = time.monotonic()
         verdicts = self._backend.verdicts(list(self._standing))
         spent_s = time.monotonic() - began_s
-        self._state, self._rest_until_s = state, now_s + min(spent_s / WORK_SHARE, MOST_REST_S)
+        seen_s = now_s + spent_s
+        self._state, self._rest_until_s = state, seen_s + min(spent_s / WORK_SHARE, MOST_REST_S)
         for (query, standing), verdict in zip(self._standing.items(), verdicts, strict=True):
             if verdict.fault:
                 if verdict.fault != standing.fault:
@@ -140,15 +141,17 @@ class Watch:
                 continue  # what was told stays
             standing.fault = ""
             if verdict.found != standing.verdict.found:
-                standing.since_s = now_s
+                standing.since_s = seen_s
             standing.verdict = verdict
             if verdict.found:
                 standing.last = verdict
 
     def _tell_all(self, now_s: float) -> None:
-        hold_s = self._hold_s if self._live else 0.0
+        if self._live and self._due:  # there are states that were not looked at yet
+            return
         for query, standing in self._standing.items():
-            if standing.verdict.found != standing.told and now_s - standing.since_s >= hold_s:
+            stands = not self._live or now_s - standing.since_s >= self._hold_s
+            if stands and standing.verdict.found != standing.told:
                 standing.told = standing.verdict.found
                 self._send("found" if standing.told else "gone", query, standing)
 

@@ -116,8 +116,20 @@ def test_a_change_while_it_rests_is_seen_afterwards(monkeypatch):
     watching.map.version, watching.map.found = 5, {"mug": 7}
     watching.watch.step(watching.now + 1, changed=True)
     assert watching.told == []
-    watching.watch.step(watching.now + MOST_REST_S, changed=False)
+    watching.watch.step(watching.now + 1 + MOST_REST_S, changed=False)
     assert [event.event for event in watching.told] == ["found"]
+
+
+def test_a_verdict_must_outlast_a_second_look(monkeypatch):
+    watching = Watching("mug")
+    monkeypatch.setattr("ovimap.watching.time.monotonic", lambda clock=itertools.count(): next(clock))  # rounds of a second
+    for found, told in ((None, []), (7, []), (None, []), (7, []), (7, ["found"])):
+        watching.map.version, watching.map.found = watching.map.version + 1, {"mug": found}
+        watching.now += 1 + MOST_REST_S
+        watching.watch.step(watching.now)
+        watching.map.version += 1  # it goes on to change while the watch rests
+        watching.watch.step(watching.now + MOST_REST_S / 2)
+        assert [event.event for event in watching.told] == told
 
 
 def test_asking_takes_a_small_share_of_the_time(monkeypatch):
@@ -128,7 +140,7 @@ def test_asking_takes_a_small_share_of_the_time(monkeypatch):
         before = len(watching.map.asked)
         for _ in range(400):
             watching.after(1)
-        assert len(watching.map.asked) - before == pytest.approx(400 / rest_s, rel=0.3)
+        assert len(watching.map.asked) - before == pytest.approx(400 / (spent_s + rest_s), rel=0.3)
 
 
 def test_a_map_that_does_not_answer_is_told_of_once():

@@ -148,7 +148,7 @@ def extent(objects: Sequence[MapObject]) -> tuple[Point | None, Point | None]:
 
 def closest_first(relations: list[Relation]) -> list[Relation]:
     """What carries or holds an object says more of it than what is near."""
-    order = ("on", "in", "above", "beside", "near")
+    order = ("on", "inside", "above", "beside", "near")
     return sorted(relations, key=lambda said: order.index(said.relation) if said.relation in order else len(order))
 
 

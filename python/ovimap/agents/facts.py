@@ -89,7 +89,7 @@ class Relation:
     object: int
     object_title: str
     relation: str
-    """on, in, above, beside or near; beside and near hold both ways"""
+    """on, inside, above, beside or near; beside and near hold both ways"""
     anchor: int
     anchor_title: str
     evidence: str
