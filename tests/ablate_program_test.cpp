@@ -91,7 +91,7 @@ TEST_F(AblateProgramTest, ASchedulesInputIsAVideo) {
   const auto times = [&](double spacing_s) {
     std::string text;
     for (int i = 0; i < 100; ++i) text += concat(spacing_s * i, "\n");
-    fixture::write_text(path("replica/scene/timestamps.txt"), text);
+    write_text(path("replica/scene/timestamps.txt"), text);
   };
   times(0.001);  // as if frames from all sides had been taken in no time
   expect_complaint(command("schedule"), {"replica/scene", "m and turns", "--walk"});

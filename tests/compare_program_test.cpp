@@ -43,12 +43,12 @@ TEST_F(CompareProgramTest, ATransformIsRefusedWhenItIsNone) {
   map_with("none");
   const std::string command = "merge room.ovimap room.ovimap -o both.ovimap --transform t.txt";
   expect_complaint(command, {"t.txt"});
-  fixture::write_text(path("t.txt"), "1 0 0 0 1 0 0 0 1");
+  write_text(path("t.txt"), "1 0 0 0 1 0 0 0 1");
   expect_complaint(command, {"16 numbers"});
-  fixture::write_text(path("t.txt"), "2 0 0 0  0 2 0 0  0 0 2 0  0 0 0 1");
+  write_text(path("t.txt"), "2 0 0 0  0 2 0 0  0 0 2 0  0 0 0 1");
   expect_complaint(command, {"orthonormal"});
   expect_complaint(command + " --align", {"--align"});
-  fixture::write_text(path("t.txt"), "1 0 0 0  0 1 0 0.3  0 0 1 0  0 0 0 1");
+  write_text(path("t.txt"), "1 0 0 0  0 1 0 0.3  0 0 1 0  0 0 0 1");
   expect_complaint(command, {"contradict", "--align"});
   EXPECT_FALSE(std::filesystem::exists(path("both.ovimap")));
 }
@@ -58,7 +58,7 @@ TEST_F(CompareProgramTest, DamageIsListed) {
   EXPECT_EQ(run_json("info room.ovimap --check --json")["ok"], true);
   std::string bytes = slurp(path("room.ovimap"));
   bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 0x10);
-  fixture::write_text(path("room.ovimap"), bytes);
+  write_text(path("room.ovimap"), bytes);
   const ProgramResult check = run("info room.ovimap --check");
   EXPECT_EQ(check.code, 1) << check.out << check.err;
   EXPECT_NE(check.out.find("damaged: "), std::string::npos);

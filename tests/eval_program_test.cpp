@@ -104,7 +104,7 @@ TEST_F(EvalProgramTest, SaysHowTruthAndMapDisagree) {
 
 TEST_F(EvalProgramTest, SaysWhatIsWrongWithTheLabels) {
   make_map(golden_model("minilm"));
-  fixture::write_text(path("replica/labels.json"), R"({"classes": {"1": "wall", "2": "sofa"}})");
+  write_text(path("replica/labels.json"), R"({"classes": {"1": "wall", "2": "sofa"}})");
   expect_complaint(kEval + kEncoder, {"class id 3", "labels.json"});
   std::filesystem::remove(path("replica/labels.json"));
   EXPECT_NE(run(kEval + kEncoder).err.find("--classes"), std::string::npos);
@@ -125,7 +125,7 @@ TEST_F(EvalProgramTest, TakesTruthMeshesOfPolygons) {
                             "element face 1\nproperty list uchar int vertex_indices\nend_header\n");
   for (const Eigen::Vector3f& vertex : mesh.vertices)
     text += concat(vertex.x(), " ", vertex.y(), " ", vertex.z(), "\n");
-  fixture::write_text(path("replica/scene_mesh.ply"), text + "5 0 1 2 3 4\n");
+  write_text(path("replica/scene_mesh.ply"), text + "5 0 1 2 3 4\n");
   EXPECT_EQ(run_json(std::string(kEval) + " --json")["standard"]["class_agnostic"]["ap50"], 1.0);
 }
 

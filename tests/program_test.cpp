@@ -147,7 +147,7 @@ TEST_F(ProgramTest, TheReferencePresetMapsToo) {
 
 TEST_F(ProgramTest, SkipsAndCountsBadFrames) {
   write_file(path("recording/frame-000002.depth.png"), Bytes{1, 2, 3});
-  fixture::write_text(path("recording/frame-000003.pose.txt"), "nan 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1");
+  write_text(path("recording/frame-000003.pose.txt"), "nan 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1");
   const ProgramResult result = run("run recording -o room.ovimap --json");
   EXPECT_EQ(nlohmann::json::parse(result.out)["frames_skipped"], 2);
   EXPECT_NE(result.err.find("frame-000002"), std::string::npos);
@@ -221,14 +221,14 @@ TEST_F(ProgramTest, SaysWhatIsWrongWithTheRecording) {
 
 TEST_F(ProgramTest, RefusesPosesThatNeverChangeUnlessTold) {
   for (int i = 0; i < sequence_.frames; ++i)
-    fixture::write_text(path("recording/frame-" + fixture::padded(i, 6) + ".pose.txt"),
+    write_text(path("recording/frame-" + fixture::padded(i, 6) + ".pose.txt"),
                         "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1");
   expect_complaint("run recording -o a.ovimap", {"same pose", "allow_still_camera"});
   EXPECT_EQ(run("run recording -o a.ovimap --set allow_still_camera=true").code, 0);
 }
 
 TEST_F(ProgramTest, SaysWhatIsWrongWithTheMap) {
-  fixture::write_text(path("text.ovimap"), "not a database at all");
+  write_text(path("text.ovimap"), "not a database at all");
   expect_complaint("info text.ovimap", {"text.ovimap"});
   expect_complaint("info missing.ovimap", {"missing.ovimap"});
   expect_complaint("info recording", {"recording"});

@@ -72,7 +72,7 @@ TEST_F(QueryProgramTest, EncodesTheWordsOfVerdictsOnceForAllProcesses) {
   ASSERT_EQ(files.size(), 2u);  // the words that calibrate, and those that compete
   EXPECT_EQ(with_cache("cache"), first);
   EXPECT_EQ(stored(), files) << "encoding them again would have replaced the file";
-  fixture::write_text(path("file"), "where a folder of caches should be");
+  write_text(path("file"), "where a folder of caches should be");
   EXPECT_EQ(with_cache("file"), first);
 }
 

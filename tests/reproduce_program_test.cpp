@@ -49,7 +49,7 @@ class ReproduceProgramTest : public TruthfulProgramTest {
     const auto write = [&](const std::string& folder, const std::string& name,
                            const std::string& labels) {
       fs::create_directories(path("Replica/" + folder));
-      fixture::write_text(path("Replica/" + folder) / (name + scene + ".txt"), labels);
+      write_text(path("Replica/" + folder) / (name + scene + ".txt"), labels);
     };
     write("replica_gt_instances", "instance_labels_", instances);
     write("replica_gt_semantics", "semantic_labels_", classes);
@@ -73,8 +73,8 @@ class ReproduceProgramTest : public TruthfulProgramTest {
                                     {{"id", 76}, {"name", "sofa"}},
                                     {{"id", 91}, {"name", "vase"}}};
     fs::create_directories(folder);
-    fixture::write_text(folder / "mesh_semantic.ply", text);
-    fixture::write_text(folder / "info_semantic.json",
+    write_text(folder / "mesh_semantic.ply", text);
+    write_text(folder / "info_semantic.json",
                         nlohmann::json{{"classes", classes}, {"objects", objects}}.dump());
   }
 
@@ -84,7 +84,7 @@ class ReproduceProgramTest : public TruthfulProgramTest {
     write_masks(path("masks/scene0011_00"), sequence, "", 1);
     const std::string stem = (folder / "scene0011_00").string();
     write_ply(stem + "_vh_clean_2.labels.ply", mesh_);
-    fixture::write_text(stem + "_vh_clean_2.0.010000.segs.json",
+    write_text(stem + "_vh_clean_2.0.010000.segs.json",
                         nlohmann::json{{"segIndices", mesh_.labels}}.dump());
     nlohmann::json groups = nlohmann::json::array();
     for (const std::uint32_t id : std::set(mesh_.labels.begin(), mesh_.labels.end()))
@@ -92,8 +92,8 @@ class ReproduceProgramTest : public TruthfulProgramTest {
         groups.push_back({{"objectId", id - 1},
                           {"label", kScanNetNames[id % 3]},
                           {"segments", nlohmann::json::array({id})}});
-    fixture::write_text(stem + ".aggregation.json", nlohmann::json{{"segGroups", groups}}.dump());
-    fixture::write_text(path("ScanNet/scannetv2-labels.combined.tsv"),
+    write_text(stem + ".aggregation.json", nlohmann::json{{"segGroups", groups}}.dump());
+    write_text(path("ScanNet/scannetv2-labels.combined.tsv"),
                         "id\traw_category\tnyu40id\tnyu40class\n1\twall\t1\twall\n"
                         "6\tcouch\t6\tsofa\n1299\todd thing\t40\totherprop\n");
   }

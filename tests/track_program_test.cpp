@@ -16,7 +16,7 @@ class TrackProgramTest : public ProgramTest {
     std::string truth;
     for (int i = 0; i < sequence_.frames; ++i)
       truth += concat(i / 30., " ", fixture::tum_text(sequence_.pose(i)), "\n");
-    fixture::write_text(path("truth.txt"), truth);
+    write_text(path("truth.txt"), truth);
   }
   /// Makes a frame one of darkness: nothing near enough to be depth.
   void cover(int frame) const {

@@ -23,9 +23,9 @@ class TruthfulProgramTest : public EncodedProgramTest {
       instances += concat(label, "\n");
       classes += concat(label == 0 ? 0 : label % 3 + 1, "\n");
     }
-    fixture::write_text(path("replica/instance_labels_scene.txt"), instances);
-    fixture::write_text(path("replica/semantic_labels_scene.txt"), classes);
-    fixture::write_text(path("replica/labels.json"),
+    write_text(path("replica/instance_labels_scene.txt"), instances);
+    write_text(path("replica/semantic_labels_scene.txt"), classes);
+    write_text(path("replica/labels.json"),
                         R"({"classes": {"1": "wall", "2": "sofa", "3": "teapot"}})");
   }
 

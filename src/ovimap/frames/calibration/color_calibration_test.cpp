@@ -220,7 +220,7 @@ TEST(ColorCalibration, TextKeepsTheOtherKeys) {
   ColorCalibration result;
   result.depth_camera = {320, 240, 260, 260, 159.5f, 119.5f};
   result.found = two_cameras();
-  fixture::write_text(file, calibrated_text(file, result));
+  write_text(file, calibrated_text(file, result));
   CameraRig rig;
   apply_calibration(file, rig);
   EXPECT_EQ(rig.depth_camera, result.depth_camera);
@@ -228,11 +228,11 @@ TEST(ColorCalibration, TextKeepsTheOtherKeys) {
   EXPECT_TRUE(rig.color_from_depth.isApprox(result.found.color_from_depth, 1e-5));
   EXPECT_EQ(rig.depth_units_per_m, 1000);
 
-  fixture::write_text(file,
+  write_text(file,
                       "depth_camera: {fx: 300, depth_scale: 5000}\n"
                       "color_camera: {fx: 7, distortion: {coefficients: [.1, 0, 0, 0, 0]}}\n"
                       "poses: {direction: camera_from_world}\n");
-  fixture::write_text(file, calibrated_text(file, result));
+  write_text(file, calibrated_text(file, result));
   CameraRig kept;
   apply_calibration(file, kept);
   EXPECT_EQ(kept.depth_camera.fx, 300);
@@ -241,7 +241,7 @@ TEST(ColorCalibration, TextKeepsTheOtherKeys) {
   EXPECT_EQ(kept.color_camera, result.found.camera);
   EXPECT_EQ(kept.color_lens, (Lens{Lens::Model::kBrownConrady, {.1}}));
 
-  fixture::write_text(file, "depth_camera: {fx: [\n");
+  write_text(file, "depth_camera: {fx: [\n");
   EXPECT_THROW(calibrated_text(file, result), Error);
 }
 

@@ -66,7 +66,7 @@ TEST(SourceCheck, GoodSequenceIsFineInEveryLayout) {
   fixture::write_folder(plain, sequence);
   std::string poses;
   for (int i = 0; i < sequence.frames; ++i) poses += fixture::matrix_text(sequence.pose(i), ' ', 3);
-  fixture::write_text(plain / "poses.txt", poses);
+  write_text(plain / "poses.txt", poses);
   for (const fs::path& path : {fixture::write_replica(root.path(), sequence), scenes, tum, plain}) {
     const CheckReport report = check_source(path);
     EXPECT_TRUE(report.ok()) << path << "\n" << faults_of(report);
@@ -86,7 +86,7 @@ TEST(SourceCheck, InvertedPosesAreNamedAndTheRemedyHelps) {
   fixture::write_seven_scenes(folder.path(), sequence);
   expect_single_fault(check_source(folder.path()), "pose_convention",
                       "direction: camera_from_world");
-  fixture::write_text(
+  write_text(
       folder.path() / "calibration.yaml",
       fixture::calibration_yaml(sequence) + "poses: {direction: camera_from_world}\n");
   EXPECT_TRUE(check_source(folder.path()).ok());
@@ -127,7 +127,7 @@ TEST(SourceCheck, DepthScalesAreNamed) {
     const fixture::TemporaryFolder folder;
     fixture::write_seven_scenes(folder.path(), sequence);
     sequence.depth_units_per_m = c.said;
-    fixture::write_text(folder.path() / "calibration.yaml", fixture::calibration_yaml(sequence));
+    write_text(folder.path() / "calibration.yaml", fixture::calibration_yaml(sequence));
     expect_single_fault(check_source(folder.path()), "depth_scale", c.remedy);
   }
 }
@@ -167,7 +167,7 @@ TEST(SourceCheck, BadFramesAreCountedByFault) {
     return folder.path() / ("frame-" + fixture::padded(frame, 6) + ending);
   };
   for (const int frame : {3, 9}) fs::remove(file(frame, ".depth.png"));
-  fixture::write_text(file(5, ".pose.txt"), "nan 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1");
+  write_text(file(5, ".pose.txt"), "nan 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1");
   CheckReport report = check_source(folder.path());
   EXPECT_TRUE(report.ok()) << faults_of(report);
   EXPECT_EQ(report.checked, 24);
@@ -251,7 +251,7 @@ TEST(SourceCheck, MistakesInTheKitchenAreNamed) {
         Case{"poses: {axes: opengl}", "pose_convention", "axes: opengl"},
         Case{"depth_camera: {depth_scale: 5000}", "depth_scale", "divide depth_scale by 5"},
         Case{"depth_camera: {depth_scale: 100}", "depth_scale", "multiply depth_scale by 10"}}) {
-    fixture::write_text(folder.path() / "calibration.yaml", color_camera + c.mistake + "\n");
+    write_text(folder.path() / "calibration.yaml", color_camera + c.mistake + "\n");
     expect_single_fault(check_source(folder.path()), c.name, c.remedy);
   }
 }

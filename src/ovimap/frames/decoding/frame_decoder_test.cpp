@@ -46,7 +46,7 @@ TEST(FrameDecoder, RectifiesAsReadersDo) {
   const fixture::TemporaryFolder folder;
   fixture::write_seven_scenes(folder.path(), sequence);
   const Frame bent = *open_frame_source(folder.path())->read(3).frame;
-  fixture::write_text(folder.path() / "camera.yaml",
+  write_text(folder.path() / "camera.yaml",
                       "camera: {distortion: {coefficients: [-.3, .1, .001, .002, -.01]}}\n");
   const FrameRead straight = open_frame_source(folder.path())->read(3);
   ASSERT_TRUE(straight.frame) << straight.fault;

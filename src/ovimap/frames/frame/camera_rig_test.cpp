@@ -11,7 +11,7 @@ namespace {
 
 CameraRig applied(const std::string& yaml, CameraRig rig = {}) {
   const fixture::TemporaryFolder folder;
-  fixture::write_text(folder.path() / "calibration.yaml", yaml);
+  write_text(folder.path() / "calibration.yaml", yaml);
   apply_calibration(folder.path() / "calibration.yaml", rig);
   return rig;
 }

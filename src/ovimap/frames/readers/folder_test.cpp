@@ -22,7 +22,7 @@ class Folder : public testing::Test {
   void write_lines(const std::string& name, int rows, int frames = 11) const {
     std::string text;
     for (int i = 0; i < frames; ++i) text += fixture::matrix_text(sequence_.pose(i), ' ', rows);
-    fixture::write_text(path() / name, text);
+    write_text(path() / name, text);
   }
   void expect_all_read(double tolerance = 1e-12) const {
     const auto source = open_frame_source(path());
@@ -62,7 +62,7 @@ TEST_F(Folder, PosesAsKitti) {
 TEST_F(Folder, PosesAsTumWhoseTimesAreTheNames) {
   std::string text;
   for (int i = 10; i >= 0; --i) text += concat(i, " ", fixture::tum_text(sequence_.pose(i)), "\n");
-  fixture::write_text(path() / "groundtruth.txt", text);
+  write_text(path() / "groundtruth.txt", text);
   expect_all_read(1e-7);
 }
 
@@ -70,14 +70,14 @@ TEST_F(Folder, PosesAsTumByRank) {
   std::string text;
   for (int i = 0; i < 11; ++i)
     text += concat(5000 + i, " ", fixture::tum_text(sequence_.pose(i)), "\n");
-  fixture::write_text(path() / "poses.txt", text);
+  write_text(path() / "poses.txt", text);
   expect_all_read(1e-7);
 }
 
 TEST_F(Folder, PosesAsFilesOfEqualName) {
   fs::create_directories(path() / "pose");
   for (int i = 0; i < 11; ++i)
-    fixture::write_text(path() / "pose" / concat(i, ".txt"),
+    write_text(path() / "pose" / concat(i, ".txt"),
                         fixture::matrix_text(sequence_.pose(i)));
   expect_all_read();
   fs::remove(path() / "pose" / "4.txt");
@@ -119,13 +119,13 @@ TEST_F(Folder, IntrinsicsMayBeText) {
   fs::remove(path() / "camera.yaml");
   for (const char* text : {"70 70 39.5 29.5", "70 0 39.5\n0 70 29.5\n0 0 1\n",
                            "70 0 39.5 0\n0 70 29.5 0\n0 0 1 0\n0 0 0 1\n"}) {
-    fixture::write_text(path() / "intrinsics.txt", text);
+    write_text(path() / "intrinsics.txt", text);
     const FrameRead read = open_frame_source(path())->read(0);
     ASSERT_TRUE(read.frame) << read.fault;
     EXPECT_EQ(read.frame->depth_camera, sequence_.depth_camera);
     EXPECT_TRUE(read.frame->registered());
   }
-  fixture::write_text(path() / "intrinsics.txt", "70 70");
+  write_text(path() / "intrinsics.txt", "70 70");
   EXPECT_NE(error().find("'fx fy cx cy' or a 3x3"), std::string::npos);
 }
 
@@ -135,10 +135,10 @@ TEST_F(Folder, TwoIntrinsicsAsScanNetExportsThem) {
   fs::create_directories(path() / "intrinsic");
   for (int i = 0; i < 11; ++i)
     write_file(path() / "color" / concat(i, ".png"), encode_png(RgbImage(160, 121)));
-  fixture::write_text(path() / "intrinsic" / "intrinsic_depth.txt",
+  write_text(path() / "intrinsic" / "intrinsic_depth.txt",
                       "70 0 39.5 0 0 70 29.5 0 0 0 1 0 0 0 0 1");
   EXPECT_NE(error().find("give both depth_camera and color_camera"), std::string::npos);
-  fixture::write_text(path() / "intrinsic" / "intrinsic_color.txt",
+  write_text(path() / "intrinsic" / "intrinsic_color.txt",
                       "140 0 80 0 0 140 60 0 0 0 1 0 0 0 0 1");
   const FrameRead read = open_frame_source(path())->read(0);
   ASSERT_TRUE(read.frame) << read.fault;
@@ -152,11 +152,11 @@ TEST_F(Folder, WhatIsMissingIsSaidWithAnExample) {
   write_lines("poses.txt", 4);
   fs::remove(path() / "camera.yaml");
   EXPECT_NE(error().find("camera: {width: 640"), std::string::npos);
-  fixture::write_text(path() / "camera.yaml", "camera: {fx: 70, cx: 39.5, cy: 29.5}");
+  write_text(path() / "camera.yaml", "camera: {fx: 70, cx: 39.5, cy: 29.5}");
   EXPECT_NE(error().find("the depth camera lacks fy"), std::string::npos);
-  fixture::write_text(path() / "camera.yaml", "camera: {fx: 70, fy: 70}");
+  write_text(path() / "camera.yaml", "camera: {fx: 70, fy: 70}");
   EXPECT_NE(error().find("lacks cx, cy"), std::string::npos);
-  fixture::write_text(path() / "camera.yaml", "camera: {fx: 70, fy: 70, cx: 39.5, cy: 29.5}");
+  write_text(path() / "camera.yaml", "camera: {fx: 70, fy: 70, cx: 39.5, cy: 29.5}");
   expect_all_read();
   for (const auto& entry : fs::directory_iterator(path() / "color")) fs::remove(entry.path());
   EXPECT_NE(error().find("holds no .jpg or .png image"), std::string::npos);

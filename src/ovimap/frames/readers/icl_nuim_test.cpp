@@ -24,8 +24,8 @@ class IclNuim : public testing::Test {
       write_file(path() / "depth" / concat(i, ".png"), encode_png(sequence_.stored_depth(i)));
       if (i > 0) poses += concat(i, " ", fixture::tum_text(stored_pose(i).matrix()), "\n\n");
     }
-    fixture::write_text(path() / "livingRoom0.gt.freiburg", poses);
-    fixture::write_text(path() / "calibration.yaml", fixture::calibration_yaml(sequence_));
+    write_text(path() / "livingRoom0.gt.freiburg", poses);
+    write_text(path() / "calibration.yaml", fixture::calibration_yaml(sequence_));
   }
 
   const fs::path& path() const { return folder_.path(); }
@@ -107,7 +107,7 @@ TEST_F(IclNuim, FramesWithoutPoseOrNumberAreFaults) {
 }
 
 TEST_F(IclNuim, BrokenDescriptionsAreNamed) {
-  fixture::write_text(path() / "livingRoom0.gt.freiburg", "nothing");
+  write_text(path() / "livingRoom0.gt.freiburg", "nothing");
   EXPECT_NE(error().find("livingRoom0.gt.freiburg holds no pose"), std::string::npos);
   fs::remove(path() / "livingRoom0.gt.freiburg");
   EXPECT_NE(error().find("no poses"), std::string::npos);

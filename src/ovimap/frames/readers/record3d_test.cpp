@@ -66,7 +66,7 @@ class Record3d : public testing::Test {
     const PinholeCamera& k = sequence_.color_camera;
     std::string poses;
     for (int i = 0; i < 11; ++i) poses += (i == 0 ? "" : ", ") + stored_pose(i);
-    fixture::write_text(
+    write_text(
         path() / "metadata",
         concat(R"({"w": 320, "h": 240, "dw": 80, "dh": 60, "fps": 60, "K": [)", k.fx, ", 0, 0, 0, ",
                k.fy, ", 0, ", k.cx, ", ", k.cy, R"(, 1], "poses": [)", poses, "]", more, "}"));
@@ -121,7 +121,7 @@ TEST_F(Record3d, EachFrameHasItsOwnFocusAndTime) {
 
 TEST_F(Record3d, CalibrationGoesBeforeTheFocusOfFrames) {
   write_metadata(R"(, "perFrameIntrinsicCoeffs": [[280, 280, 158, 118], [281, 282, 159, 119]])");
-  fixture::write_text(path() / "calibration.yaml",
+  write_text(path() / "calibration.yaml",
                       "color_camera: {fx: 300}\ndepth_camera: {fx: 75}");
   const FrameRead read = open_frame_source(path())->read(1);
   ASSERT_TRUE(read.frame) << read.fault;
@@ -187,21 +187,21 @@ TEST_F(Record3d, BadFramesAreFaults) {
 }
 
 TEST_F(Record3d, BrokenDescriptionsAreNamed) {
-  fixture::write_text(path() / "metadata", R"({"w": 320})");
+  write_text(path() / "metadata", R"({"w": 320})");
   EXPECT_NE(error().find("expected are K, w, h, dw and dh"), std::string::npos);
-  fixture::write_text(path() / "metadata",
+  write_text(path() / "metadata",
                       R"({"K": [1], "w": 1, "h": 1, "dw": 1, "dh": 1, "poses": []})");
   EXPECT_NE(error().find("K has 1 numbers"), std::string::npos);
-  fixture::write_text(
+  write_text(
       path() / "metadata",
       R"({"K": [1,0,0,0,1,0,1,1,1], "w": 1, "h": 1, "dw": 0, "dh": 1, "poses": []})");
   EXPECT_NE(error().find("is not above 0"), std::string::npos);
-  fixture::write_text(path() / "metadata",
+  write_text(path() / "metadata",
                       R"({"K": [1,0,0,0,1,0,1,1,1], "w": 1, "h": 1, "dw": 2147483647,
                           "dh": 2147483647, "poses": []})");
   EXPECT_NE(error().find("2147483647x2147483647 are too large"), std::string::npos);
   write_metadata("");
-  fixture::write_text(path() / "take.r3d", "PK");
+  write_text(path() / "take.r3d", "PK");
   try {
     open_frame_source(path() / "take.r3d");
     FAIL();

@@ -23,7 +23,7 @@ class Redwood : public testing::Test {
       write_file(path() / "depth" / (stem + ".png"), encode_png(sequence_.stored_depth(i)));
     }
     write_log("trajectory.log", [](int i) { return i + 1; });
-    fixture::write_text(path() / "camera_intrinsic.json",
+    write_text(path() / "camera_intrinsic.json",
                         R"({"width": 80, "height": 60, "intrinsic_matrix":
                             [70, 0, 0, 0, 70, 0, 39.5, 29.5, 1]})");
   }
@@ -35,7 +35,7 @@ class Redwood : public testing::Test {
     std::string text;
     for (int i = 0; i < frames; ++i)
       text += concat(i, "\t", i, "\t", third(i), "\n", fixture::matrix_text(sequence_.pose(i)));
-    fixture::write_text(path() / name, text);
+    write_text(path() / name, text);
   }
   void expect_frames(const FrameSource& source, std::initializer_list<int> frames) const {
     for (const int i : frames) {
@@ -83,7 +83,7 @@ TEST_F(Redwood, ThirdNumberSaysWhichImage) {
   std::string text;
   for (const int i : {9, 2, 5})
     text += concat("0 0 ", i + 1, "\n", fixture::matrix_text(sequence_.pose(i)));
-  fixture::write_text(path() / "trajectory.log", text);
+  write_text(path() / "trajectory.log", text);
   const auto source = open_frame_source(path());
   ASSERT_EQ(source->size(), 11);
   expect_frames(*source, {2, 5, 9});
@@ -99,7 +99,7 @@ TEST_F(Redwood, DefaultIsThePrimeSenseCamera) {
   fs::remove(path() / "camera_intrinsic.json");
   EXPECT_NE(open_frame_source(path())->read(0).fault.find("is 80x60, expected 640x480"),
             std::string::npos);
-  fixture::write_text(path() / "calibration.yaml", fixture::calibration_yaml(sequence_));
+  write_text(path() / "calibration.yaml", fixture::calibration_yaml(sequence_));
   expect_frames(*open_frame_source(path()), {0});
 }
 
@@ -117,15 +117,15 @@ TEST_F(Redwood, BadPoseIsAFaultOfItsFrame) {
 }
 
 TEST_F(Redwood, BrokenDescriptionsAreNamed) {
-  fixture::write_text(path() / "camera_intrinsic.json", R"({"intrinsic_matrix": [1, 2]})");
+  write_text(path() / "camera_intrinsic.json", R"({"intrinsic_matrix": [1, 2]})");
   EXPECT_NE(error().find("camera_intrinsic.json is no camera of Open3D"), std::string::npos);
   fs::remove(path() / "camera_intrinsic.json");
   fs::remove(path() / "color" / "00011.jpg");
   EXPECT_NE(error().find("has a pose for image 11, but there are only 10 images"),
             std::string::npos);
-  fixture::write_text(path() / "trajectory.log", "0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n");
+  write_text(path() / "trajectory.log", "0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n");
   EXPECT_NE(error().find("has 4 lines; a pose has five"), std::string::npos);
-  fixture::write_text(path() / "trajectory.log", "0 0 1\n1 0 0\n");
+  write_text(path() / "trajectory.log", "0 0 1\n1 0 0\n");
   EXPECT_NE(error().find("trajectory.log line 2 is '1 0 0'; expected a row of a 4x4 matrix"),
             std::string::npos);
 }

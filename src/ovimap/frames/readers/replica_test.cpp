@@ -72,16 +72,16 @@ TEST_F(Replica, CameraFileMayStandInTheScene) {
 TEST_F(Replica, BrokenDescriptionsAreNamed) {
   std::filesystem::rename(folder_.path() / "cam_params.json", folder_.path() / "other");
   EXPECT_NE(error().find("no cam_params.json"), std::string::npos);
-  fixture::write_text(folder_.path() / "cam_params.json", "{\"camera\": {\"w\": 80}}");
+  write_text(folder_.path() / "cam_params.json", "{\"camera\": {\"w\": 80}}");
   EXPECT_NE(error().find("cam_params.json is not a camera description"), std::string::npos);
-  fixture::write_text(folder_.path() / "cam_params.json", "{nonsense");
+  write_text(folder_.path() / "cam_params.json", "{nonsense");
   EXPECT_NE(error().find("cam_params.json is not JSON: line 1"), std::string::npos);
   const auto nested = [](std::size_t levels) {
     return R"({"camera": )" + std::string(levels, '[') + std::string(levels, ']') + "}";
   };
-  fixture::write_text(folder_.path() / "cam_params.json", nested(100'000));
+  write_text(folder_.path() / "cam_params.json", nested(100'000));
   EXPECT_NE(error().find("nested more than 32 levels deep"), std::string::npos);
-  fixture::write_text(folder_.path() / "cam_params.json", nested(500'000));
+  write_text(folder_.path() / "cam_params.json", nested(500'000));
   EXPECT_NE(error().find("cam_params.json is larger than"), std::string::npos);
   std::filesystem::rename(folder_.path() / "other", folder_.path() / "cam_params.json");
   std::filesystem::remove(scene_ / "traj.txt");
@@ -89,7 +89,7 @@ TEST_F(Replica, BrokenDescriptionsAreNamed) {
 }
 
 TEST_F(Replica, ShortOrBrokenTrajectoryIsAFaultOfItsFrames) {
-  fixture::write_text(scene_ / "traj.txt",
+  write_text(scene_ / "traj.txt",
                       fixture::matrix_text(sequence_.pose(0), ' ') + "1 0 0\n");
   const auto source = open_frame_source(scene_);
   EXPECT_TRUE(source->read(0).frame.has_value());

@@ -83,7 +83,7 @@ TEST_F(Sens, IsReadFromManyThreads) {
 
 TEST_F(Sens, CalibrationBesideTheFileOverrides) {
   write();
-  fixture::write_text(folder_.path() / "calibration.yaml", "depth_camera: {cx: 41}");
+  write_text(folder_.path() / "calibration.yaml", "depth_camera: {cx: 41}");
   EXPECT_FLOAT_EQ(open_frame_source(file())->read(0).frame->depth_camera.cx, 41);
 }
 

@@ -58,7 +58,7 @@ TEST_F(ScanNet, ExtrinsicsMeetInOneFrame) {
   // The same relation between the cameras, written from a frame that is neither camera's.
   const Pose common_from_color = fixture::room_pose(7);
   const auto write = [&](const char* name, const Pose& pose) {
-    fixture::write_text(path() / "intrinsic" / name, fixture::matrix_text(pose.matrix()));
+    write_text(path() / "intrinsic" / name, fixture::matrix_text(pose.matrix()));
   };
   write("extrinsic_color.txt", common_from_color);
   write("extrinsic_depth.txt", common_from_color * sequence_.color_from_depth);
@@ -85,7 +85,7 @@ TEST_F(ScanNet, TwoDimensionalAnnotationIsTheTruth) {
 TEST_F(ScanNet, LostAndIncompleteFramesAreFaults) {
   std::string lost;
   for (int i = 0; i < 16; ++i) lost += "-inf ";
-  fixture::write_text(path() / "pose" / "4.txt", lost);
+  write_text(path() / "pose" / "4.txt", lost);
   fs::remove(path() / "depth" / "5.png");
   fs::remove(path() / "pose" / "6.txt");
   const auto source = open_frame_source(path());
@@ -97,7 +97,7 @@ TEST_F(ScanNet, LostAndIncompleteFramesAreFaults) {
 }
 
 TEST_F(ScanNet, CalibrationOverrides) {
-  fixture::write_text(path() / "calibration.yaml",
+  write_text(path() / "calibration.yaml",
                       "depth_camera: {fx: 71, depth_scale: 500}\ncolor_camera: {fy: 150}");
   const FrameRead read = open_frame_source(path())->read(1);
   ASSERT_TRUE(read.frame) << read.fault;
@@ -108,11 +108,11 @@ TEST_F(ScanNet, CalibrationOverrides) {
 
 TEST_F(ScanNet, BrokenDescriptionsAreNamed) {
   const fs::path cameras = path() / "intrinsic";
-  fixture::write_text(cameras / "extrinsic_depth.txt", "1 2 3");
+  write_text(cameras / "extrinsic_depth.txt", "1 2 3");
   EXPECT_NE(error().find("extrinsic_depth.txt does not hold a 4x4 matrix"), std::string::npos);
-  fixture::write_text(cameras / "extrinsic_depth.txt", "2 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1");
+  write_text(cameras / "extrinsic_depth.txt", "2 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1");
   EXPECT_NE(error().find("extrinsic_depth.txt holds no rigid transform"), std::string::npos);
-  fixture::write_text(cameras / "intrinsic_color.txt", "0 0 0 0 0 0 0 0 0 0 1 0 0 0 0 1");
+  write_text(cameras / "intrinsic_color.txt", "0 0 0 0 0 0 0 0 0 0 1 0 0 0 0 1");
   EXPECT_NE(error().find("intrinsic_color.txt: focal lengths are 0 and 0"), std::string::npos);
   fs::remove(cameras / "intrinsic_depth.txt");
   EXPECT_NE(error().find("intrinsic_depth.txt is missing"), std::string::npos);

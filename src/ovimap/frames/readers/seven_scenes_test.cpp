@@ -43,7 +43,7 @@ TEST(SevenScenes, FramesAreOrderedByNumberAndGapsAreKept) {
     for (const char* ending : {".color.png", ".depth.png", ".pose.txt"})
       std::filesystem::copy(folder.path() / (std::string("frame-000000") + ending),
                             folder.path() / (std::string(stem) + ending));
-  fixture::write_text(folder.path() / "frame-000030.notes.txt", "not a frame");
+  write_text(folder.path() / "frame-000030.notes.txt", "not a frame");
   const auto source = open_frame_source(folder.path());
   ASSERT_EQ(source->size(), 3);
   EXPECT_EQ(source->read(1).frame->name, "frame-000020.color");

@@ -50,7 +50,7 @@ TEST_F(Tum, DefaultsAreThePublishedCamera) {
 
 TEST_F(Tum, EachImageIsUsedOnceAndTheNearestWins) {
   // Two depth images near the second colour image (1305031102.133): 10 ms and 3 ms away.
-  fixture::write_text(folder_.path() / "depth.txt",
+  write_text(folder_.path() / "depth.txt",
                       "1305031102.143 depth/far.png\n1305031102.136 depth/near.png\n");
   write_file(folder_.path() / "depth" / "near.png", encode_png(Image<std::uint16_t>(80, 60, 5000)));
   const auto source = open_frame_source(folder_.path());
@@ -62,7 +62,7 @@ TEST_F(Tum, EachImageIsUsedOnceAndTheNearestWins) {
 
 TEST_F(Tum, FrameWithoutAPoseInReachIsAFault) {
   const Eigen::Matrix4d pose = sequence_.pose(0);
-  fixture::write_text(folder_.path() / "groundtruth.txt",
+  write_text(folder_.path() / "groundtruth.txt",
                       "1305031102.112 " + fixture::tum_text(pose));
   const auto source = open_frame_source(folder_.path());
   ASSERT_EQ(source->size(), 4);
@@ -74,9 +74,9 @@ TEST_F(Tum, FrameWithoutAPoseInReachIsAFault) {
 }
 
 TEST_F(Tum, BrokenListsAreNamed) {
-  fixture::write_text(folder_.path() / "rgb.txt", "1305031102.1 rgb/a.png\nnonsense\n");
+  write_text(folder_.path() / "rgb.txt", "1305031102.1 rgb/a.png\nnonsense\n");
   EXPECT_NE(error().find("rgb.txt line 2 is 'nonsense'"), std::string::npos);
-  fixture::write_text(folder_.path() / "rgb.txt", "5.0 rgb/a.png\n");
+  write_text(folder_.path() / "rgb.txt", "5.0 rgb/a.png\n");
   EXPECT_NE(error().find("within 0.02 s"), std::string::npos);
   std::filesystem::remove(folder_.path() / "groundtruth.txt");
   EXPECT_NE(error().find("groundtruth.txt"), std::string::npos);

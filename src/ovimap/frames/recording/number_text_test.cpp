@@ -28,7 +28,7 @@ TEST(NumberText, ReadsNumbersHoweverSeparated) {
 
 TEST(NumberText, LinesKeepTheirNumberInTheFile) {
   const fixture::TemporaryFolder folder;
-  fixture::write_text(folder.path() / "a.txt", "# head\n\n 1 2 \r\n#x\n3");
+  write_text(folder.path() / "a.txt", "# head\n\n 1 2 \r\n#x\n3");
   const auto lines = read_lines(folder.path() / "a.txt");
   ASSERT_EQ(lines.size(), 2u);
   EXPECT_EQ(lines[0].number, 3);

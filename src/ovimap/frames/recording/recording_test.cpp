@@ -54,7 +54,7 @@ TEST_F(RecordingTest, MissingFilesAreNamed) {
   std::filesystem::remove(file("depth.png"));
   EXPECT_EQ(fault(), "frame-000001.depth.png: is missing");
   std::filesystem::remove(file("pose.txt"));
-  fixture::write_text(file("depth.png"), "");
+  write_text(file("depth.png"), "");
   EXPECT_EQ(fault(), "frame-000001.pose.txt: is missing");
 }
 
@@ -63,7 +63,7 @@ TEST_F(RecordingTest, BrokenImagesAreNamed) {
   EXPECT_EQ(fault(), "frame-000001.color.png: is a truncated PNG");
   truncate("depth.png");
   EXPECT_EQ(fault(), "frame-000001.depth.png: is a truncated PNG");
-  fixture::write_text(file("depth.png"), "");
+  write_text(file("depth.png"), "");
   EXPECT_EQ(fault(), "frame-000001.depth.png: is empty");
   std::filesystem::remove(file("depth.png"));
   std::filesystem::create_directory(file("depth.png"));
@@ -92,15 +92,15 @@ TEST_F(RecordingTest, DepthWithoutAnyValidPixelIsNamed) {
 TEST_F(RecordingTest, BadPosesAreNamed) {
   Eigen::Matrix4d pose = sequence_.pose(1);
   pose(0, 3) = -std::numeric_limits<double>::infinity();
-  fixture::write_text(file("pose.txt"), fixture::matrix_text(pose));
+  write_text(file("pose.txt"), fixture::matrix_text(pose));
   EXPECT_EQ(fault(), "frame-000001.pose.txt: has a bad pose (not finite)");
   pose = sequence_.pose(1);
   pose.topLeftCorner<3, 3>() *= 1.1;
-  fixture::write_text(file("pose.txt"), fixture::matrix_text(pose));
+  write_text(file("pose.txt"), fixture::matrix_text(pose));
   EXPECT_EQ(fault(), "frame-000001.pose.txt: has a bad pose (rotation not orthonormal)");
-  fixture::write_text(file("pose.txt"), "1 0 0 0 0 1 0 0 0 0 1 0");
+  write_text(file("pose.txt"), "1 0 0 0 0 1 0 0 0 0 1 0");
   EXPECT_EQ(fault(), "frame-000001.pose.txt: does not hold a 4x4 matrix");
-  fixture::write_text(file("pose.txt"), "lost");
+  write_text(file("pose.txt"), "lost");
   EXPECT_EQ(fault(), "frame-000001.pose.txt: does not hold a 4x4 matrix");
 }
 
@@ -167,9 +167,9 @@ TEST(OpenFrameSource, WhatCannotBeOpenedIsNamed) {
   };
   EXPECT_NE(message(folder.path() / "none").find("does not exist"), std::string::npos);
   EXPECT_NE(message(folder.path()).find("is empty"), std::string::npos);
-  fixture::write_text(folder.path() / "readme.txt", "no recording");
+  write_text(folder.path() / "readme.txt", "no recording");
   EXPECT_NE(message(folder.path()).find("frame-NNNNNN.color.jpg"), std::string::npos);
-  fixture::write_text(folder.path() / "a.txt", "x");
+  write_text(folder.path() / "a.txt", "x");
   EXPECT_NE(message(folder.path() / "a.txt").find("is a file"), std::string::npos);
   EXPECT_THROW(open_frame_source(folder.path(), {2.f, 1.f}), Error);
 }

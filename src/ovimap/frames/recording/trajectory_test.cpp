@@ -11,7 +11,7 @@ namespace {
 
 Trajectory read(const std::string& text) {
   const fixture::TemporaryFolder folder;
-  fixture::write_text(folder.path() / "poses.txt", text);
+  write_text(folder.path() / "poses.txt", text);
   return read_trajectory(folder.path() / "poses.txt");
 }
 

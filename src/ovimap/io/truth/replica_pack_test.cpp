@@ -154,7 +154,7 @@ TEST_F(ReplicaPackTest, MixingRecordingsIsRefused) {
   other.settings = "seed: 2\n";
   EXPECT_NE(error(other).find("settings.yaml: describes other settings"), std::string::npos);
   other.scene = "attic";
-  fixture::write_text(folder_.path() / "cam_params.json", "{}");
+  write_text(folder_.path() / "cam_params.json", "{}");
   EXPECT_NE(error(other).find("cam_params.json: describes another camera"), std::string::npos);
   EXPECT_NE(error(pack(skewed)).find("frame 1 of ramp: colour and depth have different cameras"),
             std::string::npos);

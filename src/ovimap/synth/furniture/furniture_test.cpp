@@ -61,7 +61,7 @@ TEST_F(Furniture, MissingPackageAndWrongNamesAreSaid) {
             std::string::npos);
   EXPECT_NE(error_of([&] { room_class_id("sofaa"); }).find("did you mean 'sofa'"),
             std::string::npos);
-  fixture::write_text(folder_.path() / "Broken.sh3f", "no zip");
+  write_text(folder_.path() / "Broken.sh3f", "no zip");
   EXPECT_NE(error_of([&] { FurnitureCatalog(folder_.path()); }).find("Broken.sh3f"),
             std::string::npos);
 }
