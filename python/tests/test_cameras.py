@@ -25,6 +25,7 @@ from ovimap.cameras.realsense import open_realsense  # noqa: E402
 from realsense_fixture import BROWN, Sockets, SoftwareCamera, film, lens, picture, turned  # noqa: E402
 
 FRAMES = 12
+TRACKED = (96, 72)  # smaller images are not tracked
 # Written by SoftwareCamera().record(..., film(3)) with pyrealsense2 2.56.5; later ones write .db3.
 OLD_BAG = pathlib.Path(__file__).parents[2] / "tests/recordings/realsense_2.56.bag"
 
@@ -33,7 +34,7 @@ OLD_BAG = pathlib.Path(__file__).parents[2] / "tests/recordings/realsense_2.56.b
 def recording(tmp_path_factory):
     """As this version of the library records."""
     file = tmp_path_factory.mktemp("recorded") / "drawn.db3"
-    SoftwareCamera().record(file, film(FRAMES))
+    SoftwareCamera(size=TRACKED).record(file, film(FRAMES, size=TRACKED))
     return file
 
 
@@ -62,7 +63,7 @@ def test_a_recording_gives_every_image_as_it_was_with_its_time(recording):
     told = []
     sent, relay = read(open_realsense(Wanted(file=recording)), told)
     assert len(sent) == FRAMES and relay.pairing.left_out == 0 and not told
-    for (color, depth, pose, time_s), (drawn_color, drawn_depth, time_ms) in zip(sent, film(FRAMES)):
+    for (color, depth, pose, time_s), (drawn_color, drawn_depth, time_ms) in zip(sent, film(FRAMES, size=TRACKED)):
         assert np.array_equal(color, drawn_color) and np.array_equal(depth, drawn_depth) and pose is None
         assert time_s == pytest.approx(time_ms / 1000, abs=1e-6)
 
@@ -80,7 +81,7 @@ def test_a_recording_tells_cameras_units_and_how_they_stand(recording):
     camera = open_realsense(Wanted(file=recording))
     assert camera.name == "Drawn camera 000111"
     depth, color = camera.rig["depth_camera"], camera.rig["color_camera"]
-    assert depth == {"width": 64, "height": 48, "fx": 60, "fy": 61, "cx": 31.5, "cy": 23.5, "depth_scale": 4000}
+    assert depth == {"width": 96, "height": 72, "fx": 60, "fy": 61, "cx": 47.5, "cy": 35.5, "depth_scale": 4000}
     assert (color["fx"], color["fy"]) == (55, 56) and color["distortion"]["coefficients"] == pytest.approx(BROWN)
     offset, point = camera.rig["color_from_depth"], [0.3, -0.2, 1.5]
     turn = np.linalg.norm(offset["rotation_vector"])
@@ -94,8 +95,8 @@ def test_a_recording_tells_cameras_units_and_how_they_stand(recording):
 def test_a_recording_arrives_at_a_server_that_tracks_it_in_place_and_in_colour(tmp_path, capsys):
     """A camera that stands still: the map's surface is what it shows, in metres, and its colours come from the pixels that the other camera's
     place and lens give. The colour image says of each pixel where it is."""
-    still = [(*picture(0), 1000.0 + 33 * i) for i in range(FRAMES)]
-    SoftwareCamera().record(tmp_path / "still.db3", still)
+    still = [(*picture(0, TRACKED), 1000.0 + 33 * i) for i in range(FRAMES)]
+    SoftwareCamera(size=TRACKED).record(tmp_path / "still.db3", still)
     options = ("--poses", "track", "--masks", "none", "--encoder", "none", "--set", "map.voxel_size_m=0.02")
     with Serving(tmp_path / "a.ovimap", *options) as server:
         assert main(["realsense", "--file", str(tmp_path / "still.db3"), "--url", server.address, "--json"]) == 0
@@ -104,15 +105,15 @@ def test_a_recording_arrives_at_a_server_that_tracks_it_in_place_and_in_colour(t
         assert server.saved()["frames"] == FRAMES
     mesh = ovimap.Map.open(tmp_path / "a.ovimap").mesh()
     points, colors = np.array(mesh.vertices, np.float64), np.array(mesh.colors, np.float64)
-    u, v = (points[:, :2] / points[:, 2:] * [60, 61] + [31.5, 23.5]).T
+    u, v = (points[:, :2] / points[:, 2:] * [60, 61] + [47.5, 35.5]).T
     drawn = (6000 + 20 * v + (u > 20) * 1500) * 0.00025
     assert len(points) > 300 and np.median(np.abs(points[:, 2] - drawn)) < 0.01
     there = np.array([rs.rs2_transform_point_to_point(turned(), point) for point in points.tolist()])
-    color_lens = lens(55.0, rs.distortion.brown_conrady, BROWN)
+    color_lens = lens(55.0, rs.distortion.brown_conrady, BROWN, TRACKED)
     pixels = np.array([rs.rs2_project_point_to_pixel(color_lens, point) for point in there.tolist()])
-    inside = np.all((pixels > 4) & (pixels < [59, 43]), axis=1) & (np.abs(u - 20.5) > 3)
+    inside = np.all((pixels > 4) & (pixels < [91, 67]), axis=1) & (np.abs(u - 20.5) > 3)
     assert inside.sum() > 200
-    assert np.median(np.abs(colors[inside, :2] / [4, 5] - pixels[inside])) < 1
+    assert np.median(np.abs(colors[inside, :2] / [2, 3] - pixels[inside])) < 1
 
 
 @needs_program
@@ -131,7 +132,7 @@ def test_a_recording_becomes_a_folder_that_the_program_reads(recording, tmp_path
     for kind, column in (("rgb", 0), ("depth", 1)):
         lines = [line.split() for line in (folder / f"{kind}.txt").read_text().splitlines()]
         assert len(lines) == FRAMES
-        for (time_s, name), drawn in zip(lines, film(FRAMES)):
+        for (time_s, name), drawn in zip(lines, film(FRAMES, size=TRACKED)):
             assert float(time_s) == pytest.approx(drawn[2] / 1000, abs=1e-6)
             assert np.array_equal(np.asarray(PIL.Image.open(folder / name)), drawn[column])
     given = yaml.safe_load((folder / "camera.yaml").read_text())
