@@ -12,7 +12,7 @@ namespace ovimap {
 namespace {
 
 constexpr std::int64_t kLongestGap = 6;  // frames; longer ones predict nothing more
-constexpr int kLeastWidth_px = 2 * kCoarsestWidth_px;  // of smaller images motion is not seen
+constexpr int kLeastWidth_px = 2 * kCoarsestWidth_px;  // smaller images lack levels
 
 double share_with_depth(const TrackLevel& level) {
   const auto valid = std::count_if(level.inverse_depth.begin(), level.inverse_depth.end(),
