@@ -102,13 +102,13 @@ class Sockets:
         return device not in self.devices
 
 
-def picture(i):
+def picture(i, size=SIZE):
     """(colour, depth) that differ from frame to frame and from pixel to pixel, with edges to track."""
-    v, u = np.mgrid[: SIZE[1], : SIZE[0]]
-    color = np.stack([(u * 4 + i) % 256, (v * 5) % 256, np.full_like(u, 40 + i)], 2).astype(np.uint8)
+    v, u = np.mgrid[: size[1], : size[0]]
+    color = np.stack([u * 2 + i, v * 3, np.full_like(u, 40 + i)], 2).astype(np.uint8)
     depth = (6000 + 10 * i + 20 * v + (u > 20 + i) * 1500).astype(np.uint16)
     return color, depth
 
 
-def film(count, start_ms=1000.0, step_ms=1000 / 30):
-    return [(*picture(i), start_ms + step_ms * i) for i in range(count)]
+def film(count, start_ms=1000.0, step_ms=1000 / 30, size=SIZE):
+    return [(*picture(i, size), start_ms + step_ms * i) for i in range(count)]

@@ -49,7 +49,7 @@ def hash_of(recording, folder):
 def test_a_bag_maps_to_what_its_frames_map_to(kind, shots, camera, expected, tmp_path):
     bag = record(tmp_path / ("a.bag" if kind == "ros1" else "a"), shots, camera, Options(kind=kind))
     done = convert(bag, tmp_path / "out")
-    assert (done["frames"], done["left_out"], done["world"], done["notices"]) == (len(shots), 0, "map", [])
+    assert (done["frames"], done["left_out"], done["world"]) == (len(shots), 0, "map")
     assert hash_of(done["source"], tmp_path) == expected
 
 

@@ -14,10 +14,8 @@ import PIL.Image
 import pytest
 import yaml
 from ovimap.camera_command import Session, main
-from ovimap.cameras import Feed, Image, Relay, Wanted
-from ovimap.cameras.pairing import KEEP, LONELY, Pairing
-from ovimap.cameras.relay import Flicker
-from ovimap.sender import SendError
+from ovimap.cameras import Relay, Wanted
+from test_camera_relay import Sent
 from test_sender import PROGRAM, Serving, needs_program
 
 rs = pytest.importorskip("pyrealsense2", reason="pyrealsense2 is not installed; run tools/setup.sh --tests")
@@ -25,6 +23,7 @@ from ovimap.cameras.realsense import open_realsense  # noqa: E402
 from realsense_fixture import BROWN, Sockets, SoftwareCamera, film, lens, picture, turned  # noqa: E402
 
 FRAMES = 12
+TRACKED = (96, 72)  # smaller images are not tracked
 # Written by SoftwareCamera().record(..., film(3)) with pyrealsense2 2.56.5; later ones write .db3.
 OLD_BAG = pathlib.Path(__file__).parents[2] / "tests/recordings/realsense_2.56.bag"
 
@@ -33,22 +32,8 @@ OLD_BAG = pathlib.Path(__file__).parents[2] / "tests/recordings/realsense_2.56.b
 def recording(tmp_path_factory):
     """As this version of the library records."""
     file = tmp_path_factory.mktemp("recorded") / "drawn.db3"
-    SoftwareCamera().record(file, film(FRAMES))
+    SoftwareCamera(size=TRACKED).record(file, film(FRAMES, size=TRACKED))
     return file
-
-
-class Sent(list):
-    """In the place of a FrameSender."""
-
-    taken = skipped = 0
-
-    def send(self, *frame, patience_s):
-        self.append(frame)
-        self.taken += 1
-        return True
-
-    def finish(self):
-        pass
 
 
 def read(camera, told=None):
@@ -62,7 +47,7 @@ def test_a_recording_gives_every_image_as_it_was_with_its_time(recording):
     told = []
     sent, relay = read(open_realsense(Wanted(file=recording)), told)
     assert len(sent) == FRAMES and relay.pairing.left_out == 0 and not told
-    for (color, depth, pose, time_s), (drawn_color, drawn_depth, time_ms) in zip(sent, film(FRAMES)):
+    for (color, depth, pose, time_s), (drawn_color, drawn_depth, time_ms) in zip(sent, film(FRAMES, size=TRACKED)):
         assert np.array_equal(color, drawn_color) and np.array_equal(depth, drawn_depth) and pose is None
         assert time_s == pytest.approx(time_ms / 1000, abs=1e-6)
 
@@ -80,7 +65,7 @@ def test_a_recording_tells_cameras_units_and_how_they_stand(recording):
     camera = open_realsense(Wanted(file=recording))
     assert camera.name == "Drawn camera 000111"
     depth, color = camera.rig["depth_camera"], camera.rig["color_camera"]
-    assert depth == {"width": 64, "height": 48, "fx": 60, "fy": 61, "cx": 31.5, "cy": 23.5, "depth_scale": 4000}
+    assert depth == {"width": 96, "height": 72, "fx": 60, "fy": 61, "cx": 47.5, "cy": 35.5, "depth_scale": 4000}
     assert (color["fx"], color["fy"]) == (55, 56) and color["distortion"]["coefficients"] == pytest.approx(BROWN)
     offset, point = camera.rig["color_from_depth"], [0.3, -0.2, 1.5]
     turn = np.linalg.norm(offset["rotation_vector"])
@@ -94,8 +79,8 @@ def test_a_recording_tells_cameras_units_and_how_they_stand(recording):
 def test_a_recording_arrives_at_a_server_that_tracks_it_in_place_and_in_colour(tmp_path, capsys):
     """A camera that stands still: the map's surface is what it shows, in metres, and its colours come from the pixels that the other camera's
     place and lens give. The colour image says of each pixel where it is."""
-    still = [(*picture(0), 1000.0 + 33 * i) for i in range(FRAMES)]
-    SoftwareCamera().record(tmp_path / "still.db3", still)
+    still = [(*picture(0, TRACKED), 1000.0 + 33 * i) for i in range(FRAMES)]
+    SoftwareCamera(size=TRACKED).record(tmp_path / "still.db3", still)
     options = ("--poses", "track", "--masks", "none", "--encoder", "none", "--set", "map.voxel_size_m=0.02")
     with Serving(tmp_path / "a.ovimap", *options) as server:
         assert main(["realsense", "--file", str(tmp_path / "still.db3"), "--url", server.address, "--json"]) == 0
@@ -104,15 +89,15 @@ def test_a_recording_arrives_at_a_server_that_tracks_it_in_place_and_in_colour(t
         assert server.saved()["frames"] == FRAMES
     mesh = ovimap.Map.open(tmp_path / "a.ovimap").mesh()
     points, colors = np.array(mesh.vertices, np.float64), np.array(mesh.colors, np.float64)
-    u, v = (points[:, :2] / points[:, 2:] * [60, 61] + [31.5, 23.5]).T
+    u, v = (points[:, :2] / points[:, 2:] * [60, 61] + [47.5, 35.5]).T
     drawn = (6000 + 20 * v + (u > 20) * 1500) * 0.00025
     assert len(points) > 300 and np.median(np.abs(points[:, 2] - drawn)) < 0.01
     there = np.array([rs.rs2_transform_point_to_point(turned(), point) for point in points.tolist()])
-    color_lens = lens(55.0, rs.distortion.brown_conrady, BROWN)
+    color_lens = lens(55.0, rs.distortion.brown_conrady, BROWN, TRACKED)
     pixels = np.array([rs.rs2_project_point_to_pixel(color_lens, point) for point in there.tolist()])
-    inside = np.all((pixels > 4) & (pixels < [59, 43]), axis=1) & (np.abs(u - 20.5) > 3)
+    inside = np.all((pixels > 4) & (pixels < [91, 67]), axis=1) & (np.abs(u - 20.5) > 3)
     assert inside.sum() > 200
-    assert np.median(np.abs(colors[inside, :2] / [4, 5] - pixels[inside])) < 1
+    assert np.median(np.abs(colors[inside, :2] / [2, 3] - pixels[inside])) < 1
 
 
 @needs_program
@@ -131,7 +116,7 @@ def test_a_recording_becomes_a_folder_that_the_program_reads(recording, tmp_path
     for kind, column in (("rgb", 0), ("depth", 1)):
         lines = [line.split() for line in (folder / f"{kind}.txt").read_text().splitlines()]
         assert len(lines) == FRAMES
-        for (time_s, name), drawn in zip(lines, film(FRAMES)):
+        for (time_s, name), drawn in zip(lines, film(FRAMES, size=TRACKED)):
             assert float(time_s) == pytest.approx(drawn[2] / 1000, abs=1e-6)
             assert np.array_equal(np.asarray(PIL.Image.open(folder / name)), drawn[column])
     given = yaml.safe_load((folder / "camera.yaml").read_text())
@@ -268,102 +253,6 @@ def test_another_camera_in_its_place_is_refused():
     session = Session(camera, lambda: other, Relay(Sent(), print, waits=False), print, wait_s=5, quiet_s=0.2)
     with pytest.raises(ovimap.Error, match="has another calibration than the camera that was lost"):
         session.run()
-
-
-def images(kind, times):
-    return [Image(kind, time_s, np.array([[int(time_s * 1000)]])) for time_s in times]
-
-
-def paired(entries):
-    told, pairs = [], []
-    pairing = Pairing(told.append)
-    for entry in entries:
-        pairs += pairing.add(entry)
-    return pairs + pairing.rest(), pairing.left_out, told
-
-
-def interleaved(color, depth):
-    return sorted(images("color", color) + images("depth", depth), key=lambda image: image.time_s)
-
-
-def test_depth_takes_the_nearest_colour_and_what_has_none_is_counted():
-    pairs, left_out, told = paired(interleaved(color=[0.0, 0.030, 0.068, 0.200], depth=[0.010, 0.033, 0.050, 0.100, 0.133, 0.190]))
-    assert [(pair.time_s, int(pair.color[0, 0])) for pair in pairs] == [(0.010, 0), (0.033, 30), (0.050, 68), (0.190, 200)]
-    assert left_out == 2 and not told
-
-
-def test_a_clock_that_jumps_loses_nothing_and_is_told_once():
-    times = [0.1 * i for i in range(5)]
-    for start in (1000.0, -50.0):
-        later = [start + t for t in times]
-        entries = interleaved(times, times) + interleaved(later, later)
-        pairs, left_out, told = paired(entries)
-        assert len(pairs) == 10 and left_out == 0
-        sent = [pair.time_s for pair in pairs]
-        assert sent == sorted(sent) and sent[5] == pytest.approx(0.4 + 1 / 30) and sent[9] - sent[5] == pytest.approx(0.4)
-        assert len(told) == 1 and told[0].startswith(f"the camera's clock jumped by {start - 0.4:+.3f} s")
-        assert [pair.color[0, 0] for pair in pairs] == [pair.depth[0, 0] for pair in pairs]
-
-
-def test_colour_and_depth_of_two_clocks_are_told():
-    depth = [i / 30 for i in range(2 * LONELY)]
-    pairs, left_out, told = paired([image for t in depth for image in (*images("depth", [t]), *images("color", [t + 3]))])
-    assert not pairs and left_out == len(depth)
-    assert len(told) == 1 and "have no colour image within 0.02 s" in told[0] and "by one clock" in told[0]
-    assert paired(images("depth", depth[: KEEP + 5]))[1] == KEEP + 5
-
-
-def test_a_recording_waits_and_a_camera_drops_the_oldest():
-    live = Feed(waits=False)
-    for image in images("depth", range(20)):
-        live.put(image)
-    live.end()
-    assert [image.time_s for image in live.images(1)] == list(range(12, 20)) and live.dropped == 12
-    recorded, given = Feed(waits=True), images("depth", range(20))
-    putting = threading.Thread(target=lambda: [recorded.put(image) for image in given] and recorded.end())
-    putting.start()
-    assert [image.time_s for image in recorded.images(30)] == list(range(20)) and recorded.dropped == 0
-    putting.join(timeout=30)
-
-
-def test_flicker_is_told_once_and_a_passing_light_is_not():
-    told = []
-    for amplitude, expected in ((0, 0), (12, 1)):
-        flicker = Flicker(told.append)
-        for i in range(90):
-            flicker.see(np.full((64, 64, 3), 100 + i // 3 + (amplitude if i % 3 == 0 else 0), np.uint8))
-        assert len(told) == expected
-    assert "power line frequency" in told[0]
-
-
-class Refusing(Sent):
-    def __init__(self, status, good=()):
-        self.status, self.good = status, good
-
-    def send(self, *frame, patience_s):
-        if len(self) in self.good:
-            return super().send(*frame, patience_s=patience_s)
-        self.append(frame)
-        raise SendError(self.status, "a reason")
-
-
-def relayed(sink, count):
-    told = []
-    relay = Relay(sink, told.append, waits=True)
-    times = [i / 30 for i in range(count)]
-    color = np.zeros((2, 2, 3), np.uint8)
-    relay.take(Image(kind, t, color if kind == "color" else color[..., 0].astype(np.uint16)) for t in times for kind in ("color", "depth"))
-    return relay, told
-
-
-def test_refused_frames_cost_themselves_alone_until_it_is_hopeless():
-    relay, told = relayed(Refusing(400, good=(0, 7)), 40)
-    assert relay.sink.taken == 2 and relay.refused == 38
-    assert [line.split(")")[0] for line in told] == [f"a frame was refused ({n} so far" for n in (1, 2, 4, 8, 16, 32)]
-    with pytest.raises(ovimap.Error, match="none of 30 frames was taken: a reason"):
-        relayed(Refusing(400), 40)
-    with pytest.raises(ovimap.Error, match="a reason"):
-        relayed(Refusing(409, good=(0,)), 40)
 
 
 def test_no_server_and_no_library_are_told(recording, capsys, monkeypatch):

@@ -6,6 +6,7 @@ What makes a rig and images of the library's messages is tested on such messages
 
 from __future__ import annotations
 
+import contextlib
 import queue
 from collections.abc import Callable
 from typing import Any
@@ -56,7 +57,8 @@ class Oak:
         self._take = lambda kind, message: feed.put(image_of(kind, message))
 
     def close(self) -> None:
-        self._pipeline.stop()
+        with contextlib.suppress(RuntimeError):  # of a camera that was unplugged
+            self._pipeline.stop()
 
 
 def _outputs(dai: Any, pipeline: Any, wanted: Wanted) -> dict[str, Any]:

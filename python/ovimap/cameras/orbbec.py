@@ -6,6 +6,7 @@ What makes a rig and images of the library's frames is tested on such frames; th
 
 from __future__ import annotations
 
+import contextlib
 import queue
 from collections.abc import Callable
 from typing import Any
@@ -59,7 +60,8 @@ class Orbbec:
         self._take = take
 
     def close(self) -> None:
-        self._pipeline.stop()
+        with contextlib.suppress(RuntimeError):  # of a camera that was unplugged
+            self._pipeline.stop()
 
 
 def _streams(ob: Any, pipeline: Any, wanted: Wanted) -> Any:

@@ -6,6 +6,7 @@ All three are devices with sensors there, and are read in one way: depth and col
 
 from __future__ import annotations
 
+import contextlib
 import pathlib
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -59,11 +60,9 @@ class RealSense:
 
     def close(self) -> None:
         for sensor in self._running:
-            try:
+            with contextlib.suppress(RuntimeError):  # of a camera that was unplugged
                 sensor.stop()
                 sensor.close()
-            except RuntimeError:  # of a camera that was unplugged
-                pass
         self._running.clear()
 
     def _start(self, feed: Feed) -> None:

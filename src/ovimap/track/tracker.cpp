@@ -12,6 +12,7 @@ namespace ovimap {
 namespace {
 
 constexpr std::int64_t kLongestGap = 6;  // frames; longer ones predict nothing more
+constexpr int kLeastWidth_px = 2 * kCoarsestWidth_px;  // smaller images lack levels
 
 double share_with_depth(const TrackLevel& level) {
   const auto valid = std::count_if(level.inverse_depth.begin(), level.inverse_depth.end(),
@@ -31,6 +32,9 @@ std::vector<Pose> seen_from(const Reference& reference, std::vector<Pose> world_
 }  // namespace
 
 const TrackedFrame& Tracker::track(const Frame& frame, const VoxelMap& map) {
+  if (frame.depth_camera.width < kLeastWidth_px)
+    throw Error(concat("depth images are ", frame.depth_camera.width, " pixels wide; a camera is "
+                       "tracked by images of ", kLeastWidth_px, " and more, others need poses"));
   pyramid_ = make_pyramid(frame);
   TrackedFrame result;
   result.index = frame.index, result.timestamp_s = frame.timestamp_s, result.name = frame.name;

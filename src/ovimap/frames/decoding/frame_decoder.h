@@ -38,8 +38,8 @@ class DepthUnits {
 /// convention gives them, rectified. Thread-safe.
 class FrameDecoder {
  public:
-  /// Throws Error when a camera of the rig is not known whole or its distortion cannot be its own. One that is missing is taken to be
-  /// the other, where both have images of one size.
+  /// Throws Error when a camera of the rig is not known whole or its distortion cannot be its own.
+  /// One that is missing is taken to be the other, where both have images of one size.
   FrameDecoder(const CameraRig& rig, const FrameSourceConfig& config = {});
 
   /// `color`: JPEG or PNG; `depth`: 16-bit grey PNG; `pose`: as CameraRig::world_from_depth_camera

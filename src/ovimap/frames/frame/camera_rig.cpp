@@ -143,7 +143,7 @@ Lens read_lens(const Section& section) {
   const std::vector<double> numbers =
       fisheye ? section.read_numbers("coefficients", {4}, "a list of 4 numbers: k1, k2, k3, k4")
               : section.read_numbers("coefficients", {5, 8},
-                                     "a list of 5 or 8 numbers: k1, k2, p1, p2, k3, and k4, k5, k6");
+                                     "a list of 5 or 8 numbers: k1, k2, p1, p2, k3, and k4 to k6");
   std::copy(numbers.begin(), numbers.end(), lens.coefficients.begin());
   return lens;
 }

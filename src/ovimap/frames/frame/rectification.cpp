@@ -47,7 +47,8 @@ Rectification::Rectification(const PinholeCamera& camera, const Lens& lens, cons
           lens.bend({(u - double{camera.cx}) / camera.fx,
                      (static_cast<double>(row) - camera.cy) / camera.fy});
       const double x = bent.x() * camera.fx + camera.cx, y = bent.y() * camera.fy + camera.cy;
-      Origin& origin = origins_[row * static_cast<std::size_t>(width_) + static_cast<std::size_t>(u)];
+      Origin& origin =
+          origins_[row * static_cast<std::size_t>(width_) + static_cast<std::size_t>(u)];
       // Written so that what is not a number is not shown.
       origin.shown = x >= -0.5 && y >= -0.5 && x <= width_ - 0.5 && y <= height_ - 0.5;
       if (!std::isfinite(x) || !std::isfinite(y)) continue;
@@ -79,7 +80,8 @@ RgbImage Rectification::color(const RgbImage& bent) const {
     return mix(mix(channel(at[0]), channel(at[1]), o.right),
                mix(channel(below[0]), channel(below[1]), o.right), o.down, kHalf);
   };
-  parallel_for(origins_.size(), kRowsPerTask * static_cast<std::size_t>(width_), [&](std::size_t i) {
+  const std::size_t grain = kRowsPerTask * static_cast<std::size_t>(width_);
+  parallel_for(origins_.size(), grain, [&](std::size_t i) {
     const Origin& origin = origins_[i];
     const Rgb8* at = bent.data() + origin.index;
     const Rgb8* below = at + width_;
@@ -94,7 +96,8 @@ template <class Pixel>
 Image<Pixel> Rectification::nearest(const Image<Pixel>& bent) const {
   OVIMAP_ASSERT(bent.width() == width_ && bent.height() == height_);
   Image<Pixel> straight(width_, height_);
-  parallel_for(origins_.size(), kRowsPerTask * static_cast<std::size_t>(width_), [&](std::size_t i) {
+  const std::size_t grain = kRowsPerTask * static_cast<std::size_t>(width_);
+  parallel_for(origins_.size(), grain, [&](std::size_t i) {
     const Origin& origin = origins_[i];
     if (!origin.shown) return;
     straight[i] = bent[static_cast<std::size_t>(origin.index + (origin.right >= 128 ? 1 : 0) +

@@ -15,9 +15,9 @@ namespace ovimap {
 /// each pixel comes from.
 class Rectification {
  public:
-  /// `name` is what messages call the camera. Throws Error when less than a quarter of the pinhole's
-  /// picture comes from that of the lens (such coefficients are not this camera's), or images are
-  /// larger than 2^24 pixels.
+  /// `name` is what messages call the camera. Throws Error when less than a quarter of the
+  /// pinhole's picture comes from that of the lens (such coefficients are not this camera's), or
+  /// images are larger than 2^24 pixels.
   Rectification(const PinholeCamera& camera, const Lens& lens, const char* name);
 
   /// Bilinear; beyond what the lens shows, the nearest that it shows. Images are of the camera's
