@@ -224,23 +224,6 @@ void EntityConsensus::observe(const std::map<Label, std::uint16_t>& entity_of_ro
   ++frames_;
 }
 
-void EntityConsensus::merge(Label keep, Label drop) {
-  const auto dropped = sightings_.extract(drop);
-  if (dropped.empty()) return;
-  std::vector<EntitySighting>& kept = sightings_[keep];
-  std::vector<EntitySighting> both;
-  std::set_union(kept.begin(), kept.end(), dropped.mapped().begin(), dropped.mapped().end(),
-                 std::back_inserter(both), [](const EntitySighting& a, const EntitySighting& b) {
-                   return a.frame < b.frame;
-                 });
-  kept = std::move(both);
-  enter(keep);
-  link(keep, drop);
-  std::erase(parts_.at(part_of_.at(drop)), drop);
-  part_of_.erase(drop);
-  objects_.erase(drop);
-}
-
 /// The root is in a part, and its part has changed.
 void EntityConsensus::enter(Label root) {
   const auto [found, is_new] = part_of_.try_emplace(root, last_part_ + 1);

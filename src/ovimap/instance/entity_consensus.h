@@ -48,9 +48,6 @@ class EntityConsensus {
   /// Adds one frame: the entity of each root seen in one.
   void observe(const std::map<Label, std::uint16_t>& entity_of_root);
 
-  /// Two super-points became one. Where a frame saw both, what it says of `keep` counts.
-  void merge(Label keep, Label drop);
-
   /// The oldest (lowest) root of each root's object. What a frame says changes the objects of those
   /// super-points alone that chains of entities link to what it shows: only they are looked at anew.
   const std::map<Label, Label>& objects();

@@ -104,26 +104,11 @@ TEST(EntityConsensus, IsTheSameWhetherAskedAfterEveryFrameOrOnce) {
       for (Label root = 1; root <= 30; ++root)
         if (random() % 4 == 0) frame[root] = static_cast<std::uint16_t>(root / 4 + random() % 2 + 1);
       often.observe(frame);
-      if (i % 10 == 9) {
-        const Label keep = 1 + static_cast<Label>(random() % 30);
-        const Label drop = 1 + static_cast<Label>(random() % 30);
-        if (keep != drop) often.merge(keep, drop);
-      }
       EntityConsensus once;
       once.restore(often.sightings(), often.frames());
       ASSERT_EQ(often.objects(), once.objects()) << "round " << round << ", frame " << i;
     }
   }
-}
-
-TEST(EntityConsensus, MergedSuperPointsKeepTheirEvidence) {
-  EntityConsensus consensus =
-      after({{{1, 1}, {3, 1}}, {{2, 1}, {3, 2}}, {{2, 1}, {4, 1}}, {{1, 5}, {2, 6}}});
-  consensus.merge(1, 2);
-  EXPECT_EQ(consensus.sightings().at(1),
-            (std::vector<EntitySighting>{{0, 1}, {1, 1}, {2, 1}, {3, 5}}));
-  EXPECT_FALSE(consensus.sightings().contains(2));
-  EXPECT_EQ(consensus.objects().at(4), 1u);
 }
 
 TEST(EntityConsensus, GoesOnWhereItStopped) {

@@ -50,8 +50,6 @@ void list_fields(InstanceConfig& config, ConfigFields& fields) {
                                      "what an instance is when there are 2D masks");
   fields.add("min_vote_share", config.min_vote_share, 0.f, 100.f,
              "votes needed per frame without such a vote");
-  fields.add("segments_as_entities", config.segments_as_entities,
-             "frames without 2D masks take part in the consensus, each segment as an entity");
   list_fields(config.consensus, fields);
   list_fields(config.merging, fields);
 }
@@ -59,16 +57,15 @@ void list_fields(InstanceConfig& config, ConfigFields& fields) {
 void InstanceRegistry::observe(const Segments& segments,
                                std::span<const SegmentAssociation> associations,
                                std::int64_t frame_index, bool has_entities, LabelForest& forest) {
-  const bool by_votes = has_entities && config_.instances == InstanceReading::kEntityVotes;
-  const bool by_consensus = (has_entities || config_.segments_as_entities) &&
-                            config_.instances == InstanceReading::kConsensus;
-  if (by_votes) vote(segments, associations, forest);
-  if (by_consensus) see_entities(segments, associations, forest, has_entities);
-  if (by_consensus)
+  if (config_.instances == InstanceReading::kConsensus) {
+    see_entities(segments, associations, forest, has_entities);
     find_objects();
-  else
+  } else {
+    const bool by_votes = has_entities && config_.instances == InstanceReading::kEntityVotes;
+    if (by_votes) vote(segments, associations, forest);
     merge_super_points(associations, forest);
-  if (!by_votes && !by_consensus) see_super_points(associations, forest);
+    if (!by_votes) see_super_points(associations, forest);
+  }
   count_sightings(associations, frame_index, forest);
 }
 
@@ -163,13 +160,9 @@ void InstanceRegistry::find_objects() {
   for (const Label root : moved) regroup(root);
 }
 
-/// A consensus of entities needs no merges: that a segment spans two super-points is part of it, and
-/// may be taken back.
 void InstanceRegistry::merge_super_points(std::span<const SegmentAssociation> associations,
                                           LabelForest& forest) {
-  for (const auto& [keep, drop] : merging_.observe(associations, forest))
-    config_.instances == InstanceReading::kConsensus ? merge_consensus(keep, drop)
-                                                     : merge(keep, drop);
+  for (const auto& [keep, drop] : merging_.observe(associations, forest)) merge(keep, drop);
 }
 
 /// Every super-point an instance of its own: the frame had no 2D masks, or the paper's reading is
@@ -183,9 +176,7 @@ void InstanceRegistry::see_super_points(std::span<const SegmentAssociation> asso
     ++point.frames_seen;
     if (point.votes.empty()) point.votes[++last_id_] = 0;
     const InstanceId now = instance_of(root);
-    // By consensus it may leave the object that it is part of now: what it votes for is its own.
-    const bool own = now == 0 || config_.instances == InstanceReading::kConsensus;
-    ++point.votes[own ? point.votes.begin()->first : now];
+    ++point.votes[now == 0 ? point.votes.begin()->first : now];
   }
 }
 
@@ -197,15 +188,8 @@ void InstanceRegistry::merge(Label keep, Label drop) {
     unify(kept_instance, dropped_instance);
 }
 
-/// The survivor keeps the older of both ids; the other stays its alias for good.
-void InstanceRegistry::merge_consensus(Label keep, Label drop) {
-  consensus_.merge(keep, drop);
-  const SuperPoint& into = absorb(keep, drop);
-  while (into.votes.size() > 1) unify(into.votes.begin()->first, into.votes.rbegin()->first);
-}
-
 /// Adds the evidence of `drop` to that of `keep`.
-const SuperPoint& InstanceRegistry::absorb(Label keep, Label drop) {
+void InstanceRegistry::absorb(Label keep, Label drop) {
   SuperPoint& into = super_points_[keep];
   const SuperPoint& from = super_points_[drop];
   into.frames_seen += from.frames_seen;  // as the votes, so that their ratio keeps its meaning
@@ -219,7 +203,6 @@ const SuperPoint& InstanceRegistry::absorb(Label keep, Label drop) {
   leave(drop);
   super_points_.erase(drop);
   regroup(keep);
-  return into;
 }
 
 bool InstanceRegistry::owns_super_point(InstanceId id) const {

@@ -20,16 +20,14 @@ enum class InstanceReading {
   kSuperPoints,  ///< an instance is a super-point (the paper's text)
   kEntityVotes,  ///< super-points vote for instances keyed by 2D entities (released code, printed
                  ///< numbers)
-  kConsensus,    ///< super-points that 2D entities join more often than they keep them apart
+  kConsensus,    ///< super-points that 2D entities join more often than they keep them apart; in a
+                 ///< frame without masks every segment is one
 };
 
 struct InstanceConfig {
   InstanceReading instances = InstanceReading::kConsensus;
   float min_vote_share =
       0.1f;  ///< votes needed per frame in which the super-point was seen without voting so
-  bool segments_as_entities = false;  ///< frames without 2D masks take part in the consensus, each
-                                      ///< segment as an entity; false: super-points that their
-                                      ///< segments span are merged
   ConsensusConfig consensus;
   MergeConfig merging;
 };
@@ -60,17 +58,17 @@ InstanceRecord record_of(const std::map<Label, SuperPoint>& known,
 /// Which super-points are which object, over time (method sections 6 and 7). Ids, once given, stay:
 /// when two instances turn out to be one, the older id survives and the other becomes its alias.
 ///
-/// A union may be taken back by later frames. So nothing is gathered by instance: what is known is
-/// known of super-points, whose merges are for good, and an instance's record is put together from
-/// those that it has now.
+/// By consensus a union may be taken back by later frames, and super-points are never merged. So
+/// nothing is gathered by instance: what is known is known of super-points, and an instance's record
+/// is put together from those that it has now.
 class InstanceRegistry {
  public:
   explicit InstanceRegistry(const InstanceConfig& config = {})
       : config_(config), merging_(config.merging), consensus_(config.consensus) {}
 
-  /// Adds one frame: merges super-points in `forest`, counts entity votes, updates instances.
-  /// `has_entities`: the frame had 2D masks (else every super-point is an instance of its own kind
-  /// of evidence).
+  /// Adds one frame: counts entity votes, updates instances; other readings than kConsensus merge
+  /// super-points in `forest`. `has_entities`: the frame had 2D masks (else every segment, or, by
+  /// kEntityVotes, every super-point is an entity of its own).
   void observe(const Segments& segments, std::span<const SegmentAssociation> associations,
                std::int64_t frame_index, bool has_entities, LabelForest& forest);
 
@@ -125,8 +123,7 @@ class InstanceRegistry {
                     const LabelForest& forest, bool has_entities);
   void find_objects();
   void merge_super_points(std::span<const SegmentAssociation> associations, LabelForest& forest);
-  void merge_consensus(Label keep, Label drop);
-  const SuperPoint& absorb(Label keep, Label drop);
+  void absorb(Label keep, Label drop);
   bool supported(const SuperPoint& point, int votes) const;
   InstanceId best_free_instance(const SuperPoint& point, const std::set<InstanceId>& used);
   void see_super_points(std::span<const SegmentAssociation> associations,

@@ -116,11 +116,15 @@ TEST_F(RegistryTest, APartThatLeavesTakesItsOwnRecordAlong) {
   EXPECT_EQ(registry.record(older).first_frame, 0);
 }
 
-TEST_F(RegistryTest, AFrameWithoutMasksDoesNotTieAPartToItsObject) {
+TEST_F(RegistryTest, WithoutMasksASegmentJoinsSuperPointsUntilFramesTellThemApart) {
   InstanceRegistry registry;
-  see(registry, {{1, 5, 500}, {2, 5, 400}});
-  for (int i = 0; i < 3; ++i) see(registry, {{1, 0, 500}, {2, 0, 400}}, false);
-  for (int i = 0; i < 3; ++i) see(registry, {{1, 5, 500}, {2, 6, 400}});
+  see(registry, {{1, 0, 500}}, false);
+  see(registry, {{2, 0, 500}}, false);
+  EXPECT_NE(registry.instance_of(1), registry.instance_of(2));
+  for (int i = 0; i < 20; ++i) see(registry, {{1, 0, 2000, {1, 2}, {{2, 900}}}}, false);
+  EXPECT_EQ(registry.instance_of(1), registry.instance_of(2));
+  EXPECT_EQ(forest_.root(2), 2u) << "nothing is merged for good";
+  for (int i = 0; i < 50; ++i) see(registry, {{1, 0, 900}, {2, 0, 900}}, false);
   EXPECT_NE(registry.instance_of(1), registry.instance_of(2));
 }
 
@@ -152,20 +156,6 @@ TEST_F(RegistryTest, KnowsTheMembersOfEveryInstance) {
       ASSERT_EQ(registry.instances(), members) << "frame " << frame;
     }
   }
-}
-
-TEST_F(RegistryTest, MergedSuperPointsKeepTheOlderIdForGood) {
-  InstanceConfig config;
-  config.merging.merge_min_count = 1;
-  InstanceRegistry registry(config);
-  see(registry, {{2, 5, 500}});
-  const InstanceId older = registry.instance_of(2);
-  see(registry, {{1, 5, 500}});
-  const InstanceId younger = registry.instance_of(1);
-  for (int i = 0; i < 2; ++i) see(registry, {{1, 0, 2000, {1, 2}}}, false);
-  EXPECT_EQ(registry.instance_of(1), older);
-  EXPECT_EQ(registry.resolve(younger), older);
-  EXPECT_EQ(registry.instances().size(), 1u);
 }
 
 TEST_F(RegistryTest, AnEntityJoinsAllSuperPointsThatItShowsUntilFramesTellThemApart) {
@@ -211,6 +201,7 @@ TEST_F(RegistryTest, WithoutMasksEverySuperPointIsAnInstance) {
 
 TEST_F(RegistryTest, MergedSuperPointsKeepTheirVotes) {
   InstanceConfig config;
+  config.instances = InstanceReading::kEntityVotes;
   config.merging.merge_min_count = 2;
   InstanceRegistry registry(config);
   for (int i = 0; i < 5; ++i) see(registry, {{2, 4, 100}});

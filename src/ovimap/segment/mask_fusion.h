@@ -16,7 +16,7 @@ struct MaskFusionConfig {
   float split_entity_share =
       0.9f;  ///< an entity is split off when more than this share of it lies in the region
   float split_region_share = 0.5f;  ///< ... and it covers less than this share of the region
-  int split_core_px = 7;  ///< ... or when its part of the region holds a square of this side, so
+  int split_core_px = 3;  ///< ... or when its part of the region holds a square of this side, so
                           ///< that it is no strip that a mask's uncertain outline left over there
   float adopt_region_share =
       0.2f;  ///< the rest of a region takes an entity that covers at least this share

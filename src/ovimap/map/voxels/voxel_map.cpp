@@ -37,7 +37,7 @@ void list_fields(VoxelMapConfig& config, ConfigFields& fields) {
              "half width of the TSDF band, voxels");
   fields.add("max_weight", config.max_weight, 0.01f, 1e6f, "cap of a voxel's weight");
   fields.add("min_mesh_weight", config.min_mesh_weight, 0.f, 1e6f,
-             "lighter voxels make no surface; 1: a standard error of one voxel, 0.25: of two");
+             "lighter voxels make no surface; 1: a standard error of one voxel, 0.125: of 2.8");
   fields.add("label_band_voxels", config.label_band_voxels, 0.5f, 20.f,
              "distance from the surface within which voxels take labels, voxels");
 }

@@ -23,8 +23,8 @@ struct VoxelMapConfig {
   float voxel_size_m = 0.01f;
   int truncation_voxels = 5;      ///< the band around the surface is this wide to either side
   float max_weight = 1000.f;      ///< weights are capped here, so that the map follows change
-  float min_mesh_weight = 0.25f;  ///< lighter voxels make no surface: their standard error is over
-                                  ///< two voxels (see integrate)
+  float min_mesh_weight = 0.125f;  ///< lighter voxels make no surface: their standard error is over
+                                   ///< 2.8 voxels (see integrate)
   float label_band_voxels =
       1.f;  ///< voxels this near to the observed surface take the segment's label
 
