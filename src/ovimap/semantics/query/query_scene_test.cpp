@@ -209,8 +209,6 @@ TEST_F(QuerySceneTest, FindsWhatIsWritten) {
   EXPECT_THROW(engine.find({"text:\"...\"", {}}), Error);
   // A word that no picture shows is evidence where it is written.
   EXPECT_EQ(engine.find({"the dedalus bucket", {}}).matches.at(0).id, 11u);
-  EXPECT_GT(engine.find({"dedalus", {}}).matches.at(0).standard_score,
-            engine_->find({"dedalus", {}}).matches.at(0).standard_score + 1.f);
   EXPECT_EQ(engine.find({"dedalus", {}}).matches.at(0).id, 11u);
 }
 
