@@ -17,6 +17,7 @@
 #include "ovimap/io/map_tables/map_document.h"
 #include "ovimap/pipeline/live/live_mapper.h"
 #include "ovimap/pipeline/mapping/checkpointer.h"
+#include "ovimap/pipeline/sequence/visit_fit.h"
 #include "ovimap/track/graph/loop_closure.h"
 
 namespace ovimap::apps {
@@ -83,6 +84,7 @@ struct ProgramConfig {
   FrameSourceConfig source;
   TrackConfig track;
   LoopConfig loops;
+  VisitFitConfig visit;
   MaskSourceConfig masks;
   RuntimeConfig encoder;
   LiveConfig live;

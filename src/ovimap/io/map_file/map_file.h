@@ -9,7 +9,7 @@
 namespace ovimap {
 
 /// The newest file layout this program writes and reads; docs/map-format.md describes it.
-inline constexpr int kMapSchema = 5;
+inline constexpr int kMapSchema = 6;
 
 /// What a map file tells without its voxels.
 struct MapInfo {
@@ -22,6 +22,7 @@ struct MapInfo {
   std::vector<InstanceSummary> hidden;     ///< objects that people hid; not in `instances`
   std::set<InstanceId> locked;             ///< objects that must stay as they are
   std::map<InstanceId, std::string> names;
+  MapHistory history;                             ///< empty in maps of earlier schemas
   EncoderIdentity encoder;                        ///< of the embeddings; no name: there are none
   Eigen::Vector3f up = Eigen::Vector3f::UnitZ();  ///< in the world
   PinholeCamera depth_camera;
