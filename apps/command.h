@@ -38,6 +38,7 @@ Action add_merge(CLI::App& command);
 Action add_export(CLI::App& command);
 Action add_correct(CLI::App& command);
 Action add_eval(CLI::App& command);
+Action add_eval_changes(CLI::App& command);
 Action add_eval_poses(CLI::App& command);
 Action add_bench(CLI::App& command);
 Action add_synth(CLI::App& command);
