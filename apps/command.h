@@ -17,6 +17,7 @@
 #include "ovimap/io/map_tables/map_document.h"
 #include "ovimap/pipeline/live/live_mapper.h"
 #include "ovimap/pipeline/mapping/checkpointer.h"
+#include "ovimap/pipeline/sequence/visit_fit.h"
 #include "ovimap/track/graph/loop_closure.h"
 
 namespace ovimap::apps {
@@ -37,6 +38,7 @@ Action add_merge(CLI::App& command);
 Action add_export(CLI::App& command);
 Action add_correct(CLI::App& command);
 Action add_eval(CLI::App& command);
+Action add_eval_changes(CLI::App& command);
 Action add_eval_poses(CLI::App& command);
 Action add_bench(CLI::App& command);
 Action add_synth(CLI::App& command);
@@ -84,6 +86,7 @@ struct ProgramConfig {
   FrameSourceConfig source;
   TrackConfig track;
   LoopConfig loops;
+  VisitFitConfig visit;
   MaskSourceConfig masks;
   RuntimeConfig encoder;
   LiveConfig live;

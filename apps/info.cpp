@@ -16,6 +16,7 @@ namespace {
 struct InfoOptions {
   std::filesystem::path map;
   bool check = false;
+  bool history = false;
   bool recover = false;
   bool json = false;
 };
@@ -39,6 +40,46 @@ int check_file(const InfoOptions& options) {
   return check.faults.empty() ? kDone : kAnswerIsNo;
 }
 
+std::string place(const Eigen::AlignedBox3f& box) {
+  const Eigen::Vector3f center = box.center();
+  char text[64];
+  std::snprintf(text, sizeof text, "(%.2f, %.2f, %.2f)", double{center.x()}, double{center.y()},
+                double{center.z()});
+  return text;
+}
+
+std::string sentence(const ObjectEvent& event) {
+  switch (event.kind) {
+    case ObjectEventKind::kGone:
+      return concat("gone from ", place(event.before));
+    case ObjectEventKind::kMoved:
+      return concat("moved from ", place(event.before), " to ", place(event.after));
+    case ObjectEventKind::kAppeared:
+      return concat("appeared at ", place(event.after),
+                    event.may_be == 0 ? std::string() : concat(", may be ", event.may_be));
+  }
+  return {};
+}
+
+/// A line for each visit, and below it one for each thing that it found changed.
+void print_history(const MapInfo& map) {
+  const std::vector<MapVisit>& visits = map.history.visits;
+  if (visits.empty())
+    std::printf("visit 1, %lld frames: %s\n", static_cast<long long>(map.frames),
+                map.source.c_str());
+  for (std::size_t i = 0; i < visits.size(); ++i) {
+    const std::int64_t end = i + 1 < visits.size() ? visits[i + 1].first_frame : map.frames;
+    std::printf("visit %zu, %lld frames: %s\n", i + 1,
+                static_cast<long long>(end - visits[i].first_frame), visits[i].source.c_str());
+    for (const ObjectEvent& event : map.history.events) {
+      if (event.visit != static_cast<int>(i + 1)) continue;
+      const auto name = map.names.find(event.instance);
+      std::printf("%6u  %-24s %s\n", event.instance,
+                  name == map.names.end() ? "" : name->second.c_str(), sentence(event).c_str());
+    }
+  }
+}
+
 int info(const InfoOptions& options) {
   if (options.recover && !recover_map(options.map))
     std::fprintf(stderr, "%s: nothing to recover\n", options.map.c_str());
@@ -50,6 +91,10 @@ int info(const InfoOptions& options) {
     document["tiles_evicted"] = tiles.evicted;
     document["tiles_loaded"] = tiles.loaded;
     print_json(document);
+    return kDone;
+  }
+  if (options.history) {
+    print_history(map);
     return kDone;
   }
   std::printf(
@@ -84,6 +129,8 @@ Action add_info(CLI::App& command) {
   command.add_flag("--check", options->check,
                    "examine the file: SQLite's own check, the hash of every table and tile; exit "
                    "code 1 and a list where something is damaged");
+  command.add_flag("--history", options->history,
+                   "which recordings went into the map, and what each found moved, gone or new");
   command.add_flag("--recover", options->recover,
                    "make a map whole beside which a change that was cut short left its log: the "
                    "change is taken back, or in where it was finished; then examine it");

@@ -9,6 +9,8 @@
 #include "ovimap/base/thread_priority.h"
 #include "ovimap/inference/masks/id_mask_sources.h"
 #include "ovimap/io/map_file/map_file.h"
+#include "ovimap/pipeline/revise/visit_history.h"
+#include "ovimap/pipeline/sequence/visit_fit.h"
 
 namespace ovimap::apps {
 
@@ -67,6 +69,7 @@ struct MappingInputs {
 struct BegunRun {
   std::optional<MapDocument> document;
   std::shared_ptr<TileKeeper> tiles;  ///< null: nowhere
+  bool new_visit = false;             ///< the recording is another than those of the document
 };
 
 /// With a bound on memory the voxels stay in the checkpoint's file, where tiles go as well.
@@ -95,10 +98,18 @@ BegunRun find_begun(const RunTarget& target, const MemoryConfig& memory) {
                        " frames; --resume goes on with it, or delete it to begin anew"));
   begun.tiles = std::make_shared<TileKeeper>(
       partial, unfinished ? TileKeeper::Start::kGoOn : TileKeeper::Start::kAnew, memory);
-  if (unfinished)
-    load_begun(partial, begun);
-  else if (target.resume && std::filesystem::exists(target.map))
-    load_begun(target.map, begun);
+  const bool finished =
+      target.resume && target.map != target.continued && std::filesystem::exists(target.map);
+  begun.new_visit = !unfinished && !finished && !target.continued.empty();
+  if (unfinished || finished)
+    load_begun(unfinished ? partial : target.map, begun);
+  else if (begun.new_visit)
+    load_begun(target.continued, begun);
+  const bool visit_under_way = begun.document && begun.document->unfinished &&
+                               begun.document->history.visits.size() > 1;
+  if (visit_under_way && target.continued.empty())
+    throw Error(concat("the unfinished run of '", partial.string(),
+                       "' goes on with a map; name it by --continue as that run did"));
   return begun;
 }
 
@@ -110,26 +121,71 @@ std::vector<std::string> deciding_lines(const std::string& config) {
   for (std::string line; std::getline(stream, line);) {
     if (line.starts_with("# preset")) line.resize(std::min(line.size(), line.find(", frames ")));
     const auto names = [&](const char* start) { return line.starts_with(start); };
-    if (!names("checkpoint.") && !names("memory.") && !names("# live")) lines.push_back(line);
+    if (!names("checkpoint.") && !names("memory.") && !names("visit.") && !names("# live"))
+      lines.push_back(line);
   }
   return lines;
 }
 
-/// Throws Error naming the first setting in which two runs differ.
-void require_same_settings(const std::string& begun, const std::string& now) {
+/// Throws Error naming the first setting in which two runs differ. `option`: the one by which this
+/// one goes on with the other.
+void require_same_settings(const std::string& begun, const std::string& now, const char* option) {
   const std::vector<std::string> before = deciding_lines(begun), after = deciding_lines(now);
   const auto [old_line, new_line] =
       std::mismatch(before.begin(), before.end(), after.begin(), after.end());
   if (old_line == before.end() && new_line == after.end()) return;
-  throw Error(concat("the run to resume had '", old_line == before.end() ? "" : *old_line,
+  throw Error(concat("the run to go on with had '", old_line == before.end() ? "" : *old_line,
                      "', this one has '", new_line == after.end() ? "" : *new_line,
-                     "'; give the same options, or map anew without --resume"));
+                     "'; give the same options, or map anew without ", option));
+}
+
+/// The settings of voxels are the map's, and so is the space of its embeddings.
+void require_same_map(const MapDocument& begun, const VoxelMapConfig& map,
+                      const std::shared_ptr<ImageTextEncoder>& encoder) {
+  const auto lines = [](VoxelMapConfig config) {
+    ConfigFields fields;
+    fields.group("map", [&](ConfigFields& group) { list_fields(config, group); });
+    return fields.dump();
+  };
+  require_same_settings(lines(begun.map.config()), lines(map), "--continue");
+  const std::string &before = begun.semantics.encoder.name,
+                    now = encoder ? encoder->identity().name : "";
+  if (!before.empty() && before != now)
+    throw Error(concat("the map's objects are embedded by '", before, "', and this run has ",
+                       now.empty() ? "no encoder" : concat("'", now, "'"), "; give --encoder ", before,
+                       ", or embed the map anew with `ovimap reembed`"));
 }
 
 /// Frames that are not in the map yet.
-void skip_done(std::vector<std::int64_t>& range, const std::vector<FrameLogEntry>& done) {
-  if (!done.empty())
-    std::erase_if(range, [&](std::int64_t position) { return position <= done.back().index; });
+void skip_done(std::vector<std::int64_t>& range, const MapRecord& begun) {
+  if (begun.frames.empty()) return;
+  const std::int64_t first = begun.history.visits.empty()
+                                 ? 0
+                                 : begun.history.visits.back().first_index,
+                     last = begun.frames.back().index;
+  std::erase_if(range, [&](std::int64_t position) { return first + position <= last; });
+}
+
+/// The history with the visit that begins, to whose frames the mapper gives numbers of their own.
+MapHistory with_visit(const MapRecord& begun, const std::string& source) {
+  MapHistory history = begun.history;
+  if (history.visits.empty()) history.visits.push_back({begun.source, 0, 0});
+  const std::int64_t next = begun.frames.empty() ? 0 : begun.frames.back().index + 1;
+  history.visits.push_back({source, static_cast<std::int64_t>(begun.frames.size()), next});
+  return history;
+}
+
+/// Throws Error unless the recording lies where the map is.
+void require_fit(const MapDocument& begun, const MappingInputs& inputs) {
+  if (!inputs.config.visit.enabled || inputs.tracking) return;
+  const std::string fault =
+      misfit(fit_visit(begun.map, *inputs.source, inputs.range, inputs.config.track,
+                       inputs.config.visit),
+             inputs.config.visit);
+  if (!fault.empty())
+    throw Error(concat("the recording does not fit the map, which stays as it was: ", fault,
+                       "; map it by itself and bring the two together with `ovimap merge --align`, "
+                       "or give poses in the map's world frame"));
 }
 
 /// Gives `mapper`, a Mapper or a LiveMapper, what an earlier run had, and `header` what people told
@@ -139,13 +195,22 @@ SequenceResult resume(BegunRun& begun, MapHeader& header, MappingInputs& inputs,
                       AnyMapper& mapper) {
   SequenceResult sequence;
   if (!begun.document) return sequence;
-  require_same_settings(begun.document->config_text, header.config_text);
+  if (begun.new_visit) {
+    require_same_map(*begun.document, mapper.config().map, inputs.encoder);
+    require_fit(*begun.document, inputs);
+    header.history = with_visit(*begun.document, header.source);
+  } else {
+    require_same_settings(begun.document->config_text, header.config_text, "--resume");
+    header.history = begun.document->history;
+    skip_done(inputs.range, *begun.document);
+  }
   header.names = begun.document->names;
   header.edits = begun.document->edits;
   sequence.frames = begun.document->frames;
   sequence.depth_camera = begun.document->depth_camera;
-  skip_done(inputs.range, sequence.frames);
   mapper.restore(std::move(*begun.document));
+  if (inputs.source && !header.history.visits.empty())  // pushed frames have the map's numbers
+    mapper.number_from(header.history.visits.back().first_index);
   return sequence;
 }
 
@@ -234,6 +299,8 @@ MappingRun map_recording(const MappingOptions& options, const std::string& title
   MappingRun run = finished_run(std::move(inputs), std::move(header), std::move(mapper),
                                 std::move(sequence), std::move(checkpoints));
   if (tracker) run.tracking = finish_tracking(*tracker, config, keep_frames, run.document);
+  if (!target.continued.empty() && config.memory.max_mb == 0)  // which takes both maps in memory
+    tell_visit(load_map(target.continued), run.document);
   return run;
 }
 

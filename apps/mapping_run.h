@@ -30,12 +30,14 @@ struct MappingRun {
 struct RunTarget {
   std::filesystem::path map;
   bool resume = false;  ///< go on with the checkpoint or map that is there
+  std::filesystem::path continued = {};  ///< another visit to the place of this map; empty: a new map
 };
 
 /// Opens what the options name and maps it, with progress under `title`; Ctrl-C ends it early with
 /// what was mapped so far. `keep_masks`: folder in which masks are kept and looked for; empty:
 /// nowhere. Throws what the parts throw, and Error when an unfinished run left a checkpoint that
-/// `target` does not resume, or one of other settings that it does.
+/// `target` does not resume, or one of other settings that it does, or when the recording does not
+/// lie where the map is that it goes on with (misfit).
 MappingRun map_recording(const MappingOptions& options, const std::string& title,
                          const std::filesystem::path& keep_masks = {},
                          const RunTarget& target = {});

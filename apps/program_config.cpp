@@ -74,6 +74,7 @@ void list_fields(ProgramConfig& config, ConfigFields& fields) {
   fields.group("source", [&](ConfigFields& f) { list_fields(config.source, f); });
   fields.group("track", [&](ConfigFields& f) { list_fields(config.track, f); });
   fields.group("loops", [&](ConfigFields& f) { list_fields(config.loops, f); });
+  fields.group("visit", [&](ConfigFields& f) { list_fields(config.visit, f); });
   fields.group("masks", [&](ConfigFields& f) { list_fields(config.masks, f); });
   fields.group("encoder.runtime", [&](ConfigFields& f) { list_fields(config.encoder, f); });
   fields.group("live", [&](ConfigFields& f) { list_fields(config.live, f); });

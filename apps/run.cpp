@@ -13,7 +13,7 @@ namespace {
 
 struct RunOptions {
   MappingOptions mapping;
-  std::filesystem::path map;
+  std::filesystem::path map, continued;
   std::filesystem::path pictures, trajectory;
   bool json = false;
   bool live = false;
@@ -21,11 +21,14 @@ struct RunOptions {
   double fps = 30;
 };
 
-int run(const RunOptions& options) {
+int run(RunOptions options) {
+  if (options.map.empty()) options.map = options.continued;
+  if (options.map.empty())
+    throw Error("say where the map goes with -o, or which one to go on with by --continue");
   const ThreadLimit limit(options.mapping.threads);
   check_map_target(options.map);
   if (!options.pictures.empty()) make_folder(options.pictures);
-  const RunTarget target{options.map, options.resume};
+  const RunTarget target{options.map, options.resume, options.continued};
   const MappingRun mapped = options.live ? map_live(options.mapping, options.fps, target)
                                          : map_recording(options.mapping, "mapping", {}, target);
   report_faults(mapped);
@@ -48,7 +51,8 @@ int run(const RunOptions& options) {
 Action add_run(CLI::App& command) {
   auto options = std::make_shared<RunOptions>();
   add_mapping_options(command, options->mapping);
-  command.add_option("-o,--output", options->map, "map file to write")->required();
+  command.add_option("-o,--output", options->map,
+                     "map file to write; with --continue the map itself where it is not given");
   command.add_option("--pictures", options->pictures, "folder for a top view and a contact sheet");
   auto* live = command.add_flag("--live", options->live,
                                 "take frames at a camera's pace and leave out what comes too late");
@@ -56,6 +60,11 @@ Action add_run(CLI::App& command) {
       ->check(CLI::Range(0.1, 1000.))
       ->needs(live)
       ->capture_default_str();
+  command
+      .add_option("--continue", options->continued,
+                  "a map of the same place to go on with, in whose world frame the recording's poses "
+                  "are: what is gone leaves it, ids, names and corrections stay")
+      ->excludes(live);
   add_poses(command, options->mapping);
   command.add_option("--trajectory", options->trajectory,
                      "file to write the camera's poses to, a TUM line for each frame in the map");

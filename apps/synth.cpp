@@ -29,6 +29,7 @@ struct SynthOptions {
     return walk || !room.plan.empty() || !benchmark_scenes(room.room).empty();
   }
 
+  int visits = 0;  ///< 0: one recording
   bool catalog = false;
   int views = PortraitConfig{}.views;
   int threads = 0;
@@ -45,7 +46,7 @@ void set_size(const std::string& text, RoomOptions& options) {
                        kLeastSide_px, " to ", kMostSide_px, ", as 640x480"));
 }
 
-WrittenRoom render(const SynthOptions& options, const std::string& room, const std::string& scene) {
+RoomOptions chosen_room(const SynthOptions& options, const std::string& room) {
   RoomOptions chosen = options.room;
   chosen.room = room;
   if (!options.size.empty()) set_size(options.size, chosen);
@@ -53,10 +54,27 @@ WrittenRoom render(const SynthOptions& options, const std::string& room, const s
     chosen.video = options.video;
     chosen.noise = !options.exact;
   }
+  return chosen;
+}
+
+WrittenRoom render(const SynthOptions& options, const std::string& room, const std::string& scene) {
+  const RoomOptions chosen = chosen_room(options, room);
   Progress progress("rendering " + room);
   return write_room(options.out, chosen, scene, [&](std::int64_t done, std::int64_t total) {
     progress.show(static_cast<std::size_t>(done), static_cast<std::size_t>(total));
   });
+}
+
+std::vector<WrittenRoom> render_visits(const SynthOptions& options) {
+  if (options.room.room == kRoomsV1 || !benchmark_scenes(options.room.room).empty())
+    throw Error(concat("--visits is of one room or plan, not of '", options.room.room,
+                       "'; name one with --room or --plan"));
+  Progress progress("rendering visits");
+  return write_visits(options.out, chosen_room(options, options.room.room), options.visits,
+                      [&](std::int64_t done, std::int64_t total) {
+                        progress.show(static_cast<std::size_t>(done),
+                                      static_cast<std::size_t>(total));
+                      });
 }
 
 /// A scene of apartments-v1 or desks-v1, filmed as the set says but for what was asked for.
@@ -85,7 +103,9 @@ int synth(const SynthOptions& options) {
     return synth_catalog(
         {options.out, options.room.furniture, options.views, options.room.seed, options.json});
   std::vector<WrittenRoom> rooms;
-  if (!options.room.plan.empty())
+  if (options.visits > 0)
+    rooms = render_visits(options);
+  else if (!options.room.plan.empty())
     rooms.push_back(render(options, options.room.plan, options.room.plan));
   else if (const auto scenes = benchmark_scenes(options.room.room); !scenes.empty())
     for (const BenchmarkScene& scene : scenes) rooms.push_back(render_scene(options, scene));
@@ -169,6 +189,11 @@ Action add_synth(CLI::App& command) {
   auto* noise = command.add_flag("--noise", options->room.noise,
                                  "as a depth camera sees it: noise, quantisation, holes");
   add_walk_options(command, *options, noise);
+  command
+      .add_option("--visits", options->visits,
+                  "so many visits to the room, OUT/visit1, OUT/visit2, ...: things move, go and come "
+                  "in between; OUT/changes.json tells which")
+      ->check(CLI::Range(1, 1000));
   command.add_option("--size", options->size, "WIDTHxHEIGHT of the frames; else as the room says");
   auto* catalog = command.add_flag(
       "--catalog", options->catalog,

@@ -2,10 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "synth_room.h"
 
+#include <nlohmann/json.hpp>
+
+#include "ovimap/image/codec.h"
 #include "ovimap/io/truth/replica_pack.h"
 #include "ovimap/synth/buildings/benchmark_scenes.h"
 #include "ovimap/synth/buildings/floor_plan.h"
 #include "ovimap/synth/buildings/room_builder.h"
+#include "ovimap/synth/buildings/visits.h"
 #include "ovimap/synth/recordings/little_seen.h"
 #include "ovimap/synth/rooms/rooms_v1.h"
 
@@ -15,33 +19,34 @@ namespace {
 
 constexpr int kPlanWidth_px = 640, kPlanHeight_px = 480;
 
-SynthSequence make_sequence(const RoomOptions& options) {
-  if (options.scene) {
-    SynthSequenceConfig config;
-    config.noise = options.noise;
-    const PinholeCamera camera = options.width > 0 ? synth_camera(options.width, options.height)
-                                                   : synth_camera(kPlanWidth_px, kPlanHeight_px);
-    return {build_benchmark_scene(*options.scene, options.seed, options.furniture), camera,
-            *options.video, config};
-  }
-  const bool plan = !options.plan.empty();
-  const RoomSpec spec = room_spec(plan ? "bare" : options.room, options.seed);
-  PinholeCamera camera = plan ? synth_camera(kPlanWidth_px, kPlanHeight_px) : spec.camera;
-  if (options.width > 0) camera = synth_camera(options.width, options.height);
-  SynthSequenceConfig config;
-  config.noise = options.noise;
-  SynthRoom room = plan ? build_plan(floor_plan(options.plan, options.seed), options.furniture)
-                        : build_room(spec, options.furniture);
-  if (options.video) return {std::move(room), camera, *options.video, config};
-  return {std::move(room), camera, options.frames > 0 ? options.frames : spec.frames, config};
+PinholeCamera camera_of(const RoomOptions& options) {
+  if (options.width > 0) return synth_camera(options.width, options.height);
+  return options.scene || !options.plan.empty() ? synth_camera(kPlanWidth_px, kPlanHeight_px)
+                                                : room_spec(options.room, options.seed).camera;
 }
 
-}  // namespace
+SynthRoom make_room(const RoomOptions& options) {
+  if (options.scene) return build_benchmark_scene(*options.scene, options.seed, options.furniture);
+  if (!options.plan.empty())
+    return build_plan(floor_plan(options.plan, options.seed), options.furniture);
+  return build_room(room_spec(options.room, options.seed), options.furniture);
+}
 
-WrittenRoom write_room(const std::filesystem::path& out, const RoomOptions& options,
-                       const std::string& scene,
-                       const std::function<void(std::int64_t done, std::int64_t total)>& progress) {
-  const SynthSequence sequence = make_sequence(options);
+SynthSequence make_sequence(SynthRoom room, const RoomOptions& options) {
+  SynthSequenceConfig config;
+  config.noise = options.noise;
+  const PinholeCamera camera = camera_of(options);
+  if (options.video) return {std::move(room), camera, *options.video, config};
+  const int frames =
+      options.frames > 0 ? options.frames : room_spec(options.room, options.seed).frames;
+  return {std::move(room), camera, frames, config};
+}
+
+WrittenRoom write_sequence(
+    const std::filesystem::path& out, const RoomOptions& options, SynthRoom room,
+    const std::string& scene,
+    const std::function<void(std::int64_t done, std::int64_t total)>& progress) {
+  const SynthSequence sequence = make_sequence(std::move(room), options);
   ReplicaPack pack;
   pack.scene = scene;
   pack.frames = &sequence;
@@ -54,6 +59,65 @@ WrittenRoom write_room(const std::filesystem::path& out, const RoomOptions& opti
     pack.instances.push_back({instance.id, instance.class_id, instance.class_name, instance.room});
   write_replica_pack(out, pack, {}, progress);
   return {(out / scene).string(), sequence.size(), pack.instances.size()};
+}
+
+nlohmann::ordered_json box_json(const Eigen::AlignedBox3f& box) {
+  if (box.isEmpty()) return nullptr;
+  const auto point = [](const Eigen::Vector3f& p) {
+    return nlohmann::ordered_json{p.x(), p.y(), p.z()};
+  };
+  return {{"min", point(box.min())}, {"max", point(box.max())}};
+}
+
+nlohmann::ordered_json change_json(std::size_t visit, const RoomChange& change,
+                                   const RoomObject& object) {
+  constexpr const char* kKinds[] = {"moved", "removed", "added"};
+  nlohmann::ordered_json json = {{"visit", visit},
+                                 {"object", change.object},
+                                 {"name", object.name},
+                                 {"class", object.class_name},
+                                 {"kind", kKinds[static_cast<int>(change.kind)]},
+                                 {"from", box_json(change.from)},
+                                 {"to", box_json(change.to)}};
+  if (change.kind != RoomChangeKind::kMoved) return json;
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column)
+      json["new_from_old"].push_back(change.new_from_old.matrix()(row, column));
+  return json;
+}
+
+}  // namespace
+
+WrittenRoom write_room(const std::filesystem::path& out, const RoomOptions& options,
+                       const std::string& scene,
+                       const std::function<void(std::int64_t done, std::int64_t total)>& progress) {
+  return write_sequence(out, options, make_room(options), scene, progress);
+}
+
+std::vector<WrittenRoom> write_visits(
+    const std::filesystem::path& out, const RoomOptions& options, int visits,
+    const std::function<void(std::int64_t done, std::int64_t total)>& progress) {
+  const SynthRoom room = make_room(options);
+  nlohmann::ordered_json truth = {{"visits", nlohmann::ordered_json::array()},
+                                  {"changes", nlohmann::ordered_json::array()}};
+  std::vector<WrittenRoom> written;
+  for (Visit& visit : plan_visits(room, visits)) {
+    const std::size_t number = written.size() + 1;
+    const std::string scene = concat("visit", number);
+    truth["visits"].push_back(scene);
+    for (const RoomChange& change : visit.changes)
+      truth["changes"].push_back(change_json(number, change, room.objects[change.object - 1u]));
+    written.push_back(
+        write_sequence(out, options, std::move(visit.room), scene,
+                       [&](std::int64_t done, std::int64_t frames) {
+                         const auto before = static_cast<std::int64_t>(number - 1) * frames;
+                         if (progress) progress(before + done, visits * frames);
+                       }));
+  }
+  const std::string text = truth.dump(1) + "\n";
+  write_file(out / "changes.json",
+             {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  return written;
 }
 
 }  // namespace ovimap::apps

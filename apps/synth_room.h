@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "ovimap/synth/buildings/benchmark_scenes.h"
 #include "ovimap/synth/furniture/furniture_catalog.h"
@@ -36,6 +37,13 @@ struct WrittenRoom {
 /// cannot be written.
 WrittenRoom write_room(
     const std::filesystem::path& out, const RoomOptions& options, const std::string& scene,
+    const std::function<void(std::int64_t done, std::int64_t total)>& progress = {});
+
+/// Renders `visits` visits to a room (plan_visits) in one world frame into the recordings
+/// `out`/visit1, `out`/visit2, ..., and what changed between them into `out`/changes.json
+/// (docs/changes.md). Throws likewise.
+std::vector<WrittenRoom> write_visits(
+    const std::filesystem::path& out, const RoomOptions& options, int visits,
     const std::function<void(std::int64_t done, std::int64_t total)>& progress = {});
 
 }  // namespace ovimap::apps

@@ -48,6 +48,8 @@ COLUMNS = {
     "super_point_frames": "label, first_frame, last_frame, runs",
     "instance_aliases": "id, target",
     "blocks": "tile, present, hash, data",
+    "visits": "visit, source, first_frame, first_index",
+    "object_events": "id, instance, kind, visit, frame, before, after, may_be",
     "edits": "id, time_s, action, arguments, undone_by",
     "corrected_flags": "id, hidden, locked",
 }
@@ -134,7 +136,7 @@ class Cursor:
 
 
 def read_tile(present, data):
-    """The blocks of a tile: (place in the tile, palette, distance, weight, rgb, slots, supports)."""
+    """The blocks of a tile: (place in the tile, palette, distance, weight, rgb, slots, supports, doubts)."""
     bits = [bit for bit in range(64) if unsigned(present) >> bit & 1]
     count = len(bits)
     cursor = Cursor(zstandard.ZstdDecompressor().decompress(data))
@@ -151,6 +153,7 @@ def read_tile(present, data):
     distance = undo_differences([cursor.take(voxels), distance_high], 16)
     weight = undo_differences([cursor.take(voxels), cursor.take(voxels), cursor.take(voxels), weight_high], 32)
     green, red, blue = (undo_differences([cursor.take(voxels), high], 16) for high in color_high)
+    doubts = cursor.take(voxels) if cursor.at < len(cursor.body) else np.zeros(voxels, np.uint8)
     assert cursor.at == len(cursor.body)
 
     slots = np.zeros((4, voxels), np.uint16)
@@ -173,7 +176,7 @@ def read_tile(present, data):
         blocks.append(((bit % 4, bit // 4 % 4, bit // 16), palettes[index], spread(distance, np.uint16),
                        spread(weight, np.uint32),
                        [spread(channel & 0xFFFF, np.uint16) for channel in (red + green, green, blue + green)],
-                       [spread(slot, np.uint8) for slot in labels], [spread(slot, np.uint16) for slot in slots]))
+                       [spread(slot, np.uint8) for slot in labels], [spread(slot, np.uint16) for slot in slots], spread(doubts, np.uint8)))
         begin = end
     return blocks
 
@@ -200,11 +203,13 @@ def content_hash(map_file):
     for key, present, stored, data in map_file.rows("blocks"):
         assert xxhash.xxh64_intdigest(data, seed=0) == unsigned(stored)
         tile = unpack_tile(key)
-        for place, palette, distance, weight, colors, slots, supports in read_tile(present, data):
+        for place, palette, distance, weight, colors, slots, supports, doubts in read_tile(present, data):
             index = [4 * tile[axis] + place[axis] for axis in range(3)]
             parts = [struct.pack("<3i", *index), distance.tobytes(), weight.tobytes(),
                      b"".join(channel.tobytes() for channel in colors),
                      voxel_labels(roots, palette, slots, supports).tobytes()]
+            if doubts.any():
+                parts.append(doubts.tobytes())
             value = 0
             for part in parts:
                 value = xxhash.xxh64_intdigest(part, seed=value)

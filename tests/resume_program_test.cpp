@@ -146,6 +146,61 @@ TEST_F(ResumeProgramTest, GoesOnWithAMap) {
                    {"voxel_size_m", "0.02"});
 }
 
+TEST_F(ResumeProgramTest, AnotherVisitGoesOnWithAMap) {
+  ASSERT_EQ(run(std::string(kRun) + "-o home.ovimap").code, 0);
+  const nlohmann::json home = run_json("info home.ovimap --json");
+  const std::string id = std::to_string(home["instances"][0]["id"].get<int>());
+  ASSERT_EQ(run("edit home.ovimap rename " + id + " ball").code, 0);
+  const std::string before = slurp(path("home.ovimap"));
+  ASSERT_EQ(run(std::string(kRun) + "--continue home.ovimap -o new.ovimap").code, 0);
+  EXPECT_TRUE(slurp(path("home.ovimap")) == before);
+  const nlohmann::json after = run_json("info new.ovimap --json");
+  EXPECT_EQ(after["frames"], 2 * home["frames"].get<int>());
+  EXPECT_EQ(after["instances"].size(), home["instances"].size());
+  EXPECT_EQ(after["instances"][0]["name"], "ball");
+  EXPECT_EQ(after["history"]["visits"].size(), 2u);
+  EXPECT_TRUE(after["history"]["events"].empty()) << after["history"]["events"].dump();
+  ASSERT_EQ(run(std::string(kRun) + "--continue home.ovimap").code, 0) << "the map itself";
+  EXPECT_EQ(essence("home.ovimap"), essence("new.ovimap"));
+  EXPECT_EQ(run(std::string(kRun) + "--continue home.ovimap --threads 1 -o third.ovimap").code, 0);
+  const ProgramResult history = run("info third.ovimap --history");
+  EXPECT_NE(history.out.find("visit 3, 30 frames"), std::string::npos) << history.out;
+}
+
+TEST_F(ResumeProgramTest, AVisitThatWasKilledGoesOn) {
+  ASSERT_EQ(run(std::string(kRun) + "-o home.ovimap").code, 0);
+  const std::string visit = std::string(kRun) + "--continue home.ovimap ";
+  ASSERT_EQ(run(visit + "-o whole.ovimap").code, 0);
+  ASSERT_EQ(run(visit + "--frames :7 -o part.ovimap").code, 0);
+  store_as_checkpoint("part.ovimap", "room.ovimap.partial");
+  expect_complaint(visit + "-o room.ovimap", {"unfinished", "--resume"});
+  expect_complaint(std::string(kRun) + "-o room.ovimap --resume", {"--continue"});
+  ASSERT_EQ(run(visit + "-o room.ovimap --resume").code, 0);
+  EXPECT_EQ(essence("room.ovimap"), essence("whole.ovimap"));
+}
+
+TEST_F(ResumeProgramTest, AVisitThatDoesNotFitChangesNothing) {
+  sequence_.depth_camera = sequence_.color_camera = {160, 120, 140.f, 140.f, 79.5f, 59.5f};
+  fixture::write_replica(path("long"), sequence_);
+  ASSERT_EQ(run(std::string(kRun) + "-o home.ovimap").code, 0);
+  const std::string before = slurp(path("home.ovimap"));
+  sequence_.stored_pose = [](const Pose& pose) {
+    Eigen::Matrix4d off = pose.matrix();
+    off.topRightCorner<3, 1>() += Eigen::Vector3d(0.03, 0.02, 0.02);
+    return off;
+  };
+  std::filesystem::create_directories(path("off"));
+  fixture::write_replica(path("off"), sequence_);
+  expect_complaint(
+      "run off/scene --masks gt --encoder none --set map.voxel_size_m=0.03 --continue home.ovimap",
+      {"does not fit", "cm", "align"});
+  expect_complaint("run long/scene --masks gt --encoder none --continue home.ovimap",
+                   {"map.voxel_size_m"});
+  expect_complaint("run long/scene --masks gt --encoder none", {"-o", "--continue"});
+  EXPECT_TRUE(slurp(path("home.ovimap")) == before);
+  EXPECT_FALSE(std::filesystem::exists(path("home.ovimap.partial")));
+}
+
 TEST_F(ResumeProgramTest, AFullDiskLeavesTheLastCheckpoint) {
   ASSERT_EQ(run(std::string(kRun) + "-o whole.ovimap").code, 0);
   // A limit on file size stands in for the full disk. How much a few checkpoints take is not known

@@ -33,6 +33,19 @@ TEST_F(SynthProgramTest, SinglePicturesHaveNeitherTimesNorSettingsOfAWalk) {
   EXPECT_EQ(slurp(path("out/room/settings.yaml")).find("video"), std::string::npos);
 }
 
+TEST_F(SynthProgramTest, VisitsAreRecordingsInOneFrameWithTheTruthBetweenThem) {
+  const auto report = run_json("synth out --room bare --visits 2 --frames 2 --size 64x48 --json");
+  ASSERT_EQ(report["scenes"].size(), 2u);
+  for (const char* visit : {"out/visit1", "out/visit2"}) {
+    EXPECT_EQ(open_frame_source(path(visit))->size(), 2) << visit;
+    EXPECT_TRUE(std::filesystem::exists(path(std::string(visit) + "_mesh.ply"))) << visit;
+  }
+  const auto truth = nlohmann::json::parse(slurp(path("out/changes.json")));
+  EXPECT_EQ(truth["visits"], nlohmann::json({"visit1", "visit2"}));
+  EXPECT_TRUE(truth["changes"].empty()) << "nothing stands in a bare room";
+  expect_complaint("synth more --room rooms-v1 --visits 2", {"--visits", "one room"});
+}
+
 TEST_F(SynthProgramTest, SaysWhatIsWrong) {
   expect_complaint("synth out --room bare --fps 10", {"--fps", "--walk"});
   expect_complaint("synth out --room bare --walk --size 64", {"--size", "640x480"});

@@ -19,6 +19,7 @@ import subprocess
 import lasting
 import speed
 import tracking
+import visits
 from speed import run_json
 
 TUNED, UNSEEN = ["living-room", "bedroom", "kitchen"], ["office", "bathroom"]
@@ -29,7 +30,7 @@ ABLATIONS = ["masks", "views", "fusion", "incremental", "timing"]  # on the unse
 # A schedule is one of a video: a walk through an unseen room. A network takes seconds a frame, true masks nothing.
 WALK = ["--room", "office", "--walk", "--seconds", "20", "--size", "320x240"]
 SCHEDULES = {"gt": [], "sam": ["--frames", "::5"]}
-SECTIONS = ["tiny", "rooms", "exact", "apartments", "desks", "speed", "track", "corridor", "lasting", "surface", "masks", "views", "fusion", "incremental", "schedule", "timing"]
+SECTIONS = ["tiny", "rooms", "exact", "apartments", "desks", "speed", "track", "corridor", "lasting", "surface", "visits", "masks", "views", "fusion", "incremental", "schedule", "timing"]
 NEED_KITCHEN = ["speed", "lasting"]
 # Two crops a view instead of six: the ablations compare, and embedding is most of their time.
 FEW_CROPS = ["--set", "crops.scales=1"]
@@ -298,6 +299,7 @@ def main():
                "corridor": lambda: corridor_section(program),
                "lasting": lambda: lasting_section(program, arguments.kitchen),
                "surface": lambda: surface_section(program, work),
+               "visits": lambda: visits.section(program, work),
                "schedule": lambda: schedule_section(program, work, arguments.out),
                **{name: functools.partial(ablation_section, program, work, arguments.out, name) for name in ABLATIONS}}
     for name in arguments.only or SECTIONS:

@@ -5,7 +5,9 @@
 #include "ovimap/base/parallel.h"
 #include "ovimap/instance/association.h"
 #include "ovimap/instance/plain_association.h"
+#include "ovimap/map/fusion/free_space.h"
 #include "ovimap/map/fusion/integrate.h"
+#include "ovimap/map/fusion/plain_free_space.h"
 #include "ovimap/map/fusion/plain_fusion.h"
 #include "ovimap/map/rays/plain_ray_cast.h"
 #include "ovimap/map/rays/ray_cast.h"
@@ -71,6 +73,25 @@ void integrate_frame_plain(benchmark::State& state) {
   for (auto _ : state) plain::integrate(room.map, room.observation(room.scene));
 }
 BENCHMARK(integrate_frame_plain)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+/// Nothing is gone: what every frame pays.
+void clear_free_space(benchmark::State& state) {
+  MappedRoom room;
+  const Image<float> sigma(room.scene.camera.width, room.scene.camera.height, 0.002f);
+  Observation seen = room.observation(room.scene);
+  seen.sigma_m = &sigma;
+  for (auto _ : state) benchmark::DoNotOptimize(ovimap::clear_free_space(room.map, seen, {}));
+}
+BENCHMARK(clear_free_space)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void clear_free_space_plain(benchmark::State& state) {
+  MappedRoom room;
+  const Image<float> sigma(room.scene.camera.width, room.scene.camera.height, 0.002f);
+  Observation seen = room.observation(room.scene);
+  seen.sigma_m = &sigma;
+  for (auto _ : state) plain::clear_free_space(room.map, seen, {});
+}
+BENCHMARK(clear_free_space_plain)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void look_up_surface(benchmark::State& state) {
   const MappedRoom room;

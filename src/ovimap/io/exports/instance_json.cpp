@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "ovimap/io/exports/instance_json_value.h"
+#include "ovimap/io/map_tables/map_file_history.h"
 #include "ovimap/io/map_tables/map_file_record.h"
 #include "ovimap/semantics/query/query_grammar.h"
 
@@ -74,6 +75,28 @@ Json writing_value(const MapInfo& info) {
   return {{"reader", info.writing_reader}, {"objects", objects}};
 }
 
+Json box_or_null(const Eigen::AlignedBox3f& box) {
+  if (box.isEmpty()) return nullptr;
+  return {{"min", json_vector(box.min())}, {"max", json_vector(box.max())}};
+}
+
+Json history_value(const MapHistory& history) {
+  Json visits = Json::array(), events = Json::array();
+  for (const MapVisit& visit : history.visits)
+    visits.push_back({{"source", visit.source},
+                      {"first_frame", visit.first_frame},
+                      {"first_index", visit.first_index}});
+  for (const ObjectEvent& event : history.events)
+    events.push_back({{"object", event.instance},
+                      {"event", event_name(event.kind)},
+                      {"visit", event.visit},
+                      {"frame", event.frame},
+                      {"before", box_or_null(event.before)},
+                      {"after", box_or_null(event.after)},
+                      {"may_be", event.may_be == 0 ? Json(nullptr) : Json(event.may_be)}});
+  return {{"visits", visits}, {"events", events}};
+}
+
 Json info_value(const std::filesystem::path& path, const MapInfo& info) {
   Json document;
   document["map"] = path.string();
@@ -85,6 +108,7 @@ Json info_value(const std::filesystem::path& path, const MapInfo& info) {
   if (!info.writing_reader.empty()) document["writing"] = writing_value(info);
   for (const InstanceSummary& instance : info.hidden) document["hidden"].push_back(instance.id);
   document["locked"] = info.locked;
+  document["history"] = history_value(info.history);
   document["voxel_size_m"] = json_number(info.voxel_size_m);
   document["blocks"] = info.blocks;
   document["size_bytes"] = info.size_bytes;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
@@ -16,6 +17,7 @@
 #include "ovimap/io/map_tables/map_file_blocks.h"
 #include "ovimap/io/map_tables/map_file_by_instance.h"
 #include "ovimap/io/map_tables/map_file_frames.h"
+#include "ovimap/io/map_tables/map_file_history.h"
 #include "ovimap/io/map_tables/map_file_record.h"
 #include "ovimap/io/map_tables/map_file_rows.h"
 #include "ovimap/io/map_tables/map_file_semantics.h"
@@ -169,6 +171,8 @@ MapInfo read_info(SQLite::Database& database, const OpenMap& file) {
   info.config_text = std::move(record.config_text);
   info.timings = std::move(record.timings);
   info.frames = meta.frames;
+  info.history =
+      read_history(database, file.schema(), meta.frames, std::numeric_limits<InstanceId>::max());
   info.mask_frames = record.mask_frames;
   info.unfinished = record.unfinished;
   info.instances = std::move(record.instances);
@@ -221,6 +225,7 @@ MapMeta read_found(SQLite::Database& database, int schema, LabelForest& forest, 
     throw Error("its frame log is not complete");
   record.edits = read_edits(database);
   record.registry.last_id = last_instance(record);
+  record.history = read_history(database, schema, meta.frames, record.registry.last_id);
   return meta;
 }
 

@@ -9,7 +9,7 @@
 namespace ovimap {
 
 /// The newest file layout this program writes and reads; docs/map-format.md describes it.
-inline constexpr int kMapSchema = 5;
+inline constexpr int kMapSchema = 6;
 
 /// What a map file tells without its voxels.
 struct MapInfo {
@@ -24,6 +24,7 @@ struct MapInfo {
   std::map<InstanceId, std::string> names;
   std::string writing_reader;              ///< what read the writing; empty: nothing did
   std::map<InstanceId, std::vector<WrittenLine>> writing;  ///< of those on which some was read
+  MapHistory history;                             ///< empty in maps of earlier schemas
   EncoderIdentity encoder;                        ///< of the embeddings; no name: there are none
   Eigen::Vector3f up = Eigen::Vector3f::UnitZ();  ///< in the world
   PinholeCamera depth_camera;

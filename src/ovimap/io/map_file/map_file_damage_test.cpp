@@ -146,7 +146,7 @@ TEST_F(MapFileDamage, SaysWhenItIsTooNew) {
   const std::string fault = fault_after("PRAGMA user_version = 7");
   EXPECT_NE(
       fault.find(
-          "was written by a newer ovimap (schema 7, this program reads up to 5); update ovimap"),
+          "was written by a newer ovimap (schema 7, this program reads up to 6); update ovimap"),
       std::string::npos)
       << fault;
 }

@@ -84,7 +84,12 @@ inline VoxelMap random_map(int block_count, std::uint32_t seed) {
                          static_cast<int>(random() % 12) - 6);
   for (const BlockIndex& index : indices) {
     if (map.find(index) != nullptr) continue;
-    fill_randomly(map.writable_block(map.find_or_create(index)), map.labels(), random);
+    VoxelBlock& block = map.writable_block(map.find_or_create(index));
+    fill_randomly(block, map.labels(), random);
+    if (map.block_count() % 5 != 0) continue;
+    block.doubts.resize(kBlockVoxels);
+    for (std::size_t v = 0; v < kBlockVoxels; v += 3)
+      block.doubts[v] = static_cast<std::uint8_t>(block.weight[v] > 0.f ? v % 7 : 0);
   }
   return map;
 }
@@ -153,6 +158,12 @@ inline MapDocument random_document(int block_count, std::uint32_t seed) {
     pose.translation() = Eigen::Vector3d(1.0 / 3, -0.0, i);
     document.frames.push_back({i * 5, 0.1 * i, "frame-" + std::to_string(i), pose, i % 2 == 0});
   }
+  const Eigen::AlignedBox3f here(Eigen::Vector3f(0.1f, 0.2f, 0.3f), Eigen::Vector3f(1, 2, 3)),
+      there(Eigen::Vector3f(-1, 0, 0.25f), Eigen::Vector3f(-0.5f, 1, 0.5f));
+  document.history.visits = {{"/data/evening", 0, 0}, {"/data/morning", 2, 6}};
+  document.history.events = {{1, ObjectEventKind::kMoved, 2, 2, here, there, 0},
+                             {2, ObjectEventKind::kGone, 2, 2, here, {}, 0},
+                             {3, ObjectEventKind::kAppeared, 2, 2, {}, there, 2}};
   return document;
 }
 
@@ -166,7 +177,8 @@ inline std::string dump_of(VoxelMapConfig map, InstanceConfig instance) {
 inline bool same_block(const VoxelBlock& a, const VoxelBlock& b) {
   return a.index == b.index && a.forest_epoch == b.forest_epoch && a.palette == b.palette &&
          a.tsdf == b.tsdf && a.weight == b.weight && a.color == b.color && a.label == b.label &&
-         a.support == b.support;
+         a.support == b.support && a.doubted() == b.doubted() &&
+         (!a.doubted() || a.doubts == b.doubts);
 }
 
 inline bool same_voxels(const VoxelMap& a, const VoxelMap& b) {
@@ -242,6 +254,16 @@ inline bool same_kept_frame(const KeptFrames::value_type& a, const KeptFrames::v
          a.second->segments_png == b.second->segments_png && a.second->labels == b.second->labels;
 }
 
+inline bool same_box(const Eigen::AlignedBox3f& a, const Eigen::AlignedBox3f& b) {
+  return a.isEmpty() ? b.isEmpty() : a.min() == b.min() && a.max() == b.max();
+}
+
+inline bool same_event(const ObjectEvent& a, const ObjectEvent& b) {
+  return a.instance == b.instance && a.kind == b.kind && a.visit == b.visit &&
+         a.frame == b.frame && a.may_be == b.may_be && same_box(a.before, b.before) &&
+         same_box(a.after, b.after);
+}
+
 /// What two documents differ in; empty when in nothing.
 inline std::string difference(const MapDocument& a, const MapDocument& b) {
   if (!same_voxels(a.map, b.map)) return "voxels";
@@ -260,6 +282,10 @@ inline std::string difference(const MapDocument& a, const MapDocument& b) {
   if (!std::equal(a.kept_frames.begin(), a.kept_frames.end(), b.kept_frames.begin(),
                   b.kept_frames.end(), same_kept_frame))
     return "kept frames";
+  if (a.history.visits != b.history.visits ||
+      !std::equal(a.history.events.begin(), a.history.events.end(), b.history.events.begin(),
+                  b.history.events.end(), same_event))
+    return "history";
   if (a.depth_camera != b.depth_camera) return "camera";
   if (a.config_text != b.config_text || a.timings != b.timings || a.source != b.source ||
       a.version != b.version)

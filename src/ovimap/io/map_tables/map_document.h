@@ -16,6 +16,7 @@
 #include "ovimap/instance/instance_registry.h"
 #include "ovimap/instance/instance_summary.h"
 #include "ovimap/io/map_tables/map_edit.h"
+#include "ovimap/io/map_tables/map_history.h"
 #include "ovimap/map/voxels/voxel_map.h"
 #include "ovimap/semantics/views/view_selection.h"
 
@@ -46,6 +47,7 @@ struct MapHeader {
                                                  ///< (ConfigFields::dump)
   std::map<InstanceId, std::string> names = {};  ///< given by people or queries; none for most
   MapEdits edits = {};  ///< what people corrected, oldest first; the rest is as mapping found it
+  MapHistory history = {};  ///< of a map of one visit: that visit, or nothing
 };
 
 /// A fused frame as it is kept to be fused again from another pose. Images have the depth camera's

@@ -18,7 +18,7 @@ namespace {
 constexpr int kCompressionLevel = 1;
 constexpr std::size_t kMaskBytes = kBlockVoxels / 8;
 constexpr std::size_t kPaletteLimit = 256;
-constexpr std::size_t kVoxelBytes = 24;
+constexpr std::size_t kVoxelBytes = 25;  // with doubts
 
 /// The order in which voxels are stored: a path through the block whose every step goes to a
 /// neighbour, so that the voxel before is a good prediction.
@@ -262,6 +262,25 @@ bool take_voxels(const std::vector<LoadedPlace>& places, std::uint8_t* body, con
   return weights_valid;
 }
 
+bool doubted(std::span<const VoxelBlock* const> blocks) {
+  return std::any_of(blocks.begin(), blocks.end(),
+                     [](const VoxelBlock* block) { return block->doubted(); });
+}
+
+void put_doubts(const std::vector<SavedPlace>& places, std::uint8_t* doubts) {
+  for (const auto [block, v] : places)
+    *doubts++ = block->doubts.empty() ? std::uint8_t{0} : block->doubts[v];
+}
+
+void take_doubts(const std::vector<LoadedPlace>& places, const std::uint8_t* doubts) {
+  for (const auto [block, v] : places) {
+    const std::uint8_t count = *doubts++;
+    if (count == 0) continue;
+    block->doubts.resize(kBlockVoxels);
+    block->doubts[v] = count;
+  }
+}
+
 std::size_t count_supports(std::span<const std::uint8_t> labels) {
   return labels.size() - static_cast<std::size_t>(std::count(labels.begin(), labels.end(), 0));
 }
@@ -279,8 +298,10 @@ Bytes TileEncoder::encode(std::span<const VoxelBlock* const> blocks) {
   for (const auto [block, v] : places)
     for (const auto& slot : block->label) supports += slot[v] != 0;
   const BodyLayout layout(body_.size(), places.size(), supports);
-  body_.resize(layout.end);
+  const bool doubts = doubted(blocks);  // a plane of their own at the end, mostly left out
+  body_.resize(layout.end + (doubts ? places.size() : 0));
   put_voxels(places, body_.data(), layout);
+  if (doubts) put_doubts(places, body_.data() + layout.end);
 
   // A flush between the two parts gives each its own entropy tables; it is one frame all the same.
   ZSTD_CCtx_reset(context_.get(), ZSTD_reset_session_and_parameters);
@@ -326,10 +347,12 @@ std::string TileDecoder::decode(std::span<const std::uint8_t> data,
   if (!head.has(label_bytes)) return "its labels are cut off";
   const BodyLayout layout(head.position(), places.size(),
                           count_supports(body.subspan(head.position(), label_bytes)));
-  if (layout.end != size)
+  const bool doubts = !places.empty() && size == layout.end + places.size();
+  if (layout.end != size && !doubts)
     return concat("it has ", size, " bytes where ", layout.end, " are expected");
   if (!take_labels(places, body_.data(), layout)) return "a label slot points beyond its palette";
   if (!take_voxels(places, body_.data(), layout)) return "a weight is negative or not finite";
+  if (doubts) take_doubts(places, body_.data() + layout.end);
   return {};
 }
 

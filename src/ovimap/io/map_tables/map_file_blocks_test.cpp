@@ -69,6 +69,24 @@ TEST(MapFileBlocks, RandomBlocksReturnBitForBit) {
   }
 }
 
+TEST(MapFileBlocks, DoubtsTakeNoSpaceWhereThereAreNone) {
+  VoxelMap map;
+  VoxelBlock& block = map.writable_block(map.find_or_create({0, 0, 0}));
+  block.weight[7] = 1.f;
+  TileEncoder encoder;
+  const std::vector<Tile> tiles = tiles_of(map);
+  const Bytes without = encoder.encode(blocks_of(map, tiles[0]));
+  const std::uint64_t hash = map.content_hash();
+  block.doubts.resize(kBlockVoxels);
+  EXPECT_EQ(encoder.encode(blocks_of(map, tiles[0])), without);
+  EXPECT_EQ(map.content_hash(), hash);
+  block.doubts[7] = 3;
+  EXPECT_NE(map.content_hash(), hash);
+  const VoxelMap again = through_tiles(map);
+  EXPECT_EQ(again.block(0).doubts[7], 3);
+  EXPECT_EQ(again.content_hash(), map.content_hash());
+}
+
 TEST(MapFileBlocks, ExtremeBlocksReturnBitForBit) {
   VoxelMap map;
   for (int i = 0; i < 300; ++i) map.labels().create();

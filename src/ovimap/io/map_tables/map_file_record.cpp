@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "ovimap/base/config.h"
+#include "ovimap/io/map_tables/map_file_history.h"
 #include "ovimap/io/map_tables/map_file_rows.h"
 
 namespace ovimap {
@@ -238,6 +239,7 @@ void write_record(SQLite::Database& database, const MapRecord& record, const Map
   write_instances(database, record, kFoundInstanceTables);
   write_frames(database, record);
   write_registry(database, record.registry);
+  write_history(database, record.history);
 }
 
 void write_forest(SQLite::Database& database, const LabelForest& forest) {

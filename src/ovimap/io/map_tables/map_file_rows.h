@@ -124,6 +124,16 @@ inline constexpr MapTable kViews{
     "INTEGER NOT NULL, embedding BLOB NOT NULL, crop_jpeg BLOB NOT NULL, crop_mask_png BLOB NOT "
     "NULL, min_x INTEGER NOT NULL, min_y INTEGER NOT NULL, max_x INTEGER NOT NULL, max_y INTEGER "
     "NOT NULL, PRIMARY KEY (instance, ordinal)"};
+/// What the recordings of a map were, and what each changed.
+inline constexpr MapTable kVisits{
+    "visits", "visit, source, first_frame, first_index",
+    "visit INTEGER PRIMARY KEY, source TEXT NOT NULL, first_frame INTEGER NOT NULL, first_index "
+    "INTEGER NOT NULL"};
+inline constexpr MapTable kObjectEvents{
+    "object_events", "id, instance, kind, visit, frame, before, after, may_be",
+    "id INTEGER PRIMARY KEY, instance INTEGER NOT NULL, kind TEXT NOT NULL, visit INTEGER NOT "
+    "NULL, frame INTEGER NOT NULL, before BLOB NOT NULL, after BLOB NOT NULL, may_be INTEGER NOT "
+    "NULL"};
 /// The log of corrections, and what it makes of the tables above.
 inline constexpr MapTable kEdits{"edits", "id, time_s, action, arguments, undone_by",
                                  "id INTEGER PRIMARY KEY, time_s REAL, action TEXT NOT NULL, "
@@ -151,7 +161,7 @@ inline constexpr const MapTable* kAll[] = {
     &kMeta, &kInstances, &kInstanceSuperPoints, &kInstanceNames, &kInstanceAliases, &kSuperPoints,
     &kSuperPointFrames, &kVotes, &kLabelPairs, &kEntitySightings, &kLabelForest, &kFrames,
     &kSuperPointLooks, &kSuperPointViews, &kWriting, &kEmbeddings, &kSurfaces, &kBlocks, &kKeptFrames,
-    &kInstanceRecords, &kAppearances, &kViews, &kEdits, &kCorrectedInstances,
+    &kInstanceRecords, &kAppearances, &kViews, &kVisits, &kObjectEvents, &kEdits, &kCorrectedInstances,
     &kCorrectedSuperPoints, &kCorrectedNames, &kCorrectedSurfaces, &kCorrectedEmbeddings,
     &kCorrectedFlags, &kChecks};
 }  // namespace map_tables

@@ -71,6 +71,19 @@ TEST_F(MapFileSemantics, RefusesEmbeddingsThatCannotBe) {
   EXPECT_THROW(read_searchable_map(root_ / "a.ovimap"), Error);
 }
 
+TEST_F(MapFileSemantics, ReadsMapsOfTheFifthSchemaWhichAreOfOneVisit) {
+  const fs::path path = fs::path(OVIMAP_SOURCE_DIR) / "tests/maps/schema5.ovimap";
+  const MapDocument map = load_map(path);
+  EXPECT_EQ(read_map_info(path).schema, 5);
+  EXPECT_EQ(map.instances.size(), 6u);
+  EXPECT_EQ(map.frames.size(), 5u);
+  EXPECT_TRUE(map.history.visits.empty());
+  EXPECT_TRUE(map.history.events.empty());
+  save_map(root_ / "new.ovimap", map);
+  EXPECT_EQ(read_map_info(root_ / "new.ovimap").schema, kMapSchema);
+  EXPECT_EQ(difference(map, load_map(root_ / "new.ovimap")), "");
+}
+
 TEST_F(MapFileSemantics, ReadsMapsOfTheFourthSchemaWhoseLooksAreByInstance) {
   const fs::path path = fs::path(OVIMAP_SOURCE_DIR) / "tests/maps/schema4.ovimap";
   const MapDocument map = load_map(path);

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "ovimap/base/lanes.h"
 #include "ovimap/base/vectorize.h"
+#include "ovimap/map/fusion/projected_row.h"
 #include "ovimap/map/voxels/label_slots.h"
 
 namespace ovimap {
@@ -23,16 +23,7 @@ constexpr float kColorScale = 256.f;            ///< 8.8 fixed point
 constexpr float kLeastColorShare = 1.f / 64.f;  ///< colours go on following the view
 constexpr float kLeastSlope = 0.1f;  ///< surfaces seen at more than 84 degrees: a guess at best
 
-static_assert(kBlockSide == kLanes, "a row of voxels is worked on at once");
 static_assert(std::endian::native == std::endian::little);
-
-/// Where eight voxels in a row along x lie in the image.
-struct ProjectedRow {
-  Floats z_m;            ///< of the voxel's centre along the optical axis
-  Floats range_squared;  ///< of the voxel's centre from the camera, m^2
-  Ints pixel;            ///< index of the nearest pixel, 0 outside the image
-  Ints inside;           ///< mask
-};
 
 /// What the frame says of them.
 struct ObservedRow {
@@ -43,27 +34,6 @@ struct ObservedRow {
 
 // Vectors are passed between inlined functions only.
 #pragma GCC diagnostic ignored "-Wpsabi"
-#define OVIMAP_INLINE inline __attribute__((always_inline))
-
-OVIMAP_INLINE void project(const PinholeCamera& camera, const Eigen::Vector3f& start,
-                           const Eigen::Matrix3f& steps, ProjectedRow& row) {
-  const Floats along = {0.f, 1.f, 2.f, 3.f, 4.f, 5.f, 6.f, 7.f};
-  const Floats x = start.x() + along * steps(0, 0), y = start.y() + along * steps(1, 0);
-  row.z_m = start.z() + along * steps(2, 0);
-  row.range_squared = x * x + y * y + row.z_m * row.z_m;
-  const Floats inverse = 1.f / larger(row.z_m, broadcast(1e-6f));
-  const Floats u = camera.fx * (x * inverse) + (camera.cx + 0.5f);
-  const Floats v = camera.fy * (y * inverse) + (camera.cy + 0.5f);
-  row.inside = (row.z_m > 1e-3f) & (u >= 0.f) & (v >= 0.f) &
-               (u < static_cast<float>(camera.width)) & (v < static_cast<float>(camera.height));
-  row.pixel = __builtin_convertvector(row.inside ? v : Floats{}, Ints) * camera.width +
-              __builtin_convertvector(row.inside ? u : Floats{}, Ints);
-}
-
-OVIMAP_INLINE Floats gather(const float* image, Ints pixel) {
-  return Floats{image[pixel[0]], image[pixel[1]], image[pixel[2]], image[pixel[3]],
-                image[pixel[4]], image[pixel[5]], image[pixel[6]], image[pixel[7]]};
-}
 
 /// Metres off the surface per metre of depth, at the pixels of `wanted` lanes.
 OVIMAP_INLINE Floats slopes(const FusionView& view, const ProjectedRow& row, Ints wanted) {
@@ -224,6 +194,15 @@ OVIMAP_INLINE void for_each_row(const FusionView& view, const VoxelBlock& block,
   }
 }
 
+/// What a frame ends on it does not see through.
+OVIMAP_INLINE void end_doubts(const FusionView& view, const ObservedRow& seen,
+                              std::uint8_t* doubts) {
+  const Ints on_surface = seen.observed & (magnitude(seen.distance_m) <= view.label_band_m);
+  if (!any(on_surface)) return;
+  for (int i = 0; i < kLanes; ++i)
+    if (on_surface[i]) doubts[i] = 0;
+}
+
 }  // namespace
 
 OVIMAP_VECTORIZE void update_block(const FusionView& view, VoxelBlock& block) {
@@ -235,6 +214,7 @@ OVIMAP_VECTORIZE void update_block(const FusionView& view, VoxelBlock& block) {
                                      block.color[2].data() + first};
     if (view.frame.color) blend_colors(*view.frame.color, row, share, color);
     if (view.frame.segment_ids) voter.vote(row, seen, first);
+    if (!block.doubts.empty()) end_doubts(view, seen, block.doubts.data() + first);
   });
 }
 

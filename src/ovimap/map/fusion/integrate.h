@@ -38,7 +38,7 @@ struct Observation {
 /// surfaces seen at a slant, and differ from view to view. Voxels further than the truncation from
 /// the surface along their ray keep what they have.
 ///
-/// The only writer of voxels, with vote_labels. Returns the slots of the blocks it visited, in
+/// The only writer of voxels, with vote_labels and clear_free_space. Returns the slots of the blocks it visited, in
 /// block-index order.
 std::vector<std::uint32_t> integrate(VoxelMap& map, const Observation& observation);
 

@@ -71,8 +71,9 @@ class VoxelFusion {
     block_.tsdf[voxel] = static_cast<VoxelBlock::Tsdf>(rounded(old + share * (target - old)));
     block_.weight[voxel] = std::min(sum, view_.max_weight);
     if (view_.frame.color) blend_color(voxel, (*view_.frame.color)[pixel], share);
-    if (view_.frame.segment_ids && std::fabs(distance) <= view_.label_band_m)
-      vote(voxel, (*view_.frame.segment_ids)[pixel]);
+    if (std::fabs(distance) > view_.label_band_m) return;
+    if (view_.frame.segment_ids) vote(voxel, (*view_.frame.segment_ids)[pixel]);
+    if (!block_.doubts.empty()) block_.doubts[voxel] = 0;
   }
 
   static int rounded(float value) { return static_cast<int>(value + (value < 0.f ? -0.5f : 0.5f)); }

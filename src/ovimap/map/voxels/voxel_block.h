@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -78,6 +79,14 @@ struct VoxelBlock {
   /// Label slots, strongest first: palette position and support (number of frames).
   std::array<std::array<std::uint8_t, kBlockVoxels>, kLabelSlots> label;
   std::array<std::array<std::uint16_t, kBlockVoxels>, kLabelSlots> support;
+  /// In how many frames on end the voxel's surface was seen through (clear_free_space); empty: in
+  /// none, as in most blocks.
+  std::vector<std::uint8_t> doubts;
+
+  /// Whether any voxel is doubted.
+  bool doubted() const {
+    return std::any_of(doubts.begin(), doubts.end(), [](std::uint8_t count) { return count != 0; });
+  }
 };
 
 }  // namespace ovimap

@@ -26,7 +26,8 @@ std::uint64_t block_hash(const VoxelBlock& block, const LabelForest& forest) {
   labels.reserve(kBlockVoxels * kLabelSlots);
   for (int v = 0; v < kBlockVoxels; ++v)
     for (const LabelSupport& held : voxel_labels(block, v, forest)) labels.push_back(held);
-  return XXH64(labels.data(), labels.size() * sizeof(LabelSupport), hash);
+  hash = XXH64(labels.data(), labels.size() * sizeof(LabelSupport), hash);
+  return block.doubted() ? XXH64(block.doubts.data(), block.doubts.size(), hash) : hash;
 }
 
 }  // namespace
@@ -179,11 +180,11 @@ std::size_t VoxelMap::index_bytes() const {
 }
 
 std::size_t VoxelMap::bytes() const {
-  std::size_t palettes = 0;
+  std::size_t extras = 0;
   for (const BlockPlace& place : blocks_)
     if (const VoxelBlock* block = place.get())
-      palettes += block->palette.capacity() * sizeof(Label);
-  return in_memory_ * sizeof(VoxelBlock) + palettes + index_bytes();
+      extras += block->palette.capacity() * sizeof(Label) + block->doubts.capacity();
+  return in_memory_ * sizeof(VoxelBlock) + extras + index_bytes();
 }
 
 std::uint64_t VoxelMap::content_hash() const {

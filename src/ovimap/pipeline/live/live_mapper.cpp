@@ -197,8 +197,8 @@ void LiveMapper::fuse(Prepared prepared) {
   }
   mapper_->fuse(*prepared.frame, prepared.cut.get());
   const double lag_ms = milliseconds_since(prepared.pushed);
-  frames_.push_back({frame.index, frame.timestamp_s, frame.name, frame.world_from_camera,
-                     prepared.cut != nullptr});
+  frames_.push_back({mapper_->number_of(frame), frame.timestamp_s, frame.name,
+                     frame.world_from_camera, prepared.cut != nullptr});
   const bool look = mapper_->frames() % live_.view_interval == 0;
   const bool no_time = waiting > live_.view_backlog || !mapper_->encoder_keeps_up();
   if (look && !no_time) {
@@ -224,7 +224,7 @@ void LiveMapper::apply_masks(Prepared late) {
   begin("apply_masks");
   mapper_->label(*late.frame, *late.cut);
   const auto entry = std::find_if(frames_.rbegin(), frames_.rend(), [&](const FrameLogEntry& e) {
-    return e.index == late.frame->frame->index;
+    return e.index == mapper_->number_of(*late.frame->frame);
   });
   if (entry != frames_.rend()) entry->labelled = true;
   if (after_frame) after_frame(*mapper_, frames_, late.frame->frame->depth_camera);

@@ -68,6 +68,8 @@ class LiveMapper {
 
   /// Goes on where a stored map stopped, made with the same config. Before the first push only.
   void restore(MapDocument&& document);
+  /// As Mapper::number_from; before the first frame.
+  void number_from(std::int64_t first) { mapper_->number_from(first); }
 
   /// Waits until everything pushed is in the map, with its masks and embeddings; then no more
   /// frames are taken. Throws what a stage threw.

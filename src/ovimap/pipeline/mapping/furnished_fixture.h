@@ -132,17 +132,36 @@ class FurnishedMasks : public MaskSource {
   const FurnishedRoom& room_;
 };
 
-/// The room mapped with true masks and embeddings of colours.
-inline MapDocument map_of(const FurnishedRoom& room) {
+inline MapperConfig furnished_config() {
   MapperConfig config;
   config.map.voxel_size_m = 0.02f;
   config.semantics.views.min_mask_px = 20;
   config.semantics.views.min_first_depth_px = config.semantics.views.min_depth_px = 10;
-  Mapper mapper(config, std::make_shared<FurnishedMasks>(room), std::make_shared<ColorEncoder>());
+  return config;
+}
+
+/// The room mapped with true masks and embeddings of colours, or without embeddings; as another
+/// visit to the place of `begun` where there is one.
+inline MapDocument map_of(const FurnishedRoom& room, MapDocument begun = MapDocument(),
+                          bool embedded = true) {
+  Mapper mapper(furnished_config(), std::make_shared<FurnishedMasks>(room),
+                embedded ? std::make_shared<ColorEncoder>() : nullptr);
   std::vector<std::int64_t> all(static_cast<std::size_t>(room.frames));
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<std::int64_t>(i);
-  const SequenceResult result = run_sequence(room, all, mapper);
-  MapDocument document = make_document(std::move(mapper), result, {"furnished"});
+  MapHeader header{"furnished"};
+  SequenceResult done;
+  if (!begun.frames.empty()) {
+    const std::int64_t next = begun.frames.back().index + 1;
+    header.history.visits = {{"furnished", 0, 0},
+                             {"furnished", static_cast<std::int64_t>(begun.frames.size()), next}};
+    header.names = begun.names;
+    done.frames = begun.frames;
+    done.depth_camera = begun.depth_camera;
+    mapper.restore(std::move(begun));
+    mapper.number_from(next);
+  }
+  const SequenceResult result = run_sequence(room, all, mapper, nullptr, std::move(done));
+  MapDocument document = make_document(std::move(mapper), result, std::move(header));
   document.up = room.world_from_room.linear().cast<float>() * Eigen::Vector3f::UnitZ();
   return document;
 }

@@ -3,6 +3,7 @@
 #include "ovimap/pipeline/mapping/mapper.h"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 
 #include "ovimap/base/error.h"
@@ -31,6 +32,18 @@ std::vector<Label> labels_of(std::span<const SegmentAssociation> associations) {
   std::vector<Label> labels;
   for (const SegmentAssociation& segment : associations) labels.push_back(segment.label);
   return labels;
+}
+
+/// Adds to slots in block-index order others in that order.
+void add_slots(const std::vector<std::uint32_t>& added, const VoxelMap& map,
+               std::vector<std::uint32_t>& slots) {
+  if (added.empty()) return;
+  std::vector<std::uint32_t> all;
+  std::set_union(slots.begin(), slots.end(), added.begin(), added.end(), std::back_inserter(all),
+                 [&map](std::uint32_t a, std::uint32_t b) {
+                   return pack_index(map.block_index(a)) < pack_index(map.block_index(b));
+                 });
+  slots = std::move(all);
 }
 
 }  // namespace
@@ -64,17 +77,28 @@ FrameReport Mapper::fuse(const PreparedFrame& prepared, const FrameSegments* cut
   builder_->rethrow_failure();  // before anything changes
   const std::vector<SegmentAssociation> associations = find_labels(prepared, cut);
   const std::vector<Label> labels = labels_of(associations);
+  const Observation observation = observation_of(prepared, cut, labels);
+  const std::vector<std::uint32_t> cleared = clear_free_space(observation);
   {
     auto t = timers_.measure("integrate");
-    touched_blocks_ = integrate(map_, observation_of(prepared, cut, labels));
+    touched_blocks_ = integrate(map_, observation);
   }
+  add_slots(cleared, map_, touched_blocks_);
   if (config_.frame_store.max_mb > 0) {
     auto t = timers_.measure("keep_frame");
-    frame_store_.add(prepared.frame->index, prepared.frame->depth, prepared.color,
+    frame_store_.add(number_of(*prepared.frame), prepared.frame->depth, prepared.color,
                      cut ? &cut->segments.ids : nullptr, labels);
   }
   ++frames_;
   return observe(*prepared.frame, cut, associations);
+}
+
+std::vector<std::uint32_t> Mapper::clear_free_space(const Observation& observation) {
+  if (!config_.free_space.enabled ||
+      !looks_.next(observation.world_from_camera, config_.free_space))
+    return {};
+  auto t = timers_.measure("free_space");
+  return ovimap::clear_free_space(map_, observation, config_.free_space).slots;
 }
 
 FrameReport Mapper::label(const PreparedFrame& prepared, const FrameSegments& cut) {
@@ -84,7 +108,7 @@ FrameReport Mapper::label(const PreparedFrame& prepared, const FrameSegments& cu
     auto t = timers_.measure("vote");
     touched_blocks_ = vote_labels(map_, observation_of(prepared, &cut, labels));
   }
-  frame_store_.add_labels(prepared.frame->index, cut.segments.ids, labels);
+  frame_store_.add_labels(number_of(*prepared.frame), cut.segments.ids, labels);
   return observe(*prepared.frame, &cut, associations);
 }
 
@@ -102,7 +126,7 @@ FrameReport Mapper::observe(const Frame& frame, const FrameSegments* cut,
                             std::span<const SegmentAssociation> associations) {
   if (!cut) return {};
   auto t = timers_.measure("registry");
-  registry_.observe(cut->segments, associations, frame.index, cut->masked, map_.labels());
+  registry_.observe(cut->segments, associations, number_of(frame), cut->masked, map_.labels());
   mask_frames_ += cut->masked;
   FrameReport report;
   report.regions = cut->regions;
@@ -128,7 +152,7 @@ int Mapper::look_at_objects(const Frame& frame, Encoder encoder) {
                                .color_index = registration.color_index(),
                                .camera = frame.depth_camera,
                                .world_from_camera = frame.world_from_camera,
-                               .frame = frame.index},
+                               .frame = number_of(frame)},
                               registry_, map_.labels());
   }
   auto t = timers_.measure("await_encoder");
@@ -158,6 +182,8 @@ void Mapper::restore(MapDocument&& document) {
   registry_.restore(std::move(document.registry));
   builder_->restore(std::move(document.semantics.looks));
   frame_store_.restore(std::move(document.kept_frames), document.frames.size());
+  for (const FrameLogEntry& frame : document.frames)
+    looks_.next(frame.world_from_camera, config_.free_space);
   frames_ = static_cast<int>(document.frames.size());
   mask_frames_ = document.mask_frames;
 }

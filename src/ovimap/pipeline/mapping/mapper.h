@@ -80,6 +80,10 @@ class Mapper {
   /// Goes on where the mapper of a stored map stopped, which had the same config; on a fresh mapper
   /// only.
   void restore(MapDocument&& document);
+  /// From now on frames are of another recording, whose position 0 is that number in the map.
+  void number_from(std::int64_t first) { first_number_ = first; }
+  /// What the map calls a frame (FrameLogEntry::index).
+  std::int64_t number_of(const Frame& frame) const { return first_number_ + frame.index; }
 
   /// From now on what the encoder throws is counted instead of thrown; its views stay without
   /// embedding.
@@ -109,6 +113,7 @@ class Mapper {
   int mask_frames() const { return mask_frames_; }
 
  private:
+  std::vector<std::uint32_t> clear_free_space(const Observation& observation);
   std::vector<SegmentAssociation> find_labels(const PreparedFrame& prepared,
                                               const FrameSegments* cut);
   Image<InstanceId> instances_of(const Image<Label>& labels) const;
@@ -122,8 +127,10 @@ class Mapper {
   std::unique_ptr<AppearanceBuilder> builder_;
   StageTimers timers_;
   FrameStore frame_store_;
+  SeparateLooks looks_;
   std::vector<std::uint32_t> touched_blocks_;
   int frames_ = 0, mask_frames_ = 0;
+  std::int64_t first_number_ = 0;
 };
 
 }  // namespace ovimap

@@ -20,6 +20,7 @@ void list_fields(MapperConfig& config, ConfigFields& fields) {
   fields.group("instance", [&](ConfigFields& f) { list_fields(config.instance, f); });
   fields.group("summary", [&](ConfigFields& f) { list_fields(config.summary, f); });
   fields.group("map", [&](ConfigFields& f) { list_fields(config.map, f); });
+  fields.group("free_space", [&](ConfigFields& f) { list_fields(config.free_space, f); });
   list_fields(config.semantics, fields);
   fields.group("frame_store", [&](ConfigFields& f) { list_fields(config.frame_store, f); });
   fields.add("view_interval", config.view_interval, 0, 1000000,
@@ -52,6 +53,7 @@ MapperConfig mapper_preset(const std::string& name) {
   config.instance.instances = InstanceReading::kEntityVotes;
   config.instance.merging.merge_max_dissent = 1e6f;  // the paper counts no dissent
   config.depth.enabled = false;
+  config.free_space.enabled = false;
   config.map.max_weight = 1e4f;
   config.map.min_mesh_weight = 1e-4f;
   config.map.label_band_voxels = static_cast<float>(config.map.truncation_voxels);

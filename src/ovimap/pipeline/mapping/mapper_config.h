@@ -8,6 +8,7 @@
 #include "ovimap/instance/association.h"
 #include "ovimap/instance/instance_registry.h"
 #include "ovimap/instance/instance_summary.h"
+#include "ovimap/map/fusion/free_space.h"
 #include "ovimap/map/voxels/voxel_map.h"
 #include "ovimap/pipeline/mapping/appearance_builder.h"
 #include "ovimap/pipeline/mapping/frame_store.h"
@@ -26,6 +27,7 @@ struct MapperConfig {
   InstanceConfig instance;
   InstanceSummaryConfig summary;
   VoxelMapConfig map;
+  FreeSpaceConfig free_space;
   SemanticsConfig semantics;
   FrameStoreConfig frame_store;
   int view_interval = 0;  ///< objects are looked at in every n-th frame; 0: in every frame with an

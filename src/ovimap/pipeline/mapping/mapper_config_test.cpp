@@ -80,6 +80,7 @@ TEST(MapperPreset, ReferenceIsWhatTheReleasedCodeDoes) {
       {"association.merge_min_points", "1000"},
       {"instance.instances", "entity_votes"},
       {"instance.merge_min_count", "10"},
+      {"free_space.enabled", "false"},
       {"map.truncation_voxels", "5"},
       {"map.max_weight", "10000"},
       {"map.label_band_voxels", "5"},

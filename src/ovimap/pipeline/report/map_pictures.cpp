@@ -44,12 +44,16 @@ RgbImage contact_sheet_picture(const MapDocument& document, const FrameSource& s
   for (const InstanceSummary& instance : document.instances)
     for (Label root : instance.super_points) instance_of[root] = instance.id;
   std::vector<SheetFrame> sheet;
-  const auto count = static_cast<int>(
-      std::min<std::size_t>(static_cast<std::size_t>(frames), document.frames.size()));
+  const MapVisit visit =  // the source is of the last
+      document.history.visits.empty() ? MapVisit() : document.history.visits.back();
+  const auto first = static_cast<std::size_t>(visit.first_frame);
+  const std::size_t of_visit = document.frames.size() - first;
+  const auto count =
+      static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(frames), of_visit));
   for (int i = 0; i < count; ++i) {
-    const std::size_t entry = (2 * static_cast<std::size_t>(i) + 1) * document.frames.size() /
-                              (2 * static_cast<std::size_t>(count));
-    FrameRead read = source.read(document.frames[entry].index);
+    const std::size_t entry = first + (2 * static_cast<std::size_t>(i) + 1) * of_visit /
+                                          (2 * static_cast<std::size_t>(count));
+    FrameRead read = source.read(document.frames[entry].index - visit.first_index);
     if (read.frame)
       sheet.push_back({read.frame->color, project_instances(document, *read.frame, instance_of)});
   }

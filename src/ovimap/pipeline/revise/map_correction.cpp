@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "ovimap/base/error.h"
+#include "ovimap/map/fusion/free_space.h"
 #include "ovimap/map/fusion/integrate.h"
 #include "ovimap/pipeline/mapping/frame_store.h"
 #include "ovimap/pipeline/sequence/map_description.h"
@@ -36,20 +37,24 @@ std::vector<Label> roots_of(const std::vector<Label>& labels, const LabelForest&
 }
 
 void fuse_again(const KeptFrame& kept, const PinholeCamera& camera, const Pose& world_from_camera,
-                const MapperConfig& config, VoxelMap& map) {
+                const MapperConfig& config, SeparateLooks& looks, VoxelMap& map) {
   const KeptImages images = decode_kept(kept, camera);
   const DepthSurface surface = fit_depth_surface(images.depth, camera, config.segment.surface);
   const std::vector<Label> labels = roots_of(kept.labels, map.labels());
   const DepthEstimate estimate =
       estimate_depth(images.depth, surface, config.segment.surface.noise, config.depth);
-  integrate(map, {.depth = estimate.depth_m,
-                  .camera = camera,
-                  .world_from_camera = world_from_camera,
-                  .color = &images.color,
-                  .plane_slope = &surface.plane_slope,
-                  .sigma_m = estimate.sigma_m.empty() ? nullptr : &estimate.sigma_m,
-                  .segment_ids = labels.empty() ? nullptr : &images.segment_ids,
-                  .segment_labels = labels});
+  const Observation observation{
+      .depth = estimate.depth_m,
+      .camera = camera,
+      .world_from_camera = world_from_camera,
+      .color = &images.color,
+      .plane_slope = &surface.plane_slope,
+      .sigma_m = estimate.sigma_m.empty() ? nullptr : &estimate.sigma_m,
+      .segment_ids = labels.empty() ? nullptr : &images.segment_ids,
+      .segment_labels = labels};
+  if (looks.next(world_from_camera, config.free_space))
+    clear_free_space(map, observation, config.free_space);
+  integrate(map, observation);
 }
 
 }  // namespace
@@ -70,9 +75,10 @@ PoseCorrection correct_poses(MapDocument& document, const std::vector<Pose>& pos
   VoxelMap map(document.map.config());
   map.labels() = document.map.labels();
   document.map = VoxelMap(map.config());
+  SeparateLooks looks;
   for (const auto& [position, kept] : document.kept_frames) {
     try {
-      fuse_again(*kept, document.depth_camera, poses[position], config, map);
+      fuse_again(*kept, document.depth_camera, poses[position], config, looks, map);
     } catch (const Error& fault) {
       throw Error(concat("the kept frame ", position, " cannot be fused again (", fault.what(),
                          "); map the recording anew with the corrected poses"));

@@ -88,8 +88,8 @@ SequenceResult run_sequence(const FrameSource& source, const std::vector<std::in
     if (current.fault.empty()) {
       const Frame& frame = *current.frame;
       if (result.frames.empty()) result.depth_camera = frame.depth_camera;
-      result.frames.push_back(
-          {frame.index, frame.timestamp_s, frame.name, frame.world_from_camera, report.labelled});
+      result.frames.push_back({mapper.number_of(frame), frame.timestamp_s, frame.name,
+                               frame.world_from_camera, report.labelled});
       if (checkpoints) checkpoints->after_frame(mapper, result.frames, result.depth_camera);
     } else {
       result.skipped.push_back({positions[i], current.fault});

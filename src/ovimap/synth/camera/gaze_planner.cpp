@@ -42,6 +42,7 @@ struct Sight {
 std::vector<Sight> sights_of(const SynthRoom& room) {
   std::vector<Sight> sights;
   for (const RoomObject& object : room.objects) {
+    if (object.box.isEmpty()) continue;  // away
     if (object.footprint) {
       const Eigen::Vector3f center = object.box.center();
       sights.push_back({center.cast<double>(), object.id, 1});

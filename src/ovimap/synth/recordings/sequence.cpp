@@ -176,8 +176,9 @@ std::optional<IdImage> SynthSequence::truth_ids(std::int64_t position) const {
 std::vector<TruthInstance> SynthSequence::instances() const {
   std::vector<TruthInstance> instances;
   for (const RoomObject& object : state_->room.objects)
-    instances.push_back(
-        {object.id, object.name, room_class_id(object.class_name), object.class_name, object.room});
+    if (!object.box.isEmpty())
+      instances.push_back({object.id, object.name, room_class_id(object.class_name),
+                           object.class_name, object.room});
   return instances;
 }
 

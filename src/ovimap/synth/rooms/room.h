@@ -53,7 +53,7 @@ struct SynthRoom {
   std::string name;
   std::uint64_t seed = 0;
   Eigen::Vector3f size_m = Eigen::Vector3f::Zero();
-  std::vector<RoomObject> objects;  ///< objects[i].id == i + 1
+  std::vector<RoomObject> objects;  ///< objects[i].id == i + 1; without mesh: it is away (visits.h)
   std::vector<AreaLight> lights;
   std::vector<RoomZone> zones;     ///< of a floor plan, in the order of a walk; else empty
   std::vector<OrientedBox> walls;  ///< of a floor plan: what a body cannot walk through, doors open

@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/map/fusion/seen_ahead.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "ovimap/map/rays/surface_lookup.h"
+
+namespace ovimap {
+
+namespace {
+
+constexpr int kTile_px = 8;           // blocks are held against these
+constexpr int kTilesOfRegionTile = 4;  // and regions against so many at once, each way
+constexpr int kSampleStep_px = 8;
+constexpr float kHalfDiagonal = 0.8660254f;  // of a unit cube
+constexpr float kNearPlane_m = 0.05f;
+
+/// The most of each square of values.
+Image<float> most_of_squares(const Image<float>& values, int side) {
+  Image<float> most((values.width() + side - 1) / side, (values.height() + side - 1) / side);
+  for (int y = 0; y < values.height(); ++y) {
+    const float* row = values.row(y);
+    float* into = most.row(y / side);
+    for (int x = 0; x < values.width(); ++x) into[x / side] = std::max(into[x / side], row[x]);
+  }
+  return most;
+}
+
+/// Furthest free depth by tile of the image.
+class FreeTiles {
+ public:
+  FreeTiles(const PinholeCamera& camera, int tile_px, Image<float> furthest_m)
+      : camera_(camera), tile_px_(tile_px), furthest_m_(std::move(furthest_m)) {
+    for (const float furthest : furthest_m_) most_m_ = std::max(most_m_, furthest);
+  }
+  FreeTiles coarser(int side) const {
+    return {camera_, tile_px_ * side, most_of_squares(furthest_m_, side)};
+  }
+
+  /// Of the tiles that a sphere may show in; 0 where all of it lies behind that.
+  float furthest(const Eigen::Vector3f& center, float radius) const {
+    const float near_m = center.z() - radius, far_m = center.z() + radius;
+    if (far_m <= 0.f || near_m >= most_m_) return 0.f;
+    if (near_m < kNearPlane_m) return most_m_;  // around the camera
+    const auto [left, right] = span(center.x(), radius, near_m, far_m, camera_.fx, camera_.cx);
+    const auto [top, bottom] = span(center.y(), radius, near_m, far_m, camera_.fy, camera_.cy);
+    float furthest = 0.f;
+    for (int y = std::max(top, 0); y <= std::min(bottom, furthest_m_.height() - 1); ++y)
+      for (int x = std::max(left, 0); x <= std::min(right, furthest_m_.width() - 1); ++x)
+        furthest = std::max(furthest, furthest_m_.at(x, y));
+    return near_m < furthest ? furthest : 0.f;
+  }
+
+ private:
+  /// First and last tile along one axis: an edge shows furthest out at its nearest depth where it
+  /// lies off the axis to that side, else at its furthest.
+  std::pair<int, int> span(float center, float radius, float near_m, float far_m, float focal,
+                           float principal) const {
+    const float low = center - radius, high = center + radius;
+    return {tile(principal + focal * low / (low < 0 ? near_m : far_m)),
+            tile(principal + focal * high / (high > 0 ? near_m : far_m))};
+  }
+  int tile(float pixel) const {
+    constexpr float kFar_px = 1e6f;
+    return static_cast<int>(
+        std::floor((std::clamp(pixel, -kFar_px, kFar_px) + 0.5f) / static_cast<float>(tile_px_)));
+  }
+
+  const PinholeCamera& camera_;
+  int tile_px_;
+  Image<float> furthest_m_;
+  float most_m_ = 0;
+};
+
+}  // namespace
+
+std::vector<BlockAhead> blocks_ahead(const VoxelMap& map, const Observation& observation,
+                                     const Image<float>& free_m) {
+  const FreeTiles tiles(observation.camera, kTile_px, most_of_squares(free_m, kTile_px)),
+      region_tiles = tiles.coarser(kTilesOfRegionTile);
+  const Pose camera_from_world = observation.world_from_camera.inverse();
+  const double block_m = map.config().block_size_m(), region_m = block_m * kRegionBlocks;
+  const auto middle = [&](const BlockIndex& index, double size_m) -> Eigen::Vector3f {
+    const Eigen::Vector3d center = (index.cast<double>() + Eigen::Vector3d::Constant(0.5)) * size_m;
+    return (camera_from_world * center).cast<float>();
+  };
+  const float radius = static_cast<float>(block_m) * kHalfDiagonal;
+  std::vector<BlockAhead> ahead;
+  map.for_each_region([&](const BlockRegion& region) {
+    const Eigen::Vector3f center = middle(region.index, region_m);
+    if (region_tiles.furthest(center, radius * kRegionBlocks) <= 0.f) return;
+    for (const std::uint32_t slot : region.slots) {
+      if (slot == kNoBlock) continue;
+      const float free = tiles.furthest(middle(map.block_index(slot), block_m), radius);
+      if (free > 0.f) ahead.push_back({slot, free});
+    }
+  });
+  std::sort(ahead.begin(), ahead.end(), [&map](const BlockAhead& a, const BlockAhead& b) {
+    return pack_index(map.block_index(a.slot)) < pack_index(map.block_index(b.slot));
+  });
+  return ahead;
+}
+
+double confirmed_px(const VoxelMap& map, const Observation& observation) {
+  const Eigen::Isometry3f world_from_camera = observation.world_from_camera.cast<float>();
+  const float near_m = 2 * map.config().voxel_size_m;
+  VoxelFinder finder(map);
+  int confirmed = 0;
+  for (int y = kSampleStep_px / 2; y < observation.depth.height(); y += kSampleStep_px)
+    for (int x = kSampleStep_px / 2; x < observation.depth.width(); x += kSampleStep_px) {
+      const float depth_m = observation.depth.at(x, y);
+      if (depth_m <= 0.f) continue;
+      const Eigen::Vector3f point =
+          world_from_camera * observation.camera.unproject(static_cast<float>(x),
+                                                           static_cast<float>(y), depth_m);
+      confirmed += finder.seek(point) && finder.observed() && std::fabs(finder.distance_m()) < near_m;
+    }
+  return static_cast<double>(confirmed) * kSampleStep_px * kSampleStep_px;
+}
+
+}  // namespace ovimap

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "ovimap/map/fusion/integrate.h"
+
+namespace ovimap {
+
+/// A block of which a part may lie in free space.
+struct BlockAhead {
+  std::uint32_t slot;
+  float free_m;  ///< the rays through it run through empty space no further than this depth
+};
+
+/// The blocks of which a part may lie in front of `free_m` (free_depth), in block-index order: those
+/// between the camera and what it sees. Costs one projection per block in view.
+std::vector<BlockAhead> blocks_ahead(const VoxelMap& map, const Observation& observation,
+                                     const Image<float>& free_m);
+
+/// How many pixels of the frame show surface where the map has surface, judged by one in 64.
+double confirmed_px(const VoxelMap& map, const Observation& observation);
+
+}  // namespace ovimap

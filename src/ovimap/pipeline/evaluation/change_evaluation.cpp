@@ -1,0 +1,231 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/pipeline/evaluation/change_evaluation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "ovimap/base/config.h"
+#include "ovimap/base/error.h"
+#include "ovimap/eval/geometry/nearest.h"
+#include "ovimap/frames/frame/frame_source.h"
+#include "ovimap/io/truth/truth.h"
+#include "ovimap/io/truth/truth_changes.h"
+#include "ovimap/map/surface/mesh_extraction.h"
+
+namespace ovimap {
+
+namespace {
+
+using Points = std::vector<Eigen::Vector3f>;
+
+/// Vertices of some instances of a truth, or of all others.
+Points points_of(const Truth& truth, const std::set<std::int32_t>& objects, bool others = false) {
+  Points points;
+  for (std::size_t i = 0; i < truth.mesh.vertices.size(); ++i)
+    if (objects.contains(truth.instances[i]) != others) points.push_back(truth.mesh.vertices[i]);
+  return points;
+}
+
+Points keep_those_apart(const Points& points, const NearestPoints& from, float distance_m) {
+  const auto near = from.find_all(points, distance_m);
+  Points apart;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (!near[i]) apart.push_back(points[i]);
+  return apart;
+}
+
+std::size_t count_near(const Points& points, const NearestPoints& surface, float distance_m) {
+  const auto near = surface.find_all(points, distance_m);
+  return static_cast<std::size_t>(
+      std::count_if(near.begin(), near.end(), [](const auto& found) { return found.has_value(); }));
+}
+
+/// In how many of a recording's frames each point is looked through.
+class LookedThrough {
+ public:
+  LookedThrough(const Points& points, float through_m)
+      : points_(points), counts_(points.size(), 0), through_m_(through_m) {}
+
+  void add(const FrameSource& source) {
+    for (std::int64_t i = 0; i < source.size(); ++i)
+      if (const FrameRead read = source.read(i); read.frame) add(*read.frame);
+  }
+  Points at_least(int frames) const {
+    Points points;
+    for (std::size_t i = 0; i < points_.size(); ++i)
+      if (counts_[i] >= frames) points.push_back(points_[i]);
+    return points;
+  }
+
+ private:
+  void add(const Frame& frame) {
+    const Eigen::Isometry3f camera_from_world = frame.world_from_camera.inverse().cast<float>();
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const Eigen::Vector3f point = camera_from_world * points_[i];
+      if (point.z() <= 0.f) continue;
+      const Eigen::Vector2f pixel = frame.depth_camera.project(point);
+      const int x = static_cast<int>(std::lround(pixel.x())),
+                y = static_cast<int>(std::lround(pixel.y()));
+      if (frame.depth.contains(x, y) && frame.depth.at(x, y) > point.z() + through_m_) ++counts_[i];
+    }
+  }
+
+  const Points& points_;
+  std::vector<int> counts_;
+  float through_m_;
+};
+
+float box_overlap(const Eigen::AlignedBox3f& a, const Eigen::AlignedBox3f& b) {
+  if (a.isEmpty() || b.isEmpty()) return a.isEmpty() && b.isEmpty() ? 1.f : 0.f;
+  const Eigen::AlignedBox3f both = a.intersection(b);
+  if (both.isEmpty()) return 0.f;
+  return both.volume() / (a.volume() + b.volume() - both.volume());
+}
+
+/// One event for each change, the best first come.
+class EventMatcher {
+ public:
+  EventMatcher(const std::vector<ObjectEvent>& events, const ChangeScoresConfig& config)
+      : events_(events), used_(events.size(), false), config_(config) {}
+
+  const ObjectEvent* match(const TrueChange& change) {
+    std::size_t best = events_.size();
+    float best_overlap = config_.same_place;
+    for (std::size_t i = 0; i < events_.size(); ++i) {
+      if (used_[i] || events_[i].visit != change.visit || name_of(events_[i].kind) != change.kind)
+        continue;
+      const float overlap = std::min(box_overlap(events_[i].before, change.from),
+                                     box_overlap(events_[i].after, change.to));
+      if (overlap >= best_overlap) best = i, best_overlap = overlap;
+    }
+    if (best == events_.size()) return nullptr;
+    used_[best] = true;
+    return &events_[best];
+  }
+
+  /// Whether one event says that the thing is gone and another that it may be at its new place.
+  bool tells_in_doubt(const TrueChange& change) const {
+    return std::any_of(events_.begin(), events_.end(), [&](const ObjectEvent& event) {
+      return event.visit == change.visit && event.may_be != 0 &&
+             box_overlap(event.after, change.to) >= config_.same_place &&
+             std::any_of(events_.begin(), events_.end(), [&](const ObjectEvent& gone) {
+               return gone.visit == change.visit && gone.kind == ObjectEventKind::kGone &&
+                      box_overlap(gone.before, change.from) >= config_.same_place;
+             });
+    });
+  }
+
+  /// Events that nothing matched and that were told without doubt.
+  std::vector<ObjectEvent> wrong() const {
+    std::vector<ObjectEvent> wrong;
+    for (std::size_t i = 0; i < events_.size(); ++i)
+      if (!used_[i] && !doubtful(events_[i])) wrong.push_back(events_[i]);
+    return wrong;
+  }
+
+  static std::string name_of(ObjectEventKind kind) {
+    return kind == ObjectEventKind::kMoved  ? "moved"
+           : kind == ObjectEventKind::kGone ? "removed"
+                                            : "added";
+  }
+
+ private:
+  bool doubtful(const ObjectEvent& event) const {
+    return event.may_be != 0 ||
+           std::any_of(events_.begin(), events_.end(), [&](const ObjectEvent& other) {
+             return other.visit == event.visit && other.may_be == event.instance;
+           });
+  }
+
+  const std::vector<ObjectEvent>& events_;
+  std::vector<bool> used_;
+  const ChangeScoresConfig& config_;
+};
+
+ChangeCounts& counts_of(const std::string& kind, ChangeScores& scores) {
+  return kind == "moved" ? scores.moved : kind == "removed" ? scores.removed : scores.added;
+}
+
+void score_events(const MapHistory& history, const TrueChanges& truth,
+                  const std::vector<Truth>& visits, const ChangeScoresConfig& config,
+                  ChangeScores& scores) {
+  EventMatcher matcher(history.events, config);
+  for (const TrueChange& change : truth.changes) {
+    const auto seen = [&](int visit) {
+      return !points_of(visits[static_cast<std::size_t>(visit - 1)], {change.object}).empty();
+    };
+    const bool known = (change.from.isEmpty() || seen(change.visit - 1)) &&
+                       (change.to.isEmpty() || seen(change.visit));
+    const ObjectEvent* event = matcher.match(change);
+    ChangeCounts& counts = counts_of(change.kind, scores);
+    counts.real += known || event != nullptr;
+    counts.right += event != nullptr;
+    counts.told += event != nullptr;
+    if (change.kind != "moved") continue;
+    scores.ids_kept += event != nullptr;
+    scores.in_doubt += event == nullptr && matcher.tells_in_doubt(change);
+  }
+  for (const ObjectEvent& event : matcher.wrong())
+    ++counts_of(EventMatcher::name_of(event.kind), scores).told;
+}
+
+/// Where things were that are there no more, as the visit before saw them.
+Points places_left(const TrueChanges& truth, const std::vector<Truth>& visits, int visit) {
+  std::set<std::int32_t> left;
+  for (const TrueChange& change : truth.changes)
+    if (change.visit == visit && !change.from.isEmpty()) left.insert(change.object);
+  return points_of(visits[static_cast<std::size_t>(visit - 2)], left);
+}
+
+void score_surface(const Points& surface, const TrueChanges& truth,
+                   const std::vector<Truth>& visits, const ChangeScoresConfig& config,
+                   ChangeScores& scores) {
+  const NearestPoints map(surface), now(visits.back().mesh.vertices);
+  const int last = static_cast<int>(visits.size());
+  std::set<std::int32_t> changed;
+  for (const TrueChange& change : truth.changes) changed.insert(change.object);
+  for (int visit = 2; visit <= last; ++visit) {
+    const Points left = keep_those_apart(places_left(truth, visits, visit), now, config.apart_m);
+    LookedThrough looked(left, config.through_m);
+    for (int later = visit; later <= last; ++later)
+      looked.add(*open_frame_source(truth.visits[static_cast<std::size_t>(later - 1)], {}));
+    const Points counted = looked.at_least(config.frames);
+    scores.left_points += counted.size();
+    scores.ghost_points += count_near(counted, map, config.near_m);
+  }
+  const Points unchanged = points_of(visits.back(), changed, true);
+  scores.static_points = unchanged.size();
+  scores.kept_points = count_near(unchanged, map, config.near_m);
+}
+
+}  // namespace
+
+void list_fields(ChangeScoresConfig& config, ConfigFields& fields) {
+  fields.add("near_m", config.near_m, 0.001f, 1.f,
+             "surface of the map this near to a point is there, metres");
+  fields.add("apart_m", config.apart_m, 0.f, 1.f,
+             "places that were left count where nothing stands this near now, metres");
+  fields.add("frames", config.frames, 1, 1000, "and where so many frames looked through");
+  fields.add("through_m", config.through_m, 0.f, 1.f, "by this much, metres");
+  fields.add("same_place", config.same_place, 0.f, 1.f,
+             "intersection over union of boxes that are of one thing");
+}
+
+ChangeScores score_changes(const MapDocument& map, const std::filesystem::path& folder,
+                           const ChangeScoresConfig& config) {
+  const TrueChanges truth = load_true_changes(folder);
+  const std::size_t visits = std::max<std::size_t>(map.history.visits.size(), 1);
+  if (visits != truth.visits.size())
+    throw Error(concat("the map is of ", visits, " visits, and ", folder.string(), " has ",
+                       truth.visits.size(), "; go on with it by `ovimap run VISIT --continue MAP`"));
+  std::vector<Truth> truths;
+  for (const auto& visit : truth.visits) truths.push_back(load_truth(visit));
+  ChangeScores scores;
+  score_surface(extract_mesh(map.map).vertices, truth, truths, config, scores);
+  score_events(map.history, truth, truths, config, scores);
+  return scores;
+}
+
+}  // namespace ovimap

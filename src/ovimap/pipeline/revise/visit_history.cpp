@@ -1,0 +1,251 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/pipeline/revise/visit_history.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "ovimap/base/error.h"
+#include "ovimap/pipeline/revise/thing_look.h"
+
+namespace ovimap {
+
+namespace {
+
+const InstanceSummary* find_instance(const MapRecord& record, InstanceId id) {
+  const auto found =
+      std::find_if(record.instances.begin(), record.instances.end(),
+                   [id](const InstanceSummary& instance) { return instance.id == id; });
+  return found == record.instances.end() ? nullptr : &*found;
+}
+
+/// The box of a thing's surface without a twentieth of it at either end of each axis: a few stray
+/// points would tell of another place.
+Eigen::AlignedBox3f box_of(const MapRecord& record, InstanceId id) {
+  constexpr std::size_t kLeftOut = 20;
+  const auto surface = record.surfaces.find(id);
+  if (surface == record.surfaces.end() || surface->second.empty()) {
+    const InstanceSummary* instance = find_instance(record, id);
+    return instance ? instance->box : Eigen::AlignedBox3f();
+  }
+  std::vector<float> values(surface->second.size());
+  Eigen::Vector3f low, high;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::transform(surface->second.begin(), surface->second.end(), values.begin(),
+                   [axis](const Eigen::Vector3f& point) { return point[axis]; });
+    std::sort(values.begin(), values.end());
+    low[axis] = values[values.size() / kLeftOut];
+    high[axis] = values[values.size() - 1 - values.size() / kLeftOut];
+  }
+  return {low, high};
+}
+
+/// A gone object and a found one that may be it.
+struct Pair {
+  std::size_t gone, found;  ///< in the list of changes
+  float distance;           ///< of their shapes
+};
+
+/// What the last visit says, object by object.
+class VisitTeller {
+ public:
+  VisitTeller(const MapDocument& before, MapDocument& after, const VisitHistoryConfig& config)
+      : before_(before), after_(after), config_(config) {}
+
+  void tell() {
+    changes_ = changes_of_visit();
+    find_remains();
+    match_by_shape();
+    for (const ObjectChange& change : changes_) tell(change);
+    keep_ids();
+    std::stable_sort(events_.begin(), events_.end(),
+                     [](const auto& a, const auto& b) { return a.instance < b.instance; });
+    auto& all = after_.history.events;
+    all.insert(all.end(), events_.begin(), events_.end());
+  }
+
+ private:
+  /// Only the visit's own frames bear witness that something is gone.
+  std::vector<ObjectChange> changes_of_visit() {
+    std::vector<FrameLogEntry> all = after_.frames;
+    after_.frames.erase(after_.frames.begin(),
+                        after_.frames.begin() + after_.history.visits.back().first_frame);
+    std::vector<ObjectChange> changes =
+        diff_maps(before_, after_, Pose::Identity(), config_.diff);
+    after_.frames = std::move(all);
+    return changes;
+  }
+
+  /// Of a thing that is gone, sides may be left that the visit did not look at: they are not it. And
+  /// what shifted by no more than surfaces are rough has not.
+  void find_remains() {
+    for (ObjectChange& change : changes_)
+      if (change.kind == ChangeKind::kMoved && change.shift_m.norm() < config_.least_shift_m)
+        change.kind = ChangeKind::kSame;
+    for (ObjectChange& change : changes_)
+      if (change.kind == ChangeKind::kSame && change.before != 0 &&
+          change.before == change.after && change.seen_through >= config_.diff.gone_share) {
+        change.kind = ChangeKind::kRemoved;
+        change.after = 0;
+      }
+  }
+
+  /// Whether it is known to be gone already, and what is left of it was seen through only now.
+  bool told_gone(InstanceId id) const {
+    const auto& events = after_.history.events;
+    const auto last = std::find_if(events.rbegin(), events.rend(), [id](const ObjectEvent& event) {
+      return event.instance == id;
+    });
+    return last != events.rend() && last->kind == ObjectEventKind::kGone;
+  }
+
+  /// Pairs that could be one thing, the likeliest first.
+  std::vector<Pair> likely_pairs() const {
+    std::vector<Pair> pairs;
+    for (std::size_t i = 0; i < changes_.size(); ++i) {
+      if (changes_[i].kind != ChangeKind::kRemoved) continue;
+      const ThingLook gone = thing_look(before_, changes_[i].before, before_.up);
+      for (std::size_t k = 0; k < changes_.size(); ++k) {
+        if (changes_[k].kind != ChangeKind::kNew) continue;
+        const ThingLook found = thing_look(after_, changes_[k].after, before_.up);
+        if (common_colors(gone, found) < config_.same_colors) continue;
+        const float distance = shape_distance(gone, found);
+        if (distance <= config_.same_shape) pairs.push_back({i, k, distance});
+      }
+    }
+    std::stable_sort(pairs.begin(), pairs.end(),
+                     [](const Pair& a, const Pair& b) { return a.distance < b.distance; });
+    return pairs;
+  }
+
+  void match_by_shape() {
+    const std::vector<Pair> pairs = likely_pairs();
+    std::set<std::size_t> used;
+    for (const Pair& pair : pairs) {
+      if (used.contains(pair.gone) || used.contains(pair.found)) continue;
+      const bool doubtful = std::any_of(pairs.begin(), pairs.end(), [&](const Pair& other) {
+        const bool rival = (other.gone == pair.gone) != (other.found == pair.found);
+        return rival && pair.distance > config_.doubt * other.distance;
+      });
+      if (doubtful) {
+        may_be_.try_emplace(changes_[pair.found].after, changes_[pair.gone].before);
+        continue;
+      }
+      used.insert({pair.gone, pair.found});
+      changes_[pair.gone].kind = ChangeKind::kMoved;
+      changes_[pair.gone].after = changes_[pair.found].after;
+      changes_[pair.found].after = 0;  // told with where it went from
+    }
+  }
+
+  void tell(const ObjectChange& change) {
+    const InstanceId id = change.before != 0 ? change.before : change.after;
+    if (id == 0) return;
+    if (change.kind == ChangeKind::kRemoved && !told_gone(id))
+      add(ObjectEventKind::kGone, id, box_of(before_, id), {}, last_frame());
+    if (change.kind == ChangeKind::kNew) {
+      add(ObjectEventKind::kAppeared, id, {}, box_of(after_, id), first_frame(id));
+      if (const auto known = may_be_.find(id); known != may_be_.end())
+        events_.back().may_be = known->second;
+    }
+    if (change.kind == ChangeKind::kMoved)
+      add(ObjectEventKind::kMoved, id, box_of(before_, id), box_of(after_, change.after),
+          first_frame(change.after));
+  }
+
+  void add(ObjectEventKind kind, InstanceId id, const Eigen::AlignedBox3f& from,
+           const Eigen::AlignedBox3f& to, std::int64_t frame) {
+    events_.push_back({id, kind, static_cast<int>(after_.history.visits.size()), frame, from, to, 0});
+  }
+
+  std::int64_t last_frame() const { return static_cast<std::int64_t>(after_.frames.size()) - 1; }
+
+  /// Place of the visit's frame that showed the instance first.
+  std::int64_t first_frame(InstanceId id) const {
+    const InstanceSummary* instance = find_instance(after_, id);
+    const std::int64_t begin = after_.history.visits.back().first_frame;
+    if (instance == nullptr) return begin;
+    const std::int64_t number =
+        record_of(after_.registry.super_points, instance->super_points).first_frame;
+    const auto found =
+        std::find_if(after_.frames.begin() + begin, after_.frames.end(),
+                     [number](const FrameLogEntry& frame) { return frame.index >= number; });
+    return std::min(found - after_.frames.begin(), std::ptrdiff_t{last_frame()});
+  }
+
+  /// Objects that are known go on under the ids that they had.
+  void keep_ids() {
+    for (const ObjectChange& change : changes_) {
+      const bool known = change.kind == ChangeKind::kMoved || change.kind == ChangeKind::kSame;
+      if (!known || change.before == 0 || change.after == 0 || change.before == change.after)
+        continue;
+      const bool free = change.kind == ChangeKind::kMoved ||  // else what is left of it
+                        find_instance(after_, change.before) == nullptr;
+      if (free && find_instance(before_, change.after) == nullptr)
+        swap_instances(after_, change.before, change.after);
+    }
+  }
+
+  const MapDocument& before_;
+  MapDocument& after_;
+  const VisitHistoryConfig& config_;
+  std::vector<ObjectChange> changes_;
+  std::map<InstanceId, InstanceId> may_be_;  ///< found objects and the gone ones that they resemble
+  std::vector<ObjectEvent> events_;
+};
+
+/// Aliases after ids were exchanged: of ids that stand for one thing the oldest stands for all.
+template <class Exchange>
+std::map<InstanceId, InstanceId> oldest_of_each(const std::map<InstanceId, InstanceId>& aliases,
+                                                const Exchange& other) {
+  const auto last = [&](InstanceId id) {
+    for (auto found = aliases.find(id); found != aliases.end(); found = aliases.find(id))
+      id = found->second;
+    return id;
+  };
+  std::map<InstanceId, InstanceId> oldest;  // by what stood for them before
+  for (const auto& [id, target] : aliases) {
+    const InstanceId all = last(id);
+    const InstanceId least = std::min(other(id), other(all));
+    const auto [found, first] = oldest.try_emplace(all, least);
+    if (!first) found->second = std::min(found->second, least);
+  }
+  std::map<InstanceId, InstanceId> result;
+  for (const auto& [id, target] : aliases) {
+    const InstanceId all = last(id), least = oldest.at(all);
+    for (const InstanceId one : {other(id), other(all)})
+      if (one != least) result[one] = least;
+  }
+  return result;
+}
+
+}  // namespace
+
+void swap_instances(MapRecord& record, InstanceId a, InstanceId b) {
+  const auto other = [a, b](InstanceId id) { return id == a ? b : id == b ? a : id; };
+  for (auto& [label, point] : record.registry.super_points) {
+    std::map<InstanceId, int> votes;
+    for (const auto& [id, count] : point.votes) votes.emplace(other(id), count);
+    point.votes = std::move(votes);
+  }
+  const std::map<InstanceId, InstanceId> aliases = oldest_of_each(record.registry.aliases, other);
+  const auto now = [&](InstanceId id) {
+    const auto alias = aliases.find(other(id));
+    return alias == aliases.end() ? other(id) : alias->second;
+  };
+  for (InstanceSummary& instance : record.instances) instance.id = now(instance.id);
+  std::sort(record.instances.begin(), record.instances.end(),
+            [](const auto& x, const auto& y) { return x.id < y.id; });
+  InstanceSurfaces surfaces;
+  for (auto& [id, points] : record.surfaces) surfaces.emplace(now(id), std::move(points));
+  record.surfaces = std::move(surfaces);
+  record.registry.aliases = aliases;
+}
+
+void tell_visit(const MapDocument& before, MapDocument& after, const VisitHistoryConfig& config) {
+  OVIMAP_ASSERT(after.history.visits.size() > 1);
+  VisitTeller(before, after, config).tell();
+}
+
+}  // namespace ovimap

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "ovimap/io/map_tables/map_document.h"
+#include "ovimap/pipeline/revise/map_diff.h"
+
+namespace ovimap {
+
+struct VisitHistoryConfig {
+  MapDiffConfig diff;
+  float least_shift_m = 0.08f;  ///< what moved less than that has not
+  float same_shape = 0.15f;   ///< mean distance of two surfaces laid over each other, as a share of
+                              ///< their reach, up to which they may be of one thing
+  float same_colors = 0.5f;   ///< least share of two surfaces that has the same colours
+  float doubt = 0.75f;  ///< the likeliest pair is one thing when it is so much nearer than the next
+};
+
+/// Writes down what the last visit of `after` changed against `before`, the same map without that
+/// visit: events of its history. An object that is gone from one place and found at another is the
+/// same when its looks (diff_maps), or else its shape and colours, say so, and goes on under the id
+/// that it had. Where several could be it, each found one is a new object that says which gone one
+/// it may be. An object at its old place that the visit took for a new one gets its id back.
+void tell_visit(const MapDocument& before, MapDocument& after,
+                const VisitHistoryConfig& config = {});
+
+/// Two instances of a record trade their ids: in its list and surfaces, and in the registry's state.
+/// Of ids that stand for one thing the oldest goes on standing for all. Names and corrections stay
+/// with the ids.
+void swap_instances(MapRecord& record, InstanceId a, InstanceId b);
+
+}  // namespace ovimap

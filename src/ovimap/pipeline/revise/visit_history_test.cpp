@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/pipeline/revise/visit_history.h"
+
+#include <gtest/gtest.h>
+
+#include "ovimap/map/surface/mesh_extraction.h"
+#include "ovimap/pipeline/mapping/furnished_fixture.h"
+
+namespace ovimap {
+namespace {
+
+const Furniture kChest = furniture(-0.9f, 0.9f, {0.6f, 0.4f, 0.5f}, {190, 120, 40});
+const Furniture kRedBox = furniture(0.6f, 0.3f, {0.3f, 0.2f, 0.3f}, {220, 20, 20});
+const Furniture kRedBoxAway = furniture(-0.7f, -0.7f, {0.2f, 0.3f, 0.3f}, {220, 20, 20});
+const Furniture kBlueBox = furniture(0.2f, -0.9f, {0.35f, 0.25f, 0.4f}, {20, 30, 220});
+const Furniture kGreenBox = furniture(1.0f, -0.5f, {0.3f, 0.4f, 0.25f}, {20, 200, 30});
+
+FurnishedRoom room_with(std::vector<Furniture> things) {
+  FurnishedRoom room;
+  room.things = std::move(things);
+  room.frames = 32;
+  return room;
+}
+
+MapDocument continued(const FurnishedRoom& evening, const FurnishedRoom& morning,
+                      bool embedded = true) {
+  const MapDocument before = map_of(evening, MapDocument(), embedded);
+  MapDocument after = map_of(morning, map_of(evening, MapDocument(), embedded), embedded);
+  tell_visit(before, after);
+  return after;
+}
+
+InstanceId at(const MapRecord& map, const Furniture& thing) {
+  const Eigen::Vector3f center = thing.box.center();
+  return object_at(map, Pose::Identity(), center.x(), center.y(), thing.box.max().z() * 0.7f);
+}
+
+const ObjectEvent* event_of(const MapRecord& map, InstanceId id) {
+  for (const ObjectEvent& event : map.history.events)
+    if (event.instance == id) return &event;
+  return nullptr;
+}
+
+/// Vertices of the map's mesh well within a box.
+std::size_t vertices_in(const MapDocument& map, const Furniture& thing) {
+  const Eigen::AlignedBox3f box(thing.box.min().array() - 0.03f, thing.box.max().array() + 0.03f);
+  std::size_t count = 0;
+  for (const Eigen::Vector3f& vertex : extract_mesh(map.map).vertices)
+    count += vertex.z() > 0.04f && box.contains(vertex);
+  return count;
+}
+
+TEST(VisitHistory, TellsWhatMovedWentAndCameAndKeepsIds) {
+  const FurnishedRoom evening = room_with({kChest, kRedBox, kBlueBox}),
+                      morning = room_with({kChest, kRedBoxAway, kGreenBox});
+  const MapDocument before = map_of(evening), after = continued(evening, morning);
+  const InstanceId red = at(before, kRedBox), blue = at(before, kBlueBox);
+
+  const ObjectEvent* moved = event_of(after, red);
+  ASSERT_NE(moved, nullptr);
+  EXPECT_EQ(moved->kind, ObjectEventKind::kMoved);
+  EXPECT_EQ(moved->visit, 2);
+  EXPECT_GE(moved->frame, 32);
+  EXPECT_NEAR(moved->before.center().x(), 0.6f, 0.05f);
+  EXPECT_NEAR(moved->after.center().x(), -0.7f, 0.05f);
+  EXPECT_EQ(at(after, kRedBoxAway), red) << "it keeps its id";
+
+  const ObjectEvent* gone = event_of(after, blue);
+  ASSERT_NE(gone, nullptr);
+  EXPECT_EQ(gone->kind, ObjectEventKind::kGone);
+  EXPECT_TRUE(gone->after.isEmpty());
+  for (const InstanceSummary& instance : after.instances)
+    EXPECT_FALSE(instance.id == blue && instance.points > 100) << instance.points;
+
+  const ObjectEvent* appeared = event_of(after, at(after, kGreenBox));
+  ASSERT_NE(appeared, nullptr);
+  EXPECT_EQ(appeared->kind, ObjectEventKind::kAppeared);
+  EXPECT_EQ(appeared->may_be, 0u);
+  EXPECT_EQ(after.history.events.size(), 3u);
+  EXPECT_EQ(at(after, kChest), at(before, kChest));
+}
+
+TEST(VisitHistory, WhatLeftLeavesNoSurface) {
+  const FurnishedRoom evening = room_with({kChest, kRedBox, kBlueBox}),
+                      morning = room_with({kChest, kRedBoxAway, kGreenBox});
+  const MapDocument before = map_of(evening),
+                    after = map_of(morning, map_of(evening));
+  for (const Furniture& thing : {kRedBox, kBlueBox}) {
+    EXPECT_GT(vertices_in(before, thing), 300u);
+    EXPECT_LT(vertices_in(after, thing), vertices_in(before, thing) / 50);
+  }
+  EXPECT_GT(vertices_in(after, kChest), vertices_in(before, kChest) * 97 / 100);
+}
+
+TEST(VisitHistory, ARoomThatStaysHasNoEvents) {
+  const FurnishedRoom room = room_with({kChest, kRedBox, kBlueBox});
+  const MapDocument after = continued(room, room);
+  EXPECT_TRUE(after.history.events.empty());
+  EXPECT_EQ(after.history.visits.size(), 2u);
+}
+
+TEST(VisitHistory, WithoutEmbeddingsShapeAndColourTell) {
+  const FurnishedRoom evening = room_with({kChest, kRedBox, kBlueBox}),
+                      morning = room_with({kChest, kRedBoxAway, kGreenBox});
+  const MapDocument before = map_of(evening, MapDocument(), false), after = continued(evening, morning, false);
+  const ObjectEvent* moved = event_of(after, at(before, kRedBox));
+  ASSERT_NE(moved, nullptr);
+  EXPECT_EQ(moved->kind, ObjectEventKind::kMoved);
+  EXPECT_EQ(at(after, kRedBoxAway), at(before, kRedBox));
+}
+
+TEST(VisitHistory, OfTwoAlikeNeitherIsTakenForTheOther) {
+  const Furniture twin = furniture(1.0f, -0.5f, {0.3f, 0.2f, 0.3f}, {220, 20, 20}),
+                  twin_away = furniture(-0.1f, -1.0f, {0.3f, 0.2f, 0.3f}, {220, 20, 20});
+  const FurnishedRoom evening = room_with({kChest, kRedBox, twin}),
+                      morning = room_with({kChest, kRedBoxAway, twin_away});
+  const MapDocument before = map_of(evening, MapDocument(), false), after = continued(evening, morning, false);
+  int doubtful = 0;
+  for (const ObjectEvent& event : after.history.events) {
+    EXPECT_NE(event.kind, ObjectEventKind::kMoved);
+    if (event.kind != ObjectEventKind::kAppeared) continue;
+    doubtful += event.may_be != 0;
+    EXPECT_TRUE(event.may_be == 0 || event.may_be == at(before, kRedBox) ||
+                event.may_be == at(before, twin))
+        << event.may_be;
+  }
+  EXPECT_GE(doubtful, 1);
+}
+
+TEST(VisitHistory, InstancesTradeIdsEverywhere) {
+  MapRecord record;
+  record.instances.resize(2);
+  record.instances[0].id = 2, record.instances[0].points = 20;
+  record.instances[1].id = 5, record.instances[1].points = 50;
+  record.surfaces = {{2, {Eigen::Vector3f(2, 2, 2)}}};
+  record.registry.super_points[7].votes = {{2, 3}, {4, 1}};
+  record.registry.super_points[8].votes = {{5, 6}};
+  record.registry.aliases = {{3, 2}, {4, 3}, {6, 5}};
+  swap_instances(record, 2, 5);
+  EXPECT_EQ(record.instances[0].id, 2u);
+  EXPECT_EQ(record.instances[0].points, 50u);
+  EXPECT_EQ(record.instances[1].id, 3u) << "its aliases are older than 5";
+  EXPECT_TRUE(record.surfaces.contains(3));
+  EXPECT_EQ(record.registry.super_points[7].votes, (std::map<InstanceId, int>{{4, 1}, {5, 3}}));
+  EXPECT_EQ(record.registry.super_points[8].votes, (std::map<InstanceId, int>{{2, 6}}));
+  EXPECT_EQ(record.registry.aliases, (std::map<InstanceId, InstanceId>{{4, 3}, {5, 3}, {6, 2}}));
+}
+
+}  // namespace
+}  // namespace ovimap

@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/pipeline/sequence/visit_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "ovimap/base/config.h"
+#include "ovimap/base/error.h"
+
+namespace ovimap {
+
+namespace {
+
+constexpr float kSearched_m = 0.2f;  // the given pose says no more than that
+constexpr float kSearched_rad = 0.2f;
+
+double share_of(std::vector<double> values, double share) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
+}
+
+/// Depth of the frame where the map has surface as well, so that the rest cannot hold it in place.
+double keep_what_both_have(const Image<float>& model, TrackLevel& level) {
+  std::size_t seen = 0, both = 0;
+  for (std::size_t i = 0; i < level.inverse_depth.size(); ++i) {
+    seen += level.inverse_depth[i] > 0.f;
+    if (model[i] <= 0.f) level.inverse_depth[i] = 0.f;
+    both += level.inverse_depth[i] > 0.f;
+  }
+  return seen == 0 ? 0. : static_cast<double>(both) / static_cast<double>(seen);
+}
+
+std::optional<Alignment> align_to_map(const Frame& frame, const VoxelMap& map,
+                                      const TrackConfig& track, const VisitFitConfig& config) {
+  const TrackPyramid pyramid = make_pyramid(frame);
+  if (pyramid.size() <= kSurfaceLevel) return std::nullopt;
+  const Image<float> model = cast_inverse_depth(map, pyramid[kSurfaceLevel].camera,
+                                                frame.world_from_camera, track.max_range_m);
+  TrackPyramid known = {pyramid[0], pyramid[kSurfaceLevel]};
+  if (keep_what_both_have(model, known[kSurfaceLevel]) < static_cast<double>(config.least_share))
+    return std::nullopt;
+  known[0].inverse_depth.fill(0.f);
+  add_coarser_levels(known);
+  FrameAlignmentConfig by_depth = track.alignment;
+  by_depth.photometric_weight = 0;
+  by_depth.prior_sigma_m = kSearched_m;
+  by_depth.prior_sigma_rad = kSearched_rad;
+  const Reference reference = make_reference(known, model, frame.world_from_camera);
+  return align(reference, known, Pose::Identity(), by_depth, kSurfaceLevel);
+}
+
+}  // namespace
+
+void list_fields(VisitFitConfig& config, ConfigFields& fields) {
+  fields.add("enabled", config.enabled,
+             "whether a recording is held against the map that it goes on with");
+  fields.add("frames", config.frames, 1, 10000, "frames of it that are, evenly spread");
+  fields.add("least_share", config.least_share, 0.f, 1.f,
+             "a frame counts when this share of it shows surface of the map");
+  fields.add("most_offset_m", config.most_offset_m, 0.f, 10.f,
+             "how far off three quarters of those may lie, metres");
+  fields.add("most_turn_rad", config.most_turn_rad, 0.f, 3.f, "likewise, radians");
+  fields.add("least_agreement", config.least_agreement, 0.f, 1.f,
+             "share of what they see that must lie on the map's surface");
+}
+
+VisitFit fit_visit(const VoxelMap& map, const FrameSource& source,
+                   const std::vector<std::int64_t>& positions, const TrackConfig& track,
+                   const VisitFitConfig& config) {
+  std::vector<double> offsets, turns, agreements;
+  const std::size_t count =
+      std::min(positions.size(), static_cast<std::size_t>(config.frames));
+  for (std::size_t i = 0; i < count; ++i) {
+    const FrameRead read = source.read(positions[(2 * i + 1) * positions.size() / (2 * count)]);
+    if (!read.frame || !read.frame->posed) continue;
+    const auto alignment = align_to_map(*read.frame, map, track, config);
+    if (!alignment) continue;
+    offsets.push_back(alignment->reference_from_frame.translation().norm());
+    turns.push_back(Eigen::AngleAxisd(alignment->reference_from_frame.linear()).angle());
+    agreements.push_back(alignment->quality.agreement);
+  }
+  return {static_cast<int>(offsets.size()), share_of(offsets, 0.75), share_of(turns, 0.75),
+          share_of(agreements, 0.5)};
+}
+
+std::string misfit(const VisitFit& fit, const VisitFitConfig& config) {
+  if (fit.compared == 0) return "none of its frames that were looked at shows a place of the map";
+  const double degrees = fit.turn_rad * 180 / std::numbers::pi;
+  const auto rounded = [](double value, double step) { return std::round(value / step) * step; };
+  if (fit.agreement < static_cast<double>(config.least_agreement))
+    return concat("only ", std::lround(100 * fit.agreement),
+                  " % of what its frames see lies on the map's surface");
+  if (fit.offset_m > static_cast<double>(config.most_offset_m) ||
+      fit.turn_rad > static_cast<double>(config.most_turn_rad))
+    return concat("its poses are ", rounded(100 * fit.offset_m, 0.1), " cm and ",
+                  rounded(degrees, 0.1), " degrees off");
+  return {};
+}
+
+}  // namespace ovimap

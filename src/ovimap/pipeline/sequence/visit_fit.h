@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "ovimap/frames/frame/frame_source.h"
+#include "ovimap/map/voxels/voxel_map.h"
+#include "ovimap/track/places/track_config.h"
+
+namespace ovimap {
+
+/// When a recording's poses are taken to be in a map's world frame.
+struct VisitFitConfig {
+  bool enabled = true;
+  int frames = 16;                 ///< of the recording, evenly spread, are held against the map
+  float least_share = 0.2f;        ///< of a frame must see surface of the map for it to count
+  float most_offset_m = 0.015f;    ///< a quarter of the frames may be further off
+  float most_turn_rad = 0.0175f;
+  float least_agreement = 0.5f;    ///< share of what is seen that must lie on the map's surface
+};
+void list_fields(VisitFitConfig& config, ConfigFields& fields);
+
+/// How a recording lies to a map.
+struct VisitFit {
+  int compared = 0;         ///< frames that see the map
+  double offset_m = 0;      ///< three quarters of them lie nearer than this to where the map says
+  double turn_rad = 0;
+  double agreement = 0;     ///< median share of what they see that lies on the map's surface then
+};
+
+/// Aligns some frames of the recording at `positions` to the map's surface, by depth alone and each
+/// by itself, from the poses that they come with. What moved since counts little (the alignment is
+/// robust), what the map does not have not at all. Frames that cannot be read are passed over.
+VisitFit fit_visit(const VoxelMap& map, const FrameSource& source,
+                   const std::vector<std::int64_t>& positions, const TrackConfig& track,
+                   const VisitFitConfig& config);
+
+/// What speaks against going on with the map, in words; empty when nothing does.
+std::string misfit(const VisitFit& fit, const VisitFitConfig& config);
+
+}  // namespace ovimap

@@ -1,0 +1,47 @@
+# SPDX-FileCopyrightText: 2026 The ovimap authors
+# SPDX-License-Identifier: Apache-2.0
+"""Rooms that change between visits, for tools/benchmarks.py: what the map keeps of what left, and what it tells."""
+import subprocess
+
+from speed import run_json
+
+ROOMS = ["tiny", "kitchen", "office"]
+VISITS = 4
+MASKS = ["gt", "sam"]
+KINDS = ["moved", "removed", "added"]
+
+
+def run(*command):
+    subprocess.run([str(word) for word in command], check=True, stdout=subprocess.DEVNULL)
+
+
+def continued_map(program, folder, masks, settings):
+    file = folder / f"{masks}.ovimap"
+    common = ["--masks", masks, "--encoder", "none", *settings, "-o", file]
+    run(program, "run", folder / "visit1", *common)
+    for visit in range(2, VISITS + 1):
+        run(program, "run", folder / f"visit{visit}", "--continue", file, *common)
+    return file
+
+
+def row(program, work, room, masks, settings):
+    folder = work / "visits" / room
+    run(program, "synth", folder, "--room", room, "--noise", "--visits", VISITS)
+    map_file = continued_map(program, folder, masks, settings)
+    scores = run_json(program, "eval-changes", map_file, folder)
+    now = run_json(program, "eval", map_file, "--gt", folder / f"visit{VISITS}", "--encoder", "none")["standard"]
+    told = [f"{scores[kind]['precision']:.2f} / {scores[kind]['recall']:.2f} ({scores[kind]['real']})" for kind in KINDS]
+    return (f"| {room} | {masks} | {'off' if settings else 'on'} | {100 * scores['ghost']:.1f} % | {100 * scores['static_kept']:.1f} % "
+            f"| {now['class_agnostic']['ap50']:.3f} | {' | '.join(told)} | {scores['ids_kept']} + {scores['in_doubt']} of {scores['moved']['real']} |")
+
+
+def section(program, work):
+    rows = [row(program, work, room, masks, settings) for room in ROOMS for masks in MASKS
+            for settings in ([], ["--set", "free_space.enabled=false"]) if masks == "gt" or not settings]
+    return [f"## {VISITS} visits to rooms where things move", "",
+            f"    ovimap synth DIR --room ROOM --noise --visits {VISITS}", "    ovimap run DIR/visit1 --masks MASKS --encoder none -o MAP",
+            "    ovimap run DIR/visit2 --masks MASKS --encoder none --continue MAP -o MAP", "    ovimap eval-changes MAP DIR", "",
+            "Between two visits three things move, one is carried off and one brought in. Left: share of the surface of what left that the map still "
+            "shows, where five frames looked through. Kept: share of unchanged surface within 2 cm of the map's. AP50: of the last visit's objects. Changes: precision / "
+            "recall (how many there were); ids of what moved: kept, and told in doubt. docs/changes.md says how they are counted.", "",
+            "| room | masks | free space | left | kept | AP50 | moved | removed | added | ids of moved kept |", "| --- " * 10 + "|", *rows, ""]
