@@ -6,6 +6,7 @@
 
 #include "ovimap/base/error.h"
 #include "ovimap/inference/models/test_support.h"
+#include "ovimap/semantics/words/written_words.h"
 
 namespace ovimap {
 namespace {

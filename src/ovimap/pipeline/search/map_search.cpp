@@ -9,6 +9,7 @@
 #include "ovimap/inference/encoders/text_cache.h"
 #include "ovimap/inference/models/model_folder.h"
 #include "ovimap/io/pictures/palette.h"
+#include "ovimap/semantics/words/written_words.h"
 
 namespace ovimap {
 

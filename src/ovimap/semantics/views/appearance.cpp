@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "ovimap/semantics/words/written_words.h"
-
 namespace ovimap {
 
 namespace {
@@ -85,13 +83,6 @@ Appearance appearance_of(const SuperPointLooks& looks, std::span<const Label> su
   std::sort(object.views.begin(), object.views.end(),
             [](const ObjectView* a, const ObjectView* b) { return by_key(*a, *b); });
   return object;
-}
-
-std::vector<WrittenLine> writing_of(const Appearance& appearance) {
-  std::vector<WrittenLine> lines;
-  for (const ObjectView* view : appearance.views)
-    lines.insert(lines.end(), view->writing.begin(), view->writing.end());
-  return surest_readings(std::move(lines));
 }
 
 Eigen::VectorXf fuse_views(std::span<const ObjectView* const> views, const ViewFusion& fusion) {

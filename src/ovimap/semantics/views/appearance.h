@@ -84,9 +84,6 @@ struct Appearance {
 /// The look of an object that consists of these super-points (roots).
 Appearance appearance_of(const SuperPointLooks& looks, std::span<const Label> super_points);
 
-/// What is written on it, by all its views: surest_readings.
-std::vector<WrittenLine> writing_of(const Appearance& appearance);
-
 /// One embedding of the views that have one, of length 1; empty when none has.
 Eigen::VectorXf fuse_views(std::span<const ObjectView* const> views, const ViewFusion& fusion);
 

@@ -57,6 +57,13 @@ std::vector<WrittenLine> surest_readings(std::vector<WrittenLine> lines) {
   return lines;
 }
 
+std::vector<WrittenLine> writing_of(const Appearance& appearance) {
+  std::vector<WrittenLine> lines;
+  for (const ObjectView* view : appearance.views)
+    lines.insert(lines.end(), view->writing.begin(), view->writing.end());
+  return surest_readings(std::move(lines));
+}
+
 std::vector<std::u32string> written_words(std::string_view text) {
   std::vector<std::u32string> words(1);
   for (const char32_t c : lowered(decode_utf8(text))) {

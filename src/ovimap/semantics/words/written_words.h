@@ -7,12 +7,15 @@
 #include <string_view>
 #include <vector>
 
-#include "ovimap/inference/writing/writing_reader.h"
+#include "ovimap/semantics/views/appearance.h"
 
 namespace ovimap {
 
 /// Of every text, whatever the case of its letters, the surest reading. Surest first.
 std::vector<WrittenLine> surest_readings(std::vector<WrittenLine> lines);
+
+/// What is written on an object, by all its views.
+std::vector<WrittenLine> writing_of(const Appearance& appearance);
 
 /// A text in words of letters, numbers and the signs that names have ("C++", "R&D"), lower case,
 /// without articles.
