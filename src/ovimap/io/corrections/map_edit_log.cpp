@@ -121,7 +121,7 @@ void write_edits(SQLite::Database& database, const MapEdits& log) {
 
 MapEdits read_edits(SQLite::Database& database) {
   MapEdits log;
-  if (!has_table(database, map_tables::kEdits)) return log;
+  if (!holds_table(database, map_tables::kEdits)) return log;
   std::vector<std::pair<std::string, std::string>> texts;  // read once the table is verified
   RowReader rows(database, map_tables::kEdits);
   while (rows.next()) {

@@ -49,7 +49,7 @@ void write_corrections(SQLite::Database& database, const MapRecord& found,
 }
 
 bool has_corrections(SQLite::Database& database) {
-  return has_table(database, kCorrectedFlags);
+  return holds_table(database, kCorrectedFlags);
 }
 
 void read_corrected_instances(SQLite::Database& database, MapRecord& record) {

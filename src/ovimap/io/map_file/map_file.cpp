@@ -140,7 +140,7 @@ void place_blocks(SQLite::Database& database, std::uint64_t blocks, VoxelMap& ma
 std::map<InstanceId, std::vector<WrittenLine>> writing_of_instances(
     SQLite::Database& database, std::span<const InstanceSummary> instances) {
   std::map<InstanceId, std::vector<WrittenLine>> result;
-  if (!has_table(database, map_tables::kWriting)) return result;
+  if (!holds_table(database, map_tables::kWriting)) return result;
   const LabelForest forest = read_forest(database);
   std::map<Label, std::vector<WrittenLine>> by_root;
   for (auto& [view, lines] : read_writing(database, forest)) {

@@ -62,12 +62,14 @@ class MapFileDamage : public MapFolder {
 
 TEST_F(MapFileDamage, AFlippedBitIsFoundOrHarmless) {
   const Bytes intact = read_file(path_);
+  std::vector<std::size_t> used;  // most of a small map's pages are zeros, which mean nothing
+  for (std::size_t at = 0; at < intact.size(); ++at)
+    if (intact[at] != 0) used.push_back(at);
   int refusals = 0;
   constexpr int kTrials = 1000;
   for (int trial = 0; trial < kTrials; ++trial) {
     Bytes bytes = intact;
-    // A third of the trials hit the first page: header and table definitions.
-    const std::size_t at = random_() % (trial % 3 == 0 ? std::size_t{4096} : bytes.size());
+    const std::size_t at = trial % 3 == 0 ? random_() % bytes.size() : used[random_() % used.size()];
     bytes[at] = static_cast<std::uint8_t>(bytes[at] ^ (1u << random_() % 8));
     refusals += refused(bytes, concat("byte ", at));
   }

@@ -36,6 +36,15 @@ bool has_table(SQLite::Database& database, const MapTable& table) {
   return database.tableExists(table.name);
 }
 
+bool holds_table(SQLite::Database& database, const MapTable& table) {
+  if (has_table(database, table)) return true;
+  if (!has_table(database, map_tables::kChecks)) return false;
+  SQLite::Statement check(database, "SELECT 1 FROM checks WHERE name = ?");
+  check.bind(1, table.name);
+  if (check.executeStep()) throw Error(concat("table ", table.name, " is missing"));
+  return false;
+}
+
 void drop_table(SQLite::Database& database, const MapTable& table) {
   if (!has_table(database, table)) return;
   database.exec(concat("DROP TABLE ", table.name));

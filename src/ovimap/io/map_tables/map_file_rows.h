@@ -197,6 +197,10 @@ void create_table(SQLite::Database& database, const MapTable& table);
 
 bool has_table(SQLite::Database& database, const MapTable& table);
 
+/// The same of a table that not every map has. Throws Error with a phrase when there was one, as its
+/// check says.
+bool holds_table(SQLite::Database& database, const MapTable& table);
+
 /// Throws Error with a phrase unless the table's rows are those that were written, whatever they
 /// mean.
 void verify_table(SQLite::Database& database, const MapTable& table);

@@ -196,7 +196,7 @@ void take_picture(RowReader& rows, const EncoderIdentity& encoder, ObjectView& v
 std::map<ViewKey, std::vector<WrittenLine>> read_writing(SQLite::Database& database,
                                                          const LabelForest& forest) {
   std::map<ViewKey, std::vector<WrittenLine>> writing;
-  if (!has_table(database, kWriting)) return writing;
+  if (!holds_table(database, kWriting)) return writing;
   RowReader rows(database, kWriting);
   while (rows.next()) {
     const Label label = take_label(rows, forest);

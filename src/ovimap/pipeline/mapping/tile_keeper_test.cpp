@@ -20,7 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kBound_mb = 12;
+// Twice what a frame shows: each also sees through what its neighbours put before it.
+constexpr int kBound_mb = 24;
 
 /// The desk seen by a camera that walks by a row of them, and comes back: tiles leave memory, and
 /// later frames need them again.
