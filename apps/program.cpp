@@ -45,7 +45,7 @@ constexpr CommandEntry kCommands[] = {
     {"eval", "score maps against the truth",
      "eval demo/tiny.ovimap --gt demo/tiny/room", add_eval},
     {"eval-changes", "score what a map of several visits says of what changed",
-     nullptr, add_eval_changes},
+     "eval-changes home.ovimap rooms", add_eval_changes},
     {"eval-poses", "score the poses of a camera against true ones",
      "eval-poses tracked.txt demo/tiny/room", add_eval_poses},
     {"ablate", "vary one choice and score the maps, beside published figures",

@@ -41,9 +41,18 @@ class Place:
         assert made.returncode == 0, made.stderr
         (self.folder / "better.txt").write_text((room / "traj.txt").read_text())
 
+    def prepare_visits(self):
+        """A map of two visits to one room, and the truth of both."""
+        for made in (self.run("synth", "rooms", "--room", "tiny", "--visits", "2", "--frames", "24", "--size", "160x120"),
+                     self.run("run", "rooms/visit1", "--masks", "gt", "--encoder", "none", "-o", "home.ovimap"),
+                     self.run("run", "rooms/visit2", "--masks", "gt", "--encoder", "none", "--continue", "home.ovimap")):  # fmt: skip
+            assert made.returncode == 0, made.stderr
+
     def fault_of(self, example):
         if example[0] == "correct":
             self.prepare_correction()
+        if example[0] == "eval-changes":
+            self.prepare_visits()
         if example[0] == "eval-poses":
             self.run("run", "demo/tiny/room", "--trajectory", "tracked.txt", "-o", "tracked.ovimap")
         begin = time.monotonic()
