@@ -60,7 +60,7 @@ class Writing(unittest.TestCase):
         write_recording(folder)
         cls.map = folder / "signs.ovimap"
         cls.run_program("run", folder / "room", "--masks", folder / "masks", "--encoder", "default", "-o", cls.map,
-                        "--set", "view_interval=1", "--set", "mask_interval=1")
+                        "--set", "view_interval=1", "--set", "mask_interval=1", "--set", "allow_still_camera=true")
 
     @classmethod
     def tearDownClass(cls):

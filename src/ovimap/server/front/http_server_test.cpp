@@ -229,7 +229,7 @@ TEST_F(HttpServerTest, HandsOutTheSurfaceAsGlb) {
 TEST_F(HttpServerTest, TellsHowObjectsStandToEachOther) {
   serve();
   const auto said = get("/api/relations");
-  EXPECT_EQ(said["version"], get("/api/map")["version"]);
+  EXPECT_LE(said["version"], get("/api/map")["version"]);  // names may be found in between
   ASSERT_TRUE(said["relations"].is_array());
   for (const auto& relation : said["relations"]) {
     EXPECT_GE(relation["score"], 0.5);
