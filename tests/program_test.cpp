@@ -194,7 +194,7 @@ TEST_F(ProgramTest, SaysWhatIsWrongWithTheCommandLine) {
   expect_complaint("models", {"say what models is to do: list, fetch, try, hub, verify, path;"});
   expect_complaint("edit room.ovimap", {"say what edit is to do: rename, merge"});
   expect_complaint("--versoin", {"did you mean '--version'"});
-  expect_complaint("run recording", {"output"});
+  expect_complaint("run recording", {"-o", "--continue"});
   expect_complaint("run recording -o a.ovimap --set map.voxel=1", {"map.voxel_size_m"});
   expect_complaint("run recording -o a.ovimap --set map.voxel_size_m=-1", {"0.001 to 1"});
   expect_complaint("run recording -o a.ovimap --config .", {"is a folder"});
