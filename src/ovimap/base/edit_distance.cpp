@@ -9,7 +9,10 @@
 
 namespace ovimap {
 
-std::size_t edit_distance(std::string_view a, std::string_view b) {
+namespace {
+
+template <class Text>
+std::size_t distance_between(Text a, Text b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -21,6 +24,16 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     }
   }
   return row.back();
+}
+
+}  // namespace
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  return distance_between(a, b);
+}
+
+std::size_t edit_distance(std::u32string_view a, std::u32string_view b) {
+  return distance_between(a, b);
 }
 
 std::string likely_word(std::string_view word, const std::vector<std::string>& candidates) {

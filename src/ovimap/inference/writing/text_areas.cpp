@@ -3,12 +3,12 @@
 #include "ovimap/inference/writing/text_areas.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <optional>
-#include <tuple>
+#include <utility>
+
+#include "ovimap/geometry/convex_hull.h"
 
 namespace ovimap {
 
@@ -35,56 +35,15 @@ std::vector<Pixel> take_area(Image<std::uint8_t>& open, Pixel seed) {
   return pixels;
 }
 
-float cross(const Eigen::Vector2f& a, const Eigen::Vector2f& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
-/// Andrew's monotone chain over the corners of the pixels, so that a row of pixels has a height.
-std::vector<Eigen::Vector2f> hull_of(const std::vector<Pixel>& pixels) {
+/// Around the corners of the pixels, so that a row of pixels has a height.
+TextArea rectangle_around(const std::vector<Pixel>& pixels) {
   std::vector<Eigen::Vector2f> corners;
   for (const Pixel& pixel : pixels)
     for (const float dx : {-0.5f, 0.5f})
       for (const float dy : {-0.5f, 0.5f})
         corners.emplace_back(static_cast<float>(pixel.x) + dx, static_cast<float>(pixel.y) + dy);
-  const auto before = [](const auto& a, const auto& b) {
-    return std::tuple(a.x(), a.y()) < std::tuple(b.x(), b.y());
-  };
-  std::sort(corners.begin(), corners.end(), before);
-  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
-  std::vector<Eigen::Vector2f> hull;
-  for (int half = 0; half < 2; ++half) {
-    const std::size_t first = hull.size();
-    for (const Eigen::Vector2f& corner : corners) {
-      while (hull.size() > first + 1 &&
-             cross(hull.back() - hull[hull.size() - 2], corner - hull.back()) <= 0.f)
-        hull.pop_back();
-      hull.push_back(corner);
-    }
-    hull.pop_back();
-    std::reverse(corners.begin(), corners.end());
-  }
-  return hull;
-}
-
-/// The smallest rectangle has a side on the hull (Freeman and Shapira 1975).
-TextArea smallest_rectangle(const std::vector<Eigen::Vector2f>& hull) {
-  TextArea best;
-  float least = std::numeric_limits<float>::max();
-  for (std::size_t i = 0; i < hull.size(); ++i) {
-    const Eigen::Vector2f side = (hull[(i + 1) % hull.size()] - hull[i]).normalized();
-    const Eigen::Vector2f across(-side.y(), side.x());
-    Eigen::Array2f low = Eigen::Array2f::Constant(std::numeric_limits<float>::max()), high = -low;
-    for (const Eigen::Vector2f& corner : hull) {
-      const Eigen::Array2f at(corner.dot(side), corner.dot(across));
-      low = low.min(at);
-      high = high.max(at);
-    }
-    const Eigen::Array2f size = high - low, middle = 0.5f * (low + high);
-    if (size.prod() >= least) continue;
-    least = size.prod();
-    best = {middle.x() * side + middle.y() * across, side, size.x(), size.y()};
-  }
-  return best;
+  const PlaneRectangle found = smallest_rectangle(convex_hull(std::move(corners)));
+  return {found.center, found.along, found.sides.x(), found.sides.y()};
 }
 
 /// Turned so that it runs along its longer side, to the right or upwards.
@@ -104,7 +63,7 @@ std::optional<TextArea> area_of(const std::vector<Pixel>& pixels, const Image<fl
   double sum = 0;
   for (const Pixel& pixel : pixels) sum += double{probability.at(pixel.x, pixel.y)};
   if (sum < double{rule.area_level} * static_cast<double>(pixels.size())) return {};
-  TextArea area = smallest_rectangle(hull_of(pixels));
+  TextArea area = rectangle_around(pixels);
   if (std::min(area.length_px, area.height_px) < static_cast<float>(rule.least_px)) return {};
   const float grown =
       rule.growth * area.length_px * area.height_px / (2.f * (area.length_px + area.height_px));

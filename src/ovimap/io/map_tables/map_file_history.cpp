@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
 #include "ovimap/io/map_tables/map_file_record.h"
 #include "ovimap/io/map_tables/map_file_rows.h"
+#include "ovimap/io/map_tables/row_words.h"
 
 namespace ovimap {
 
@@ -20,30 +20,18 @@ using map_tables::kVisits;
 
 constexpr std::array kEventNames = {"appeared", "gone", "moved"};
 
-/// Six 32-bit floats, lower corner and upper one; nothing for no box.
-std::vector<std::uint8_t> box_bytes(const Eigen::AlignedBox3f& box) {
-  std::vector<std::uint8_t> bytes;
-  if (box.isEmpty()) return bytes;
-  for (const Eigen::Vector3f& corner : {box.min(), box.max()})
-    for (const float coordinate : corner)
-      for (int i = 0; i < 4; ++i)
-        bytes.push_back(
-            static_cast<std::uint8_t>(std::bit_cast<std::uint32_t>(coordinate) >> 8 * i));
+/// Nothing for no box.
+Bytes box_bytes(const Eigen::AlignedBox3f& box) {
+  Bytes bytes;
+  if (!box.isEmpty()) append_box(bytes, box);
   return bytes;
 }
 
 Eigen::AlignedBox3f take_box(RowReader& rows) {
   const std::span<const std::uint8_t> bytes = rows.blob();
   if (bytes.empty()) return {};
-  if (bytes.size() != 24) rows.fail(concat("has a box of ", bytes.size(), " bytes"));
-  std::array<float, 6> numbers{};
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    std::uint32_t word = 0;
-    for (std::size_t k = 0; k < 4; ++k) word |= std::uint32_t{bytes[4 * i + k]} << 8 * k;
-    numbers[i] = std::bit_cast<float>(word);
-  }
-  const Eigen::AlignedBox3f box(Eigen::Vector3f(numbers.data()),
-                                Eigen::Vector3f(numbers.data() + 3));
+  if (bytes.size() != kBoxBytes) rows.fail(concat("has a box of ", bytes.size(), " bytes"));
+  const Eigen::AlignedBox3f box = box_of_words(bytes, rows);
   const bool sound = box.min().allFinite() && box.max().allFinite() && !box.isEmpty();
   if (!sound) rows.fail("has a box that is none");
   return box;
@@ -93,10 +81,10 @@ void write_history(SQLite::Database& database, const MapHistory& history) {
   RowWriter events(database, kObjectEvents);
   number = 0;
   for (const ObjectEvent& event : history.events) {
-    const std::vector<std::uint8_t> before = box_bytes(event.before),
-                                    after = box_bytes(event.after);
+    const Bytes before = box_bytes(event.before), after = box_bytes(event.after);
     events.insert(++number, event.instance, std::string(event_name(event.kind)), event.visit,
-                  event.frame, std::span(before), std::span(after), event.may_be);
+                  event.frame, std::span<const std::uint8_t>(before),
+                  std::span<const std::uint8_t>(after), event.may_be);
   }
   events.finish();
 }

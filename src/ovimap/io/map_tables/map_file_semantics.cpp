@@ -8,6 +8,7 @@
 
 #include "ovimap/io/map_tables/map_file_record.h"
 #include "ovimap/io/map_tables/map_file_rows.h"
+#include "ovimap/io/map_tables/row_words.h"
 
 namespace ovimap {
 
@@ -15,25 +16,9 @@ namespace {
 
 using namespace map_tables;
 
-/// Numbers as bytes, little-endian.
-template <class Word>
-void append_word(Bytes& bytes, Word word) {
-  for (std::size_t i = 0; i < sizeof(Word); ++i)
-    bytes.push_back(static_cast<std::uint8_t>(word >> 8 * i));
-}
-
-template <class Word>
-std::vector<Word> words_of(std::span<const std::uint8_t> bytes, const RowReader& rows) {
-  if (bytes.size() % sizeof(Word) != 0) rows.fail(concat("has a list of ", bytes.size(), " bytes"));
-  std::vector<Word> words(bytes.size() / sizeof(Word));
-  for (std::size_t i = 0; i < bytes.size(); ++i)
-    words[i / sizeof(Word)] |= static_cast<Word>(Word{bytes[i]} << 8 * (i % sizeof(Word)));
-  return words;
-}
-
 Bytes embedding_bytes(const Eigen::VectorXf& embedding) {
   Bytes bytes;
-  for (const float value : embedding) append_word(bytes, std::bit_cast<std::uint32_t>(value));
+  for (const float value : embedding) append_float(bytes, value);
   return bytes;
 }
 
@@ -92,8 +77,7 @@ Bytes surface_bytes(const std::vector<Eigen::Vector3f>& points) {
   Eigen::AlignedBox3f box;
   for (const Eigen::Vector3f& point : points) box.extend(point);
   Bytes bytes;
-  for (const Eigen::Vector3f& corner : {box.min(), box.max()})
-    for (const float value : corner) append_word(bytes, std::bit_cast<std::uint32_t>(value));
+  append_box(bytes, box);
   const Eigen::Array3f scale = kSteps / box.sizes().array().max(1e-6f);
   for (const Eigen::Vector3f& point : points)
     for (const float value : (point - box.min()).array() * scale + 0.5f)
@@ -102,22 +86,18 @@ Bytes surface_bytes(const std::vector<Eigen::Vector3f>& points) {
 }
 
 std::vector<Eigen::Vector3f> take_surface(RowReader& rows) {
-  constexpr std::size_t kHead = 24;
   const std::span<const std::uint8_t> bytes = rows.blob();
-  if (bytes.size() <= kHead || (bytes.size() - kHead) % kPointBytes != 0)
+  if (bytes.size() <= kBoxBytes || (bytes.size() - kBoxBytes) % kPointBytes != 0)
     rows.fail(concat("has a surface of ", bytes.size(), " bytes"));
-  Eigen::Vector3f corners[2];
-  const auto head = words_of<std::uint32_t>(bytes.first(kHead), rows);
-  for (std::size_t i = 0; i < 6; ++i)
-    corners[i / 3][static_cast<Eigen::Index>(i % 3)] = std::bit_cast<float>(head[i]);
-  if (!corners[0].allFinite() || !(corners[1] - corners[0]).allFinite())
+  const Eigen::AlignedBox3f box = box_of_words(bytes.first(kBoxBytes), rows);
+  if (!box.min().allFinite() || !box.sizes().allFinite())
     rows.fail("has a surface that is not finite");
-  const auto steps = words_of<std::uint16_t>(bytes.subspan(kHead), rows);
-  const Eigen::Array3f scale = (corners[1] - corners[0]).array().max(1e-6f) / kSteps;
+  const auto steps = words_of<std::uint16_t>(bytes.subspan(kBoxBytes), rows);
+  const Eigen::Array3f scale = box.sizes().array().max(1e-6f) / kSteps;
   std::vector<Eigen::Vector3f> points(steps.size() / 3);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Array3f step(steps[3 * i], steps[3 * i + 1], steps[3 * i + 2]);
-    points[i] = corners[0] + (step * scale).matrix();
+    points[i] = box.min() + (step * scale).matrix();
   }
   return points;
 }

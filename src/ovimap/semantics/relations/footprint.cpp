@@ -9,12 +9,6 @@ namespace ovimap {
 
 namespace {
 
-/// Twice the signed area of the triangle a, b, c; positive when c is left of a -> b.
-float turn(const Eigen::Vector2f& a, const Eigen::Vector2f& b, const Eigen::Vector2f& c) {
-  const Eigen::Vector2f u = b - a, v = c - a;
-  return u.x() * v.y() - u.y() * v.x();
-}
-
 const Eigen::Vector2f& next_corner(const Footprint& footprint, std::size_t i) {
   return footprint[i + 1 < footprint.size() ? i + 1 : 0];
 }
@@ -48,27 +42,6 @@ Footprint overlap_of(const Footprint& a, const Footprint& b) {
 }
 
 }  // namespace
-
-Footprint convex_hull(std::vector<Eigen::Vector2f> points) {
-  std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) {
-    return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
-  });
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-  if (points.size() < 3) return points;
-  Footprint hull;
-  const auto add_chain = [&hull](auto begin, auto end) {
-    const std::size_t base = hull.size();
-    for (auto at = begin; at != end; ++at) {
-      while (hull.size() >= base + 2 && turn(hull[hull.size() - 2], hull.back(), *at) <= 0.f)
-        hull.pop_back();
-      hull.push_back(*at);
-    }
-    hull.pop_back();  // the other chain begins with it
-  };
-  add_chain(points.begin(), points.end());
-  add_chain(points.rbegin(), points.rend());
-  return hull;
-}
 
 float area_m2(const Footprint& footprint) {
   float twice = 0;

@@ -6,14 +6,12 @@
 
 #include <Eigen/Core>
 
+#include "ovimap/geometry/convex_hull.h"
+
 namespace ovimap {
 
 /// A convex polygon in the ground plane, metres, counter-clockwise, at least three corners.
 using Footprint = std::vector<Eigen::Vector2f>;
-
-/// Smallest convex polygon around the points (Andrew's monotone chain). Fewer than three corners
-/// come back when the points lie on a line.
-Footprint convex_hull(std::vector<Eigen::Vector2f> points);
 
 float area_m2(const Footprint& footprint);
 float perimeter_m(const Footprint& footprint);

@@ -48,24 +48,10 @@ float floor_height(std::span<const ObjectShape> shapes) {
   return heights.empty() ? 0.f : quantile(heights, kFloorShare);
 }
 
-/// Direction of the longer side of the smallest rectangle around a convex footprint; one of its
-/// sides lies along an edge of it.
+/// Direction of the longer side of the smallest rectangle around a footprint.
 Eigen::Vector2f long_direction(const Footprint& footprint) {
-  Eigen::Vector2f best = Eigen::Vector2f::UnitX();
-  float area = std::numeric_limits<float>::max();
-  for (std::size_t i = 0; i < footprint.size(); ++i) {
-    const Eigen::Vector2f edge = footprint[(i + 1) % footprint.size()] - footprint[i];
-    if (edge.isZero()) continue;
-    const Eigen::Vector2f along = edge.normalized(), across(-along.y(), along.x());
-    Eigen::AlignedBox2f box;
-    for (const Eigen::Vector2f& corner : footprint)
-      box.extend(Eigen::Vector2f(along.dot(corner), across.dot(corner)));
-    const Eigen::Vector2f sides = box.sizes();
-    if (sides.prod() >= area) continue;
-    area = sides.prod();
-    best = sides.x() >= sides.y() ? along : across;
-  }
-  return best;
+  const PlaneRectangle rectangle = smallest_rectangle(footprint);
+  return rectangle.sides.x() >= rectangle.sides.y() ? rectangle.along : rectangle.across();
 }
 
 struct Range {

@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 
+#include "ovimap/base/edit_distance.h"
 #include "ovimap/inference/text/unicode.h"
 
 namespace ovimap {
@@ -19,28 +20,12 @@ bool is_word_part(char32_t c) {
          c == U'&';
 }
 
-/// Levenshtein's distance.
-std::size_t edits_between(std::u32string_view a, std::u32string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
-    }
-  }
-  return row.back();
-}
-
 float likeness(std::u32string_view wanted, std::u32string_view read) {
   if (wanted == read) return 1.f;
   const auto longest = static_cast<float>(std::max(wanted.size(), read.size()));
   const auto shortest = static_cast<float>(std::min(wanted.size(), read.size()));
   if (shortest < kLeastLikeness * longest) return 0.f;
-  const float alike = 1.f - static_cast<float>(edits_between(wanted, read)) / longest;
+  const float alike = 1.f - static_cast<float>(edit_distance(wanted, read)) / longest;
   return alike >= kLeastLikeness ? alike : 0.f;
 }
 
