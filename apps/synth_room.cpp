@@ -114,9 +114,7 @@ std::vector<WrittenRoom> write_visits(
                          if (progress) progress(before + done, visits * frames);
                        }));
   }
-  const std::string text = truth.dump(1) + "\n";
-  write_file(out / "changes.json",
-             {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  write_text(out / "changes.json", truth.dump(1) + "\n");
   return written;
 }
 

@@ -105,8 +105,8 @@ Json info_value(const std::filesystem::path& path, const MapInfo& info) {
   document["mask_frames"] = info.mask_frames;
   document["instances"] = instance_list(info.instances, info.names);
   document["hidden"] = Json::array();
-  if (!info.writing_reader.empty()) document["writing"] = writing_value(info);
   for (const InstanceSummary& instance : info.hidden) document["hidden"].push_back(instance.id);
+  if (!info.writing_reader.empty()) document["writing"] = writing_value(info);
   document["locked"] = info.locked;
   document["history"] = history_value(info.history);
   document["voxel_size_m"] = json_number(info.voxel_size_m);

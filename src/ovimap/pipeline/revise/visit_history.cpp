@@ -103,12 +103,14 @@ class VisitTeller {
   /// Pairs that could be one thing, the likeliest first.
   std::vector<Pair> likely_pairs() const {
     std::vector<Pair> pairs;
+    std::map<std::size_t, ThingLook> found_looks;
+    for (std::size_t k = 0; k < changes_.size(); ++k)
+      if (changes_[k].kind == ChangeKind::kNew)
+        found_looks.emplace(k, thing_look(after_, changes_[k].after, before_.up));
     for (std::size_t i = 0; i < changes_.size(); ++i) {
       if (changes_[i].kind != ChangeKind::kRemoved) continue;
       const ThingLook gone = thing_look(before_, changes_[i].before, before_.up);
-      for (std::size_t k = 0; k < changes_.size(); ++k) {
-        if (changes_[k].kind != ChangeKind::kNew) continue;
-        const ThingLook found = thing_look(after_, changes_[k].after, before_.up);
+      for (const auto& [k, found] : found_looks) {
         if (common_colors(gone, found) < config_.same_colors) continue;
         const float distance = shape_distance(gone, found);
         if (distance <= config_.same_shape) pairs.push_back({i, k, distance});

@@ -37,7 +37,6 @@ double keep_what_both_have(const Image<float>& model, TrackLevel& level) {
 std::optional<Alignment> align_to_map(const Frame& frame, const VoxelMap& map,
                                       const TrackConfig& track, const VisitFitConfig& config) {
   const TrackPyramid pyramid = make_pyramid(frame);
-  if (pyramid.size() <= kSurfaceLevel) return std::nullopt;
   const Image<float> model = cast_inverse_depth(map, pyramid[kSurfaceLevel].camera,
                                                 frame.world_from_camera, track.max_range_m);
   TrackPyramid known = {pyramid[0], pyramid[kSurfaceLevel]};
