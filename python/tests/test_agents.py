@@ -260,6 +260,8 @@ def another_program(*answers):
 
     class Handler(http.server.BaseHTTPRequestHandler):
         def do_GET(self):
+            # What is left unread when a connection is closed resets it, and the answer is lost with it.
+            self.rfile.read(int(self.headers.get("Content-Length", 0)))
             status, body = waiting.pop(0) if len(waiting) > 1 else waiting[0]
             self.send_response(status)
             self.send_header("Retry-After", "0")
