@@ -50,6 +50,11 @@ class ImageTextEncoder {
   virtual Embeddings encode_images(std::span<const RgbImage> images) = 0;
   /// [texts, dimension]. Long texts are cut at the model's context length.
   virtual Embeddings encode_texts(std::span<const std::string> texts) = 0;
+  /// The same of a list of words that many questions need and that holds no question: such lists
+  /// may be stored (text_cache.h).
+  virtual Embeddings encode_vocabulary(std::span<const std::string> texts) {
+    return encode_texts(texts);
+  }
 };
 
 /// The name of the model that `default` stands for; tools/setup.sh puts it on the search path.

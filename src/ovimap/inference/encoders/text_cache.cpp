@@ -8,7 +8,6 @@
 #include <cstring>
 #include <fstream>
 #include <list>
-#include <map>
 #include <mutex>
 #include <string_view>
 #include <unordered_map>
@@ -20,7 +19,6 @@ namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kShortestList = 64;  // texts; fewer are somebody's query
 constexpr std::size_t kDigestLength = 64;
 
 /// Names the rows that an encoder gives a list.
@@ -110,42 +108,36 @@ class ListKeeper : public ImageTextEncoder {
   }
 
   Embeddings encode_texts(std::span<const std::string> texts) override {
-    if (texts.size() < kShortestList) return recent_or_encode(texts);
-    const std::string key = key_of(identity(), texts);
-    {
-      const std::lock_guard lock(mutex_);
-      if (const auto known = lists_.find(key); known != lists_.end()) return known->second;
-    }
-    Embeddings rows = read_or_encode(key, texts);
-    const std::lock_guard lock(mutex_);
-    return lists_.try_emplace(key, std::move(rows)).first->second;
+    return recent_or([&] { return encoder_->encode_texts(texts); }, texts);
+  }
+  Embeddings encode_vocabulary(std::span<const std::string> texts) override {
+    return recent_or([&] { return read_or_encode(texts); }, texts);
   }
 
  private:
-  Embeddings recent_or_encode(std::span<const std::string> texts) {
+  template <typename Encode>
+  Embeddings recent_or(const Encode& encode, std::span<const std::string> texts) {
     std::string key;
     for (const std::string& text : texts) key += concat(text.size(), ":", text);
     if (auto known = recent_.find(key)) return std::move(*known);
-    Embeddings rows = encoder_->encode_texts(texts);
+    Embeddings rows = encode();
     recent_.keep(std::move(key), rows);
     return rows;
   }
 
-  Embeddings read_or_encode(const std::string& key, std::span<const std::string> texts) {
-    if (folder_.empty()) return encoder_->encode_texts(texts);
-    const std::filesystem::path file = folder_ / (key + ".embeddings");
+  Embeddings read_or_encode(std::span<const std::string> texts) {
+    if (folder_.empty()) return encoder_->encode_vocabulary(texts);
+    const std::filesystem::path file = folder_ / (key_of(identity(), texts) + ".embeddings");
     if (auto stored =
             read_rows(file, static_cast<Eigen::Index>(texts.size()), identity().dimension))
       return std::move(*stored);
-    Embeddings rows = encoder_->encode_texts(texts);
+    Embeddings rows = encoder_->encode_vocabulary(texts);
     write_rows(file, rows);
     return rows;
   }
 
   const std::unique_ptr<ImageTextEncoder> encoder_;
   const std::filesystem::path folder_;
-  std::mutex mutex_;
-  std::map<std::string, Embeddings> lists_;
   RecentLists recent_;
 };
 

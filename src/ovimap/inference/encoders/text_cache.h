@@ -13,12 +13,11 @@ namespace ovimap {
 /// A thousand queries of seven prompts and 768 numbers each, or some ten thousand of one prompt.
 inline constexpr std::size_t kRecentTextBytes = 24 << 20;
 
-/// The encoder, with lists of many texts (those that verdicts and guessed names are calibrated by)
-/// encoded once: they are kept in memory and in a file in `folder`, one for each list and model.
-/// What a person asks is short: the latest of such lists are kept in memory, kRecentTextBytes at
-/// most, so that what is asked again and again costs no encoding, and never stored. A file that
-/// cannot be read, is damaged or cannot be written is done without; processes may share the folder.
-/// Empty `folder`: memory alone.
+/// The encoder, with texts encoded once. The latest lists of texts are kept in memory,
+/// kRecentTextBytes at most, so that what is asked again and again costs no encoding. Vocabularies
+/// are kept in files of `folder` as well, one for each list and model, for the next program; what a
+/// person asks is never stored. A file that cannot be read, is damaged or cannot be written is done
+/// without; processes may share the folder. Empty `folder`: memory alone.
 std::unique_ptr<ImageTextEncoder> remember_text_lists(std::unique_ptr<ImageTextEncoder> encoder,
                                                       std::filesystem::path folder);
 

@@ -62,19 +62,19 @@ class TextCacheTest : public ::testing::Test {
 
 TEST_F(TextCacheTest, EncodesAListOnceForAllProcesses) {
   const auto first = encoder();
-  const Embeddings rows = first->encode_texts(list(100));
-  EXPECT_EQ(first->encode_texts(list(100)), rows);
+  const Embeddings rows = first->encode_vocabulary(list(100));
+  EXPECT_EQ(first->encode_vocabulary(list(100)), rows);
   EXPECT_EQ(asked_, 100);
-  EXPECT_EQ(encoder()->encode_texts(list(100)), rows);  // as another process would
+  EXPECT_EQ(encoder()->encode_vocabulary(list(100)), rows);  // as another process would
   EXPECT_EQ(asked_, 100);
   EXPECT_EQ(files().size(), 1u);
 }
 
 TEST_F(TextCacheTest, TellsListsAndModelsApart) {
-  encoder()->encode_texts(list(100));
-  encoder()->encode_texts(list(100, "other"));
-  encoder()->encode_texts(list(99));
-  encoder("b")->encode_texts(list(100));
+  encoder()->encode_vocabulary(list(100));
+  encoder()->encode_vocabulary(list(100, "other"));
+  encoder()->encode_vocabulary(list(99));
+  encoder("b")->encode_vocabulary(list(100));
   EXPECT_EQ(asked_, 399);
 }
 
@@ -87,6 +87,15 @@ TEST_F(TextCacheTest, RemembersQueriesButNeverStoresThem) {
   EXPECT_NE(one->encode_texts(list(2)).rows(), rows.rows());
   EXPECT_EQ(asked_, 8);
   EXPECT_TRUE(files().empty());
+}
+
+TEST_F(TextCacheTest, ALongQuestionIsNoVocabulary) {
+  const auto one = encoder();
+  for (int i = 0; i < 200; ++i) one->encode_texts(list(10000, "question " + std::to_string(i)));
+  EXPECT_TRUE(files().empty());
+  const int asked = asked_;
+  one->encode_texts(list(10000, "question 0"));  // memory has a bound as well
+  EXPECT_EQ(asked_, asked + 10000);
 }
 
 TEST_F(TextCacheTest, ForgetsTheQueriesThatWereNotAskedForTheLongest) {
@@ -107,24 +116,24 @@ TEST_F(TextCacheTest, ForgetsTheQueriesThatWereNotAskedForTheLongest) {
 }
 
 TEST_F(TextCacheTest, DoesWithoutDamagedFiles) {
-  const Embeddings rows = encoder()->encode_texts(list(100));
+  const Embeddings rows = encoder()->encode_vocabulary(list(100));
   {
     std::fstream file(files().at(0), std::ios::in | std::ios::out | std::ios::binary);
     file.seekp(200);
     file.put('\x7f');
   }
-  EXPECT_EQ(encoder()->encode_texts(list(100)), rows);
+  EXPECT_EQ(encoder()->encode_vocabulary(list(100)), rows);
   EXPECT_EQ(asked_, 200);
   std::filesystem::resize_file(files().at(0), 10);
-  EXPECT_EQ(encoder()->encode_texts(list(100)), rows);
-  EXPECT_EQ(encoder()->encode_texts(list(100)), rows);  // it was written anew
+  EXPECT_EQ(encoder()->encode_vocabulary(list(100)), rows);
+  EXPECT_EQ(encoder()->encode_vocabulary(list(100)), rows);  // it was written anew
   EXPECT_EQ(asked_, 300);
 }
 
 TEST_F(TextCacheTest, DoesWithoutAFolder) {
   std::ofstream(folder_.string()) << "a file where the folder should be";
-  EXPECT_EQ(encoder()->encode_texts(list(100)).rows(), 100);
-  EXPECT_EQ(encoder()->encode_texts(list(100)).rows(), 100);
+  EXPECT_EQ(encoder()->encode_vocabulary(list(100)).rows(), 100);
+  EXPECT_EQ(encoder()->encode_vocabulary(list(100)).rows(), 100);
   EXPECT_EQ(asked_, 200);
 }
 

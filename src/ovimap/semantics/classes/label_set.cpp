@@ -92,7 +92,8 @@ LabelSet read_label_set(const std::string& name_or_file) {
 Embeddings encode_labels(ImageTextEncoder& encoder, const LabelSet& set,
                          const std::string& prompts) {
   return encode_prompted(encoder, spoken_names(set),
-                         split_prompts(prompts.empty() ? encoder.prompt_template() : prompts));
+                         split_prompts(prompts.empty() ? encoder.prompt_template() : prompts),
+                         TextUse::kVocabulary);
 }
 
 std::vector<std::vector<ClassGuess>> project_classes(const SearchIndex& index,

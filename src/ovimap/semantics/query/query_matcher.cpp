@@ -125,13 +125,15 @@ std::vector<std::string> TextMatcher::vocabulary_texts() {
 }
 
 Embeddings TextMatcher::encode_vocabulary(ImageTextEncoder& encoder, const QueryConfig& config) {
-  return encode_prompted(encoder, vocabulary_texts(), prompts_of(encoder, config));
+  return encode_prompted(encoder, vocabulary_texts(), prompts_of(encoder, config),
+                         TextUse::kVocabulary);
 }
 
 WordLists TextMatcher::encode_word_lists(ImageTextEncoder& encoder, const QueryConfig& config) {
   WordLists lists;
   lists.texts = TextEvidence::texts();
-  lists.rows = encode_prompted(encoder, lists.texts, prompts_of(encoder, config));
+  lists.rows =
+      encode_prompted(encoder, lists.texts, prompts_of(encoder, config), TextUse::kVocabulary);
   return lists;
 }
 
@@ -180,7 +182,7 @@ void TextMatcher::apply_negatives(const MatchScores& negative, MatchScores& scor
 }
 
 Eigen::MatrixXf TextMatcher::fit_of_each(std::span<const std::string> texts) const {
-  const Embeddings rows = encode_prompted(encoder_, texts, prompts_);
+  const Embeddings rows = encode_prompted(encoder_, texts, prompts_, TextUse::kVocabulary);
   Eigen::MatrixXf fits(static_cast<Eigen::Index>(index_.size()), rows.rows());
   parallel_for(texts.size(), 1, [&](std::size_t i) {
     const auto text = static_cast<Eigen::Index>(i);

@@ -104,14 +104,15 @@ std::vector<std::string> split_prompts(const std::string& templates) {
 }
 
 Embeddings encode_prompted(ImageTextEncoder& encoder, std::span<const std::string> texts,
-                           std::span<const std::string> templates) {
+                           std::span<const std::string> templates, TextUse use) {
   std::vector<std::string> prompted;
   for (const std::string& text : texts)
     for (const std::string& prompt : templates) {
       const std::string_view words = prompt == kSlot ? text : without_article(text);
       prompted.push_back(std::string(prompt).replace(prompt.find(kSlot), kSlot.size(), words));
     }
-  const Embeddings rows = encoder.encode_texts(prompted);
+  const Embeddings rows = use == TextUse::kVocabulary ? encoder.encode_vocabulary(prompted)
+                                                      : encoder.encode_texts(prompted);
   const auto each = static_cast<Eigen::Index>(templates.size());
   Embeddings means(static_cast<Eigen::Index>(texts.size()), rows.cols());
   for (Eigen::Index i = 0; i < means.rows(); ++i)

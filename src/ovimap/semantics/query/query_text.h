@@ -24,10 +24,14 @@ std::vector<std::string> split_terms(std::string_view text);
 /// Error when one has no {}.
 std::vector<std::string> split_prompts(const std::string& templates);
 
+/// What somebody asks, or a list that every program needs and may store.
+enum class TextUse { kQuestion, kVocabulary };
+
 /// [texts, dimension], rows of length 1: of each text, without its article where a template has
 /// words of its own, the mean over all templates (Radford et al. 2021, section 3.1.4). A row is
 /// zero where the network gave nothing finite.
 Embeddings encode_prompted(ImageTextEncoder& encoder, std::span<const std::string> texts,
-                           std::span<const std::string> templates);
+                           std::span<const std::string> templates,
+                           TextUse use = TextUse::kQuestion);
 
 }  // namespace ovimap
