@@ -24,6 +24,7 @@ struct SynthOptions {
   VideoConfig video;
   std::vector<CLI::Option*> of_videos;
   std::string size;
+  std::vector<std::string> settings;
 
   bool is_video() const {
     return walk || !room.plan.empty() || !benchmark_scenes(room.room).empty();
@@ -49,11 +50,12 @@ void set_size(const std::string& text, RoomOptions& options) {
 RoomOptions chosen_room(const SynthOptions& options, const std::string& room) {
   RoomOptions chosen = options.room;
   chosen.room = room;
+  if (options.is_video()) chosen.frames_as.noise = !options.exact;
   if (!options.size.empty()) set_size(options.size, chosen);
-  if (options.is_video()) {
-    chosen.video = options.video;
-    chosen.noise = !options.exact;
-  }
+  ConfigFields fields;
+  list_fields(chosen.frames_as, fields);
+  apply_settings(options.settings, fields);
+  if (options.is_video()) chosen.video = options.video;
   return chosen;
 }
 
@@ -186,7 +188,7 @@ Action add_synth(CLI::App& command) {
       ->check(CLI::Range(0, 1000000));
   command.add_option("--seed", options->room.seed, "another seed gives another room of the kind")
       ->capture_default_str();
-  auto* noise = command.add_flag("--noise", options->room.noise,
+  auto* noise = command.add_flag("--noise", options->room.frames_as.noise,
                                  "as a depth camera sees it: noise, quantisation, holes");
   add_walk_options(command, *options, noise);
   command
@@ -205,6 +207,11 @@ Action add_synth(CLI::App& command) {
   command
       .add_option("--furniture", options->room.furniture, "folder of .sh3f furniture catalogues")
       ->capture_default_str();
+  command
+      .add_option("--set", options->settings,
+                  "one setting of how frames are made, as sensor.sigma_base_m=0.003; may be repeated")
+      ->type_size(1)
+      ->allow_extra_args(false);
   command.add_option("--threads", options->threads, "threads to use; 0: all cores")
       ->check(CLI::Range(0, 1024));
   command.add_flag("--json", options->json, "print one JSON object");

@@ -33,8 +33,7 @@ SynthRoom make_room(const RoomOptions& options) {
 }
 
 SynthSequence make_sequence(SynthRoom room, const RoomOptions& options) {
-  SynthSequenceConfig config;
-  config.noise = options.noise;
+  const SynthSequenceConfig& config = options.frames_as;
   const PinholeCamera camera = camera_of(options);
   if (options.video) return {std::move(room), camera, *options.video, config};
   const int frames =

@@ -87,6 +87,23 @@ TEST_F(EvalProgramTest, WithoutEmbeddingsThereAreNoSemanticFigures) {
   EXPECT_EQ(scores["reference"]["class_agnostic"]["ap50"], 1.0);
 }
 
+TEST_F(EvalProgramTest, ScoresASurfaceOfAnyProgram) {
+  make_map("none");
+  ASSERT_EQ(run("export room.ovimap other.ply").code, 0);
+  const auto map = run_json(std::string(kEval) + " --json")["standard"];
+  const auto surface = run_json("eval other.ply --gt replica/scene --json")["standard"];
+  EXPECT_EQ(surface["geometry"], map["geometry"]);
+  EXPECT_EQ(surface["class_agnostic"], map["class_agnostic"]);
+  Mesh mesh = read_ply(path("other.ply"));
+  mesh.labels.clear();
+  write_ply(path("plain.ply"), mesh);
+  const auto plain = run_json("eval plain.ply --gt replica/scene --json")["standard"];
+  EXPECT_EQ(plain["geometry"], map["geometry"]);
+  EXPECT_EQ(plain["class_agnostic"]["ap50"], 0.0);
+  write_text(path("broken.ply"), "ply\nformat ascii 1.0\nend_header\n");
+  expect_complaint("eval broken.ply --gt replica/scene", {"broken.ply"});
+}
+
 TEST_F(EvalProgramTest, SaysHowTruthAndMapDisagree) {
   make_map("none");
   move_truth(1000 * Eigen::Matrix3f::Identity());

@@ -10,6 +10,7 @@ is what tools/blender_scene/render.py wrote; without it that scene is not measur
 import argparse
 import datetime
 import functools
+import itertools
 import json
 import os
 import pathlib
@@ -208,32 +209,56 @@ def place_section(program, work, name, studio):
 
 # ------------------------------------------------------------------------------------------------------- surface
 
-FLAT = ["--plan", "flat", "--fps", "2"]
-FUSIONS = {"raw depth, 1/z^2, any weight": ["depth.enabled=false", "map.min_mesh_weight=0.0001"],
-           "raw depth, 1/z^2, weight of 0.1": ["depth.enabled=false", "map.min_mesh_weight=0.1"],
-           "estimated depth and variance (default)": []}
+# Large places: one whose walk chose the defaults, and one that chose nothing. Errors of a real sensor are alike over windows, and its lens bends.
+WINDOWS = ["--set", "sensor.correlation_px=6", "--set", "sensor.lens_bias_px=0.05"]
+LARGE = {"flat": ["--plan", "flat"], "harbour": ["--room", "harbour"]}
+SENSORS = {"each pixel errs by itself": [], "neighbours err alike": WINDOWS}
+FUSIONS = {"ovimap, raw depth, 1/z^2, any weight": ["depth.enabled=false", "map.min_mesh_weight=0.0001"],
+           "ovimap": []}
+OPEN3D_WEIGHTS = [1, 3, 5, 10]
 
 
-def surface_row(program, work, name, settings):
-    map_file = work / "surface.ovimap"
-    options = [word for setting in settings for word in ("--set", setting)]
-    made = run_json(program, "run", work / "flat" / "flat", "--masks", "gt", "--encoder", "none", *options, "-o", map_file)
-    scores = run_json(program, "eval", map_file, "--gt", work / "flat" / "flat", "--encoder", "none")["standard"]
+def surface_row(program, scene, name, surface):
+    scores = run_json(program, "eval", surface, "--gt", scene, "--encoder", "none", "--protocol", "standard")["standard"]
     geometry, objects = scores["geometry"], scores["class_agnostic"]
+    agnostic = "- | -" if surface.suffix == ".ply" else f"{objects['ap50']:.3f} | {objects['ap25']:.3f}"
     return (f"| {name} | {1e3 * geometry['accuracy_median_m']:.1f} | {1e3 * geometry['accuracy_m']:.1f} | {100 * geometry['stray']:.1f} "
-            f"| {geometry['completeness']:.3f} | {geometry['completeness_1cm']:.3f} | {objects['miou']:.3f} | {objects['ap50']:.3f} "
-            f"| {objects['ap25']:.3f} | {made['seconds']:.0f} |")
+            f"| {geometry['completeness']:.3f} | {geometry['completeness_1cm']:.3f} | {agnostic} |")
+
+
+def open3d_rows(program, scene, folder):
+    """Nothing where `make rivals` was not run."""
+    python = speed.RIVALS / "bin" / "python"
+    if not python.exists():
+        return []
+    run(python, "bench/rivals/open3d_surface.py", pathlib.Path(program).parent / "ovimap_fusion_steps", scene, folder,
+        "--weights", *OPEN3D_WEIGHTS)
+    return [surface_row(program, scene, f"Open3D, weight >= {weight}", folder / f"weight-{weight}.ply") for weight in OPEN3D_WEIGHTS]
+
+
+def surface_rows(program, scene, folder):
+    rows = []
+    for name, settings in FUSIONS.items():
+        options = [word for setting in settings for word in ("--set", setting)]
+        run(program, "run", scene, "--masks", "gt", "--encoder", "none", *options, "-o", folder / "surface.ovimap")
+        rows.append(surface_row(program, scene, name, folder / "surface.ovimap"))
+    return rows + open3d_rows(program, scene, folder)
 
 
 def surface_section(program, work):
-    run(program, "synth", work / "flat", *FLAT)
-    rows = [surface_row(program, work, name, settings) for name, settings in FUSIONS.items()]
-    return ["## The surface of a flat under sensor noise", "",
-            f"    ovimap synth DIR {' '.join(FLAT)}", "    ovimap run DIR/flat --masks gt [--set SETTING...] -o MAP", "    ovimap eval MAP --gt DIR/flat", "",
-            "Error: from the map's vertices to the true surface; stray are those farther than 20 cm from it, which count in neither error. "
-            "Settings: " + "; ".join(f"{name}: `{' '.join(settings)}`" for name, settings in FUSIONS.items() if settings) + ".", "",
-            "| what is fused, and what is shown | median error, mm | mean, mm | stray, % | completeness | ... within 1 cm | mIoU | AP50 | AP25 | s |",
-            "| --- " * 10 + "|", *rows, ""]
+    lines = ["## The surface of large places under sensor noise", "",
+             "    ovimap synth DIR PLACE --fps 2 [--set SENSOR...]", "    ovimap run DIR/SCENE --masks gt [--set SETTING...] -o MAP",
+             "    bench/rivals/open3d_surface.py build/release/bin/ovimap_fusion_steps DIR/SCENE OUT", "    ovimap eval MAP|PLY --gt DIR/SCENE", "",
+             "Error: from the vertices to the true surface; stray are those farther than 20 cm from it, which count in neither error. One walk at 640x480, "
+             "voxels of 1 cm, truncation 5 cm for all. Raw depth: `" + " ".join(FUSIONS["ovimap, raw depth, 1/z^2, any weight"])
+             + "`. Neighbours err alike: `" + " ".join(WINDOWS) + "`. Open3D 0.20's VoxelBlockGrid shows surface from a weight of 3 unless told otherwise.", ""]
+    for (place, options), (sensor, settings) in itertools.product(LARGE.items(), SENSORS.items()):
+        folder = work / "surface" / (place + ("-windows" if settings else ""))
+        run(program, "synth", folder, *options, "--fps", "2", *settings)
+        lines += [f"### {place}: {sensor}", "",
+                  "| surface | median error, mm | mean, mm | stray, % | completeness | ... within 1 cm | AP50 | AP25 |",
+                  "| --- " * 8 + "|", *surface_rows(program, folder / place, folder), ""]
+    return lines
 
 
 # --------------------------------------------------------------------------------------------------------- speed

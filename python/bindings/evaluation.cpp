@@ -62,7 +62,7 @@ void bind_evaluation(nb::module_& module) {
         options.room = room;
         options.frames = frames;
         options.seed = seed;
-        options.noise = noise;
+        options.frames_as.noise = noise;
         return synthesize(out, options);
       },
       nb::arg("out"), nb::arg("room") = "tiny", nb::kw_only(), nb::arg("frames") = 0,

@@ -9,6 +9,7 @@
 #include "ovimap/base/config.h"
 #include "ovimap/instance/instance_mesh.h"
 #include "ovimap/io/map_file/map_edits.h"
+#include "ovimap/io/mesh/ply.h"
 #include "ovimap/io/truth/truth.h"
 #include "ovimap/pipeline/evaluation/truth_classes.h"
 #include "ovimap/pipeline/search/map_search.h"
@@ -55,6 +56,24 @@ Mesh true_objects(const Truth& truth, const MapDocument& map, const MapAndTruth&
   return mesh;
 }
 
+/// What is scored: its surface with the objects' labels, and what else a map holds.
+struct Prediction {
+  Mesh mesh;
+  std::optional<MapDocument> map;  ///< absent: a PLY file, of whatever program
+};
+
+Prediction load_prediction(const Truth& truth, const MapAndTruth& paths) {
+  if (paths.map.extension() == ".ply") {
+    Prediction ply{read_ply(paths.map), std::nullopt};
+    ply.mesh.labels.resize(ply.mesh.vertices.size(), 0);
+    return ply;
+  }
+  MapDocument map = load_corrected_map(paths.map);
+  Mesh mesh = map.map.block_count() > 0 ? extract_instance_mesh(map.map, map.instances)
+                                        : true_objects(truth, map, paths);
+  return {std::move(mesh), std::move(map)};
+}
+
 void count_views(const MapDocument& map, int min_views, EvaluatedScene& scene) {
   InstanceRegistry registry(map.instance_config);  // knows objects too small for the list as well
   registry.restore(map.registry);
@@ -93,9 +112,8 @@ ScanNetClasses numbering_for(const std::string& classes) {
 Draft draft_scene(const MapAndTruth& paths, const std::string& classes,
                   const EvaluationConfig& config) {
   Truth truth = load_truth(paths.source, numbering_for(classes));
-  const MapDocument map = load_corrected_map(paths.map);
-  const Mesh mesh = map.map.block_count() > 0 ? extract_instance_mesh(map.map, map.instances)
-                                              : true_objects(truth, map, paths);
+  const Prediction predicted = load_prediction(truth, paths);
+  const Mesh& mesh = predicted.mesh;
   require_one_frame(paths, truth.mesh, mesh, config.frames);
   Draft draft;
   draft.paths = paths;
@@ -108,8 +126,8 @@ Draft draft_scene(const MapAndTruth& paths, const std::string& classes,
     if (truth.unscored.count(id) > 0) id = 0;
   draft.scene.labels.instances = {std::move(truth.instances), std::move(labels), {}};
   draft.classes = {paths.source, std::move(truth.classes), std::move(truth.class_names)};
-  draft.embedded = has_embeddings(map);
-  if (draft.embedded) count_views(map, config.min_embedded_views, draft.scene);
+  draft.embedded = predicted.map && has_embeddings(*predicted.map);
+  if (draft.embedded) count_views(*predicted.map, config.min_embedded_views, draft.scene);
   return draft;
 }
 
@@ -128,6 +146,8 @@ std::string lacking(const std::vector<Draft>& drafts, const EvaluationOptions& o
       return concat("no semantic figures: the truth of ", source, " does not name its classes; ",
                     "choose the set they are from with --classes");
     if (options.encoder == "none") return "no semantic figures: --encoder none";
+    if (draft.paths.map.extension() == ".ply")
+      return concat("no semantic figures: ", map, " is a surface without embeddings");
     if (!draft.embedded)
       return concat("no semantic figures: map ", map, " has no embeddings; make them with ",
                     "`ovimap reembed`");

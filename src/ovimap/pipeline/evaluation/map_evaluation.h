@@ -42,7 +42,8 @@ struct EvaluationOptions {
 
 /// A map and the recording whose truth it is scored against.
 struct MapAndTruth {
-  std::filesystem::path map, source;
+  std::filesystem::path map;  ///< or a PLY file: a surface, and objects where vertices have labels
+  std::filesystem::path source;
 };
 
 /// What a map says at the vertices of its truth.

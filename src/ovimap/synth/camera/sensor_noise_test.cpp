@@ -53,6 +53,43 @@ TEST(SensorNoise, AnswersComeInStepsOfDisparity) {
   }
 }
 
+/// Of the errors of pixels `apart` columns from each other; 1: the same.
+double correlation(const DepthImage& depth, double truth, int apart) {
+  double both = 0, one = 0;
+  for (int y = 0; y < depth.height(); ++y)
+    for (int x = 0; x + apart < depth.width(); ++x) {
+      const double a = depth.at(x, y) - truth, b = depth.at(x + apart, y) - truth;
+      if (depth.at(x, y) <= 0 || depth.at(x + apart, y) <= 0) continue;
+      both += a * b, one += a * a;
+    }
+  return both / one;
+}
+
+TEST(SensorNoise, MatchedOverWindowsNeighboursErrAlike) {
+  SensorNoiseConfig config;
+  config.disparity_step_px = 1e-4f;
+  EXPECT_NEAR(correlation(noisy_depth(flat_wall(3), config, 3), 3, 1), 0, 0.05);
+  config.correlation_px = 6;
+  const DepthImage depth = noisy_depth(flat_wall(3), config, 3);
+  EXPECT_GT(correlation(depth, 3, 1), 0.8);
+  EXPECT_NEAR(correlation(depth, 3, 20), 0, 0.15);
+  const Spread spread = spread_of(depth);  // of the same size as before
+  EXPECT_NEAR(spread.sigma, 0.0012 + 0.0019 * 2.6 * 2.6, 0.001);
+  EXPECT_NE(noisy_depth(flat_wall(3), config, 4), depth);
+}
+
+TEST(SensorNoise, ALensErrsAlikeInEveryFrame) {
+  SensorNoiseConfig config;
+  config.disparity_step_px = 1e-4f;
+  config.sigma_base_m = config.sigma_growth_per_m = config.random_loss = 0;
+  config.lens_bias_px = 0.1f;
+  const DepthImage depth = noisy_depth(flat_wall(3), config, 3);
+  EXPECT_EQ(noisy_depth(flat_wall(3), config, 4), depth);
+  EXPECT_GT(spread_of(depth).sigma, 0.005);
+  EXPECT_LT(spread_of(depth).sigma, 0.05);
+  EXPECT_GT(correlation(depth, 3, 5), 0.9);
+}
+
 TEST(SensorNoise, GrazingAndFarSurfacesGiveNoAnswer) {
   EXPECT_EQ(spread_of(noisy_depth(flat_wall(2, 0.05f), {}, 1)).lost, 1);
   const SensorNoiseConfig config;
