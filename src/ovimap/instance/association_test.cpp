@@ -28,7 +28,7 @@ class AssociateTest : public ::testing::Test {
     for (int x = begin; x < end; ++x) {
       VoxelBlock& block = map_.writable_block(surface_.at(x, 0).block());
       for (int i = 0; i < support; ++i)
-        add_support(block, surface_.at(x, 0).voxel(), palette_position(block, label));
+        add_support(block, surface_.at(x, 0).voxel(), palette_position(block, label), 1);
     }
   }
 

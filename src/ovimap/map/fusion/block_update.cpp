@@ -124,18 +124,19 @@ class Voter {
     if (!any(on_surface)) return;
     for (int i = 0; i < kLanes; ++i)
       if (on_surface[i])
-        vote((*view_.frame.segment_ids)[static_cast<std::size_t>(row.pixel[i])], first_voxel + i);
+        vote((*view_.frame.segment_ids)[static_cast<std::size_t>(row.pixel[i])], first_voxel + i,
+             view_.votes(row.z_m[i]));
   }
 
  private:
-  void vote(std::uint16_t segment, int voxel) {
+  void vote(std::uint16_t segment, int voxel, std::uint16_t votes) {
     if (segment == 0) return;
     if (segment != last_segment_) {  // neighbouring voxels mostly see the same segment
       last_segment_ = segment;
       const Label label = view_.frame.segment_labels[segment - 1u];
       position_ = label == kNoLabel ? 0 : palette_position(block_, label);
     }
-    if (position_ != 0) add_support(block_, voxel, position_);
+    if (position_ != 0) add_support(block_, voxel, position_, votes);
   }
 
   const FusionView& view_;
@@ -155,11 +156,17 @@ FusionView::FusionView(const VoxelMapConfig& config, const Observation& observat
       max_weight(config.max_weight),
       label_band_m(config.label_band_voxels * config.voxel_size_m),
       voxels_per_m(1.f / config.voxel_size_m),
-      voxel_size_m_(config.voxel_size_m) {
+      voxel_size_m_(config.voxel_size_m),
+      voxel_px_at_1m_(config.pixel_votes ? observation.camera.fx * config.voxel_size_m : 0.f) {
   const Pose camera_from_world = observation.world_from_camera.inverse();
   rotation_ = camera_from_world.linear();
   translation_ = camera_from_world.translation();
   voxel_steps = rotation_.cast<float>() * config.voxel_size_m;
+}
+
+std::uint16_t FusionView::votes(float depth_m) const {
+  constexpr float kMost = 255.f;  // of 65535 that a slot holds
+  return static_cast<std::uint16_t>(std::clamp(voxel_px_at_1m_ / depth_m + 0.5f, 1.f, kMost));
 }
 
 float FusionView::ray_length(int pixel) const {

@@ -20,6 +20,8 @@ class FusionView {
 
   /// Length of a pixel's ray with unit depth.
   float ray_length(int pixel) const;
+  /// What a voxel's vote for a label counts: the pixels along its side at that depth, at least one.
+  std::uint16_t votes(float depth_m) const;
 
   const Observation& frame;
   const PinholeCamera& camera;
@@ -28,6 +30,7 @@ class FusionView {
 
  private:
   double voxel_size_m_;
+  float voxel_px_at_1m_;  ///< pixels along a voxel at a depth of one metre; 0: votes count as one
   Eigen::Matrix3d rotation_;
   Eigen::Vector3d translation_;
 };

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "ovimap/base/parallel.h"
+#include "ovimap/map/fusion/block_update.h"
 #include "ovimap/map/fusion/plain_fusion.h"
 #include "ovimap/map/rays/sphere_fixture.h"
 #include "ovimap/map/voxels/label_slots.h"
@@ -48,6 +49,21 @@ TEST(Integrate, SurfaceVoxelsTakeColourAndLabel) {
     }
   }
   EXPECT_GT(labelled, 1000);
+}
+
+TEST(Integrate, WhoSeesAVoxelFromNearTellsMore) {
+  const DepthImage depth(640, 480, 1.f);
+  const PinholeCamera camera{640, 480, 500, 500, 320, 240};
+  const Pose pose = Pose::Identity();
+  const Observation observation{.depth = depth, .camera = camera, .world_from_camera = pose};
+  VoxelMapConfig config;  // voxels of 1 cm
+  const FusionView view(config, observation);
+  EXPECT_EQ(view.votes(1.f), 5);
+  EXPECT_EQ(view.votes(2.5f), 2);
+  EXPECT_EQ(view.votes(20.f), 1);
+  EXPECT_EQ(view.votes(1e-3f), 255);
+  config.pixel_votes = false;
+  EXPECT_EQ(FusionView(config, observation).votes(1.f), 1);
 }
 
 TEST(Integrate, GivesTheSameBitsForEveryThreadCount) {

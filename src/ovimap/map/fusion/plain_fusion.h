@@ -72,7 +72,7 @@ class VoxelFusion {
     block_.weight[voxel] = std::min(sum, view_.max_weight);
     if (view_.frame.color) blend_color(voxel, (*view_.frame.color)[pixel], share);
     if (std::fabs(distance) > view_.label_band_m) return;
-    if (view_.frame.segment_ids) vote(voxel, (*view_.frame.segment_ids)[pixel]);
+    if (view_.frame.segment_ids) vote(voxel, (*view_.frame.segment_ids)[pixel], point.z());
     if (!block_.doubts.empty()) block_.doubts[voxel] = 0;
   }
 
@@ -91,12 +91,12 @@ class VoxelFusion {
     }
   }
 
-  void vote(std::size_t voxel, std::uint16_t segment) {
+  void vote(std::size_t voxel, std::uint16_t segment, float depth_m) {
     if (segment == 0) return;
     const Label label = view_.frame.segment_labels[segment - 1u];
     if (label == kNoLabel) return;
     if (const std::uint8_t position = palette_position(block_, label))
-      add_support(block_, static_cast<int>(voxel), position);
+      add_support(block_, static_cast<int>(voxel), position, view_.votes(depth_m));
   }
 
   const FusionView& view_;

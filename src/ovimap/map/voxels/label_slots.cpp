@@ -109,23 +109,24 @@ std::uint8_t palette_position(VoxelBlock& block, Label label) {
   return static_cast<std::uint8_t>(block.palette.size() - 1);
 }
 
-void add_support(VoxelBlock& block, int voxel, std::uint8_t position) {
-  OVIMAP_ASSERT(position != 0);
+void add_support(VoxelBlock& block, int voxel, std::uint8_t position, std::uint16_t votes) {
+  OVIMAP_ASSERT(position != 0 && votes > 0);
   const auto v = static_cast<std::size_t>(voxel);
   for (std::size_t s = 0; s < kLabelSlots; ++s) {
     if (block.label[s][v] != position) continue;
-    if (block.support[s][v] < std::numeric_limits<std::uint16_t>::max()) ++block.support[s][v];
+    block.support[s][v] = static_cast<std::uint16_t>(
+        std::min<int>(block.support[s][v] + votes, std::numeric_limits<std::uint16_t>::max()));
     return promote(block, voxel, static_cast<int>(s));
   }
   constexpr std::size_t kLast = kLabelSlots - 1;  // slots are ordered, so the last is the weakest
-  if (block.support[kLast][v] == 0) {
-    std::size_t slot = kLast;
-    while (slot > 0 && block.label[slot - 1][v] == 0) --slot;
-    block.label[slot][v] = position;
-    block.support[slot][v] = 1;
-    return promote(block, voxel, static_cast<int>(slot));
-  }
-  for (auto& slot : block.support) --slot[v];
+  const std::uint16_t lost = std::min(votes, block.support[kLast][v]);
+  for (auto& slot : block.support) slot[v] = static_cast<std::uint16_t>(slot[v] - lost);
+  if (votes == lost) return;
+  std::size_t slot = kLast;
+  while (slot > 0 && block.support[slot - 1][v] == 0) --slot;
+  block.label[slot][v] = position;
+  block.support[slot][v] = static_cast<std::uint16_t>(votes - lost);
+  promote(block, voxel, static_cast<int>(slot));
 }
 
 }  // namespace ovimap

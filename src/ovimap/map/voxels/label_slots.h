@@ -29,11 +29,12 @@ void resolve_labels(VoxelBlock& block, const LabelForest& forest);
 /// full of labels that are in use (255 in one block), in which case the vote is lost.
 std::uint8_t palette_position(VoxelBlock& block, Label label);
 
-/// One frame's vote of a voxel for a palette position: O_v(k) += 1.
+/// One frame's `votes` (at least one) of a voxel for a palette position: O_v(k) += votes.
 ///
-/// When all slots are taken by others every support drops by one (Misra and Gries 1982): a label
-/// with more than 1/(slots+1) of all votes always keeps a slot. Slots stay ordered by support; a
+/// When all slots are taken by others every support drops, by the votes or by what the weakest has
+/// (Misra and Gries 1982, with weights): a label with more than 1/(slots+1) of all votes always
+/// keeps a slot. Slots stay ordered by support; a
 /// newcomer overtakes only with strictly more support, so ties go to the label already held.
-void add_support(VoxelBlock& block, int voxel, std::uint8_t position);
+void add_support(VoxelBlock& block, int voxel, std::uint8_t position, std::uint16_t votes);
 
 }  // namespace ovimap

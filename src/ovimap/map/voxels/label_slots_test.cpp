@@ -11,7 +11,7 @@ namespace ovimap {
 namespace {
 
 void vote(VoxelBlock& block, Label label, int times = 1) {
-  for (int i = 0; i < times; ++i) add_support(block, 0, palette_position(block, label));
+  for (int i = 0; i < times; ++i) add_support(block, 0, palette_position(block, label), 1);
 }
 
 TEST(LabelSlots, StrongestLabelWinsAndTiesStayWithTheHolder) {
@@ -74,10 +74,38 @@ TEST(LabelSlots, MergedLabelsAddUpBeforeAndAfterTheyAreWritten) {
   EXPECT_EQ(block.palette.size(), 3u) << "none, 5 and 8";
 }
 
+TEST(LabelSlots, HeavyVotesKeepWhatHasMoreThanAFifth) {
+  std::mt19937 random(6);
+  for (int round = 0; round < 200; ++round) {
+    VoxelBlock block({0, 0, 0});
+    std::map<Label, int> weights;
+    int total = 0;
+    for (int i = 0; i < 300; ++i) {
+      const Label label = random() % 100 < 27 ? 1 : 2 + random() % 60;
+      const auto votes = static_cast<std::uint16_t>(1 + random() % 9);
+      weights[label] += votes, total += votes;
+      add_support(block, 0, palette_position(block, label), votes);
+    }
+    if (weights[1] * (kLabelSlots + 1) <= total) continue;
+    const VoxelLabels kept = voxel_labels(block, 0, LabelForest());
+    EXPECT_TRUE(std::any_of(kept.begin(), kept.end(),
+                            [](const LabelSupport& slot) { return slot.label == 1; }));
+    for (std::size_t s = 1; s < kLabelSlots; ++s) EXPECT_LE(kept[s].support, kept[s - 1].support);
+  }
+}
+
+TEST(LabelSlots, OneHeavyVoteOvertakesManyLight) {
+  VoxelBlock block({0, 0, 0});
+  vote(block, 5, 4);
+  add_support(block, 0, palette_position(block, 9), 5);
+  EXPECT_EQ(voxel_label(block, 0, LabelForest()), 9u);
+  EXPECT_EQ(voxel_labels(block, 0, LabelForest())[1].support, 4u);
+}
+
 TEST(LabelSlots, APaletteFullOfLiveLabelsLosesVotesAndNeverWrites) {
   VoxelBlock block({0, 0, 0});
   for (Label label = 1; label <= 255; ++label)
-    add_support(block, static_cast<int>(label), palette_position(block, label));
+    add_support(block, static_cast<int>(label), palette_position(block, label), 1);
   EXPECT_EQ(palette_position(block, 300), 0);
   EXPECT_EQ(palette_position(block, 17), 17);
 }

@@ -41,6 +41,8 @@ void list_fields(VoxelMapConfig& config, ConfigFields& fields) {
              "lighter voxels make no surface; 1: a standard error of one voxel, 0.125: of 2.8");
   fields.add("label_band_voxels", config.label_band_voxels, 0.5f, 20.f,
              "distance from the surface within which voxels take labels, voxels");
+  fields.add("pixel_votes", config.pixel_votes,
+             "whether a frame's vote for a label counts as the pixels along the voxel's side");
 }
 
 VoxelMap::VoxelMap(const VoxelMapConfig& config, std::size_t most_blocks)

@@ -27,6 +27,9 @@ struct VoxelMapConfig {
                                    ///< 2.8 voxels (see integrate)
   float label_band_voxels =
       1.f;  ///< voxels this near to the observed surface take the segment's label
+  bool pixel_votes = true;  ///< a frame's vote counts as the pixels along a voxel's side, so that
+                            ///< who sees it from near tells more than who sees it from afar; false:
+                            ///< as one (the paper)
 
   float truncation_m() const { return voxel_size_m * static_cast<float>(truncation_voxels); }
   float block_size_m() const { return voxel_size_m * kBlockSide; }

@@ -57,6 +57,7 @@ MapperConfig mapper_preset(const std::string& name) {
   config.map.max_weight = 1e4f;
   config.map.min_mesh_weight = 1e-4f;
   config.map.label_band_voxels = static_cast<float>(config.map.truncation_voxels);
+  config.map.pixel_votes = false;
   config.mask_fusion.min_entity_px = kNeverSoMany;
   config.mask_fusion.split_core_px = kNeverSoMany;
   config.summary.min_instance_voxels = 1;

@@ -84,6 +84,7 @@ TEST(MapperPreset, ReferenceIsWhatTheReleasedCodeDoes) {
       {"map.truncation_voxels", "5"},
       {"map.max_weight", "10000"},
       {"map.label_band_voxels", "5"},
+      {"map.pixel_votes", "false"},
       {"summary.min_instance_voxels", "1"},
       {"summary.min_instance_views", "1"},
       {"mask_interval", "0"},
