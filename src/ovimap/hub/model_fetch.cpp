@@ -190,8 +190,8 @@ fs::path fetch_place(const std::vector<fs::path>& model_dirs) {
   const char* listed = std::getenv("OVIMAP_MODELS");
   if (const std::string first = std::string(listed ? listed : ""); !first.empty())
     return first.substr(0, first.find(':'));
-  if (const std::vector<fs::path> searched = model_search_path(); !searched.empty())
-    return searched.front();
+  for (const fs::path& searched : model_search_path())
+    if (searched != installed_model_folder()) return searched;
   if (const std::optional<fs::path> data = user_model_folder()) return *data;
   throw Error("there is no folder for models; name one with --model-dir");
 }

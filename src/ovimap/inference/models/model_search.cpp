@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "ovimap/base/error.h"
+#include "ovimap/base/installed_data.h"
 #include "ovimap/inference/models/model_folder.h"
 
 namespace ovimap {
@@ -60,6 +61,8 @@ std::vector<fs::path> model_folders_in(const fs::path& place) {
 
 }  // namespace
 
+std::optional<fs::path> installed_model_folder() { return installed_data("models"); }
+
 std::optional<fs::path> user_model_folder() {
   const char* data = std::getenv("XDG_DATA_HOME");
   const char* home = std::getenv("HOME");
@@ -74,6 +77,7 @@ std::vector<fs::path> model_search_path(const std::vector<fs::path>& model_dirs)
   candidates.emplace_back(kProjectFolder);
   append_above_program(candidates);
   if (const auto folder = user_model_folder()) candidates.push_back(*folder);
+  if (const auto folder = installed_model_folder()) candidates.push_back(*folder);
 
   std::vector<fs::path> folders;
   std::set<fs::path> seen;
@@ -102,7 +106,8 @@ fs::path find_model(const std::string& name, const std::vector<fs::path>& search
     searched += (searched.empty() ? "" : ", ") + place.string();
   throw Error(concat("model '", name, "' was not found in ",
                      searched.empty() ? "any folder" : searched,
-                     "; run tools/setup.sh, or name its folder with --model-dir or OVIMAP_MODELS"));
+                     "; run `ovimap models fetch default` (in a checkout: tools/setup.sh), or name its folder with "
+                     "--model-dir or OVIMAP_MODELS"));
 }
 
 }  // namespace ovimap
