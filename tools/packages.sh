@@ -9,7 +9,7 @@ BUILD="$(realpath "${1:-$ROOT/build/release}")"
 WORK="$ROOT/build/packages"
 OUT="$WORK/out"
 rm -rf "$WORK/stage" "$WORK/plain" "$OUT"
-mkdir -p "$OUT"
+mkdir -p "$OUT" "$WORK/plain"
 
 [ -x "$WORK/env/bin/auditwheel" ] || {
   python3 -m venv "$WORK/env"

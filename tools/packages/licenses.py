@@ -53,7 +53,8 @@ def facts(package: str) -> dict:
 
 def boost() -> str:
     """Its headers are in a package that is named after their version."""
-    return next(name for name in output("dpkg-query", "-W", "-f", "${Package}\n", "libboost1*-dev").splitlines() if re.fullmatch(r"libboost1\.\d+-dev", name))
+    known = output("dpkg-query", "-W", "-f", "${Package} ${db:Status-Status}\n", "libboost1*-dev")
+    return re.search(r"^(libboost1\.\d+-dev) installed$", known, re.MULTILINE)[1]
 
 
 def add_debian_packages(packages: set, folder: pathlib.Path) -> list:

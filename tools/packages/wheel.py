@@ -59,7 +59,7 @@ def complete_metadata(build: str, about: pathlib.Path):
     entries = (about / "entry_points.txt").read_text()
     heading = "[console_scripts]\n"
     (about / "entry_points.txt").write_text(entries.replace(heading, f"{heading}ovimap = ovimap_program:main\n"))
-    (about / "WHEEL").write_text("Wheel-Version: 1.0\nGenerator: ovimap\nRoot-Is-Purelib: false\nTag: py3-none-linux_x86_64\n")
+    (about / "WHEEL").write_text("Wheel-Version: 1.0\nGenerator: ovimap\nRoot-Is-Purelib: false\nTag: cp310-abi3-linux_x86_64\n")
     program = str(pathlib.Path(build).resolve() / "bin/ovimap")
     subprocess.run([sys.executable, str(ROOT / "tools/packages/licenses.py"), program, str(about / "licenses")], check=True)
 

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "ovimap/base/error.h"
+#include "ovimap/base/installed_data.h"
 #include "ovimap/hub/transfer/folder_lock.h"
 #include "ovimap/inference/models/model_folder.h"
 
@@ -191,7 +192,7 @@ fs::path fetch_place(const std::vector<fs::path>& model_dirs) {
   if (const std::string first = std::string(listed ? listed : ""); !first.empty())
     return first.substr(0, first.find(':'));
   for (const fs::path& searched : model_search_path())
-    if (searched != installed_model_folder()) return searched;
+    if (searched != installed_data("models")) return searched;  // a package's, which nobody may write to
   if (const std::optional<fs::path> data = user_model_folder()) return *data;
   throw Error("there is no folder for models; name one with --model-dir");
 }

@@ -68,17 +68,13 @@ void verify_model_files(const ModelFolder& model,
                         const std::function<bool(const std::string& file)>& wanted);
 
 /// Where models are looked for, in this order: `model_dirs`, the folders of $OVIMAP_MODELS
-/// (separated by colons), `.models` in the working folder and in each folder above the program, the
-/// user's data folder (~/.local/share/ovimap/models), and what was installed with the program. Only
-/// folders that exist, each once.
+/// (separated by colons), `.models` in the working folder and in each folder above the program, and
+/// the user's data folder (~/.local/share/ovimap/models). Only folders that exist, each once.
 std::vector<std::filesystem::path> model_search_path(
     const std::vector<std::filesystem::path>& model_dirs = {});
 
 /// The user's data folder for models, which need not exist; none where there is no home.
 std::optional<std::filesystem::path> user_model_folder();
-
-/// The models that a package brought, which nobody may write to; none where it brought none.
-std::optional<std::filesystem::path> installed_model_folder();
 
 /// A folder on the search path that holds a model.yaml.
 struct ModelListing {

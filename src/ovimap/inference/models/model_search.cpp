@@ -61,8 +61,6 @@ std::vector<fs::path> model_folders_in(const fs::path& place) {
 
 }  // namespace
 
-std::optional<fs::path> installed_model_folder() { return installed_data("models"); }
-
 std::optional<fs::path> user_model_folder() {
   const char* data = std::getenv("XDG_DATA_HOME");
   const char* home = std::getenv("HOME");
@@ -77,7 +75,7 @@ std::vector<fs::path> model_search_path(const std::vector<fs::path>& model_dirs)
   candidates.emplace_back(kProjectFolder);
   append_above_program(candidates);
   if (const auto folder = user_model_folder()) candidates.push_back(*folder);
-  if (const auto folder = installed_model_folder()) candidates.push_back(*folder);
+  if (const auto folder = installed_data("models")) candidates.push_back(*folder);
 
   std::vector<fs::path> folders;
   std::set<fs::path> seen;
