@@ -28,6 +28,8 @@ set(CPACK_INSTALL_CMAKE_PROJECTS
   "${PROJECT_BINARY_DIR};ovimap;program;/;${PROJECT_BINARY_DIR};ovimap;data;/;${PROJECT_BINARY_DIR};ovimap;encoder;/")
 set(CPACK_PRE_BUILD_SCRIPTS "${PROJECT_SOURCE_DIR}/cmake/DebianLayout.cmake")
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+execute_process(COMMAND sh -c ". /etc/os-release && printf %s \"\$VERSION_CODENAME\"" OUTPUT_VARIABLE release)
+set(CPACK_DEBIAN_PACKAGE_RELEASE "1~${release}")  # its dependencies are those of this release
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS "${PROJECT_SOURCE_DIR}/.deps/onnxruntime/lib")

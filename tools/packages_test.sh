@@ -43,7 +43,11 @@ print(ovimap.version())"' || bare_fail "$TITLE: the Python package does not answ
 }
 
 try_deb() {
-  cp "$OUT"/ovimap_*.deb "$ROOT_FOLDER/root"
+  if ! compgen -G "$OUT/ovimap_*~${suite}_*.deb" > /dev/null; then
+    echo "$TITLE: not tried; there is none for this release: run tools/packages.sh on it"
+    return
+  fi
+  cp "$OUT"/ovimap_*~"${suite}"_*.deb "$ROOT_FOLDER/root"
   bare_timed "$TITLE, apt install" "apt-get update -q; apt-get install -y -q --no-install-recommends ./ovimap_*.deb"
   try_program ovimap
   bare_run 'test -s /usr/share/man/man1/ovimap-query.1.gz; test -s /usr/share/bash-completion/completions/ovimap'
@@ -58,4 +62,4 @@ for suite in "${SUITES[@]}"; do
     bare_close
   done
 done
-echo "the packages work in ${SUITES[*]}"
+echo "what was tried works"
