@@ -12,7 +12,7 @@
 
 #include "models_fetch.h"
 #include "ovimap/base/error.h"
-#include "ovimap/base/installed_data.h"
+#include "ovimap/base/installation/installed_data.h"
 #include "ovimap/hub/model_fetch.h"
 #include "ovimap/inference/models/model_folder.h"
 

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "ovimap/base/error.h"
-#include "ovimap/base/installed_data.h"
+#include "ovimap/base/installation/installed_data.h"
 #include "ovimap/hub/transfer/folder_lock.h"
 #include "ovimap/inference/models/model_folder.h"
 

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "ovimap/base/error.h"
-#include "ovimap/base/installed_data.h"
+#include "ovimap/base/installation/installed_data.h"
 #include "ovimap/inference/models/model_folder.h"
 
 namespace ovimap {

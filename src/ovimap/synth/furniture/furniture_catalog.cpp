@@ -10,7 +10,7 @@
 
 #include "ovimap/base/config.h"
 #include "ovimap/base/error.h"
-#include "ovimap/base/installed_data.h"
+#include "ovimap/base/installation/installed_data.h"
 #include "ovimap/synth/furniture/zip_archive.h"
 
 namespace ovimap {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
-#include "ovimap/base/installed_data.h"
+#include "ovimap/base/installation/installed_data.h"
 
 #include <gtest/gtest.h>
 
