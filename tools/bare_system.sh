@@ -45,7 +45,7 @@ bare_open() {
 bare_close() {
   trap - EXIT
   umount "$ROOT_FOLDER/proc" "$ROOT_FOLDER/dev"
-  rm -rf --one-file-system "$ROOT_FOLDER"
+  rm -rf --one-file-system "$ROOT_FOLDER" "$ROOT_FOLDER.log"
 }
 
 # bare_run COMMAND: by bash inside, in /root; $HOME and the language are a fresh user's.
@@ -56,7 +56,7 @@ bare_run() {
 
 # bare_timed TITLE COMMAND: prints how long it took by the clock and in processor time; its output only where it fails.
 bare_timed() {
-  local title="$1" log="$BARE/last.log" TIMEFORMAT='%R s by the clock, %U + %S s of processor time' took
+  local title="$1" log="$ROOT_FOLDER.log" TIMEFORMAT='%R s by the clock, %U + %S s of processor time' took
   took="$({ time bare_run "$2" > "$log" 2>&1; } 2>&1)" || { tail -n 30 "$log"; bare_fail "$title: failed"; }
   printf '%-44s %s\n' "$title:" "$took"
 }
