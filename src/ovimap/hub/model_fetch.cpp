@@ -191,8 +191,9 @@ fs::path fetch_place(const std::vector<fs::path>& model_dirs) {
   const char* listed = std::getenv("OVIMAP_MODELS");
   if (const std::string first = std::string(listed ? listed : ""); !first.empty())
     return first.substr(0, first.find(':'));
+  const std::optional<fs::path> brought = installed_data("models");  // not to be written to
   for (const fs::path& searched : model_search_path())
-    if (searched != installed_data("models")) return searched;  // a package's, which nobody may write to
+    if (searched != brought) return searched;
   if (const std::optional<fs::path> data = user_model_folder()) return *data;
   throw Error("there is no folder for models; name one with --model-dir");
 }

@@ -41,8 +41,12 @@ void add_object(RTCDevice device, RTCScene scene, const TexturedMesh& mesh) {
 
 // Embree 3 wants a context with every ray, of which nothing is used here.
 #if RTC_VERSION_MAJOR >= 4
-void intersect(RTCScene scene, RTCRayHit& query) { rtcIntersect1(scene, &query); }
-void occlude(RTCScene scene, RTCRay& ray) { rtcOccluded1(scene, &ray); }
+void intersect(RTCScene scene, RTCRayHit& query) {
+  rtcIntersect1(scene, &query);
+}
+void occlude(RTCScene scene, RTCRay& ray) {
+  rtcOccluded1(scene, &ray);
+}
 #else
 void intersect(RTCScene scene, RTCRayHit& query) {
   RTCIntersectContext context;
