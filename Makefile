@@ -7,7 +7,7 @@ OVIMAP := $(BUILD)/bin/ovimap
 JOBS ?= $(shell nproc)
 SOURCE ?= demo/tiny/room
 
-.PHONY: site help setup build build-all demo demo-lasting test test-setup asan tsan fuzz bench rivals benchmarks viewer-speed live-speed wheel clean
+.PHONY: site help setup setup-program build build-program build-all packages packages-test demo demo-lasting test test-setup asan tsan fuzz bench rivals benchmarks viewer-speed live-speed wheel clean
 
 help:
 	@echo "make demo    set up, build, show what ovimap does (ovimap demo); VIEW=1: then in a browser"
@@ -21,16 +21,24 @@ help:
 	@echo "make live-speed SOURCE=RECORDING   what serving a map costs while it is made"
 	@echo "make site    the documentation as pages, its links checked"
 	@echo "make wheel   build a Python wheel that carries its libraries, and try it in a clean environment"
+	@echo "make packages  a wheel with the native program, and a Debian package, in build/packages/out"
+	@echo "make packages-test  try them in bare Debian 12 and 13 (root, debootstrap)"
 	@echo "make viewer-speed MAP=FILE   when the viewer shows its first picture, and how fast it answers"
 	@echo "make asan    run the tests under AddressSanitizer and UBSan;  make tsan: ThreadSanitizer"
 
 setup:
 	@tools/setup.sh
 
+setup-program:
+	@tools/setup.sh --no-page
+
 # What was once built in whole stays so: a configuration without tests would only be undone by the next `make test`.
 PRESET = $(if $(wildcard $(BUILD)/tests/CTestTestfile.cmake),release,program)
 
 build: setup
+	@$(call build-preset,$(PRESET))
+
+build-program: setup-program
 	@$(call build-preset,$(PRESET))
 
 build-all: test-setup
@@ -42,7 +50,8 @@ rm -f build-configure.log; \
 cmake --build --preset $(1) -j $(JOBS)
 endef
 
-demo: build
+# The demo shows no page, unless VIEW=1: then it is built as well.
+demo: $(if $(filter 1,$(VIEW)),build,build-program)
 	@$(OVIMAP) demo $(if $(filter 1,$(VIEW)),--view)
 
 demo-lasting: build
@@ -80,6 +89,15 @@ benchmarks: build
 
 wheel: test-setup
 	@tools/wheel_test.sh $(if $(SOURCE),"$(SOURCE)")
+
+# What the tests need need not be built, but the Python package.
+packages: test-setup
+	@cmake --preset release > /dev/null
+	@cmake --build --preset release -j $(JOBS) --target ovimap ovimap_viewer _ovimap_stub
+	@tools/packages.sh $(BUILD)
+
+packages-test:
+	@tools/packages_test.sh
 
 viewer-speed: build test-setup
 	@test -f "$(MAP)" || { echo "name a map: make viewer-speed MAP=room.ovimap"; exit 1; }

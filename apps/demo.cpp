@@ -54,6 +54,8 @@ int demo(const DemoOptions& options) {
   const auto path = [&](const char* name) { return (options.folder / name).string(); };
   const std::string room = path("tiny/room"), map = path("tiny.ovimap");
   Steps steps;
+  if (options.masks == "sam" && lacks_default())
+    steps.step("fetching the small models, once", {"models", "fetch", kDefaultModels});
   steps.step("rendering a furnished room", {"synth", path("tiny"), "--room", "tiny"});
   steps.step("mapping it, with masks on every second frame",
              {"run", room, "--masks", options.masks, "--set", "mask_interval=2", "-o", map,

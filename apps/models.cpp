@@ -107,7 +107,10 @@ int path(const FetchOptions& options) {
 void add_fetch(CLI::App& command, FetchOptions& options, std::function<void()> chosen) {
   CLI::App* fetch_command =
       command.add_subcommand("fetch", "get a model from the model hub")->fallthrough();
-  fetch_command->add_option("MODEL", options.name, "name in the catalogue: see list")->required();
+  fetch_command
+      ->add_option("MODEL", options.name,
+                   "name in the catalogue: see list; default: what ovimap itself brings")
+      ->required();
   fetch_command
       ->add_option("--variant", options.variant,
                    "full, fp16 (half the size) or quantized (a quarter; other words)")

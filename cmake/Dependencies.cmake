@@ -38,7 +38,10 @@ set_target_properties(onnxruntime_imported PROPERTIES
   INTERFACE_INCLUDE_DIRECTORIES "${ONNXRUNTIME_INCLUDE_DIR}")
 
 if(OVIMAP_SYNTH)
-  find_package(embree 3 REQUIRED)
+  find_package(embree 4 QUIET)  # of Debian 13
+  if(NOT embree_FOUND)
+    find_package(embree 3 REQUIRED)
+  endif()
   find_package(assimp REQUIRED)
   pkg_check_modules(MINIZIP REQUIRED IMPORTED_TARGET minizip)
 endif()

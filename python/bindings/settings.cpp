@@ -17,9 +17,8 @@ namespace ovimap::python {
 namespace {
 
 std::string text_of(nb::handle value) {
-  const char* type = Py_TYPE(value.ptr())->tp_name;
-  if (nb::isinstance<nb::bool_>(value) || type == std::string_view("numpy.bool") ||
-      type == std::string_view("numpy.bool_"))
+  const std::string type = nb::cast<std::string>(nb::type_name(value.type()));
+  if (nb::isinstance<nb::bool_>(value) || type == "numpy.bool" || type == "numpy.bool_")
     return PyObject_IsTrue(value.ptr()) == 1 ? "true" : "false";
   return nb::cast<std::string>(nb::str(value));
 }

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "ovimap/base/error.h"
+#include "ovimap/base/installation/installed_data.h"
 #include "ovimap/hub/transfer/folder_lock.h"
 #include "ovimap/inference/models/model_folder.h"
 
@@ -190,8 +191,9 @@ fs::path fetch_place(const std::vector<fs::path>& model_dirs) {
   const char* listed = std::getenv("OVIMAP_MODELS");
   if (const std::string first = std::string(listed ? listed : ""); !first.empty())
     return first.substr(0, first.find(':'));
-  if (const std::vector<fs::path> searched = model_search_path(); !searched.empty())
-    return searched.front();
+  const std::optional<fs::path> brought = installed_data("models");  // not to be written to
+  for (const fs::path& searched : model_search_path())
+    if (searched != brought) return searched;
   if (const std::optional<fs::path> data = user_model_folder()) return *data;
   throw Error("there is no folder for models; name one with --model-dir");
 }

@@ -23,7 +23,7 @@ FetchTarget find_target(const Hub& hub, const CatalogueEntry& entry, const std::
 std::uint64_t bytes_of(const FetchTarget& target);
 
 /// Where a fetched model goes: the first of `model_dirs`, else of $OVIMAP_MODELS, else of the
-/// folders that are searched anyway, else the user's data folder.
+/// folders that are searched anyway but for what a package installed, else the user's data folder.
 std::filesystem::path fetch_place(const std::vector<std::filesystem::path>& model_dirs);
 
 struct FetchedModel {

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "ovimap/base/error.h"
+#include "ovimap/base/installation/installed_data.h"
 #include "ovimap/inference/models/model_folder.h"
 
 namespace ovimap {
@@ -74,6 +75,7 @@ std::vector<fs::path> model_search_path(const std::vector<fs::path>& model_dirs)
   candidates.emplace_back(kProjectFolder);
   append_above_program(candidates);
   if (const auto folder = user_model_folder()) candidates.push_back(*folder);
+  if (const auto folder = installed_data("models")) candidates.push_back(*folder);
 
   std::vector<fs::path> folders;
   std::set<fs::path> seen;
@@ -102,7 +104,9 @@ fs::path find_model(const std::string& name, const std::vector<fs::path>& search
     searched += (searched.empty() ? "" : ", ") + place.string();
   throw Error(concat("model '", name, "' was not found in ",
                      searched.empty() ? "any folder" : searched,
-                     "; run tools/setup.sh, or name its folder with --model-dir or OVIMAP_MODELS"));
+                     "; run `ovimap models fetch default` (in a checkout: tools/setup.sh), or name "
+                     "its folder with "
+                     "--model-dir or OVIMAP_MODELS"));
 }
 
 }  // namespace ovimap

@@ -10,6 +10,7 @@
 
 #include "ovimap/base/config.h"
 #include "ovimap/base/error.h"
+#include "ovimap/base/installation/installed_data.h"
 #include "ovimap/synth/furniture/zip_archive.h"
 
 namespace ovimap {
@@ -123,7 +124,9 @@ std::optional<FurnitureEntry> entry_of(const Properties& properties, const Prope
 }  // namespace
 
 std::filesystem::path default_furniture_folder() {
-  return "/usr/share/sweethome3d/furniture";
+  const std::filesystem::path of_debian = "/usr/share/sweethome3d/furniture";
+  const auto brought = installed_data("furniture");
+  return brought && !std::filesystem::is_directory(of_debian) ? *brought : of_debian;
 }
 
 std::vector<FurnitureEntry> parse_furniture_properties(const std::string& text,

@@ -25,7 +25,8 @@ struct FurnitureEntry {
   Eigen::Matrix3f model_rotation = Eigen::Matrix3f::Identity();  ///< in the model's own axes, y up
 };
 
-/// Where Debian's package sweethome3d-furniture puts its libraries.
+/// Where Debian's package sweethome3d-furniture puts its libraries; where it is not installed, the
+/// few models of the room "tiny" that a package of ovimap brings (tools/packages/furniture.py).
 std::filesystem::path default_furniture_folder();
 
 /// The models of all furniture libraries (*.sh3f) of a folder.

@@ -5,7 +5,11 @@
 #include <cmath>
 #include <limits>
 
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+#endif
 #include <Eigen/Geometry>
 
 namespace ovimap {
@@ -34,6 +38,27 @@ void add_object(RTCDevice device, RTCScene scene, const TexturedMesh& mesh) {
   rtcAttachGeometry(scene, geometry);  // ids count up from 0: the object's index
   rtcReleaseGeometry(geometry);
 }
+
+// Embree 3 wants a context with every ray, of which nothing is used here.
+#if RTC_VERSION_MAJOR >= 4
+void intersect(RTCScene scene, RTCRayHit& query) {
+  rtcIntersect1(scene, &query);
+}
+void occlude(RTCScene scene, RTCRay& ray) {
+  rtcOccluded1(scene, &ray);
+}
+#else
+void intersect(RTCScene scene, RTCRayHit& query) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(scene, &context, &query);
+}
+void occlude(RTCScene scene, RTCRay& ray) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(scene, &context, &ray);
+}
+#endif
 
 void fill_ray(RTCRay& ray, const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
               float reach) {
@@ -74,9 +99,7 @@ std::optional<RayHit> RayScene::trace(const Eigen::Vector3d& origin,
   fill_ray(query.ray, origin.cast<float>(), direction.cast<float>(),
            std::numeric_limits<float>::infinity());
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect1(handle_->scene, &context, &query);
+  intersect(handle_->scene, query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
 
   RayHit hit;
@@ -100,9 +123,7 @@ bool RayScene::occluded(const Eigen::Vector3f& origin, const Eigen::Vector3f& di
                         float reach) const {
   RTCRay ray{};
   fill_ray(ray, origin, direction, reach);
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcOccluded1(handle_->scene, &context, &ray);
+  occlude(handle_->scene, ray);
   return ray.tfar < 0;
 }
 

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/base/installation/installed_data.h"
+
+#include <gtest/gtest.h>
+
+namespace ovimap {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(InstalledData, LiesBesideAProgramsFolderOrBesideAModule) {
+  const fs::path prefix = fs::temp_directory_path() / "ovimap_installed_data_test";
+  fs::remove_all(prefix);
+  fs::create_directories(prefix / "share/ovimap/models");
+  EXPECT_EQ(data_installed_with(prefix / "bin/ovimap", "models"), prefix / "share/ovimap/models");
+  EXPECT_EQ(data_installed_with(prefix / "_ovimap.so", "models"), prefix / "share/ovimap/models");
+  EXPECT_EQ(data_installed_with(prefix / "lib/python/ovimap/_ovimap.so", "models"), std::nullopt);
+  EXPECT_EQ(data_installed_with(prefix / "bin/ovimap", "furniture"), std::nullopt);
+  fs::remove_all(prefix);
+}
+
+TEST(InstalledData, OfAProgramThatIsNotInstalledIsNone) {
+  EXPECT_EQ(installed_data("nothing-of-this-name"), std::nullopt);
+}
+
+}  // namespace
+}  // namespace ovimap

@@ -1,0 +1,62 @@
+# SPDX-FileCopyrightText: 2026 The ovimap authors
+# SPDX-License-Identifier: Apache-2.0
+# Sourced by scripts that try something in a system with nothing but Debian's essential packages: made by debootstrap from this
+# machine's own mirror, kept as an archive in $BARE, unpacked afresh for every trial. Needs root; nothing outside $BARE is changed.
+BARE="${OVIMAP_BARE:-/tmp/ovimap-bare}"
+
+bare_fail() {
+  printf '%s\n' "$*" >&2
+  exit 1
+}
+
+# The first mirror that this machine's apt is set up with.
+bare_mirror() {
+  sed -n -E -e 's/^URIs:[[:space:]]*([^ ]+).*/\1/p' -e 's/^deb[[:space:]]+(\[[^]]*\][[:space:]]+)?([^[ ]+).*/\2/p' \
+    /etc/apt/sources.list.d/debian.sources /etc/apt/sources.list 2>/dev/null | head -n 1
+}
+
+# bare_make SUITE: the archive, unless it is there.
+bare_make() {
+  local suite="$1"
+  [ ! -e "$BARE/$suite.tar" ] || return 0
+  mkdir -p "$BARE"
+  debootstrap --variant=minbase --include=ca-certificates "$suite" "$BARE/$suite.new" "$(bare_mirror)" > "$BARE/$suite.log" 2>&1 ||
+    bare_fail "debootstrap of $suite failed; see $BARE/$suite.log"
+  tar -C "$BARE/$suite.new" -cf "$BARE/$suite.tar.new" .
+  rm -rf "$BARE/$suite.new"
+  mv "$BARE/$suite.tar.new" "$BARE/$suite.tar"
+}
+
+# bare_open SUITE: unpacks it and sets ROOT_FOLDER. What this machine trusts and how it reaches the network goes along.
+bare_open() {
+  [ "$(id -u)" = 0 ] || bare_fail "bare systems need root"
+  command -v debootstrap > /dev/null || bare_fail "debootstrap is missing; run: apt-get install debootstrap"
+  bare_make "$1"
+  ROOT_FOLDER="$(mktemp -d "$BARE/$1.XXXXXX")"
+  trap bare_close EXIT
+  tar -C "$ROOT_FOLDER" -xf "$BARE/$1.tar"
+  chmod 755 "$ROOT_FOLDER"
+  cp /etc/resolv.conf "$ROOT_FOLDER/etc/resolv.conf"
+  cp /etc/ssl/certs/ca-certificates.crt "$ROOT_FOLDER/etc/ssl/certs/ca-certificates.crt"
+  mount --bind /proc "$ROOT_FOLDER/proc"
+  mount --bind /dev "$ROOT_FOLDER/dev"
+}
+
+bare_close() {
+  trap - EXIT
+  umount "$ROOT_FOLDER/proc" "$ROOT_FOLDER/dev"
+  rm -rf --one-file-system "$ROOT_FOLDER" "$ROOT_FOLDER.log"
+}
+
+# bare_run COMMAND: by bash inside, in /root; $HOME and the language are a fresh user's.
+bare_run() {
+  chroot "$ROOT_FOLDER" /usr/bin/env HOME=/root LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
+    PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin bash -euo pipefail -c "cd /root; $1"
+}
+
+# bare_timed TITLE COMMAND: prints how long it took by the clock and in processor time; its output only where it fails.
+bare_timed() {
+  local title="$1" log="$ROOT_FOLDER.log" TIMEFORMAT='%R s by the clock, %U + %S s of processor time' took
+  took="$({ time bare_run "$2" > "$log" 2>&1; } 2>&1)" || { tail -n 30 "$log"; bare_fail "$title: failed"; }
+  printf '%-44s %s\n' "$title:" "$took"
+}

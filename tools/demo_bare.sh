@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The ovimap authors
+# SPDX-License-Identifier: Apache-2.0
+# Times `make demo` of this commit in a bare Debian: download, build and demo told apart, and which sources cost most to compile
+# (processor time, without ccache). Needs root, debootstrap and the network. Usage: tools/demo_bare.sh [SUITE]   (bookworm)
+set -euo pipefail
+ROOT="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
+source "$ROOT/tools/bare_system.sh"
+SUITE="${1:-bookworm}"
+COSTS="$BARE/compile-costs.$SUITE"
+
+bare_open "$SUITE"
+git clone -q "$ROOT" "$ROOT_FOLDER/root/ovimap"
+# Stands before every compiler call; the source is its last argument.
+cat > "$ROOT_FOLDER/root/timed" << 'LAUNCHER'
+#!/bin/bash
+TIMEFORMAT="%U %S ${*: -1}"
+{ time "$@" 2>&3; } 3>&2 2>> /root/costs
+LAUNCHER
+chmod +x "$ROOT_FOLDER/root/timed"
+touch "$ROOT_FOLDER/root/costs"
+
+bare_timed "make and git" "apt-get update -q; apt-get install -y -q --no-install-recommends make git"
+bare_timed "set-up (download)" "make -C ovimap setup-program"
+bare_timed "build" "export CMAKE_CXX_COMPILER_LAUNCHER=/root/timed; make -C ovimap build-program"
+bare_timed "demo" "make -C ovimap demo"
+awk '{print $1 + $2, $3}' "$ROOT_FOLDER/root/costs" | sort -rn > "$COSTS"
+awk '{sum += $1} END {printf "%d sources, %.0f s of processor time; the dearest:\n", NR, sum}' "$COSTS"
+head -n 20 "$COSTS"
