@@ -10,13 +10,24 @@ import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from .facts import Answer, Description, MapObject, MapSummary, Point, Relation
+from .facts import Answer, Description, MapObject, MapSummary, Point, Relation, StandingPlaces
 
 MOST_TEXT_CHARS = 2000  # of a query; docs/query.md
 
 
 class MapFault(RuntimeError):
     """One line that says what is wrong with a request, a map or a server, and what to do."""
+
+
+@dataclass(frozen=True)
+class Robot:
+    """A round robot with a camera above its middle."""
+
+    start: tuple[float, float] | None = None
+    radius_m: float = 0.25
+    camera_height_m: float = 1.2
+    fov_deg: float = 60.0
+    range_m: float = 2.0  # from an object to the robot's middle, at most
 
 
 @dataclass(frozen=True)
@@ -52,6 +63,10 @@ class MapBackend(abc.ABC):
 
     @abc.abstractmethod
     def relations(self, id: int) -> list[Relation]: ...
+
+    @abc.abstractmethod
+    def where_to_stand(self, id: int, robot: Robot) -> StandingPlaces:
+        """Of finished maps alone."""
 
     @abc.abstractmethod
     def crops(self, id: int, most: int) -> list[bytes]:

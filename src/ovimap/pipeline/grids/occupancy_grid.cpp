@@ -150,10 +150,14 @@ void list_fields(OccupancyConfig& config, ConfigFields& fields) {
 }
 
 OccupancyGrid make_occupancy_grid(const MapDocument& document, const OccupancyConfig& config) {
+  return make_occupancy_grid(document, extract_mesh(document.map), config);
+}
+
+OccupancyGrid make_occupancy_grid(const MapDocument& document, const Mesh& mesh,
+                                  const OccupancyConfig& config) {
   if (config.cell_m < document.map.config().voxel_size_m)
     throw Error(concat("cells of ", config.cell_m, " m are smaller than the map's voxels of ",
                        document.map.config().voxel_size_m, " m; choose larger ones with --cell"));
-  const Mesh mesh = extract_mesh(document.map);
   if (mesh.vertices.empty())
     throw Error("the map has no surface to make a grid of; it holds objects alone, or nothing");
   OccupancyGrid grid = grid_around(mesh, document.up, config);

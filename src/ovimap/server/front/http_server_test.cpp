@@ -239,6 +239,21 @@ TEST_F(HttpServerTest, TellsHowObjectsStandToEachOther) {
   for (const auto& color : get("/api/instances/1")["colors"]) EXPECT_GE(color["share"], 0.1);
 }
 
+TEST_F(HttpServerTest, SaysWhereToStandOrWhyNot) {
+  serve();
+  const json said = post("/api/approach", R"({"instance":1,"radius_m":0.05})", 200);
+  EXPECT_EQ(said["instance"], 1);
+  EXPECT_EQ(said["poses"].empty(), !said["reason"].get<std::string>().empty()) << said;
+  const json from = post("/api/approach", R"({"instance":1,"from":[900.0,-900.0]})", 200);
+  EXPECT_NE(from["reason"].get<std::string>().find("cannot be at (900, -900)"), std::string::npos);
+  post("/api/approach", R"({"instance":987654})", 404);
+  for (const char* wrong : {R"({})", R"({"instance":"1"})", R"({"instance":1,"from":[1]})",
+                            R"({"instance":1,"from":[1,null]})", R"({"instance":1,"radius_m":0})",
+                            R"({"instance":1,"radius_m":"wide"})", R"({"instance":1,"speed":1})",
+                            R"({"instance":1,"poses":1.5})"})
+    post("/api/approach", wrong, 400);
+}
+
 TEST_F(HttpServerTest, DrawsWhereAnObjectIs) {
   serve();
   const auto picture = running_->client().get("/api/instances/1/place");

@@ -188,6 +188,17 @@ MapAnswer ServedMap::ask(const MapQuestion& question) const {
           now};
 }
 
+std::shared_ptr<const StandingSpace> ServedMap::standing_space() const {
+  const auto now = snapshot();
+  if (now->live) throw Error("the map is still being made; ask when it is finished");
+  const std::lock_guard lock(standing_mutex_);
+  if (!standing_ || standing_edits_ != now->record->edits.size()) {
+    standing_ = std::make_shared<StandingSpace>(make_standing_space(load_corrected_map(path_)));
+    standing_edits_ = now->record->edits.size();
+  }
+  return standing_;
+}
+
 // ----------------------------------------------------------------------------------- corrections
 
 MapEdit ServedMap::correct(MapEdit edit) {
