@@ -358,6 +358,7 @@ void bind_map(nb::module_& module) {
   bind_query(module, map);
   bind_objects(module, map);
   bind_approach(module, map);
+  bind_scene(map);
 }
 
 }  // namespace ovimap::python

@@ -33,6 +33,7 @@ class SavedMap {
   const MapInfo& info() const { return search_.info; }
   const SearchIndex& index() const { return search_.index; }
   const QueryScene& scene() const { return search_.scene; }
+  const MapSearch& search() const { return search_; }
 
   /// Thread-safe. `words`: whether the question needs the encoder.
   const QueryEngine& engine(bool words);
@@ -90,6 +91,9 @@ void bind_query(nb::module_& module, nb::class_<SavedMap>& map);
 
 /// Adds where to stand to Map.
 void bind_approach(nb::module_& module, nb::class_<SavedMap>& map);
+
+/// Adds rooms and what is in them to Map.
+void bind_scene(nb::class_<SavedMap>& map);
 
 /// Adds to Map what is known of single objects, and corrections.
 void bind_objects(nb::module_& module, nb::class_<SavedMap>& map);

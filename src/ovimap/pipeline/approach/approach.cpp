@@ -42,7 +42,7 @@ bool in_range(const std::vector<SurfaceSample>& samples, const Eigen::Vector2f& 
 /// Passable cells near the object, on a lattice that is as wide as it must be for there to be few.
 std::vector<Candidate> candidates_near(const PassableCells& cells,
                                        const std::vector<SurfaceSample>& samples, float range_m) {
-  constexpr std::size_t kMostCandidates = 400;
+  constexpr std::size_t kMostCandidates = 256;
   Eigen::AlignedBox2f around;
   for (const SurfaceSample& sample : samples) around.extend(sample.point.head<2>().eval());
   around.min().array() -= range_m;

@@ -11,7 +11,7 @@ namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kMostSamples = 256;
+constexpr std::size_t kMostSamples = 128;
 
 /// One sample (the first) from each cube that holds some; cubes grow until there are few enough.
 std::vector<SurfaceSample> thinned(std::vector<SurfaceSample> samples, float cube_m) {

@@ -24,7 +24,7 @@ struct SurfaceSample {
 struct StandingSpace {
   OccupancyGrid grid;
   SightGrid sight;
-  std::map<InstanceId, std::vector<SurfaceSample>> surfaces;  ///< evenly spread, some hundred each
+  std::map<InstanceId, std::vector<SurfaceSample>> surfaces;  ///< evenly spread, at most 128 each
 };
 
 /// `document`: a corrected map. Throws what make_occupancy_grid throws.

@@ -239,13 +239,10 @@ TEST_F(HttpServerTest, TellsHowObjectsStandToEachOther) {
   for (const auto& color : get("/api/instances/1")["colors"]) EXPECT_GE(color["share"], 0.1);
 }
 
-TEST_F(HttpServerTest, SaysWhereToStandOrWhyNot) {
+TEST_F(HttpServerTest, ChecksWhatIsAskedWhereToStand) {
   serve();
-  const json said = post("/api/approach", R"({"instance":1,"radius_m":0.05})", 200);
-  EXPECT_EQ(said["instance"], 1);
-  EXPECT_EQ(said["poses"].empty(), !said["reason"].get<std::string>().empty()) << said;
-  const json from = post("/api/approach", R"({"instance":1,"from":[900.0,-900.0]})", 200);
-  EXPECT_NE(from["reason"].get<std::string>().find("cannot be at (900, -900)"), std::string::npos);
+  // This map's blocks lie too far apart for a grid; the agents' tests ask a room's.
+  post("/api/approach", R"({"instance":1,"from":[1.5,2],"radius_m":0.05})", 409);
   post("/api/approach", R"({"instance":987654})", 404);
   for (const char* wrong : {R"({})", R"({"instance":"1"})", R"({"instance":1,"from":[1]})",
                             R"({"instance":1,"from":[1,null]})", R"({"instance":1,"radius_m":0})",
