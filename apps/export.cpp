@@ -41,7 +41,7 @@ void export_scene_graph(const ExportOptions& options) {
   const MapSearch search = open_map_search(options.map);
   const SceneGraph graph =
       read_scene_graph(options.map, search, options.encoder, options.model_dirs);
-  write_text(options.out, scene_graph_json(graph, search).dump(2) + "\n");
+  write_text(options.out, scene_graph_json(graph, search));
 }
 
 void export_json(const ExportOptions& options) {

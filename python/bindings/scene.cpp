@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nanobind/stl/string.h>
 
-#include <nlohmann/json.hpp>
-
 #include "bindings.h"
 #include "ovimap/pipeline/search/scene_graph.h"
 #include "ovimap/server/api/scene_graph_json.h"
@@ -26,7 +24,7 @@ const TextEvidence* evidence_of(SavedMap& map) {
 
 std::string scene_graph(SavedMap& map) {
   const SceneGraph graph = make_scene_graph(map.standing_space(), map.search(), evidence_of(map));
-  return scene_graph_json(graph, map.search()).dump();
+  return scene_graph_json(graph, map.search());
 }
 
 }  // namespace

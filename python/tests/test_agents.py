@@ -220,6 +220,8 @@ def test_a_served_map_says_what_the_file_says(reading, copy):
             ("describe", {"object": chair}),
             ("relations", {"object": chair}),
             ("objects", {"most": 200}),
+            ("rooms", {}),
+            ("where_to_stand", {"object": chair, "start": [1.0, 1.0], "radius_m": 0.15}),
             ("maps", {}),
         ):
             given = arguments if tool == "maps" else {"map": "room", **arguments}

@@ -9,8 +9,9 @@ import math
 import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
-from .facts import Answer, Description, MapObject, MapSummary, Point, Relation, StandingPlaces
+from .facts import Answer, Description, Door, MapObject, MapSummary, Point, Relation, Room, RoomList, StandingPlaces
 
 MOST_TEXT_CHARS = 2000  # of a query; docs/query.md
 
@@ -63,6 +64,10 @@ class MapBackend(abc.ABC):
 
     @abc.abstractmethod
     def relations(self, id: int) -> list[Relation]: ...
+
+    @abc.abstractmethod
+    def rooms(self) -> RoomList:
+        """Of finished maps alone."""
 
     @abc.abstractmethod
     def where_to_stand(self, id: int, robot: Robot) -> StandingPlaces:
@@ -149,6 +154,17 @@ def rounded(value: float) -> float:
 
 def share(value: float | None) -> float | None:
     return None if value is None else rounded(value)
+
+
+def room_list(name: str, graph: dict[str, Any]) -> RoomList:
+    """What an agent reads of a scene graph (docs/export.md)."""
+    rooms = [Room(said["id"], said["name"], rounded(said["area_m2"]), _here(said["center"]), said["objects"]) for said in graph["rooms"]]
+    doors = [Door((said["rooms"][0], said["rooms"][1]), _here(said["place"]), rounded(said["width_m"])) for said in graph["doors"]]
+    return RoomList(name, rooms, doors)
+
+
+def _here(values: Sequence[float]) -> Point:
+    return rounded(values[0]), rounded(values[1]), rounded(values[2])
 
 
 def extent(objects: Sequence[MapObject]) -> tuple[Point | None, Point | None]:

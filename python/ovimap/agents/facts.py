@@ -133,6 +133,40 @@ class Description(MapObject):
 
 
 @dataclass(frozen=True)
+class Room:
+    """A part of the floor within walls and doors."""
+
+    __pydantic_config__: ClassVar[dict[str, bool]] = _DOCUMENTED
+    id: int
+    name: str
+    """what it is by the things in it ("kitchen"), else "room 2\""""
+    area_m2: float
+    center: Point
+    objects: list[int]
+    """ids of what is in it"""
+
+
+@dataclass(frozen=True)
+class Door:
+    """Where one goes from a room into another."""
+
+    __pydantic_config__: ClassVar[dict[str, bool]] = _DOCUMENTED
+    rooms: tuple[int, int]
+    place: Point
+    width_m: float
+
+
+@dataclass(frozen=True)
+class RoomList:
+    """All rooms of a map, largest first, and the doors between them."""
+
+    __pydantic_config__: ClassVar[dict[str, bool]] = _DOCUMENTED
+    map: str
+    rooms: list[Room]
+    doors: list[Door]
+
+
+@dataclass(frozen=True)
 class StandingPlace:
     """A place from which an object is seen. x, y and yaw are in a frame whose z is up: the world's, where z is up there."""
 

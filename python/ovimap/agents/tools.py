@@ -13,7 +13,7 @@ from mcp_types import CallToolResult, ImageContent, InputRequiredResult, TextCon
 from pydantic import Field, ValidationError
 
 from .backend import MapBackend, MapFault, Robot
-from .facts import Answer, Correction, Description, MapSummary, ObjectList, Relations, StandingPlaces
+from .facts import Answer, Correction, Description, MapSummary, ObjectList, Relations, RoomList, StandingPlaces
 
 MOST_OBJECTS = 200  # in one answer
 MOST_PICTURES = 8
@@ -38,7 +38,7 @@ class MapServer(MCPServer[None]):
     def __init__(self, maps: Sequence[MapBackend], *, corrections: bool = False, version: str = "") -> None:
         super().__init__("ovimap", instructions=INSTRUCTIONS, version=version, log_level="WARNING")
         self._maps = {backend.name: backend for backend in maps}
-        reading: list[Callable[..., Any]] = [self.maps, self.objects, self.find, self.describe, self.relations, self.look, self.where_to_stand]
+        reading: list[Callable[..., Any]] = [self.maps, self.objects, self.find, self.describe, self.relations, self.rooms, self.look, self.where_to_stand]
         writing: list[Callable[..., Any]] = [self.rename, self.merge, self.undo] if corrections else []
         for tool in reading:
             self.add_tool(tool, annotations=READS)
@@ -88,6 +88,11 @@ class MapServer(MCPServer[None]):
     def relations(self, map: MapName, object: ObjectId) -> Relations:
         """What is on, in, above, beside or near an object, and what it is on itself."""
         return Relations(map, object, self._ask(lambda: self._map(map).relations(object)))
+
+    def rooms(self, map: MapName) -> RoomList:
+        """The rooms of a map, what is in each, and the doors between them. find() understands rooms too: "mug in the kitchen",
+        "chair in room 2". Works on finished maps; the first question takes seconds."""
+        return self._ask(self._map(map).rooms)
 
     def look(
         self,

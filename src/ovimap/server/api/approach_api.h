@@ -11,4 +11,7 @@ namespace ovimap {
 /// Throws BadRequest, and Error for a setting out of its range.
 HttpReply answer_approach(const ServedMap& map, const HttpRequest& request);
 
+/// The scene graph: rooms, doors, places, objects, relations.
+HttpReply show_rooms(const ServedMap& map);
+
 }  // namespace ovimap

@@ -245,6 +245,8 @@ Router map_api(ServedMap& map, FrameApi& frames) {
       [&map](Request r) { return show_place(map, r); });
   add("GET", "/api/relations", BodyType::kNone, RouteCost::kWork,
       [&map](Request) { return json_reply(relations_json(map)); });
+  add("GET", "/api/rooms", BodyType::kNone, RouteCost::kWork,
+      [&map](Request) { return show_rooms(map); });
   get("/api/mesh", [&map](Request r) { return list_chunks(map, r); });
   get_large("/api/mesh/{level}/{x}/{y}/{z}", [&map](Request r) { return show_chunk(map, r); });
   get("/api/cameras", [&map](Request) { return json_reply(cameras_json(map)); });

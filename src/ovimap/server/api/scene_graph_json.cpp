@@ -58,7 +58,7 @@ Json object_json(const SceneGraph& graph, const SearchObject& object, std::size_
 
 }  // namespace
 
-Json scene_graph_json(const SceneGraph& graph, const MapSearch& search) {
+std::string scene_graph_json(const SceneGraph& graph, const MapSearch& search) {
   Json rooms = Json::array(), doors = Json::array(), places = Json::array(), links = Json::array(),
        objects = Json::array(), relations = Json::array();
   for (const Room& room : graph.plan.rooms) rooms.push_back(room_json(graph, room, search.index));
@@ -81,15 +81,16 @@ Json scene_graph_json(const SceneGraph& graph, const MapSearch& search) {
                          {"evidence", relation.evidence}});
   Json turn = Json::array();
   for (int i = 0; i < 9; ++i) turn.push_back(graph.grid_from_world(i / 3, i % 3));
-  return {{"up", point(search.info.up)},
-          {"grid_from_world", turn},
-          {"floor_m", number(graph.floor_m)},
-          {"rooms", rooms},
-          {"doors", doors},
-          {"places", places},
-          {"links", links},
-          {"objects", objects},
-          {"relations", relations}};
+  const Json whole = {{"up", point(search.info.up)},
+                      {"grid_from_world", turn},
+                      {"floor_m", number(graph.floor_m)},
+                      {"rooms", rooms},
+                      {"doors", doors},
+                      {"places", places},
+                      {"links", links},
+                      {"objects", objects},
+                      {"relations", relations}};
+  return whole.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace ovimap

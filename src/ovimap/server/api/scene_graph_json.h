@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
+#include <string>
 
 #include "ovimap/pipeline/search/scene_graph.h"
 
 namespace ovimap {
 
 /// The JSON object of docs/export.md, "Scene graph". Metres, world frame.
-nlohmann::ordered_json scene_graph_json(const SceneGraph& graph, const MapSearch& search);
+std::string scene_graph_json(const SceneGraph& graph, const MapSearch& search);
 
 }  // namespace ovimap
