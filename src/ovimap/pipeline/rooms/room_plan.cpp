@@ -22,7 +22,7 @@ constexpr float kUnderCeiling_m = 0.15f;  // what hangs there is no wall
 using Cell = Eigen::Vector2i;
 const std::array<Cell, 4> kNeighbors = {{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
 
-/// Cells with their connected parts (4-neighbours) of equal `inside`, largest memory first.
+/// The connected parts (4-neighbours) of the cells with that value.
 std::vector<std::vector<Cell>> parts_of(const Image<std::uint8_t>& mask, std::uint8_t value) {
   std::vector<std::vector<Cell>> parts;
   Image<std::uint8_t> seen(mask.width(), mask.height());
@@ -45,8 +45,8 @@ std::vector<std::vector<Cell>> parts_of(const Image<std::uint8_t>& mask, std::ui
   return parts;
 }
 
-/// The highest layer in which more is occupied than in half of the fullest one above `from_m`: the
-/// ceiling. The grid's top where nothing is.
+/// Height above the floor of the layer above `from_m` that is occupied most: the ceiling, where
+/// frames show it.
 float ceiling_m(const OccupancyGrid& grid, float from_m) {
   const int first = std::clamp(
       static_cast<int>((grid.floor_m + from_m - grid.origin.z()) / grid.cell_m), 0, grid.size.z());
