@@ -17,7 +17,8 @@
 #include "ovimap/io/pictures/pictures.h"
 #include "ovimap/pipeline/grids/grid_files.h"
 #include "ovimap/pipeline/report/map_pictures.h"
-#include "ovimap/pipeline/search/map_search.h"
+#include "ovimap/pipeline/search/scene_graph.h"
+#include "ovimap/server/api/scene_graph_json.h"
 
 namespace ovimap::apps {
 
@@ -32,13 +33,20 @@ Mesh colored_mesh(const MapDocument& document, const ExportOptions& options) {
 }
 
 std::vector<ObjectRelation> relations_of(const MapSearch& search) {
-  std::vector<InstanceId> ids;
-  for (const SearchObject& object : search.index.objects()) ids.push_back(object.id);
-  return find_relations(ids, search.scene.shapes);
+  return find_relations(ids_of(search.index), search.scene.shapes);
+}
+
+/// Rooms, places, objects and relations.
+void export_scene_graph(const ExportOptions& options) {
+  const MapSearch search = open_map_search(options.map);
+  const SceneGraph graph =
+      read_scene_graph(options.map, search, options.encoder, options.model_dirs);
+  write_text(options.out, scene_graph_json(graph, search));
 }
 
 void export_json(const ExportOptions& options) {
   if (options.what == "semantic") return export_class_json(options);
+  if (options.what == "rooms") return export_scene_graph(options);
   const MapSearch search = open_map_search(options.map);
   write_text(options.out, scene_json(options.map, search.info, relations_of(search)) + "\n");
 }
@@ -99,7 +107,7 @@ constexpr Format kFormats[] = {
     {".ply", export_ply, "mesh instances semantic points"},
     {".glb", export_glb, "mesh instances semantic"},
     {".png", export_png, "mesh instances semantic"},
-    {".json", export_json, "objects semantic mesh instances"},
+    {".json", export_json, "objects rooms semantic mesh instances"},
     {".csv", export_csv, "objects"},
     {".yaml", export_grid, "grid"},
     {"", export_folder, "objects mesh instances semantic"},
@@ -180,15 +188,16 @@ Action add_export(CLI::App& command) {
       .add_option(
           "--what", options->what,
           "mesh: true colours; instances: a colour per object; semantic: a colour and id per "
-          "class; points: vertices alone; objects; grid. Each format has its own default")
-      ->check(CLI::IsMember({"mesh", "instances", "semantic", "points", "objects", "grid"}));
+          "class; points: vertices alone; objects; rooms: places, rooms and what is in them; grid. Each "
+          "format has its own default")
+      ->check(CLI::IsMember({"mesh", "instances", "semantic", "points", "objects", "rooms", "grid"}));
   add_grid_options(command, *options);
   command
       .add_option("--classes", options->classes,
                   "of --what semantic: replica51, scannet200, scannet20 or a file of names")
       ->capture_default_str();
   command.add_option("--encoder", options->encoder,
-                     "of --what semantic; auto: the model the map was made with");
+                     "of --what semantic and rooms; auto: the model the map was made with");
   add_model_dirs(command, options->model_dirs);
   command.add_option("--threads", options->threads, "threads to use; 0: all cores")
       ->check(CLI::Range(0, 1024));

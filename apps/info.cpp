@@ -7,6 +7,7 @@
 #include "ovimap/io/map_file/map_check.h"
 #include "ovimap/io/map_file/map_file.h"
 #include "ovimap/io/map_file/map_file_access.h"
+#include "ovimap/pipeline/search/scene_graph.h"
 #include "ovimap/pipeline/sequence/timings_text.h"
 
 namespace ovimap::apps {
@@ -16,7 +17,7 @@ namespace {
 struct InfoOptions {
   std::filesystem::path map;
   bool check = false;
-  bool history = false;
+  bool history = false, rooms = false;
   bool recover = false;
   bool json = false;
 };
@@ -80,6 +81,24 @@ void print_history(const MapInfo& map) {
   }
 }
 
+/// A line for each room and what is in it, then one for each door.
+void print_rooms(const InfoOptions& options) {
+  const MapSearch search = open_map_search(options.map);
+  const SceneGraph graph = read_scene_graph(options.map, search, "auto");
+  if (graph.plan.rooms.empty())
+    std::printf("no rooms: the frames looked through no free space at breast height\n");
+  for (const Room& room : graph.plan.rooms) {
+    std::printf("room %d, %.1f m2: %s\n", room.id, double{room.area_m2},
+                graph.name_of(room).c_str());
+    for (std::size_t i = 0; i < search.index.size(); ++i)
+      if (graph.room_of[i] == room.id)
+        std::printf("%6u  %s\n", search.index.object(i).id, graph.titles[i].c_str());
+  }
+  for (const RoomDoor& door : graph.plan.doors)
+    std::printf("door from room %d to room %d at %.2f %.2f, %.2f m wide\n", door.first, door.second,
+                double{door.place_m.x()}, double{door.place_m.y()}, double{door.width_m});
+}
+
 int info(const InfoOptions& options) {
   if (options.recover && !recover_map(options.map))
     std::fprintf(stderr, "%s: nothing to recover\n", options.map.c_str());
@@ -95,6 +114,10 @@ int info(const InfoOptions& options) {
   }
   if (options.history) {
     print_history(map);
+    return kDone;
+  }
+  if (options.rooms) {
+    print_rooms(options);
     return kDone;
   }
   std::printf(
@@ -131,6 +154,8 @@ Action add_info(CLI::App& command) {
                    "code 1 and a list where something is damaged");
   command.add_flag("--history", options->history,
                    "which recordings went into the map, and what each found moved, gone or new");
+  command.add_flag("--rooms", options->rooms,
+                   "which rooms the map has, what is in each, and the doors between them");
   command.add_flag("--recover", options->recover,
                    "make a map whole beside which a change that was cut short left its log: the "
                    "change is taken back, or in where it was finished; then examine it");

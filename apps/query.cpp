@@ -15,6 +15,8 @@
 #include "ovimap/semantics/query/query_engine.h"
 #include "ovimap/semantics/query/query_grammar.h"
 #include "ovimap/semantics/query/query_text.h"
+#include "ovimap/server/api/approach_json.h"
+#include "query_approach.h"
 
 namespace ovimap::apps {
 
@@ -28,12 +30,22 @@ struct QueryOptions {
   std::vector<InstanceId> like;
   int top = 0, threads = 0;  // 0: as configured
   bool json = false;
+  ApproachOptions approach;
 };
 
-QueryConfig query_config(const QueryOptions& options) {
+/// Where to stand for each object of the answers that were found.
+struct Approaches {
+  StandingSpace space;
+  std::map<InstanceId, Approach> of_object;
+};
+
+/// The settings of the query; those of --approach go into the options.
+QueryConfig query_config(QueryOptions& options) {
   QueryConfig config;
   ConfigFields fields;
   fields.group("query", [&](ConfigFields& inner) { list_fields(config, inner); });
+  fields.group("approach",
+               [&](ConfigFields& inner) { list_fields(options.approach.config, inner); });
   apply_settings(options.settings, fields);
   if (options.top > 0) config.top_k = options.top;
   return config;
@@ -72,10 +84,14 @@ nlohmann::json match_json(const QueryMatch& match, const SearchObject& object,
 }
 
 nlohmann::json answer_json(const QueryAnswer& answer, const SearchIndex& index,
-                           const std::vector<std::string>& titles) {
+                           const std::vector<std::string>& titles, const Approaches& approaches) {
   nlohmann::json instances = nlohmann::json::array();
-  for (const QueryMatch& match : answer.matches)
+  for (const QueryMatch& match : answer.matches) {
     instances.push_back(match_json(match, index.object(match.position), titles[match.position]));
+    if (const auto there = approaches.of_object.find(match.id);
+        there != approaches.of_object.end())
+      instances.back()["approach"] = approach_json(there->second, approaches.space.grid);
+  }
   const auto count = answer.count
                          ? nlohmann::json{{"expected", answer.count->expected},
                                           {"deviation", answer.count->deviation},
@@ -90,7 +106,7 @@ nlohmann::json answer_json(const QueryAnswer& answer, const SearchIndex& index,
 }
 
 void print_answer(const QueryAnswer& answer, const SearchIndex& index,
-                  const std::vector<std::string>& titles) {
+                  const std::vector<std::string>& titles, const Approaches& approaches) {
   std::printf("%s: %s", answer.query.c_str(),
               answer.verdict == Verdict::kFound ? "found" : "not in the map");
   if (answer.count)
@@ -109,6 +125,9 @@ void print_answer(const QueryAnswer& answer, const SearchIndex& index,
       std::printf("  %s", title.c_str());
     if (!match.evidence.empty()) std::printf("  %s", match.evidence.c_str());
     std::printf("\n");
+    if (const auto there = approaches.of_object.find(match.id);
+        there != approaches.of_object.end())
+      print_approach(there->second);
   }
 }
 
@@ -150,7 +169,21 @@ void write_heat_maps(const QueryOptions& options, const MapSearch& search,
   }
 }
 
+Approaches find_approaches(const QueryOptions& options, const std::vector<QueryAnswer>& answers) {
+  Approaches result;
+  if (!options.approach.asked) return result;
+  result.space = make_standing_space(load_corrected_map(options.map));
+  for (const QueryAnswer& answer : answers)
+    for (const QueryMatch& match : answer.matches)
+      if (answer.verdict == Verdict::kFound && !result.of_object.contains(match.id))
+        result.of_object[match.id] =
+            find_approach(result.space, match.id, options.approach.config,
+                          options.approach.start());
+  return result;
+}
+
 void check_options(const QueryOptions& options) {
+  check_approach_options(options.approach);
   const std::size_t queries = options.texts.size() + options.images.size() + options.like.size();
   if (queries == 0) throw Error("nothing is asked; give a TEXT, --image FILE or --like ID");
   if (options.texts.empty() && !(options.negatives.empty() && options.near.empty()))
@@ -183,7 +216,7 @@ std::vector<QueryAnswer> ask(const QueryOptions& options, const QueryEngine& eng
   return answers;
 }
 
-int query(const QueryOptions& options) {
+int query(QueryOptions& options) {
   const ThreadLimit limit(options.threads);
   check_options(options);
   const QueryConfig config = query_config(options);
@@ -204,12 +237,13 @@ int query(const QueryOptions& options) {
   const std::vector<QueryAnswer> answers = ask(options, engine);
   const std::vector<std::string> titles = titles_of(search.index, engine);
   if (!options.heat_map.empty()) write_heat_maps(options, search, answers);
+  const Approaches approaches = find_approaches(options, answers);
   for (const QueryAnswer& answer : answers) {
     found = found || answer.verdict == Verdict::kFound;
     if (options.json)
-      results.push_back(answer_json(answer, search.index, titles));
+      results.push_back(answer_json(answer, search.index, titles, approaches));
     else
-      print_answer(answer, search.index, titles);
+      print_answer(answer, search.index, titles, approaches);
   }
   if (options.json) print_json({{"results", results}});
   return found ? kDone : kAnswerIsNo;
@@ -243,11 +277,12 @@ Action add_query(CLI::App& command) {
                   "default, a model, or auto: the one that the map was made with")
       ->capture_default_str();
   add_model_dirs(command, options->model_dirs);
-  command.add_option("--set", options->settings, "one setting, query.a=b; may be repeated")
+  command.add_option("--set", options->settings, "one setting, query.a=b or approach.a=b; may be repeated")
       ->type_size(1)
       ->allow_extra_args(false);
   command.add_option("--threads", options->threads, "threads to use; 0: all cores")
       ->check(CLI::Range(0, 1024));
+  add_approach_options(command, options->approach);
   command.add_flag("--json", options->json, "print one JSON object");
   return [options] { return query(*options); };
 }

@@ -115,6 +115,24 @@ TEST_F(QueryProgramTest, DrawsHeatMaps) {
                    {"none/heat.png", "create the folder"});
 }
 
+TEST_F(QueryProgramTest, SaysWhereToStandForWhatItFound) {
+  map_with(golden_model("minilm"));
+  const auto found = query("\"largest object\" --approach --from 0,0 --radius 0.1")[0];
+  ASSERT_EQ(found["verdict"], "found");
+  for (const auto& instance : found["instances"]) {
+    const auto& approach = instance["approach"];
+    EXPECT_EQ(approach["poses"].empty(), !approach["reason"].get<std::string>().empty());
+    for (const auto& pose : approach["poses"]) EXPECT_GE(pose["seen"], 0.3);
+  }
+  EXPECT_FALSE(query("\"largest object\"")[0]["instances"][0].contains("approach"));
+  expect_complaint("query room.ovimap anything --from 0,0" + kEncoder, {"--from", "--approach"});
+  expect_complaint("query room.ovimap anything --approach --set approach.radius_m=-1" + kEncoder,
+                   {"approach.radius_m", "-1"});
+  const ProgramResult rooms = run("info room.ovimap --rooms");
+  EXPECT_EQ(rooms.code, 0) << rooms.err;
+  EXPECT_NE(rooms.out.find("room"), std::string::npos);
+}
+
 TEST_F(QueryProgramTest, SaysWhatIsWrong) {
   ASSERT_EQ(run("run recording -o bare.ovimap").code, 0);
   expect_complaint("query bare.ovimap mug", {"embedding", "reembed"});

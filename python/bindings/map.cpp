@@ -357,6 +357,8 @@ void bind_map(nb::module_& module) {
       "What Map.skipped says: \"FILE: REASON\" of each frame that was left out.");
   bind_query(module, map);
   bind_objects(module, map);
+  bind_approach(module, map);
+  bind_scene(map);
 }
 
 }  // namespace ovimap::python

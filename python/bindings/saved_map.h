@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "ovimap/frames/frame/frame_source.h"
+#include "ovimap/pipeline/approach/standing_space.h"
 #include "ovimap/pipeline/search/map_search.h"
 #include "ovimap/semantics/classes/object_names.h"
 #include "ovimap/semantics/query/query_engine.h"
@@ -32,6 +33,7 @@ class SavedMap {
   const MapInfo& info() const { return search_.info; }
   const SearchIndex& index() const { return search_.index; }
   const QueryScene& scene() const { return search_.scene; }
+  const MapSearch& search() const { return search_; }
 
   /// Thread-safe. `words`: whether the question needs the encoder.
   const QueryEngine& engine(bool words);
@@ -50,6 +52,10 @@ class SavedMap {
   /// Where an object is, drawn from above. Reads the voxels the first time. Thread-safe. Throws
   /// Error for an unknown id and for a map without voxels.
   RgbImage place(InstanceId id);
+
+  /// What is asked where to stand. Reads the voxels the first time. Thread-safe. Throws Error for a
+  /// map without voxels.
+  const StandingSpace& standing_space();
 
   /// Position of an object. Throws Error for an unknown id.
   std::size_t position(InstanceId id) const;
@@ -77,10 +83,17 @@ class SavedMap {
   std::optional<std::vector<ObjectName>> names_;
   std::optional<SuperPointLooks> looks_;
   std::optional<Mesh> surface_;
+  std::optional<StandingSpace> standing_;
 };
 
 /// Adds the questions to Map.
 void bind_query(nb::module_& module, nb::class_<SavedMap>& map);
+
+/// Adds where to stand to Map.
+void bind_approach(nb::module_& module, nb::class_<SavedMap>& map);
+
+/// Adds rooms and what is in them to Map.
+void bind_scene(nb::class_<SavedMap>& map);
 
 /// Adds to Map what is known of single objects, and corrections.
 void bind_objects(nb::module_& module, nb::class_<SavedMap>& map);

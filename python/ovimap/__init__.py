@@ -3,6 +3,8 @@
 """Posed RGB-D frames to a map of objects that can be searched in words."""
 
 from ._ovimap import (
+    Approach,
+    ApproachPose,
     CheckReport,
     ColorCalibration,
     Error,
@@ -45,6 +47,8 @@ from .watching import WatchEvent, watch
 
 __version__ = version()
 __all__ = [
+    "Approach",
+    "ApproachPose",
     "CheckReport",
     "ColorCalibration",
     "Error",

@@ -43,7 +43,7 @@ def in_one_line(said, *words):
 
 def test_every_tool_says_what_it_does(reading):
     tools = reading.tools()
-    assert set(tools) == {"maps", "objects", "find", "describe", "relations", "look"}
+    assert set(tools) == {"maps", "objects", "find", "describe", "relations", "rooms", "look", "where_to_stand"}
     for name, tool in tools.items():
         assert len(tool.description) > 40 and tool.annotations.read_only_hint, name
         assert name == "maps" or "map" in tool.input_schema["required"]
@@ -70,6 +70,25 @@ def test_what_is_found_is_what_the_package_finds(reading, saved_map):
     without = reading.find(map="room", text="furniture", exclude=["chair"]).value["matches"]
     expected = ovimap.Map.open(saved_map).query("furniture", negatives=["chair"]).matches
     assert [match["id"] for match in without] == [match.id for match in expected] and best["id"] not in [match.id for match in expected]
+
+
+def test_a_robot_hears_where_to_stand(reading, saved_map):
+    chair = reading.find(map="room", text="chair").value["matches"][0]["id"]
+    said = reading.where_to_stand(map="room", object=chair, start=[1.0, 1.0], radius_m=0.15)
+    [best, *_] = said.value["places"]
+    found = ovimap.Map.open(saved_map).approach(chair, start=(1.0, 1.0), radius_m=0.15)
+    assert (best["x"], best["y"]) == pytest.approx((found.poses[0].x, found.poses[0].y), abs=1e-3)
+    assert best["seen"] > 0.3 and best["way_m"] >= 0 and len(best["way"]) >= 1
+    nowhere = reading.where_to_stand(map="room", object=chair, start=[50, 50]).value
+    assert not nowhere["places"] and "cannot be at (50, 50)" in nowhere["reason"]
+    in_one_line(reading.where_to_stand(map="room", object=999999), "999999")
+    in_one_line(reading.where_to_stand(map="room", object=chair, start=[1]), "start")
+    in_one_line(reading.where_to_stand(map="room", object=chair, radius_m=-1), "radius_m")
+
+
+def test_rooms_say_what_they_hold(reading):
+    [room] = reading.rooms(map="room").value["rooms"]
+    assert room["id"] == 1 and 5 < room["area_m2"] < 11.3 and len(room["objects"]) > 3
 
 
 def test_objects_come_in_pages_largest_first(reading):
@@ -201,6 +220,8 @@ def test_a_served_map_says_what_the_file_says(reading, copy):
             ("describe", {"object": chair}),
             ("relations", {"object": chair}),
             ("objects", {"most": 200}),
+            ("rooms", {}),
+            ("where_to_stand", {"object": chair, "start": [1.0, 1.0], "radius_m": 0.15}),
             ("maps", {}),
         ):
             given = arguments if tool == "maps" else {"map": "room", **arguments}

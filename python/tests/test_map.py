@@ -196,3 +196,21 @@ def test_the_default_encoder_puts_pictures_and_words_in_one_space(saved_map, roo
     np.testing.assert_allclose(np.linalg.norm(pictures, axis=1), 1, atol=1e-4)
     with pytest.raises(TypeError, match="image must be uint8"):
         encoder.encode_images([image.astype(float)])
+
+
+def test_a_robot_hears_where_to_stand(saved_map):
+    opened = ovimap.Map.open(saved_map)
+    chair = opened.query("chair").matches[0].id
+    found = opened.approach(chair, start=(1.0, 1.0), radius_m=0.15, poses=2)
+    assert not found.reason and 1 <= len(found.poses) <= 2
+    best = found.poses[0]
+    assert 0.3 <= best.seen <= 1 and best.distance_m > 0.3 and abs(best.tilt) < 1.5
+    assert best.way[-1] == pytest.approx([best.x, best.y]) and best.way_m >= 0
+    assert not opened.approach(chair, radius_m=0.15).poses[0].way, "there is no way without a start"
+    walled = opened.approach(chair, radius_m=5.0)
+    assert not walled.poses and "no free place" in walled.reason
+    for wrong in ({"radius_m": 0}, {"fov_deg": 400}, {"poses": 0}):
+        with pytest.raises(ovimap.Error):
+            opened.approach(chair, **wrong)
+    with pytest.raises(ovimap.Error, match="999999"):
+        opened.approach(999999)

@@ -18,7 +18,7 @@ import { type CardContext, ObjectCard } from './ui/object-card';
 import { SearchPanel } from './ui/search-panel';
 import { Status } from './ui/status';
 import { Toolbar } from './ui/toolbar';
-import { faultText } from './ui/words';
+import { approachText, faultText } from './ui/words';
 
 const FIRST_FRAME_MS = 500; // between looks whether there is one
 const LIVE_PAUSE_MS = 1500; // between two looks at what objects there are by now
@@ -57,6 +57,7 @@ export class App {
   private readonly card = new ObjectCard({
     onFocus: (id) => this.focus(id),
     onAlike: (id) => void this.ask({ like: id }, `like ${this.state.titleOf(id)} #${id}`),
+    onStand: (id) => void this.stand(id),
     onRename: (id, name) => void this.corrections.rename(id, name),
     onMerge: (id) => this.corrections.startMerge(id),
     onSplit: (id) => this.corrections.startSplit(id),
@@ -244,6 +245,18 @@ export class App {
   private focus(id: number): void {
     const instance = this.state.instances.get(id);
     if (instance) this.view?.focus(instance);
+  }
+
+  /** Draws from where a robot sees the object, and its way there from where the recording ended. */
+  private async stand(id: number): Promise<void> {
+    try {
+      const approach = await api.approach(id, this.view?.lastCamera() ?? null);
+      if (this.state.selected !== id) return;
+      this.view?.showApproach(approach);
+      this.status.toast(approachText(approach));
+    } catch (error) {
+      this.status.toast(faultText(error));
+    }
   }
 
   private showCard(id: number): void {

@@ -3,6 +3,7 @@
 import { Box3, Vector3 } from 'three';
 import { describe, expect, test } from 'vitest';
 import type { Cameras, Color } from '../src/api/types';
+import { arrowEdges, wayEdges } from '../src/scene/approach-marks';
 import { frustumEdges, meanDirection, viewpointOfFrame } from '../src/scene/camera-path';
 import { paint, rampColor } from '../src/scene/coloring';
 import {
@@ -170,5 +171,35 @@ describe('measuring', () => {
   test('lengths are written in a unit that fits', () => {
     expect(metres(0.1234)).toBe('12.3 cm');
     expect(metres(2.345)).toBe('2.35 m');
+  });
+});
+
+describe('where to stand', () => {
+  const up = new Vector3(0, 0, 1);
+  const pose = {
+    seen: 0.5,
+    distance_m: 1,
+    position: [1, 2, 0] as [number, number, number],
+    direction: [0, 0.8, -0.6] as [number, number, number],
+    way_m: 2,
+    way_in_world: [
+      [0, 0, 0],
+      [1, 0, 0],
+      [1, 2, 0],
+    ] as [number, number, number][],
+  };
+
+  test('the arrow lies level and looks along the gaze', () => {
+    const [foot, tip, , left, , right] = arrowEdges(pose, up);
+    expect(tip!.clone().sub(foot!).toArray()).toEqual([0, 0.5, 0]);
+    expect(left!.z).toBeCloseTo(foot!.z);
+    expect(left!.x - 1).toBeCloseTo(1 - right!.x);
+  });
+
+  test('the way is in pieces from corner to corner', () => {
+    const pieces = wayEdges(pose, up);
+    expect(pieces).toHaveLength(4);
+    expect(pieces[1]).toEqual(pieces[2]);
+    expect(wayEdges({ ...pose, way_in_world: [] }, up)).toEqual([]);
   });
 });

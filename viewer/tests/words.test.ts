@@ -4,7 +4,16 @@ import { describe, expect, test } from 'vitest';
 import { ApiError, api } from '../src/api/client';
 import { forEachAtOnce } from '../src/mesh/chunk-loader';
 import { suggest, vocabularyOf } from '../src/ui/suggestions';
-import { isGuess, percent, placeOf, plural, sizeOf, titleOf, withTitles } from '../src/ui/words';
+import {
+  approachText,
+  isGuess,
+  percent,
+  placeOf,
+  plural,
+  sizeOf,
+  titleOf,
+  withTitles,
+} from '../src/ui/words';
 import { instance } from './instance-fixture';
 
 const guess = (name: string): { name: string; cosine: number } => ({ name, cosine: 0.4 });
@@ -92,4 +101,25 @@ describe('requests', () => {
       'x',
     );
   });
+});
+
+test('a robot hears where to stand, or why it cannot', () => {
+  const pose = {
+    seen: 0.64,
+    distance_m: 0.86,
+    position: [0, 0, 0] as [number, number, number],
+    direction: [1, 0, 0] as [number, number, number],
+    way_m: 2.04,
+    way_in_world: [
+      [0, 0, 0],
+      [2, 0, 0],
+    ] as [number, number, number][],
+  };
+  expect(approachText({ poses: [pose], reason: '' })).toBe(
+    '64 % of it is seen from 0.86 m, 2.0 m to go',
+  );
+  expect(approachText({ poses: [{ ...pose, way_in_world: [] }], reason: '' })).toBe(
+    '64 % of it is seen from 0.86 m',
+  );
+  expect(approachText({ poses: [], reason: 'no way' })).toBe('It cannot be reached: no way');
 });

@@ -9,14 +9,26 @@ import math
 import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
-from .facts import Answer, Description, MapObject, MapSummary, Point, Relation
+from .facts import Answer, Description, Door, MapObject, MapSummary, Point, Relation, Room, RoomList, StandingPlaces
 
 MOST_TEXT_CHARS = 2000  # of a query; docs/query.md
 
 
 class MapFault(RuntimeError):
     """One line that says what is wrong with a request, a map or a server, and what to do."""
+
+
+@dataclass(frozen=True)
+class Robot:
+    """A round robot with a camera above its middle."""
+
+    start: tuple[float, float] | None = None
+    radius_m: float = 0.25
+    camera_height_m: float = 1.2
+    fov_deg: float = 60.0
+    range_m: float = 2.0  # from an object to the robot's middle, at most
 
 
 @dataclass(frozen=True)
@@ -52,6 +64,14 @@ class MapBackend(abc.ABC):
 
     @abc.abstractmethod
     def relations(self, id: int) -> list[Relation]: ...
+
+    @abc.abstractmethod
+    def rooms(self) -> RoomList:
+        """Of finished maps alone."""
+
+    @abc.abstractmethod
+    def where_to_stand(self, id: int, robot: Robot) -> StandingPlaces:
+        """Of finished maps alone."""
 
     @abc.abstractmethod
     def crops(self, id: int, most: int) -> list[bytes]:
@@ -134,6 +154,17 @@ def rounded(value: float) -> float:
 
 def share(value: float | None) -> float | None:
     return None if value is None else rounded(value)
+
+
+def room_list(name: str, graph: dict[str, Any]) -> RoomList:
+    """What an agent reads of a scene graph (docs/export.md)."""
+    rooms = [Room(said["id"], said["name"], rounded(said["area_m2"]), _here(said["center"]), said["objects"]) for said in graph["rooms"]]
+    doors = [Door((said["rooms"][0], said["rooms"][1]), _here(said["place"]), rounded(said["width_m"])) for said in graph["doors"]]
+    return RoomList(name, rooms, doors)
+
+
+def _here(values: Sequence[float]) -> Point:
+    return rounded(values[0]), rounded(values[1]), rounded(values[2])
 
 
 def extent(objects: Sequence[MapObject]) -> tuple[Point | None, Point | None]:

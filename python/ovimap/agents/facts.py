@@ -133,6 +133,74 @@ class Description(MapObject):
 
 
 @dataclass(frozen=True)
+class Room:
+    """A part of the floor within walls and doors."""
+
+    __pydantic_config__: ClassVar[dict[str, bool]] = _DOCUMENTED
+    id: int
+    name: str
+    """what it is by the things in it ("kitchen"), else "room 2\""""
+    area_m2: float
+    center: Point
+    objects: list[int]
+    """ids of what is in it"""
+
+
+@dataclass(frozen=True)
+class Door:
+    """Where one goes from a room into another."""
+
+    __pydantic_config__: ClassVar[dict[str, bool]] = _DOCUMENTED
+    rooms: tuple[int, int]
+    place: Point
+    width_m: float
+
+
+@dataclass(frozen=True)
+class RoomList:
+    """All rooms of a map, largest first, and the doors between them."""
+
+    __pydantic_config__: ClassVar[dict[str, bool]] = _DOCUMENTED
+    map: str
+    rooms: list[Room]
+    doors: list[Door]
+
+
+@dataclass(frozen=True)
+class StandingPlace:
+    """A place from which an object is seen. x, y and yaw are in a frame whose z is up: the world's, where z is up there."""
+
+    __pydantic_config__: ClassVar[dict[str, bool]] = _DOCUMENTED
+    x: float
+    y: float
+    yaw: float
+    """direction of the gaze, radians from x towards y"""
+    tilt: float
+    """of the gaze, radians upwards from level"""
+    seen: float
+    """share of the object's visible surface that is seen from here"""
+    distance_m: float
+    """from the camera to the object's middle"""
+    way_m: float
+    """length of the way there; 0 where no start was given"""
+    way: list[tuple[float, float]]
+    """corners (x, y) of the way, from the start to here"""
+
+
+@dataclass(frozen=True)
+class StandingPlaces:
+    """Where a robot can stand to see an object."""
+
+    __pydantic_config__: ClassVar[dict[str, bool]] = _DOCUMENTED
+    map: str
+    object: int
+    places: list[StandingPlace]
+    """best first; empty: it cannot be seen or reached"""
+    reason: str
+    """why there are none"""
+
+
+@dataclass(frozen=True)
 class ObjectList:
     """Objects of a map, largest first."""
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
+import json
 import os
 import threading
 import time
@@ -13,8 +14,8 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from .._ovimap import Error, Map
-from .backend import MapBackend, MapFault, Verdict, checked_text, closest_first, extent, largest_first, point, rounded, share, spread
-from .facts import Answer, ColorShare, Description, MapObject, MapSummary, Match, Relation
+from .backend import MapBackend, MapFault, Robot, Verdict, checked_text, closest_first, extent, largest_first, point, room_list, rounded, share, spread
+from .facts import Answer, ColorShare, Description, MapObject, MapSummary, Match, Relation, RoomList, StandingPlace, StandingPlaces
 
 POLL_S = 0.5  # between looks at whether the file changed
 Stamp = tuple[int, int, int]
@@ -82,6 +83,26 @@ class FileBackend(MapBackend):
             opened = self._now()
             self._known(opened, id)
             return _of(opened.relations, id)
+
+    def rooms(self) -> RoomList:
+        with self._faults():
+            return room_list(self.name, json.loads(self._now().map.scene_graph()))
+
+    def where_to_stand(self, id: int, robot: Robot) -> StandingPlaces:
+        with self._faults():
+            opened = self._now()
+            self._known(opened, id)
+            found = opened.map.approach(
+                id, start=robot.start, radius_m=robot.radius_m, camera_height_m=robot.camera_height_m, fov_deg=robot.fov_deg, range_m=robot.range_m
+            )
+            places = [
+                StandingPlace(
+                    rounded(pose.x), rounded(pose.y), rounded(pose.yaw), rounded(pose.tilt), rounded(pose.seen), rounded(pose.distance_m),
+                    rounded(pose.way_m), [(rounded(x), rounded(y)) for x, y in pose.way],
+                )
+                for pose in found.poses
+            ]  # fmt: skip
+            return StandingPlaces(self.name, id, places, found.reason)
 
     def crops(self, id: int, most: int) -> list[bytes]:
         with self._faults():

@@ -16,8 +16,8 @@ from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple, ParamSpec, TypeVar
 
 from ..sender import _address
-from .backend import MapBackend, MapFault, Verdict, checked_text, closest_first, extent, largest_first, point, rounded, share, spread
-from .facts import Answer, ColorShare, Description, MapObject, MapSummary, Match, Relation
+from .backend import MapBackend, MapFault, Robot, Verdict, checked_text, closest_first, extent, largest_first, point, room_list, rounded, share, spread
+from .facts import Answer, ColorShare, Description, MapObject, MapSummary, Match, Relation, RoomList, StandingPlace, StandingPlaces
 
 TIMEOUT_S = 20.0
 QUIET_S = 15.0  # the server says something on the event stream every 5 seconds
@@ -114,6 +114,18 @@ class HttpBackend(MapBackend):
             if id in (object, anchor) and object in objects and anchor in objects:
                 found.append(Relation(object, objects[object].title, said["relation"], anchor, objects[anchor].title, said["evidence"]))
         return closest_first(found)
+
+    @_understood
+    def rooms(self) -> RoomList:
+        return room_list(self.name, self._get("/api/rooms"))
+
+    @_understood
+    def where_to_stand(self, id: int, robot: Robot) -> StandingPlaces:
+        asked = {"instance": id, **{name: value for name, value in vars(robot).items() if name != "start"}}
+        said = self._post("/api/approach", asked | ({"from": list(robot.start)} if robot.start else {}))
+        numbers = ("x", "y", "yaw", "tilt", "seen", "distance_m", "way_m")
+        places = [StandingPlace(**{name: rounded(pose[name]) for name in numbers}, way=[(rounded(x), rounded(y)) for x, y in pose["way"]]) for pose in said["poses"]]
+        return StandingPlaces(self.name, id, places, said["reason"])
 
     @_understood
     def crops(self, id: int, most: int) -> list[bytes]:

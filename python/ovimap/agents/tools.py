@@ -12,8 +12,8 @@ from mcp.server.mcpserver.exceptions import ToolError, UnexpectedToolError
 from mcp_types import CallToolResult, ImageContent, InputRequiredResult, TextContent, ToolAnnotations
 from pydantic import Field, ValidationError
 
-from .backend import MapBackend, MapFault
-from .facts import Answer, Correction, Description, MapSummary, ObjectList, Relations
+from .backend import MapBackend, MapFault, Robot
+from .facts import Answer, Correction, Description, MapSummary, ObjectList, Relations, RoomList, StandingPlaces
 
 MOST_OBJECTS = 200  # in one answer
 MOST_PICTURES = 8
@@ -38,7 +38,7 @@ class MapServer(MCPServer[None]):
     def __init__(self, maps: Sequence[MapBackend], *, corrections: bool = False, version: str = "") -> None:
         super().__init__("ovimap", instructions=INSTRUCTIONS, version=version, log_level="WARNING")
         self._maps = {backend.name: backend for backend in maps}
-        reading: list[Callable[..., Any]] = [self.maps, self.objects, self.find, self.describe, self.relations, self.look]
+        reading: list[Callable[..., Any]] = [self.maps, self.objects, self.find, self.describe, self.relations, self.rooms, self.look, self.where_to_stand]
         writing: list[Callable[..., Any]] = [self.rename, self.merge, self.undo] if corrections else []
         for tool in reading:
             self.add_tool(tool, annotations=READS)
@@ -89,6 +89,11 @@ class MapServer(MCPServer[None]):
         """What is on, in, above, beside or near an object, and what it is on itself."""
         return Relations(map, object, self._ask(lambda: self._map(map).relations(object)))
 
+    def rooms(self, map: MapName) -> RoomList:
+        """The rooms of a map, what is in each, and the doors between them. find() understands rooms too: "mug in the kitchen",
+        "chair in room 2". Works on finished maps; the first question takes seconds."""
+        return self._ask(self._map(map).rooms)
+
     def look(
         self,
         map: MapName,
@@ -107,6 +112,22 @@ class MapServer(MCPServer[None]):
         if place:
             content.append(Image(data=self._ask(lambda: backend.place(object)), format="jpeg").to_image_content())
         return content
+
+    def where_to_stand(
+        self,
+        map: MapName,
+        object: ObjectId,
+        start: Annotated[list[float] | None, Field(min_length=2, max_length=2, description="[x, y] where the robot is; without it there is no way")] = None,
+        radius_m: Annotated[float, Field(ge=0.01, le=10, description="of the robot")] = 0.25,
+        camera_height_m: Annotated[float, Field(ge=0.05, le=10, description="above the floor; the robot is as high")] = 1.2,
+        fov_deg: Annotated[float, Field(ge=1, le=180, description="field of view of its camera")] = 60.0,
+        range_m: Annotated[float, Field(ge=0.05, le=20, description="from the object at most")] = 2.0,
+    ) -> StandingPlaces:
+        """Where a robot can stand to see an object, and the way there over free floor. No places: it cannot be reached, and the
+        reason says why. Works on finished maps; the first question takes seconds."""
+        backend = self._map(map)
+        robot = Robot((start[0], start[1]) if start else None, radius_m, camera_height_m, fov_deg, range_m)
+        return self._ask(lambda: backend.where_to_stand(object, robot))
 
     def rename(self, map: MapName, object: ObjectId, name: Annotated[str, Field(max_length=200)]) -> Correction:
         """Names an object for everybody who uses the map; an empty name takes the name away. undo() takes it back."""

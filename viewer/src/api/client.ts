@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {
   Answer,
+  Approach,
   Cameras,
   ChunkListing,
   Correction,
@@ -73,6 +74,9 @@ export const api = {
   cameras: () => get<Cameras>('/api/cameras'),
   query: (question: Question, signal?: AbortSignal) =>
     post<Answer>('/api/query', { ...question, heat: true }, signal),
+  /** `from`: a point of the world where the robot is; without it there is no way. */
+  approach: (instance: number, from: number[] | null) =>
+    post<Approach>('/api/approach', from ? { instance, from } : { instance }),
   correct: (correction: Correction) =>
     post<{ version: number; edit: number }>('/api/corrections', correction),
   corrections: async () =>

@@ -103,6 +103,21 @@ export interface FrameEvent {
   world_from_camera: number[];
 }
 
+/** Where a robot stands to see an object. Points are of the world. */
+export interface ApproachPose {
+  seen: number;
+  distance_m: number;
+  position: [number, number, number];
+  direction: [number, number, number];
+  way_m: number;
+  way_in_world: [number, number, number][];
+}
+
+export interface Approach {
+  poses: ApproachPose[];
+  reason: string;
+}
+
 export interface Question {
   text?: string;
   not?: string[];

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 import { Box3, Box3Helper, Color, Vector2, Vector3, Vector4 } from 'three';
-import type { Cameras, FrameEvent, Instance, Labels, MapInfo, Point } from '../api/types';
+import type { Approach, Cameras, FrameEvent, Instance, Labels, MapInfo, Point } from '../api/types';
 import type { Chunk } from '../mesh/chunk-format';
+import { ApproachMarks } from './approach-marks';
 import { CameraPath, meanDirection, viewpointOfFrame } from './camera-path';
 import { type ColoringInput, paint } from './coloring';
 import { cornersOf, overviewDirection, viewpointOf } from './framing';
@@ -39,6 +40,7 @@ export class MapView {
   private readonly stage: Stage;
   private readonly up: Vector3;
   private readonly selection = new Box3Helper(new Box3(), new Color('#2f6fed'));
+  private readonly approach = new ApproachMarks();
   private path: CameraPath | null = null;
   private cameras: Cameras | null = null;
   private section: Section | null = null;
@@ -57,6 +59,7 @@ export class MapView {
     this.movement = new Movement(this.stage.camera, canvas, () => this.stage.moved());
     this.selection.visible = false;
     this.stage.scene.add(this.surface.group, this.selection, this.measure.group);
+    this.stage.scene.add(this.approach.group);
     this.uniform('light', this.up.toArray());
     this.listen(canvas, hooks);
   }
@@ -98,7 +101,19 @@ export class MapView {
     this.movement.goTo(viewpointOf(cornersOf(box), this.stage.lens(), from, this.up), true);
   }
 
+  /** Where the last camera stood: a point of the world, null without cameras. */
+  lastCamera(): number[] | null {
+    const last = this.cameras?.frames.at(-1);
+    return last ? [3, 7, 11].map((i) => last.world_from_camera[i]!) : null;
+  }
+
+  showApproach(approach: Approach | null): void {
+    this.approach.show(approach, this.up);
+    this.stage.draw();
+  }
+
   select(instance: Instance | null): void {
+    this.approach.show(null, this.up);
     this.surface.table.select(instance?.id ?? 0);
     this.surface.tableChanged();
     this.uniform('selecting', instance !== null);

@@ -9,6 +9,7 @@ import { isGuess, placeOf, plural, sizeOf, titleOf } from './words';
 export interface CardHooks {
   onFocus: (id: number) => void;
   onAlike: (id: number) => void;
+  onStand: (id: number) => void;
   onRename: (id: number, name: string) => void;
   onMerge: (id: number) => void;
   onSplit: (id: number) => void;
@@ -108,6 +109,7 @@ export class ObjectCard {
         () => this.hooks.onAlike(id),
         instance.guesses.length ? '' : 'This object has no embedding',
       ),
+      action('stand', 'Where to stand', () => this.hooks.onStand(id)),
       action('rename', 'Rename', () => this.editName(instance), free),
       action('hide', 'Hide', () => this.hooks.onHide(id)),
       action('merge', 'Merge', () => this.hooks.onMerge(id), free),

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
-import type { Instance } from '../api/types';
+import type { Approach, Instance } from '../api/types';
 
 /** The word that the evidence for an object is clear about; empty: none. */
 function clearWord(instance: Instance): string {
@@ -30,6 +30,14 @@ export function sizeOf({ box }: Instance): string {
 
 export function placeOf({ centroid }: Instance): string {
   return centroid.map((value) => value?.toFixed(2) ?? '–').join(', ');
+}
+
+/** What is said when a robot asks where to stand. */
+export function approachText(approach: Approach): string {
+  const [best] = approach.poses;
+  if (!best) return `It cannot be reached: ${approach.reason}`;
+  const seen = `${(best.seen * 100).toFixed(0)} % of it is seen from ${best.distance_m.toFixed(2)} m`;
+  return best.way_in_world.length > 1 ? `${seen}, ${best.way_m.toFixed(1)} m to go` : seen;
 }
 
 export function plural(count: number, one: string, many = `${one}s`): string {

@@ -124,17 +124,27 @@ GridSlice empty_slice(const OccupancyGrid& grid, float low_m, float high_m) {
   return slice;
 }
 
-/// What a column of cells says together.
-CellState column_state(const OccupancyGrid& grid, int x, int y, int first, int last,
-                       float free_share) {
-  int free_cells = 0;
-  for (int z = first; z <= last; ++z) {
-    if (grid.at(x, y, z) == CellState::kOccupied) return CellState::kOccupied;
-    free_cells += grid.at(x, y, z) == CellState::kFree;
+/// What columns of cells say together, for a row of them.
+std::vector<CellState> row_states(const OccupancyGrid& grid, int y, int first, int last,
+                                  float free_share) {
+  const auto width = static_cast<std::size_t>(grid.size.x());
+  std::vector<int> free_cells(width, 0), occupied(width, 0);
+  for (int z = first; z <= last; ++z)  // layer by layer, as they lie in memory
+    for (std::size_t x = 0; x < width; ++x) {
+      const CellState state = grid.at(static_cast<int>(x), y, z);
+      free_cells[x] += state == CellState::kFree;
+      occupied[x] += state == CellState::kOccupied;
+    }
+  std::vector<CellState> states(width, CellState::kUnknown);
+  for (std::size_t x = 0; x < width; ++x) {
+    const bool enough = free_cells[x] > 0 && static_cast<float>(free_cells[x]) >=
+                                                 free_share * static_cast<float>(last - first + 1);
+    if (occupied[x] > 0)
+      states[x] = CellState::kOccupied;
+    else if (enough)
+      states[x] = CellState::kFree;
   }
-  const bool enough = free_cells > 0 && static_cast<float>(free_cells) >=
-                                            free_share * static_cast<float>(last - first + 1);
-  return enough ? CellState::kFree : CellState::kUnknown;
+  return states;
 }
 
 }  // namespace
@@ -150,10 +160,14 @@ void list_fields(OccupancyConfig& config, ConfigFields& fields) {
 }
 
 OccupancyGrid make_occupancy_grid(const MapDocument& document, const OccupancyConfig& config) {
+  return make_occupancy_grid(document, extract_mesh(document.map), config);
+}
+
+OccupancyGrid make_occupancy_grid(const MapDocument& document, const Mesh& mesh,
+                                  const OccupancyConfig& config) {
   if (config.cell_m < document.map.config().voxel_size_m)
     throw Error(concat("cells of ", config.cell_m, " m are smaller than the map's voxels of ",
                        document.map.config().voxel_size_m, " m; choose larger ones with --cell"));
-  const Mesh mesh = extract_mesh(document.map);
   if (mesh.vertices.empty())
     throw Error("the map has no surface to make a grid of; it holds objects alone, or nothing");
   OccupancyGrid grid = grid_around(mesh, document.up, config);
@@ -173,12 +187,15 @@ GridSlice band_of(const OccupancyGrid& grid, float low_m, float high_m,
   const int first = std::clamp(layer_at(grid, low_m), 0, grid.size.z() - 1),
             last = std::clamp(layer_at(grid, high_m), first, grid.size.z() - 1);
   std::vector<std::uint8_t> obstacle(slice.occupancy.size());
-  for (int y = 0; y < grid.size.y(); ++y)
+  parallel_for(static_cast<std::size_t>(grid.size.y()), 16, [&](std::size_t row) {
+    const auto y = static_cast<int>(row);
+    const std::vector<CellState> states = row_states(grid, y, first, last, config.free_share);
     for (int x = 0; x < grid.size.x(); ++x) {
-      const CellState state = column_state(grid, x, y, first, last, config.free_share);
+      const CellState state = states[static_cast<std::size_t>(x)];
       obstacle[static_cast<std::size_t>(x + grid.size.x() * y)] = state == CellState::kOccupied;
       slice.occupancy.at(x, grid.size.y() - 1 - y) = level_of(state);
     }
+  });
   const auto squared = squared_distances(obstacle, {grid.size.x(), grid.size.y(), 1});
   for (int y = 0; y < grid.size.y(); ++y)
     for (int x = 0; x < grid.size.x(); ++x)

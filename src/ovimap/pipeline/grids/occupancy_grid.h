@@ -48,6 +48,9 @@ struct OccupancyGrid {
 /// when the map has no surface, when a cell is smaller than a voxel, or when there are more than
 /// 2^28 cells.
 OccupancyGrid make_occupancy_grid(const MapDocument& document, const OccupancyConfig& config = {});
+/// The same with the map's mesh, where it is made already.
+OccupancyGrid make_occupancy_grid(const MapDocument& document, const Mesh& mesh,
+                                  const OccupancyConfig& config = {});
 
 /// What a planner in the plane needs, row 0 at the largest y.
 struct GridSlice {

@@ -8,7 +8,9 @@
 #include "ovimap/base/parallel.h"
 #include "ovimap/inference/encoders/text_cache.h"
 #include "ovimap/inference/models/model_folder.h"
+#include "ovimap/io/map_file/map_edits.h"
 #include "ovimap/io/pictures/palette.h"
+#include "ovimap/pipeline/rooms/map_rooms.h"
 #include "ovimap/semantics/words/written_words.h"
 
 namespace ovimap {
@@ -94,12 +96,22 @@ std::string model_of_map(const EncoderIdentity& wanted,
 
 }  // namespace
 
+std::vector<InstanceId> ids_of(const SearchIndex& index) {
+  std::vector<InstanceId> ids;
+  for (const SearchObject& object : index.objects()) ids.push_back(object.id);
+  return ids;
+}
+
 MapSearch open_map_search(const std::filesystem::path& map, const ObjectShapeConfig& config) {
   MapSearch search = search_in(read_searchable_map(map), config);
   search.scene.colors = std::make_shared<const ObjectColors>(
       [map, instances = search.info.instances] {
         return crops_of(load_map_without_voxels(map).semantics.looks, instances);
       });
+  search.scene.rooms = std::make_shared<const ObjectRooms>([map, ids = ids_of(search.index)] {
+    const StandingSpace space = make_standing_space(load_corrected_map(map));
+    return rooms_of_objects(find_rooms(space.grid), space, ids);
+  });
   return search;
 }
 

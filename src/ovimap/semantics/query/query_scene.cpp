@@ -132,7 +132,7 @@ PhraseMatch PhraseSearch::match_phrase(const QueryPhrase& phrase,
                                        Role role) const {
   PhraseMatch result = match_things(phrase, negatives, role);
   apply_attributes(phrase, result);
-  if (phrase.relation) {
+  if (phrase.relation && !apply_room(phrase, result)) {
     // Which of several tables it is on need not be the one that looks most like a table.
     const PhraseMatch anchors = match_phrase(phrase.anchors[0], {}, Role::kAnchor);
     if (!phrase.negated) add_missing(result, anchors);
@@ -245,6 +245,29 @@ std::vector<std::size_t> PhraseSearch::anchors_of(const PhraseMatch& match) cons
   });
   anchors.resize(std::min(anchors.size(), static_cast<std::size_t>(config_.max_anchors)));
   return anchors;
+}
+
+bool PhraseSearch::apply_room(const QueryPhrase& phrase, PhraseMatch& result) const {
+  const QueryPhrase& anchor = phrase.anchors[0];
+  if (*phrase.relation != Relation::kInside || !anchor.free_text() || !scene_.rooms) return false;
+  const auto wanted = wanted_room(anchor.things);
+  if (!wanted) return false;
+  const std::vector<int>& room_of = scene_.rooms->of_objects();
+  const std::vector<RoomFit> rooms = fit_rooms(room_of, index_.objects(), matcher_ ? matcher_->evidence() : nullptr);
+  bool known = false;
+  for (std::size_t r = 0; r < rooms.size(); ++r)
+    known = known || chance_of(*wanted, static_cast<int>(r + 1), rooms[r]) >= kBorder;
+  if (!known && !phrase.negated) result.missing.push_back(anchor.things);
+  for (const std::size_t i : positive(result.scores)) {
+    const int room = room_of[i];
+    const float chance =
+        room == 0 ? 0.f : chance_of(*wanted, room, rooms[static_cast<std::size_t>(room - 1)]);
+    at(result.scores, i) *= phrase.negated ? 1.f - chance : chance;
+    result.holds[i] = result.holds[i] && (chance >= kBorder) != phrase.negated;
+    add_evidence(result.evidence[i],
+                 room == 0 ? "in no room" : "in " + describe_room(room, rooms[static_cast<std::size_t>(room - 1)], index_.objects()));
+  }
+  return true;
 }
 
 void PhraseSearch::apply_pairs(const QueryPhrase& phrase, const PhraseMatch& anchors,

@@ -11,6 +11,7 @@
 #include "ovimap/semantics/query/query_config.h"
 #include "ovimap/semantics/query/query_grammar.h"
 #include "ovimap/semantics/query/query_matcher.h"
+#include "ovimap/semantics/query/room_kinds.h"
 
 namespace ovimap {
 
@@ -20,6 +21,7 @@ struct QueryScene {
   GroundViewpoint viewpoint;        ///< for left, right, in front and behind
   std::shared_ptr<const ObjectColors> colors;  ///< of each object; null: not known
   std::vector<std::vector<WrittenLine>> writing;  ///< on each object; empty: none was read
+  std::shared_ptr<const ObjectRooms> rooms;  ///< where each object is; null: not known
 };
 
 /// A scene of the objects' boxes, exact where an axis of the world is up.
@@ -66,6 +68,8 @@ class PhraseSearch {
   const TextMatcher& needed_matcher(const std::string& what) const;
   void require_writing(const std::string& wanted) const;
   void rate_by_text(const QueryPhrase& phrase, Role role, PhraseMatch& result) const;
+  /// Whether the anchor is a room ("in the kitchen"); then its objects are rated.
+  bool apply_room(const QueryPhrase& phrase, PhraseMatch& result) const;
   void apply_pairs(const QueryPhrase& phrase, const PhraseMatch& anchors,
                    PhraseMatch& result) const;
   void apply_order(const QueryPhrase& phrase, const PhraseMatch& anchors,

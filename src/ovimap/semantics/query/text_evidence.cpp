@@ -22,11 +22,6 @@ constexpr float kLeastLikelihood = 1e-4f;
 constexpr float kLeastRivals = 1e-3f;                  // share of all words that always competes
 constexpr std::size_t kObjectsPerTask = 64;
 
-const Concepts& builtin_concepts() {
-  static const Concepts concepts(list_entries(builtin_word_list("concepts")));
-  return concepts;
-}
-
 const std::vector<ThingSize>& builtin_sizes() {
   static const auto sizes = read_thing_sizes(list_entries(builtin_word_list("thing_sizes")));
   return sizes;
@@ -37,6 +32,11 @@ float ramp(float value, float from, float to) {
 }
 
 }  // namespace
+
+const Concepts& builtin_concepts() {
+  static const Concepts concepts(list_entries(builtin_word_list("concepts")));
+  return concepts;
+}
 
 void list_fields(EvidenceConfig& config, ConfigFields& fields) {
   constexpr int kMost = 100000000;

@@ -38,6 +38,9 @@ struct TextScores {
   Eigen::VectorXf log_odds;  ///< [objects] against all other household words; empty: not known
 };
 
+/// The kinds of things that are compiled in.
+const Concepts& builtin_concepts();
+
 /// The words that evidence is weighed by, and an encoder's embeddings of them.
 struct WordLists {
   std::vector<std::string> texts;  ///< household words, then things of known size

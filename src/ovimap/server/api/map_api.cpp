@@ -11,6 +11,7 @@
 #include "ovimap/image/codec.h"
 #include "ovimap/io/exports/glb.h"
 #include "ovimap/io/pictures/place_picture.h"
+#include "ovimap/server/api/approach_api.h"
 #include "ovimap/server/api/correction_json.h"
 #include "ovimap/server/api/event_stream.h"
 #include "ovimap/server/api/map_json.h"
@@ -244,6 +245,8 @@ Router map_api(ServedMap& map, FrameApi& frames) {
       [&map](Request r) { return show_place(map, r); });
   add("GET", "/api/relations", BodyType::kNone, RouteCost::kWork,
       [&map](Request) { return json_reply(relations_json(map)); });
+  add("GET", "/api/rooms", BodyType::kNone, RouteCost::kWork,
+      [&map](Request) { return show_rooms(map); });
   get("/api/mesh", [&map](Request r) { return list_chunks(map, r); });
   get_large("/api/mesh/{level}/{x}/{y}/{z}", [&map](Request r) { return show_chunk(map, r); });
   get("/api/cameras", [&map](Request) { return json_reply(cameras_json(map)); });
@@ -254,6 +257,7 @@ Router map_api(ServedMap& map, FrameApi& frames) {
       [&map, kept = std::make_shared<KeptGlb>()](Request) { return export_glb(map, *kept); });
   work("/api/query", [&map](Request r) { return answer_query(map, r); });
   work("/api/queries", [&map](Request r) { return answer_queries(map, r); });
+  work("/api/approach", [&map](Request r) { return answer_approach(map, r); });
   work("/api/corrections", [&map](Request r) { return correct(map, r); });
   work("/api/camera", [&frames](Request r) { return frames.camera(r); });
   add("POST", "/api/frames", BodyType::kFrame, RouteCost::kFrame,

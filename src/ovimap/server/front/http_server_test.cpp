@@ -239,6 +239,18 @@ TEST_F(HttpServerTest, TellsHowObjectsStandToEachOther) {
   for (const auto& color : get("/api/instances/1")["colors"]) EXPECT_GE(color["share"], 0.1);
 }
 
+TEST_F(HttpServerTest, ChecksWhatIsAskedWhereToStand) {
+  serve();
+  // This map's blocks lie too far apart for a grid; the agents' tests ask a room's.
+  post("/api/approach", R"({"instance":1,"from":[1.5,2],"radius_m":0.05})", 409);
+  post("/api/approach", R"({"instance":987654})", 404);
+  for (const char* wrong : {R"({})", R"({"instance":"1"})", R"({"instance":1,"from":[1]})",
+                            R"({"instance":1,"from":[1,null]})", R"({"instance":1,"radius_m":0})",
+                            R"({"instance":1,"radius_m":"wide"})", R"({"instance":1,"speed":1})",
+                            R"({"instance":1,"poses":1.5})"})
+    post("/api/approach", wrong, 400);
+}
+
 TEST_F(HttpServerTest, DrawsWhereAnObjectIs) {
   serve();
   const auto picture = running_->client().get("/api/instances/1/place");

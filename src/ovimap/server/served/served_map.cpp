@@ -8,6 +8,7 @@
 #include "ovimap/io/map_file/map_edits.h"
 #include "ovimap/io/map_file/map_file.h"
 #include "ovimap/map/surface/mesh_extraction.h"
+#include "ovimap/pipeline/rooms/map_rooms.h"
 #include "ovimap/semantics/query/query_text.h"
 
 namespace ovimap {
@@ -91,8 +92,15 @@ void ServedMap::rebuild() {
   if (found_->live)
     measure_on_surface(labelled_surface(*mesh_, next->instance_of_label, {}),
                        found_->surface_spacing_m, record);
-  next->objects =
+  auto objects =
       std::make_shared<MapSearch>(make_map_search(record, found_->info, config_.query.shapes));
+  if (!next->live)
+    objects->scene.rooms =
+        std::make_shared<const ObjectRooms>([this, ids = ids_of(objects->index)] {
+          const auto space = standing_space();
+          return rooms_of_objects(find_rooms(space->grid), *space, ids);
+        });
+  next->objects = std::move(objects);
   next->record = std::make_shared<MapRecord>(std::move(record));
   set_search(*next);
   std::uint64_t version = 0;
@@ -186,6 +194,17 @@ MapAnswer ServedMap::ask(const MapQuestion& question) const {
   return {question.like ? now->engine->find_like(*question.like, relevance)
                         : now->engine->find(question.query),
           now};
+}
+
+std::shared_ptr<const StandingSpace> ServedMap::standing_space() const {
+  const auto now = snapshot();
+  if (now->live) throw Error("the map is still being made; ask when it is finished");
+  const std::lock_guard lock(standing_mutex_);
+  if (!standing_ || standing_edits_ != now->record->edits.size()) {
+    standing_ = std::make_shared<StandingSpace>(make_standing_space(load_corrected_map(path_)));
+    standing_edits_ = now->record->edits.size();
+  }
+  return standing_;
 }
 
 // ----------------------------------------------------------------------------------- corrections

@@ -12,6 +12,7 @@
 
 #include "ovimap/base/error.h"
 #include "ovimap/io/map_file/map_edits.h"
+#include "ovimap/pipeline/approach/standing_space.h"
 #include "ovimap/server/served/event_hub.h"
 #include "ovimap/server/served/map_snapshot.h"
 #include "ovimap/server/surface/mesh_store.h"
@@ -70,6 +71,10 @@ class ServedMap {
   /// this map cannot be searched.
   MapAnswer ask(const MapQuestion& question) const;
 
+  /// What is asked where to stand. Read from the map file the first time and after a correction,
+  /// which takes seconds. Throws Error for a map that is still being made or cannot be read.
+  std::shared_ptr<const StandingSpace> standing_space() const;
+
   /// Keeps a correction: in the map file, or while the map is being made in its log, which goes
   /// into the file with it. Returns it as it is kept. Throws Error when it makes no sense in this
   /// map or could not be kept; then nothing changed.
@@ -110,6 +115,10 @@ class ServedMap {
   mutable std::mutex mutex_;  ///< held for a moment only
   mutable std::condition_variable prepared_;
   std::shared_ptr<const MapSnapshot> snapshot_;
+
+  mutable std::mutex standing_mutex_;  ///< guards what follows; held while it is read
+  mutable std::shared_ptr<const StandingSpace> standing_;
+  mutable std::size_t standing_edits_ = 0;  ///< how many corrections it has
   std::thread preparation_;
 };
 
