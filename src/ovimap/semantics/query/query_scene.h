@@ -20,6 +20,7 @@ struct QueryScene {
   GroundViewpoint viewpoint;        ///< for left, right, in front and behind
   std::shared_ptr<const ObjectColors> colors;  ///< of each object; null: not known
   std::vector<std::vector<WrittenLine>> writing;  ///< on each object; empty: none was read
+  SeenThings things;  ///< of each object; no words: nothing looked
 };
 
 /// A scene of the objects' boxes, exact where an axis of the world is up.
