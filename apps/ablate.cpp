@@ -68,6 +68,7 @@ MappingOptions options_of(const AblateOptions& options, const AblationVariant& v
                           const std::string& scene) {
   MappingOptions mapping = options.mapping;
   mapping.source = scene;
+  mapping.recognizer = "none";  // the paper has none
   if (!variant.masks.empty()) mapping.masks = variant.masks;
   if (!variant.encoder.empty()) mapping.encoder = variant.encoder;
   if (!variant.views.empty()) mapping.views = variant.views;

@@ -60,6 +60,7 @@ struct MappingOptions {
   std::string source;
   std::string masks = "none";
   std::string encoder = "auto";
+  std::string recognizer = "auto";
   std::string preset = "default";
   std::string views;  ///< view_preset; empty: as the preset has them
   std::filesystem::path config_file;
@@ -105,6 +106,10 @@ ProgramConfig read_program_config(const MappingOptions& options);
 /// none.
 std::shared_ptr<ImageTextEncoder> make_encoder(const MappingOptions& options,
                                                const ProgramConfig& config);
+
+/// What --recognizer names; "auto" is every installed one where there is an encoder. Null: none.
+std::shared_ptr<const ThingRecognizer> make_recognizer(const MappingOptions& options,
+                                                       const ProgramConfig& config, bool encoder);
 
 /// Threads of a network run: what the config says, else what --threads says.
 int network_threads(const ProgramConfig& config, const MappingOptions& options);

@@ -67,12 +67,14 @@ int embed(const EmbedOptions& options) {
   MapDocument document;
   {
     Progress progress("embedding");
-    document =
-        embed_geometry(mesh, *source, range, config, make_encoder(options.mapping, program),
-                       sequence, [&](std::size_t done, std::size_t total, const FrameReport*) {
-                         progress.show(done, total);
-                         return !interrupted();
-                       });
+    const auto encoder = make_encoder(options.mapping, program);
+    document = embed_geometry(
+        mesh, *source, range, config, encoder, sequence,
+        [&](std::size_t done, std::size_t total, const FrameReport*) {
+          progress.show(done, total);
+          return !interrupted();
+        },
+        make_recognizer(options.mapping, program, encoder != nullptr));
   }
   document.source = source->kind() + ":" + options.mapping.source;
   save_map(options.map, document);

@@ -54,6 +54,7 @@ struct MappingInputs {
       found = std::make_unique<KeptMaskSource>(keep_masks, std::move(found));
     masks = std::move(found);
     encoder = make_encoder(options, config);
+    recognizer = make_recognizer(options, config, encoder != nullptr);
   }
 
   ProgramConfig config;
@@ -63,6 +64,7 @@ struct MappingInputs {
   std::vector<std::int64_t> range;
   std::shared_ptr<MaskSource> masks;
   std::shared_ptr<ImageTextEncoder> encoder;
+  std::shared_ptr<const ThingRecognizer> recognizer;
 };
 
 /// What a run goes on with, and where its checkpoints go.
@@ -280,6 +282,7 @@ MappingRun map_recording(const MappingOptions& options, const std::string& title
   inputs.open_networks(options, keep_masks);
   std::optional<Tracker> tracker = make_tracker(inputs, begun);
   Mapper mapper(inputs.config.mapper, inputs.masks, inputs.encoder);
+  mapper.recognize_with(inputs.recognizer);
   MapHeader header = make_header(inputs, options, mapper.config());
   SequenceResult sequence = resume(begun, header, inputs, mapper);
   auto checkpoints = make_checkpointer(begun, inputs, header, sequence.frames.size());
@@ -314,6 +317,7 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
     inputs.open_networks(options);
   }).get();
   LiveMapper mapper(inputs.config.mapper, inputs.config.live, inputs.masks, inputs.encoder);
+  mapper.recognize_with(inputs.recognizer);
   std::shared_ptr<Tracker> tracker;
   if (auto made = make_tracker(inputs, begun))
     tracker = std::make_shared<Tracker>(std::move(*made));

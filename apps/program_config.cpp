@@ -25,6 +25,11 @@ void add_mapping_settings(CLI::App& command, MappingOptions& options) {
           "masks the best that is installed)")
       ->capture_default_str();
   command
+      .add_option("--recognizer", options.recognizer,
+                  "what tells things by name: none, models of kind detector separated by commas, or "
+                  "auto (where there is an encoder all that are installed)")
+      ->capture_default_str();
+  command
       .add_option("--preset", options.preset,
                   "default or reference (as the paper's code does it; docs/reference-preset.md)")
       ->capture_default_str();
@@ -133,6 +138,14 @@ std::shared_ptr<ImageTextEncoder> make_encoder(const MappingOptions& options,
   RuntimeConfig runtime = config.encoder;
   if (runtime.threads == 0) runtime.threads = options.threads;
   return make_image_text_encoder(spec, runtime, options.model_dirs, EncoderUse::kImages);
+}
+
+std::shared_ptr<const ThingRecognizer> make_recognizer(const MappingOptions& options,
+                                                       const ProgramConfig& config, bool encoder) {
+  RuntimeConfig runtime = config.encoder;
+  if (runtime.threads == 0) runtime.threads = options.threads;
+  const std::string spec = options.recognizer == "auto" && !encoder ? "none" : options.recognizer;
+  return make_thing_recognizer(spec, runtime, options.model_dirs);
 }
 
 int embedding_queries(const SemanticRecord& semantics) {

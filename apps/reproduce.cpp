@@ -45,6 +45,7 @@ MappingOptions mapping_of(const ReproduceOptions& options, const PaperDataset& d
   MappingOptions mapping = options.mapping;
   mapping.source = scene.source.string();
   mapping.masks = scene.masks;
+  mapping.recognizer = "none";  // the paper has none
   mapping.frames = scene.frames;
   mapping.preset = preset;
   mapping.views = !options.views.empty()  ? options.views

@@ -187,7 +187,7 @@ void add_live_options(CLI::App& command, ServeOptions& options) {
   add_mapping_settings(command, options.mapping);
   add_poses(command, options.mapping);
   for (const char* name :
-       {"--masks", "--preset", "--views", "--config", "--set", "--frames", "--poses"})
+       {"--masks", "--recognizer", "--preset", "--views", "--config", "--set", "--frames", "--poses"})
     command.get_option(name)->needs(live);
 }
 

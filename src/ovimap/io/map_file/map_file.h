@@ -24,6 +24,8 @@ struct MapInfo {
   std::map<InstanceId, std::string> names;
   std::string writing_reader;              ///< what read the writing; empty: nothing did
   std::map<InstanceId, std::vector<WrittenLine>> writing;  ///< of those on which some was read
+  RecognizerIdentity recognizer;           ///< what recognized things; no name: nothing did
+  std::map<InstanceId, Eigen::VectorXf> things;  ///< things_of() the objects that it looked at
   MapHistory history;                             ///< empty in maps of earlier schemas
   EncoderIdentity encoder;                        ///< of the embeddings; no name: there are none
   Eigen::Vector3f up = Eigen::Vector3f::UnitZ();  ///< in the world

@@ -257,6 +257,7 @@ TEST_F(ForgedMap, LabelsAndRootsMustExist) {
 TEST_F(ForgedMap, DirectionsMustFitTheMapsGrid) {
   MapDocument plain = random_document(6, 20);
   plain.semantics.looks.at(1).views[0].writing.clear();  // of a view that is replaced
+  plain.semantics.looks.at(1).views[0].things.resize(0);
   const auto with_bins = [&](std::size_t bytes, std::uint8_t fill) {
     save_map(path_, plain);
     forge(map_tables::kSuperPointViews, [&](RowWriter& rows) {

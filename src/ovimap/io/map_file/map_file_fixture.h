@@ -135,6 +135,8 @@ inline MapDocument random_document(int block_count, std::uint32_t seed) {
   look.views[0].writing = {{"EXIT \xC3\xA9", 0.75f, {Eigen::Vector2i(0, 1), Eigen::Vector2i(2, 2)}},
                            {"2", 1.f, {Eigen::Vector2i(1, 1), Eigen::Vector2i(1, 1)}}};
   document.semantics.writing_reader = "reader";
+  look.views[0].things = Eigen::Vector3f(2.5f, -1, 0);
+  document.semantics.recognizer = {"detector", {"cup|mug", "chair", "television"}};
   ViewDirections& directions = look.views[0].directions;
   directions.center_in_world = {1.f / 3, 2, -3};
   directions.bins = BinSet(document.semantics.views.grid(document.depth_camera).bins());
@@ -220,7 +222,7 @@ inline bool same_registry(const InstanceRegistry::State& a, const InstanceRegist
 
 inline bool same_view(const ObjectView& a, const ObjectView& b) {
   return a.frame == b.frame && a.visible_px == b.visible_px && a.embedding == b.embedding &&
-         a.super_point == b.super_point && a.directions.bins == b.directions.bins &&
+         a.super_point == b.super_point && a.things == b.things && a.directions.bins == b.directions.bins &&
          a.directions.center_in_world == b.directions.center_in_world &&
          a.crop.image_jpeg == b.crop.image_jpeg && a.crop.mask_png == b.crop.mask_png &&
          (a.crop.empty() || (a.crop.object_px.min() == b.crop.object_px.min() &&
@@ -243,7 +245,7 @@ inline bool same_semantics(const SemanticRecord& a, const SemanticRecord& b) {
   const auto same_entry = [](const auto& x, const auto& y) {
     return x.first == y.first && same_look(x.second, y.second);
   };
-  return a.encoder == b.encoder && a.views.theta_novel == b.views.theta_novel &&
+  return a.encoder == b.encoder && a.recognizer == b.recognizer && a.views.theta_novel == b.views.theta_novel &&
          a.crops.kept_views == b.crops.kept_views &&
          std::equal(a.looks.begin(), a.looks.end(), b.looks.begin(), b.looks.end(), same_entry);
 }

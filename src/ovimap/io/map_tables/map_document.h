@@ -38,6 +38,7 @@ struct SemanticRecord {
   CropConfig crops;
   SuperPointLooks looks;
   std::string writing_reader = {};  ///< what read the writing in the crops; empty: nothing did
+  RecognizerIdentity recognizer = {};  ///< what recognized things in the views; no name: nothing did
 };
 
 /// What a map says that no frame changes: where it comes from, and what people told it.

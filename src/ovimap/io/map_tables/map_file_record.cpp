@@ -58,6 +58,9 @@ void list_meta(MapRecord& record, VoxelMapConfig& map_config, ConfigFields& fiel
   fields.group("writing", [&](ConfigFields& writing) {
     writing.add("reader", record.semantics.writing_reader, "model that read what is written");
   });
+  fields.group("recognizer", [&](ConfigFields& recognizer) {
+    recognizer.add("name", record.semantics.recognizer.name, "models that recognized things");
+  });
   fields.group("views", [&](ConfigFields& views) { list_fields(record.semantics.views, views); });
   fields.group("crops", [&](ConfigFields& crops) { list_fields(record.semantics.crops, crops); });
   fields.group("map", [&](ConfigFields& map) { list_fields(map_config, map); });
@@ -92,6 +95,7 @@ void write_meta(SQLite::Database& database, const MapRecord& record, const MapMe
   plain.instance_config = record.instance_config;
   plain.semantics.encoder = record.semantics.encoder;
   plain.semantics.writing_reader = record.semantics.writing_reader;
+  plain.semantics.recognizer.name = record.semantics.recognizer.name;
   plain.semantics.views = record.semantics.views;
   plain.semantics.crops = record.semantics.crops;
   VoxelMapConfig map_config = meta.map_config;

@@ -92,6 +92,13 @@ inline constexpr MapTable kWriting{
     "label INTEGER NOT NULL, frame INTEGER NOT NULL, line INTEGER NOT NULL, text TEXT NOT NULL, "
     "confidence REAL NOT NULL, min_x INTEGER NOT NULL, min_y INTEGER NOT NULL, max_x INTEGER NOT "
     "NULL, max_y INTEGER NOT NULL, PRIMARY KEY (label, frame, line)"};
+/// What a recognizer tells, and what it found in the views; not in maps made without one.
+inline constexpr MapTable kThings{"things", "position, words",
+                                  "position INTEGER PRIMARY KEY, words TEXT NOT NULL"};
+inline constexpr MapTable kRecognized{
+    "recognized", "label, frame, log_ratios",
+    "label INTEGER NOT NULL, frame INTEGER NOT NULL, log_ratios BLOB NOT NULL, "
+    "PRIMARY KEY (label, frame)"};
 inline constexpr MapTable kEmbeddings{"embeddings", "instance, embedding",
                                       "instance INTEGER PRIMARY KEY, embedding BLOB NOT NULL"};
 inline constexpr MapTable kSurfaces{"surfaces", "instance, points",
@@ -160,7 +167,7 @@ inline constexpr MapTable kChecks{
 inline constexpr const MapTable* kAll[] = {
     &kMeta, &kInstances, &kInstanceSuperPoints, &kInstanceNames, &kInstanceAliases, &kSuperPoints,
     &kSuperPointFrames, &kVotes, &kLabelPairs, &kEntitySightings, &kLabelForest, &kFrames,
-    &kSuperPointLooks, &kSuperPointViews, &kWriting, &kEmbeddings, &kSurfaces, &kBlocks, &kKeptFrames,
+    &kSuperPointLooks, &kSuperPointViews, &kWriting, &kThings, &kRecognized, &kEmbeddings, &kSurfaces, &kBlocks, &kKeptFrames,
     &kInstanceRecords, &kAppearances, &kViews, &kVisits, &kObjectEvents, &kEdits, &kCorrectedInstances,
     &kCorrectedSuperPoints, &kCorrectedNames, &kCorrectedSurfaces, &kCorrectedEmbeddings,
     &kCorrectedFlags, &kChecks};

@@ -16,10 +16,17 @@ namespace {
 
 using namespace map_tables;
 
-Bytes embedding_bytes(const Eigen::VectorXf& embedding) {
+Bytes float_bytes(const Eigen::VectorXf& values) {
   Bytes bytes;
-  for (const float value : embedding) append_float(bytes, value);
+  for (const float value : values) append_float(bytes, value);
   return bytes;
+}
+
+Eigen::VectorXf floats_of(std::span<const std::uint32_t> words) {
+  Eigen::VectorXf values(static_cast<Eigen::Index>(words.size()));
+  for (std::size_t i = 0; i < words.size(); ++i)
+    values[static_cast<Eigen::Index>(i)] = std::bit_cast<float>(words[i]);
+  return values;
 }
 
 /// An embedding in the encoder's space, or none.
@@ -28,9 +35,7 @@ Eigen::VectorXf take_embedding(RowReader& rows, const EncoderIdentity& encoder) 
   if (!words.empty() && encoder.name.empty()) rows.fail("has an embedding of no encoder");
   if (!words.empty() && words.size() != static_cast<std::size_t>(encoder.dimension))
     rows.fail(concat("has an embedding of ", words.size(), " numbers"));
-  Eigen::VectorXf embedding(static_cast<Eigen::Index>(words.size()));
-  for (std::size_t i = 0; i < words.size(); ++i)
-    embedding[static_cast<Eigen::Index>(i)] = std::bit_cast<float>(words[i]);
+  Eigen::VectorXf embedding = floats_of(words);
   if (!embedding.allFinite()) rows.fail("has an embedding that is not finite");
   return embedding;
 }
@@ -44,7 +49,7 @@ void insert_look(RowWriter& rows, Label label, const SuperPointLook& look) {
 void insert_view(RowWriter& rows, const ObjectView& view) {
   Bytes bins;
   for (const std::uint64_t word : view.directions.bins.words()) append_word(bins, word);
-  const Bytes embedding = embedding_bytes(view.embedding);
+  const Bytes embedding = float_bytes(view.embedding);
   const Eigen::Vector3f& center = view.directions.center_in_world;
   const auto &low = view.crop.object_px.min(), &high = view.crop.object_px.max();
   const bool crop = !view.crop.empty();
@@ -67,6 +72,22 @@ void write_writing(SQLite::Database& database, const SuperPointLooks& looks) {
                      low.y(), high.x(), high.y());
       }
   if (rows) rows->finish();
+}
+
+void write_things(SQLite::Database& database, const SemanticRecord& semantics) {
+  if (semantics.recognizer.name.empty()) return;
+  RowWriter things(database, kThings);
+  for (std::size_t i = 0; i < semantics.recognizer.things.size(); ++i)
+    things.insert(i, semantics.recognizer.things[i]);
+  things.finish();
+  RowWriter rows(database, kRecognized);
+  for (const auto& [label, look] : semantics.looks)
+    for (const ObjectView& view : look.views) {
+      if (view.things.size() == 0) continue;
+      const Bytes bytes = float_bytes(view.things);
+      rows.insert(view.super_point, view.frame, std::span<const std::uint8_t>(bytes));
+    }
+  rows.finish();
 }
 
 constexpr float kSteps = 65535.f;
@@ -134,6 +155,7 @@ void write_semantics(SQLite::Database& database, const MapRecord& record) {
     for (const ObjectView& view : look.views) insert_view(views, view);
   views.finish();
   write_writing(database, record.semantics.looks);
+  write_things(database, record.semantics);
   write_embeddings(database, record, kEmbeddings);
 }
 
@@ -144,7 +166,7 @@ void write_embeddings(SQLite::Database& database, const MapRecord& record, const
     const Appearance look = appearance_of(semantics.looks, instance.super_points);
     const Eigen::VectorXf fused = fuse_views(look.views, semantics.views.fusion);
     if (fused.size() == 0) continue;
-    const Bytes bytes = embedding_bytes(fused);
+    const Bytes bytes = float_bytes(fused);
     embeddings.insert(instance.id, std::span<const std::uint8_t>(bytes));
   }
   embeddings.finish();
@@ -194,6 +216,35 @@ std::map<ViewKey, std::vector<WrittenLine>> read_writing(SQLite::Database& datab
   return writing;
 }
 
+std::vector<std::string> read_things(SQLite::Database& database) {
+  std::vector<std::string> things;
+  if (!holds_table(database, kThings)) return things;
+  RowReader rows(database, kThings);
+  while (rows.next()) {
+    if (rows.integer<std::size_t>() != things.size()) rows.fail("is out of order");
+    things.push_back(rows.text());
+    if (things.back().empty()) rows.fail("has no words");
+  }
+  return things;
+}
+
+std::map<ViewKey, Eigen::VectorXf> read_recognized(SQLite::Database& database,
+                                                   const LabelForest& forest, std::size_t things) {
+  std::map<ViewKey, Eigen::VectorXf> recognized;
+  if (!holds_table(database, kRecognized)) return recognized;
+  RowReader rows(database, kRecognized);
+  while (rows.next()) {
+    const Label label = take_label(rows, forest);
+    const auto frame = rows.integer<std::int64_t>();
+    const auto words = words_of<std::uint32_t>(rows.blob(), rows);
+    Eigen::VectorXf ratios = floats_of(words);
+    if (words.size() != things || !ratios.allFinite())
+      rows.fail(concat("has no ", things, " finite numbers"));
+    recognized[{frame, label}] = std::move(ratios);
+  }
+  return recognized;
+}
+
 SuperPointLooks read_looks(SQLite::Database& database, const LabelForest& forest,
                            const SemanticRecord& settings, const PinholeCamera& depth_camera) {
   const SphereGrid grid = settings.views.grid(depth_camera);
@@ -207,6 +258,7 @@ SuperPointLooks read_looks(SQLite::Database& database, const LabelForest& forest
     look.queries = looks.integer<int>();
   }
   auto writing = read_writing(database, forest);
+  auto things = read_recognized(database, forest, read_things(database).size());
   RowReader views(database, kSuperPointViews);
   while (views.next()) {
     ObjectView view;
@@ -218,11 +270,13 @@ SuperPointLooks read_looks(SQLite::Database& database, const LabelForest& forest
     view.directions.bins = take_bins(views, grid);
     take_picture(views, settings.encoder, view);
     if (auto lines = writing.extract(view.key())) view.writing = std::move(lines.mapped());
+    if (auto ratios = things.extract(view.key())) view.things = std::move(ratios.mapped());
     const auto look = result.find(forest.root(view.super_point));
     if (look == result.end()) views.fail("has a view of a super-point without look");
     insert_view(look->second, std::move(view));
   }
   if (!writing.empty()) throw Error("table writing has a line of no view");
+  if (!things.empty()) throw Error("table recognized has a row of no view");
   return result;
 }
 

@@ -26,6 +26,11 @@ SuperPointLooks read_looks(SQLite::Database& database, const LabelForest& forest
 std::map<ViewKey, std::vector<WrittenLine>> read_writing(SQLite::Database& database,
                                                          const LabelForest& forest);
 
+/// What a recognizer tells, and its log ratios [things] by view; nothing in maps made without one.
+std::vector<std::string> read_things(SQLite::Database& database);
+std::map<ViewKey, Eigen::VectorXf> read_recognized(SQLite::Database& database,
+                                                   const LabelForest& forest, std::size_t things);
+
 /// The last columns of a row of views.
 void take_picture(RowReader& rows, const EncoderIdentity& encoder, ObjectView& view);
 /// Directions that were seen: none, or of the map's own grid.

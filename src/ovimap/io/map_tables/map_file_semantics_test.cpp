@@ -63,6 +63,32 @@ TEST_F(MapFileSemantics, TellsWhatIsWrittenWithoutTheViews) {
   EXPECT_THROW(read_map_info(root_ / "b.ovimap"), Error);
 }
 
+TEST_F(MapFileSemantics, TellsWhatWasRecognizedWithoutTheViews) {
+  MapDocument saved = random_document(5, 1);
+  save_map(root_ / "a.ovimap", saved);
+  const MapInfo info = read_map_info(root_ / "a.ovimap");
+  EXPECT_EQ(info.recognizer, saved.semantics.recognizer);
+  ASSERT_EQ(info.things.size(), 1u);
+  const Eigen::VectorXf& things = info.things.at(1);
+  ASSERT_EQ(things.size(), 3);
+  EXPECT_GT(things[0], 2.f);
+  EXPECT_LT(things[1], -0.5f);
+  EXPECT_NEAR(things[2], 0.f, 1e-6f);
+  saved.semantics.looks[1].views[0].things = Eigen::Vector2f(1, 2);
+  save_map(root_ / "b.ovimap", saved);
+  EXPECT_THROW(read_map_info(root_ / "b.ovimap"), Error);
+}
+
+TEST_F(MapFileSemantics, MapsWithoutRecognizerHaveNoTablesForIt) {
+  MapDocument saved = random_document(5, 1);
+  saved.semantics.recognizer = {};
+  for (auto& [label, look] : saved.semantics.looks)
+    for (ObjectView& view : look.views) view.things.resize(0);
+  save_map(root_ / "a.ovimap", saved);
+  EXPECT_EQ(difference(saved, load_map(root_ / "a.ovimap")), "");
+  EXPECT_TRUE(read_map_info(root_ / "a.ovimap").things.empty());
+}
+
 TEST_F(MapFileSemantics, RefusesEmbeddingsThatCannotBe) {
   MapDocument saved = random_document(5, 1);
   saved.semantics.looks[1].views[0].embedding = Eigen::Vector2f(1, 0);

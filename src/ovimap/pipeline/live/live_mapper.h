@@ -58,6 +58,10 @@ class LiveMapper {
   /// Cancels.
   ~LiveMapper();
 
+  /// Shows views also to what recognizes things. Before the first push only.
+  void recognize_with(std::shared_ptr<const ThingRecognizer> recognizer) {
+    mapper_->recognize_with(std::move(recognizer));
+  }
   /// Finds the poses of the frames instead of taking theirs. Before the first push only.
   void track_with(std::shared_ptr<Tracker> tracker) { tracker_ = std::move(tracker); }
 

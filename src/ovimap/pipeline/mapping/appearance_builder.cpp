@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "ovimap/base/config.h"
+#include "ovimap/image/resize.h"
 
 namespace ovimap {
 
@@ -17,6 +18,18 @@ void list_fields(SemanticsConfig& config, ConfigFields& fields) {
 
 namespace {
 
+constexpr int kPictureSide_px = 640;  // as much as a recognizer of things sees
+
+/// The frame's picture, for a recognizer; shrunk, since several may wait.
+std::shared_ptr<const RgbImage> picture_of(const Frame& frame) {
+  const int longer = std::max(frame.color.width(), frame.color.height());
+  if (longer <= kPictureSide_px) return std::make_shared<const RgbImage>(frame.color);
+  const auto shrunk = [&](int side) { return std::max(1, side * kPictureSide_px / longer); };
+  return std::make_shared<const RgbImage>(resize_filtered(frame.color, shrunk(frame.color.width()),
+                                                          shrunk(frame.color.height()),
+                                                          ResizeFilter::kBilinear));
+}
+
 /// Gives a view what the encoder answered. Views drawn at random may yet be thrown out: which crops
 /// stay is settled in the end.
 void fill_view(EmbeddingAnswer answer, const SemanticsConfig& config, SuperPointLook& look) {
@@ -24,6 +37,7 @@ void fill_view(EmbeddingAnswer answer, const SemanticsConfig& config, SuperPoint
   if (!view) return;  // a better one took its place meanwhile
   view->embedding = std::move(answer.embedding);
   view->crop = std::move(answer.crop);
+  view->things = std::move(answer.things);
   if (config.views.strategy != ViewStrategy::kRandom) prune_crops(look, config.crops.kept_views);
 }
 
@@ -49,9 +63,19 @@ AppearanceBuilder::AppearanceBuilder(const SemanticsConfig& config,
       selector_(config.views),
       queue_(config.queue, config.crops, encoder_) {}
 
+void AppearanceBuilder::recognize_with(std::shared_ptr<const ThingRecognizer> recognizer) {
+  recognizer_ = recognizer;
+  queue_.recognize_with(std::move(recognizer));
+}
+
+RecognizerIdentity AppearanceBuilder::recognizer() const {
+  return recognizer_ ? recognizer_->identity() : RecognizerIdentity{};
+}
+
 int AppearanceBuilder::choose(const Frame& frame, const SeenObjects& seen,
                               const InstanceRegistry& registry, const LabelForest& forest) {
   apply(queue_.take(), forest);
+  std::shared_ptr<const RgbImage> picture;
   for (ChosenView& chosen : selector_.select(seen, registry, looks_)) {
     auto crop = cut_object(frame, {seen.color_index, seen.instances, chosen.id, chosen.box_px},
                            config_.crops);
@@ -59,7 +83,8 @@ int AppearanceBuilder::choose(const Frame& frame, const SeenObjects& seen,
     const ViewKey key = chosen.view.key();
     selector_.commit(std::move(chosen), forest, looks_);
     asked_for_.insert(key);
-    chosen_.push_back({key, std::move(*crop)});
+    if (recognizer_ && !picture) picture = picture_of(frame);
+    chosen_.push_back({key, std::move(*crop), picture});
   }
   return static_cast<int>(chosen_.size());
 }

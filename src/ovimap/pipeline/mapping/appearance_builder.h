@@ -50,6 +50,11 @@ class AppearanceBuilder {
   /// `encoder` may be null: then only crops are kept, which can be embedded later.
   AppearanceBuilder(const SemanticsConfig& config, std::shared_ptr<ImageTextEncoder> encoder);
 
+  /// From now on views are shown to it too. Null: to none.
+  void recognize_with(std::shared_ptr<const ThingRecognizer> recognizer);
+  /// Of what recognizes things in the views.
+  RecognizerIdentity recognizer() const;
+
   /// Throws what the encoder threw since the last report, once; its views stay without embedding.
   void rethrow_failure() { queue_.rethrow_failure(); }
   /// From now on what the encoder throws is counted alone.
@@ -91,6 +96,7 @@ class AppearanceBuilder {
 
   SemanticsConfig config_;
   std::shared_ptr<ImageTextEncoder> encoder_;
+  std::shared_ptr<const ThingRecognizer> recognizer_;
   ViewSelector selector_;
   SuperPointLooks looks_;
   std::uint32_t followed_ = 0;  ///< the forest's epoch that `looks_` agree with

@@ -45,6 +45,11 @@ EmbeddingQueue::~EmbeddingQueue() {
   worker_.join();
 }
 
+void EmbeddingQueue::recognize_with(std::shared_ptr<const ThingRecognizer> recognizer) {
+  const std::lock_guard lock(mutex_);
+  recognizer_ = std::move(recognizer);
+}
+
 int EmbeddingQueue::waiting() const {
   const std::lock_guard lock(mutex_);
   return static_cast<int>(waiting_.size());
@@ -125,6 +130,14 @@ void EmbeddingQueue::work() {
         if (!failure) failure = std::current_exception();
       }
     }
+    std::vector<Eigen::VectorXf> things;
+    try {
+      things = recognize(batch);
+    } catch (...) {  // then by the encoder alone
+      if (!failure) failure = std::current_exception();
+    }
+    for (std::size_t i = 0; i < std::min(things.size(), answers.size()); ++i)
+      answers[i].things = std::move(things[i]);
     {
       const std::lock_guard lock(mutex_);
       std::move(answers.begin(), answers.end(), std::back_inserter(answered_));
@@ -133,6 +146,25 @@ void EmbeddingQueue::work() {
     }
     changed_.notify_all();
   }
+}
+
+std::vector<Eigen::VectorXf> EmbeddingQueue::recognize(const std::vector<EmbeddingRequest>& batch) {
+  std::shared_ptr<const ThingRecognizer> recognizer;
+  {
+    const std::lock_guard lock(mutex_);
+    recognizer = recognizer_;
+  }
+  if (!recognizer) return {};
+  std::vector<Eigen::VectorXf> things(batch.size());
+  for (std::size_t i = 0; i < batch.size(); ++i) {
+    if (!batch[i].picture || batch[i].crop.in_frame.isEmpty()) continue;
+    if (batch[i].picture != seen_picture_) {
+      seen_things_ = recognizer->look(*batch[i].picture);
+      seen_picture_ = batch[i].picture;
+    }
+    things[i] = seen_things_->log_ratios(batch[i].crop.in_frame);
+  }
+  return things;
 }
 
 std::vector<EmbeddingAnswer> EmbeddingQueue::answer(const std::vector<EmbeddingRequest>& batch,

@@ -29,6 +29,7 @@ void list_fields(EmbeddingQueueConfig& config, ConfigFields& fields);
 struct EmbeddingRequest {
   ViewKey view;
   ObjectCrop crop;
+  std::shared_ptr<const RgbImage> picture = nullptr;  ///< of the frame, for the recognizer; null: none
 };
 
 struct EmbeddingAnswer {
@@ -36,6 +37,7 @@ struct EmbeddingAnswer {
   Eigen::VectorXf embedding;  ///< empty without an encoder, or when it gave nothing finite
   StoredCrop crop;            ///< empty when CropConfig::kept_views is 0
   double milliseconds = 0;    ///< its share of the batch's time; 0 without an encoder
+  Eigen::VectorXf things = {};  ///< log ratios; empty without a recognizer
 };
 
 /// What an encoder threw, all told.
@@ -53,6 +55,9 @@ class EmbeddingQueue {
                  std::shared_ptr<ImageTextEncoder> encoder);
   /// What still waits is dropped.
   ~EmbeddingQueue();
+
+  /// From now on views are shown to it too.
+  void recognize_with(std::shared_ptr<const ThingRecognizer> recognizer);
 
   /// `wait`: blocks while the queue is full; else it holds more than its capacity for once.
   void submit(std::vector<EmbeddingRequest> requests, bool wait = true);
@@ -74,13 +79,18 @@ class EmbeddingQueue {
   void note_failure(std::exception_ptr failure, std::size_t views);
   std::vector<EmbeddingAnswer> answer(const std::vector<EmbeddingRequest>& batch,
                                       ImageTextEncoder* encoder) const;
+  /// Log ratios of each view; empty ones without recognizer. Views of one frame share one look.
+  std::vector<Eigen::VectorXf> recognize(const std::vector<EmbeddingRequest>& batch);
 
   EmbeddingQueueConfig config_;
   CropConfig crops_;
   std::shared_ptr<ImageTextEncoder> encoder_;
+  std::shared_ptr<const RgbImage> seen_picture_;  ///< the last one, and what is in it
+  std::unique_ptr<const ThingsInPicture> seen_things_;
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;
+  std::shared_ptr<const ThingRecognizer> recognizer_;
   std::deque<EmbeddingRequest> waiting_;
   std::vector<EmbeddingAnswer> answered_;
   std::size_t under_way_ = 0;

@@ -68,6 +68,68 @@ TEST(EmbeddingQueue, SlowEncodersSeeTheFrameTheyWereAskedAbout) {
   EXPECT_GT(restore_crop(answers[0].crop).image.at(4, 4).r, 200);
 }
 
+/// Tells how red a picture is at its left, and where it was asked about.
+class RedRecognizer : public ThingRecognizer {
+ public:
+  const RecognizerIdentity& identity() const override { return identity_; }
+  std::unique_ptr<const ThingsInPicture> look(const RgbImage& picture) const override {
+    if (fails) throw Error("the detector is broken");
+    ++pictures_seen;
+    struct Seen : ThingsInPicture {
+      float red = 0;
+      Eigen::VectorXf log_ratios(const Eigen::AlignedBox2f& box) const override {
+        return Eigen::Vector2f(red, box.min().x());
+      }
+    };
+    auto seen = std::make_unique<Seen>();
+    seen->red = static_cast<float>(picture.at(0, 0).r);
+    return seen;
+  }
+  mutable std::atomic<int> pictures_seen = 0;
+  std::atomic<bool> fails = false;
+
+ private:
+  RecognizerIdentity identity_{"red", {"red thing", "place"}};
+};
+
+std::vector<EmbeddingRequest> two_of_one_picture(std::int64_t frame) {
+  const auto picture = std::make_shared<const RgbImage>(8, 8, Rgb8{200, 0, 0});
+  std::vector<EmbeddingRequest> requests;
+  for (const float left : {0.25f, 0.5f}) {
+    EmbeddingRequest request{{frame, requests.empty() ? 1u : 2u}, crop_of(RgbImage(4, 4)), picture};
+    request.crop.in_frame = {Eigen::Vector2f(left, 0), Eigen::Vector2f(left + 0.25f, 1)};
+    requests.push_back(std::move(request));
+  }
+  return requests;
+}
+
+TEST(EmbeddingQueue, ViewsOfOneFrameShareOneLook) {
+  const auto recognizer = std::make_shared<RedRecognizer>();
+  EmbeddingQueue queue({.capacity = 8, .batch = 1}, {}, std::make_shared<ColorEncoder>());
+  queue.recognize_with(recognizer);
+  queue.submit(two_of_one_picture(1));
+  queue.submit(one(2, RgbImage(4, 4)));
+  const auto answers = queue.finish();
+  ASSERT_EQ(answers.size(), 3u);
+  EXPECT_EQ(answers[0].things, Eigen::Vector2f(200, 0.25f));
+  EXPECT_EQ(answers[1].things, Eigen::Vector2f(200, 0.5f));
+  EXPECT_EQ(answers[2].things.size(), 0) << "without a picture there is nothing to look at";
+  EXPECT_EQ(recognizer->pictures_seen, 1);
+}
+
+TEST(EmbeddingQueue, ABrokenRecognizerCostsNoEmbedding) {
+  const auto recognizer = std::make_shared<RedRecognizer>();
+  recognizer->fails = true;
+  EmbeddingQueue queue({}, {}, std::make_shared<ColorEncoder>());
+  queue.recognize_with(recognizer);
+  queue.submit(two_of_one_picture(1));
+  EXPECT_THROW(queue.finish(), Error);
+  const auto answers = queue.finish();
+  ASSERT_EQ(answers.size(), 2u);
+  EXPECT_EQ(answers[0].embedding.size(), 3);
+  EXPECT_EQ(answers[0].things.size(), 0);
+}
+
 TEST(EmbeddingQueue, AFullQueueMakesTheMapperWait) {
   auto encoder = std::make_shared<PatientEncoder>();
   EmbeddingQueue queue({.capacity = 2, .batch = 1}, {}, encoder);

@@ -168,6 +168,7 @@ MapRecord Mapper::record(MapHeader header, std::vector<FrameLogEntry> frames,
   record.semantics.views = config_.semantics.views;
   record.semantics.crops = config_.semantics.crops;
   if (encoder()) record.semantics.encoder = encoder()->identity();
+  record.semantics.recognizer = builder_->recognizer();
   record.frames = std::move(frames);
   record.kept_frames = kept_frames();
   record.depth_camera = depth_camera;
@@ -180,6 +181,9 @@ void Mapper::restore(MapDocument&& document) {
   OVIMAP_ASSERT(frames_ == 0);
   map_ = std::move(document.map);
   registry_.restore(std::move(document.registry));
+  if (document.semantics.recognizer != builder_->recognizer())  // other numbers mean other things
+    for (auto& [label, look] : document.semantics.looks)
+      for (ObjectView& view : look.views) view.things.resize(0);
   builder_->restore(std::move(document.semantics.looks));
   frame_store_.restore(std::move(document.kept_frames), document.frames.size());
   for (const FrameLogEntry& frame : document.frames)

@@ -45,6 +45,12 @@ class Mapper {
   explicit Mapper(const MapperConfig& config, std::shared_ptr<MaskSource> masks = nullptr,
                   std::shared_ptr<ImageTextEncoder> encoder = nullptr);
 
+  /// From now on views are also shown to what recognizes things; null: to nothing.
+  void recognize_with(std::shared_ptr<const ThingRecognizer> recognizer) {
+    builder_->recognize_with(std::move(recognizer));
+  }
+  RecognizerIdentity recognizer() const { return builder_->recognizer(); }
+
   /// Fuses one frame. Throws what the mask source throws, and, once, what the encoder threw on
   /// views of earlier frames; the map is then as it was before the frame, which can be given again.
   FrameReport process(const Frame& frame);

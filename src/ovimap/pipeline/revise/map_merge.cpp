@@ -79,6 +79,8 @@ void append_looks(MapRecord& map_a, const MapRecord& map_b, const Pose& a_from_b
   const SemanticRecord& b = map_b.semantics;
   if (a.encoder.name.empty()) a.encoder = b.encoder;
   if (a.writing_reader.empty()) a.writing_reader = b.writing_reader;
+  if (a.recognizer.name.empty()) a.recognizer = b.recognizer;
+  const bool same_things = a.recognizer == b.recognizer;
   const Eigen::Isometry3f pose = a_from_b.cast<float>();
   // Directions are those of the old frame and grid: what was seen counts again from nothing.
   const bool others = !pose.linear().isIdentity(1e-4f) ||
@@ -88,6 +90,7 @@ void append_looks(MapRecord& map_a, const MapRecord& map_b, const Pose& a_from_b
     if (!moved.seen_in_world.isEmpty()) moved.seen_in_world.transform(pose);
     for (ObjectView& view : moved.views) {
       view.frame += by.frame;
+      if (!same_things) view.things.resize(0);  // other numbers mean other things
       view.super_point += by.label;
       view.directions.center_in_world = pose * view.directions.center_in_world;
       if (others) view.directions.bins = {};

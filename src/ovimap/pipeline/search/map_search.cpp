@@ -47,6 +47,16 @@ QueryScene scene_of(const SearchableMap& map, const SearchIndex& index,
           lines != map.info.writing.end())
         scene.writing[i] = lines->second;
   }
+  if (!map.info.things.empty()) {
+    scene.things.words = map.info.recognizer.things;
+    scene.things.log_ratios = Eigen::MatrixXf::Zero(
+        static_cast<Eigen::Index>(index.size()),
+        static_cast<Eigen::Index>(map.info.recognizer.things.size()));
+    for (std::size_t i = 0; i < index.size(); ++i)
+      if (const auto seen = map.info.things.find(index.object(i).id);
+          seen != map.info.things.end())
+        scene.things.log_ratios.row(static_cast<Eigen::Index>(i)) = seen->second.transpose();
+  }
   std::vector<Pose> cameras;
   for (const FrameLogEntry& frame : map.frames) cameras.push_back(frame.world_from_camera);
   if (!cameras.empty()) scene.viewpoint = mean_viewpoint(ground, cameras);
@@ -124,10 +134,15 @@ MapSearch make_map_search(const MapRecord& corrected, MapInfo info,
   info.names = corrected.names;
   info.writing_reader = corrected.semantics.writing_reader;
   info.writing.clear();
-  for (const InstanceSummary& instance : corrected.instances)
-    if (auto lines = writing_of(appearance_of(corrected.semantics.looks, instance.super_points));
-        !lines.empty())
+  info.recognizer = corrected.semantics.recognizer;
+  info.things.clear();
+  for (const InstanceSummary& instance : corrected.instances) {
+    const Appearance look = appearance_of(corrected.semantics.looks, instance.super_points);
+    if (auto lines = writing_of(look); !lines.empty())
       info.writing.emplace(instance.id, std::move(lines));
+    if (auto things = things_of(look.views); things.size() > 0)
+      info.things.emplace(instance.id, std::move(things));
+  }
   info.encoder = corrected.semantics.encoder;
   info.up = corrected.up;
   info.frames = static_cast<std::int64_t>(corrected.frames.size());

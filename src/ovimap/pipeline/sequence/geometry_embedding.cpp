@@ -162,16 +162,19 @@ MapDocument embed_geometry(const Mesh& mesh, const FrameSource& source,
                            const std::vector<std::int64_t>& positions,
                            const GeometryEmbeddingConfig& config,
                            std::shared_ptr<ImageTextEncoder> encoder, SequenceResult& sequence,
-                           const SequenceProgress& progress) {
+                           const SequenceProgress& progress,
+                           std::shared_ptr<const ThingRecognizer> recognizer) {
   require_labels(mesh);
   MapDocument document;
   document.instances = summarize_mesh(mesh);
   give_labels(document.instances, document.map.labels());
   document.registry = registry_of(document.instances);
   AppearanceBuilder builder(config.semantics, std::move(encoder));
+  builder.recognize_with(std::move(recognizer));
   look_at_frames(mesh, source, positions, config, document, builder, sequence, progress);
   document.semantics = {builder.encoder() ? builder.encoder()->identity() : EncoderIdentity{},
                         config.semantics.views, config.semantics.crops, builder.take()};
+  document.semantics.recognizer = builder.recognizer();
   for (InstanceSummary& object : document.instances)
     object.views = appearance_of(document.semantics.looks, object.super_points).offered;
   document.surfaces = sample_surfaces(mesh, config.surface_spacing_m);

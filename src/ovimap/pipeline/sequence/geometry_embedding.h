@@ -30,7 +30,8 @@ MapDocument embed_geometry(const Mesh& mesh, const FrameSource& source,
                            const std::vector<std::int64_t>& positions,
                            const GeometryEmbeddingConfig& config,
                            std::shared_ptr<ImageTextEncoder> encoder, SequenceResult& sequence,
-                           const SequenceProgress& progress = nullptr);
+                           const SequenceProgress& progress = nullptr,
+                           std::shared_ptr<const ThingRecognizer> recognizer = nullptr);
 
 /// The mesh's objects: box, centroid and number of their vertices, ordered by id.
 std::vector<InstanceSummary> summarize_mesh(const Mesh& mesh);

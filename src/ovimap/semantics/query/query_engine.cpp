@@ -52,7 +52,7 @@ QueryEngine::QueryEngine(const SearchIndex& index, ImageTextEncoder* encoder,
     scene_.shapes = scene_of_boxes(index, Eigen::Vector3f::UnitZ(), config.shapes).shapes;
   if (encoder)
     matcher_.emplace(index, *encoder, config, std::move(vocabulary),
-                     measure_objects(scene_.shapes), scene_.writing);
+                     measure_objects(scene_.shapes), scene_.writing, scene_.things);
 }
 
 QueryAnswer QueryEngine::find(const Query& query) const {

@@ -52,7 +52,8 @@ void require_embedding_length(const SearchIndex& index, Eigen::Index length,
 TextMatcher::TextMatcher(const SearchIndex& index, ImageTextEncoder& encoder,
                          const QueryConfig& config, Embeddings vocabulary,
                          std::span<const ObjectMeasures> measures,
-                         std::span<const std::vector<WrittenLine>> writing)
+                         std::span<const std::vector<WrittenLine>> writing,
+                         const SeenThings& things)
     : index_(index),
       encoder_(encoder),
       config_(config),
@@ -71,12 +72,13 @@ TextMatcher::TextMatcher(const SearchIndex& index, ImageTextEncoder& encoder,
   calibration_.emplace(index, vocabulary_, config.verdict);
   null_ = calibration_->null_distribution();
   if (index.size() <= static_cast<std::size_t>(config.evidence.max_objects))
-    weigh_evidence(measures);
+    weigh_evidence(measures, things);
 }
 
-void TextMatcher::weigh_evidence(std::span<const ObjectMeasures> measures) {
+void TextMatcher::weigh_evidence(std::span<const ObjectMeasures> measures,
+                                 const SeenThings& things) {
   evidence_.emplace(
-      measures, encode_word_lists(encoder_, config_),
+      measures, things, encode_word_lists(encoder_, config_),
       [&](const Eigen::VectorXf& row) {
         return calibration_->standard_scores(index_.cosines(row));
       },

@@ -22,6 +22,7 @@ struct QueryScene {
   std::shared_ptr<const ObjectColors> colors;  ///< of each object; null: not known
   std::vector<std::vector<WrittenLine>> writing;  ///< on each object; empty: none was read
   std::shared_ptr<const ObjectRooms> rooms;  ///< where each object is; null: not known
+  SeenThings things;  ///< of each object; no words: nothing looked
 };
 
 /// A scene of the objects' boxes, exact where an axis of the world is up.

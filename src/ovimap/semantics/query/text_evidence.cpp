@@ -44,6 +44,10 @@ void list_fields(EvidenceConfig& config, ConfigFields& fields) {
              "weight of size and place beside the picture; 0: the picture alone");
   fields.add("most_size_ratio", config.most_size_ratio, 0.f, 100.f,
              "what size and place may say at most, log likelihood");
+  fields.add("thing_weight", config.thing_weight, 0.f, 10.f,
+             "weight of what a recognizer of things tells; 0: nothing");
+  fields.add("most_thing_ratio", config.most_thing_ratio, 0.f, 100.f,
+             "what a recognizer may say at most, log likelihood");
   fields.add("writing_weight", config.writing_weight, 0.f, 100.f,
              "what a text that is written on the object adds to its score; 0: nothing");
   fields.add("competition", config.competition, 0.f, 1.f,
@@ -68,9 +72,10 @@ std::vector<std::string> TextEvidence::texts() {
   return texts;
 }
 
-TextEvidence::TextEvidence(std::span<const ObjectMeasures> objects, const WordLists& lists,
-                           const PictureScores& pictures, const EvidenceConfig& config)
-    : config_(config), concepts_(builtin_concepts()) {
+TextEvidence::TextEvidence(std::span<const ObjectMeasures> objects, const SeenThings& seen,
+                           const WordLists& lists, const PictureScores& pictures,
+                           const EvidenceConfig& config)
+    : config_(config), concepts_(builtin_concepts()), things_(concepts_, seen) {
   const auto words = static_cast<Eigen::Index>(concepts_.household().size());
   household_rows_ = lists.rows.topRows(words);
   thing_rows_ = lists.rows.bottomRows(lists.rows.rows() - words);
@@ -96,6 +101,7 @@ TextEvidence::TextEvidence(std::span<const ObjectMeasures> objects, const WordLi
     const Eigen::VectorXf row = household_rows_.row(static_cast<Eigen::Index>(word)).transpose();
     columns[word] = pictures(row);
     add_size(row, columns[word]);
+    add_things(concepts_.household()[word].word, columns[word]);
   });
   weights_.resize(columns[0].size(), words);
   for (Eigen::Index word = 0; word < words; ++word)
@@ -126,6 +132,13 @@ void TextEvidence::add_size(const Eigen::VectorXf& row, Eigen::VectorXf& scores)
       config_.size_weight * certainty * ratio.cwiseMax(-most_ratio).cwiseMin(most_ratio);
 }
 
+void TextEvidence::add_things(const std::string& text, Eigen::VectorXf& scores) const {
+  const Eigen::VectorXf ratios = things_.log_ratios(text);
+  const float most = config_.most_thing_ratio;
+  if (ratios.size() > 0)
+    scores.array() += config_.thing_weight * ratios.array().cwiseMax(-most).cwiseMin(most);
+}
+
 Eigen::VectorXf TextEvidence::competitors(const std::string& text,
                                           const Eigen::VectorXf& row) const {
   const auto kinds = concepts_.kinds_of(text);
@@ -147,6 +160,7 @@ TextScores TextEvidence::weigh(const std::string& text, const Eigen::VectorXf& r
   TextScores scores;
   scores.alone = pictures;
   add_size(row, scores.alone);
+  add_things(text, scores.alone);
   const Eigen::VectorXf rivals = best_.array() + competitors(text, row).array().log();
   scores.log_odds = scores.alone - rivals;
   scores.standard = scores.alone - config_.competition * rivals;

@@ -11,6 +11,7 @@
 
 #include "ovimap/inference/encoders/image_text_encoder.h"
 #include "ovimap/semantics/words/concepts.h"
+#include "ovimap/semantics/words/named_things.h"
 #include "ovimap/semantics/words/thing_sizes.h"
 
 namespace ovimap {
@@ -20,6 +21,8 @@ class ConfigFields;
 struct EvidenceConfig {
   float size_weight = 0.5f;        ///< of size and place beside the picture; 0: the picture alone
   float most_size_ratio = 3.f;     ///< what they may say at most, in log likelihood
+  float thing_weight = 1.f;        ///< of what a recognizer of things tells; 0: nothing
+  float most_thing_ratio = 6.f;    ///< what it may say at most, in log likelihood
   float writing_weight = 3.f;      ///< of words that are written on the object; 0: none
   float competition = 0.5f;        ///< how much other words for an object take from a text; 0: none
   float odds_scale = 1.f;          ///< probability of a match: sigmoid(scale * log odds + offset)
@@ -56,9 +59,10 @@ class TextEvidence {
   using PictureScores = std::function<Eigen::VectorXf(const Eigen::VectorXf&)>;
 
   /// `objects`: measures of each, or none where they are not known. `lists`: as word_lists() gives
-  /// them, with `encode` for the prompts.
-  TextEvidence(std::span<const ObjectMeasures> objects, const WordLists& lists,
-               const PictureScores& pictures, const EvidenceConfig& config);
+  /// them, with `encode` for the prompts. `seen`: what a recognizer tells of each object.
+  TextEvidence(std::span<const ObjectMeasures> objects, const SeenThings& seen,
+               const WordLists& lists, const PictureScores& pictures,
+               const EvidenceConfig& config);
 
   /// The texts that WordLists holds.
   static std::vector<std::string> texts();
@@ -76,10 +80,13 @@ class TextEvidence {
  private:
   /// Adds what size and place say of the text to its scores [objects].
   void add_size(const Eigen::VectorXf& row, Eigen::VectorXf& scores) const;
+  /// Adds what a recognizer says of it.
+  void add_things(const std::string& text, Eigen::VectorXf& scores) const;
   Eigen::VectorXf competitors(const std::string& text, const Eigen::VectorXf& row) const;
 
   EvidenceConfig config_;
   const Concepts& concepts_;
+  NamedThings things_;
   Embeddings household_rows_, thing_rows_;
   float mean_cosine_ = 0, cosine_deviation_ = 1;  ///< between household words
   Eigen::MatrixXf sizes_;         ///< [objects, things] likelihoods; no columns: not known

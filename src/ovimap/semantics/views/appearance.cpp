@@ -10,6 +10,10 @@ namespace {
 
 using ViewRefs = std::vector<const ObjectView*>;
 
+// Measured on generated rooms (docs/default-encoder.md).
+constexpr float kThingCorrelation = 0.5f;  // between log ratios of one object
+constexpr float kUnknowable = 0.1f;        // share of views that do not show what a thing is
+
 ViewRefs answered(std::span<const ObjectView* const> views) {
   ViewRefs result;
   for (const ObjectView* view : views)
@@ -101,6 +105,26 @@ Eigen::VectorXf fuse_views(std::span<const ObjectView* const> views, const ViewF
                     [](const auto& a, const auto& b) { return double{(a - b).cwiseAbs().sum()}; });
   }
   return {};
+}
+
+float joint_log_ratio(float sum, std::size_t count) {
+  return sum / (1.f + kThingCorrelation * (static_cast<float>(count) - 1.f));
+}
+
+Eigen::VectorXf things_of(std::span<const ObjectView* const> views) {
+  Eigen::VectorXf sum;
+  std::size_t count = 0;
+  for (const ObjectView* view : views) {
+    if (view->things.size() == 0) continue;
+    // A view may show anything so that it is not known for what it is.
+    const Eigen::VectorXf ratios =
+        ((1.f - kUnknowable) * view->things.array().exp() + kUnknowable).log();
+    if (count++ == 0)
+      sum = ratios;
+    else
+      sum += ratios;
+  }
+  return sum.unaryExpr([count](float ratio) { return joint_log_ratio(ratio, count); });
 }
 
 void follow_merges(SuperPointLooks& looks, const LabelForest& forest) {

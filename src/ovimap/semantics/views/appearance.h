@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "ovimap/inference/encoders/image_text_encoder.h"
+#include "ovimap/inference/things/thing_recognizer.h"
 #include "ovimap/inference/writing/writing_reader.h"
 #include "ovimap/instance/instance_summary.h"
 #include "ovimap/semantics/views/object_crop.h"
@@ -60,6 +61,7 @@ struct ObjectView {
   Label super_point = kNoLabel;
   ViewDirections directions;
   std::vector<WrittenLine> writing = {};  ///< read in the crop, within its pixels
+  Eigen::VectorXf things = {};  ///< log ratios of what a recognizer tells; empty: it did not look
 
   ViewKey key() const { return {frame, super_point}; }
 };
@@ -86,6 +88,12 @@ Appearance appearance_of(const SuperPointLooks& looks, std::span<const Label> su
 
 /// One embedding of the views that have one, of length 1; empty when none has.
 Eigen::VectorXf fuse_views(std::span<const ObjectView* const> views, const ViewFusion& fusion);
+
+/// [things] the log ratios that the views of an object amount to; empty when no recognizer looked at
+/// any of them.
+Eigen::VectorXf things_of(std::span<const ObjectView* const> views);
+/// What correlated log ratios amount to, of which these are the sum.
+float joint_log_ratio(float sum, std::size_t count);
 
 /// Brings the looks under the labels that the forest resolves them to. Super-points merge for good.
 void follow_merges(SuperPointLooks& looks, const LabelForest& forest);

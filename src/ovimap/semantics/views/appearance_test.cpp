@@ -28,6 +28,26 @@ ObjectView with_crop(ObjectView view) {
   return view;
 }
 
+TEST(ThingsOf, ManyViewsSayNoMoreThanTwiceWhatOneDoes) {
+  std::vector<ObjectView> views(20);
+  EXPECT_EQ(things_of(refs(views)).size(), 0) << "nothing looked at them";
+  views[0].things = Eigen::Vector2f(3, -1);
+  const Eigen::VectorXf one = things_of(refs(views));
+  ASSERT_EQ(one.size(), 2);
+  EXPECT_NEAR(one[0], 3.f, 0.2f);
+  for (ObjectView& view : views) view.things = views[0].things;
+  const Eigen::VectorXf all = things_of(refs(views));
+  EXPECT_GT(all[0], 1.5f * one[0]);
+  EXPECT_LT(all[0], 2.f * one[0]);
+}
+
+TEST(ThingsOf, OneMissCostsLittle) {
+  std::vector<ObjectView> views(2);
+  views[0].things = Eigen::VectorXf::Constant(1, 5.f);
+  views[1].things = Eigen::VectorXf::Constant(1, -50.f);
+  EXPECT_GT(things_of(refs(views))[0], 1.f);
+}
+
 TEST(FuseViews, WeighsByPixels) {
   const std::vector<ObjectView> views = {view(1, 300, {1, 0}), view(2, 100, {0, 1})};
   const Eigen::VectorXf fused = fuse_views(refs(views), FeatureFusion::kPixelWeighted);

@@ -95,9 +95,13 @@ std::optional<ObjectCrop> cut_object(const Frame& frame, const ObjectPixels& obj
   if (in_color.isEmpty()) return std::nullopt;
   const Eigen::AlignedBox2i window = padded(in_color, widest_padding(config),
                                             image_box(frame.color.width(), frame.color.height()));
+  const Eigen::Array2f size(static_cast<float>(frame.color.width()),
+                            static_cast<float>(frame.color.height()));
   return ObjectCrop{cut(frame.color, window),
                     paint_mask(frame, object, window),
-                    {in_color.min() - window.min(), in_color.max() - window.min()}};
+                    {in_color.min() - window.min(), in_color.max() - window.min()},
+                    {in_color.min().cast<float>().array() / size,
+                     (in_color.max().cast<float>().array() + 1.f) / size}};
 }
 
 std::vector<RgbImage> crop_variants(const ObjectCrop& crop, const CropConfig& config) {

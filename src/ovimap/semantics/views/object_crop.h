@@ -36,6 +36,7 @@ struct ObjectCrop {
   RgbImage image;
   Image<std::uint8_t> mask;       ///< of `image`'s size: 1 on the object
   Eigen::AlignedBox2i object_px;  ///< the object's box in `image`, both corners included
+  Eigen::AlignedBox2f in_frame = {};  ///< the same as shares of the frame's sides; empty: not known
 };
 
 /// Where one object appears in the map as seen from a frame's depth camera.

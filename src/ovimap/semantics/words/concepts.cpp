@@ -44,32 +44,44 @@ Concepts::Concepts(const std::vector<std::string>& lines) {
       if (word[0] == '*') {
         word.erase(0, 1);
         household_.push_back({word, kind});
+        household_sense_.emplace(word, kind);
       }
       by_word_[word].push_back(kind);
     }
   }
 }
 
-std::vector<Concepts::Kind> Concepts::exact(const std::string& words) const {
+std::vector<Concepts::Kind> Concepts::exact(const std::string& words, Senses senses) const {
+  if (senses == Senses::kHousehold)
+    if (const auto sense = household_sense_.find(words); sense != household_sense_.end())
+      return {sense->second};
   const auto found = by_word_.find(words);
   return found == by_word_.end() ? std::vector<Kind>{} : found->second;
 }
 
-std::vector<Concepts::Kind> Concepts::known(const std::string& words) const {
-  std::vector<Kind> kinds = exact(words);
+std::vector<Concepts::Kind> Concepts::known(const std::string& words, Senses senses) const {
+  std::vector<Kind> kinds = exact(words, senses);
   for (const std::string_view plural : {"s", "es"})
     if (kinds.empty() && words.size() > plural.size() + 1 && words.ends_with(plural))
-      kinds = exact(words.substr(0, words.size() - plural.size()));
+      kinds = exact(words.substr(0, words.size() - plural.size()), senses);
   return kinds;
 }
 
 std::vector<Concepts::Kind> Concepts::kinds_of(std::string_view text) const {
+  return find(text, Senses::kAll);
+}
+
+std::vector<Concepts::Kind> Concepts::senses_of(std::string_view text) const {
+  return find(text, Senses::kHousehold);
+}
+
+std::vector<Concepts::Kind> Concepts::find(std::string_view text, Senses senses) const {
   std::string words = lower_case(text);
-  if (auto whole = known(words); !whole.empty()) return whole;
+  if (auto whole = known(words, senses); !whole.empty()) return whole;
   for (const std::string_view separator : kAfterThing)
     if (const std::size_t at = words.find(separator); at != std::string::npos) words.resize(at);
   while (!words.empty()) {
-    if (auto kinds = known(words); !kinds.empty()) return kinds;
+    if (auto kinds = known(words, senses); !kinds.empty()) return kinds;
     const std::size_t blank = words.find(' ');
     if (blank == std::string::npos) break;
     words.erase(0, blank + 1);

@@ -25,6 +25,9 @@ class Concepts {
   /// Empty where nothing is known.
   std::vector<Kind> kinds_of(std::string_view text) const;
 
+  /// The same, but of a household word its household sense alone: a stool to sit on, no toilet.
+  std::vector<Kind> senses_of(std::string_view text) const;
+
   bool is_kind_of(Kind kind, Kind of) const;
 
   /// Whether one thing can be both: one of them is a kind of the other, in some sense of the texts.
@@ -37,12 +40,15 @@ class Concepts {
   const std::vector<HouseholdWord>& household() const { return household_; }
 
  private:
-  std::vector<Kind> exact(const std::string& words) const;
-  std::vector<Kind> known(const std::string& words) const;
+  enum class Senses { kAll, kHousehold };
+  std::vector<Kind> find(std::string_view text, Senses senses) const;
+  std::vector<Kind> exact(const std::string& words, Senses senses) const;
+  std::vector<Kind> known(const std::string& words, Senses senses) const;
 
   std::vector<std::vector<Kind>> above_;  ///< of each kind, ascending, itself included
   std::unordered_map<std::string, std::vector<Kind>> by_word_;
   std::vector<HouseholdWord> household_;
+  std::unordered_map<std::string, Kind> household_sense_;
 };
 
 }  // namespace ovimap

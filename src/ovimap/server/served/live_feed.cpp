@@ -163,6 +163,7 @@ void LiveFeed::hand_over_objects(Mapper& mapper, const std::vector<FrameLogEntry
   found.record.semantics.views = mapper.config().semantics.views;
   found.record.semantics.crops = mapper.config().semantics.crops;
   if (mapper.encoder()) found.record.semantics.encoder = mapper.encoder()->identity();
+  found.record.semantics.recognizer = mapper.recognizer();
   found.record.semantics.looks = mapper.looks();
   found.record.frames = frames;
   found.record.depth_camera = depth_camera;
