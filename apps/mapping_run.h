@@ -30,6 +30,7 @@ struct MappingRun {
 struct RunTarget {
   std::filesystem::path map;
   bool resume = false;  ///< go on with the checkpoint or map that is there
+  bool twice = false;   ///< map a second time, asking the network for the first map's objects
   std::filesystem::path continued = {};  ///< another visit to the place of this map; empty: a new map
 };
 

@@ -18,6 +18,7 @@ struct RunOptions {
   bool json = false;
   bool live = false;
   bool resume = false;
+  bool twice = false;
   double fps = 30;
 };
 
@@ -28,7 +29,7 @@ int run(RunOptions options) {
   const ThreadLimit limit(options.mapping.threads);
   check_map_target(options.map);
   if (!options.pictures.empty()) make_folder(options.pictures);
-  const RunTarget target{options.map, options.resume, options.continued};
+  const RunTarget target{options.map, options.resume, options.twice, options.continued};
   const MappingRun mapped = options.live ? map_live(options.mapping, options.fps, target)
                                          : map_recording(options.mapping, "mapping", {}, target);
   report_faults(mapped);
@@ -60,7 +61,8 @@ Action add_run(CLI::App& command) {
       ->check(CLI::Range(0.1, 1000.))
       ->needs(live)
       ->capture_default_str();
-  command
+  auto* continued =
+      command
       .add_option("--continue", options->continued,
                   "a map of the same place to go on with, in whose world frame the recording's poses "
                   "are: what is gone leaves it, ids, names and corrections stay")
@@ -69,8 +71,15 @@ Action add_run(CLI::App& command) {
   command.add_option("--trajectory", options->trajectory,
                      "file to write the camera's poses to, a TUM line for each frame in the map");
   add_max_memory(command, options->mapping);
-  command.add_flag("--resume", options->resume,
-                   "go on with the frames that a killed run, or the map, does not have yet");
+  auto* resume =
+      command.add_flag("--resume", options->resume,
+                       "go on with the frames that a killed run, or the map, does not have yet");
+  command
+      .add_flag("--second-pass", options->twice,
+                "map twice, and ask the network of --masks for the first map's objects in the second")
+      ->excludes(live)
+      ->excludes(resume)
+      ->excludes(continued);
   command.add_flag("--json", options->json, "print one JSON object");
   return [options] { return run(*options); };
 }

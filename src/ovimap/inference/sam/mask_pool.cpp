@@ -29,7 +29,7 @@ float iou(const AcceptedMask& a, const AcceptedMask& b) {
 }  // namespace
 
 MaskPool::MaskPool(const SamConfig& config, const LogitGrid& grid)
-    : config_(config), grid_(grid), covered_(grid.width, grid.height) {}
+    : config_(config), grid_(grid) {}
 
 std::optional<AcceptedMask> MaskPool::test(const MaskProposals& proposals, int token) const {
   const float predicted = proposals.predicted_iou[static_cast<std::size_t>(token)];
@@ -72,6 +72,7 @@ bool MaskPool::offer(const MaskProposals& proposals, const MaskPrompt* region, b
   if (passed.empty()) return false;
   AcceptedMask& chosen = passed[region ? best_for_region(passed, *region) : largest_stable(passed)];
   chosen.own_region = region && fills(chosen, *region);
+  if (region && region->known && !chosen.own_region) return false;
   const float area_px = static_cast<float>(chosen.area) * grid_.image_px_per_grid_px();
   add(std::move(chosen));
   if (!region) return true;
@@ -127,7 +128,6 @@ bool MaskPool::fills(const AcceptedMask& mask, const MaskPrompt& region) const {
 }
 
 void MaskPool::add(AcceptedMask mask) {
-  covered_ |= mask.mask;
   for (AcceptedMask& held : masks_) {
     if (iou(held, mask) <= config_.duplicate_iou) continue;
     if (mask.score > held.score) held = std::move(mask);
@@ -143,20 +143,55 @@ bool MaskPool::is_part(const AcceptedMask& mask, const AcceptedMask& larger) con
   return mask.score < larger.score + margin;
 }
 
-std::vector<std::size_t> MaskPool::whole_masks() const {
-  std::vector<std::size_t> order(masks_.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [this](std::size_t a, std::size_t b) {
-    return masks_[a].area > masks_[b].area;
-  });
+/// Of these, those that are no part of a larger one.
+std::vector<std::size_t> MaskPool::whole_of(std::vector<std::size_t> largest_first) const {
   std::vector<std::size_t> whole;
-  for (const std::size_t i : order) {
+  for (const std::size_t i : largest_first) {
     const bool part = std::any_of(whole.begin(), whole.end(), [&](std::size_t larger) {
       return is_part(masks_[i], masks_[larger]);
     });
     if (!part) whole.push_back(i);
   }
   return whole;
+}
+
+/// Those of which smaller ones leave less in sight than config_.min_shown_share.
+std::vector<std::size_t> MaskPool::hidden_of(const std::vector<std::size_t>& largest_first) const {
+  std::vector<std::size_t> hidden;
+  BitMask smaller(grid_.width, grid_.height);
+  for (auto i = largest_first.rbegin(); i != largest_first.rend(); ++i) {
+    const AcceptedMask& mask = masks_[*i];
+    const auto shown = static_cast<float>(mask.area - mask.mask.overlap(smaller));
+    if (shown < config_.min_shown_share * static_cast<float>(mask.area))
+      hidden.push_back(*i);
+    else
+      smaller |= mask.mask;
+  }
+  return hidden;
+}
+
+/// The masks that entities are made of, largest first. What was a part of a hidden one is looked at
+/// again without it.
+std::vector<std::size_t> MaskPool::whole_masks() const {
+  std::vector<std::size_t> order(masks_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [this](std::size_t a, std::size_t b) {
+    return masks_[a].area > masks_[b].area;
+  });
+  while (true) {
+    std::vector<std::size_t> whole = whole_of(order);
+    const std::vector<std::size_t> hidden = hidden_of(whole);
+    if (hidden.empty()) return whole;
+    std::erase_if(order, [&](std::size_t i) {
+      return std::find(hidden.begin(), hidden.end(), i) != hidden.end();
+    });
+  }
+}
+
+BitMask MaskPool::covered() const {
+  BitMask covered(grid_.width, grid_.height);
+  for (const std::size_t i : whole_masks()) covered |= masks_[i].mask;
+  return covered;
 }
 
 Entities MaskPool::entities() const {

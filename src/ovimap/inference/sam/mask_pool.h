@@ -31,16 +31,20 @@ class MaskPool {
   /// Takes one of the proposals that pass the quality tests, unless it repeats a mask held already.
   /// With the geometric `region` that prompted, the best whose size is like the region's; without,
   /// the largest of those that score about as well as the best, because an entity is wanted rather
-  /// than its part. After a box prompt (`boxed`) only masks that stay inside its box pass. Returns
+  /// than its part. After a box prompt (`boxed`) only masks that stay inside its box pass, and of a
+  /// known object only one that is like it. Returns
   /// whether the answer explains the region, or, without one, whether any proposal passed.
   bool offer(const MaskProposals& proposals, const MaskPrompt* region = nullptr,
              bool boxed = false);
 
   const std::vector<AcceptedMask>& masks() const { return masks_; }
-  const BitMask& covered() const { return covered_; }
+  /// What the masks explain that entities would be made of now.
+  BitMask covered() const;
   const LogitGrid& grid() const { return grid_; }
 
-  /// Entities of the colour image: parts dropped, small masks painted over large ones.
+  /// Entities of the colour image: parts dropped, small masks painted over large ones. A mask most of
+  /// which smaller ones hide is none: what is left of it shows through where those have their gaps (a
+  /// mask of the whole scene between the things on a desk) and belongs together by no evidence.
   Entities entities() const;
 
  private:
@@ -53,11 +57,12 @@ class MaskPool {
   void add(AcceptedMask mask);
   bool is_part(const AcceptedMask& mask, const AcceptedMask& larger) const;
   std::vector<std::size_t> whole_masks() const;
+  std::vector<std::size_t> whole_of(std::vector<std::size_t> largest_first) const;
+  std::vector<std::size_t> hidden_of(const std::vector<std::size_t>& largest_first) const;
 
   SamConfig config_;
   LogitGrid grid_;
   std::vector<AcceptedMask> masks_;
-  BitMask covered_;
 };
 
 }  // namespace ovimap

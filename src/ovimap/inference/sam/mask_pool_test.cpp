@@ -170,5 +170,41 @@ TEST(MaskPool, KeepsAThingOnItsSupport) {
   EXPECT_EQ(entities.ids.at(40, 40), 1);
 }
 
+// A mask of the whole scene beneath those of a wall and a desk whose mask leaves out what lies on it:
+// the pens and papers in its gaps are not one entity with each other and the floor's rim.
+TEST(MaskPool, AMaskThatOthersHideIsNoEntityAndExplainsNothing) {
+  MaskPool pool(test_config(), test_grid());
+  const MaskPrompt wall = region_of({2, 2, 26, 12}), desk = region_of({2, 14, 26, 28});
+  pool.offer(proposals_of({{{0, 0, 28, 30}, 0.90f}}));
+  EXPECT_EQ(pool.covered().count(), 28 * 30);
+  pool.offer(proposals_of({{{2, 2, 26, 12}, 0.90f}}), &wall);
+  pool.offer(proposals_of({{{2, 14, 26, 28}, 0.90f}}), &desk);
+  EXPECT_EQ(pool.masks().size(), 3u);
+  const Entities entities = pool.entities();
+  EXPECT_EQ(entities.scores.size(), 2u);
+  EXPECT_EQ(entities.ids.at(20, 26), 0);  // between the two
+  EXPECT_EQ(pool.covered().count(), 24 * 10 + 24 * 14);
+}
+
+TEST(MaskPool, PartsOfAHiddenMaskAreLookedAtWithoutIt) {
+  MaskPool pool(test_config(), test_grid());
+  const MaskPrompt wall = region_of({2, 2, 26, 12}), desk = region_of({2, 14, 26, 28});
+  pool.offer(proposals_of({{{0, 0, 28, 30}, 0.90f}}));
+  pool.offer(proposals_of({{{2, 2, 26, 12}, 0.90f}}), &wall);
+  pool.offer(proposals_of({{{2, 14, 26, 28}, 0.90f}}), &desk);
+  pool.offer(proposals_of({{{26, 14, 28, 28}, 0.90f}}));  // inside the scene alone
+  EXPECT_EQ(pool.entities().scores.size(), 3u);
+}
+
+TEST(MaskPool, OfAKnownObjectOnlyALikeMaskIsTaken) {
+  MaskPool pool(test_config(), test_grid());
+  MaskPrompt object = region_of({8, 8, 16, 16});
+  object.known = true;
+  EXPECT_FALSE(pool.offer(proposals_of({{{8, 8, 11, 16}, 0.95f}}), &object, true));
+  EXPECT_TRUE(pool.masks().empty());
+  EXPECT_TRUE(pool.offer(proposals_of({{{8, 8, 15, 16}, 0.95f}}), &object, true));
+  EXPECT_EQ(pool.masks().size(), 1u);
+}
+
 }  // namespace
 }  // namespace ovimap

@@ -92,7 +92,8 @@ PromptPlanner::PromptPlanner(const SamConfig& config, const LogitGrid& grid,
            point.y() < static_cast<float>(grid.image_height_px);
   };
   for (const MaskPrompt& region : regions)
-    if (region.area_px >= config.min_region_px && inside(region.interior_px))
+    if (region.area_px >= (region.known ? config.min_mask_px : config.min_region_px) &&
+        inside(region.interior_px))
       regions_.push_back(region);
   std::stable_sort(regions_.begin(), regions_.end(),
                    [](const MaskPrompt& a, const MaskPrompt& b) { return a.area_px > b.area_px; });
@@ -101,8 +102,11 @@ PromptPlanner::PromptPlanner(const SamConfig& config, const LogitGrid& grid,
 
 std::vector<PlannedPrompt> PromptPlanner::next(const MaskPool& pool, int count) {
   std::vector<Candidate> candidates;
-  append_regions(pool, candidates);
-  append_holes(pool, count, candidates);
+  append_known(candidates);
+  if (candidates.empty()) {
+    append_regions(pool, candidates);
+    append_holes(pool, count, candidates);
+  }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.gain_px > b.gain_px; });
   std::vector<PlannedPrompt> batch;
@@ -136,9 +140,18 @@ Eigen::Vector2i PromptPlanner::to_grid(Eigen::Vector2f in_image_px) const {
           std::clamp(static_cast<int>(std::lround(in_grid.y())), 0, grid_.height - 1)};
 }
 
+void PromptPlanner::append_known(std::vector<Candidate>& candidates) const {
+  for (std::size_t i = 0; i < regions_.size(); ++i) {
+    if (!regions_[i].known || states_[i] == RegionState::kDone) continue;
+    candidates.push_back({{box_prompt(regions_[i]), static_cast<int>(i), true, 0},
+                          static_cast<float>(regions_[i].area_px),
+                          to_grid(regions_[i].interior_px)});
+  }
+}
+
 void PromptPlanner::append_regions(const MaskPool& pool, std::vector<Candidate>& candidates) const {
   for (std::size_t i = 0; i < regions_.size(); ++i) {
-    if (states_[i] == RegionState::kDone) continue;
+    if (states_[i] == RegionState::kDone || regions_[i].known) continue;
     const auto area_px = static_cast<float>(regions_[i].area_px);
     const Eigen::Vector2i centre = to_grid(regions_[i].interior_px);
     const float around_px = smallest_mask_at(pool, centre);
@@ -159,12 +172,13 @@ void PromptPlanner::append_holes(const MaskPool& pool, int count,
                                  std::vector<Candidate>& candidates) const {
   const float min_radius = min_hole_radius_grid_px();
   // A disc around a region that is yet to be asked would ask the same.
+  const BitMask covered = pool.covered();
   BitMask blocked = tried_;
   for (const Candidate& region : candidates)
     if (!region.prompt.boxed)
       set_disc(blocked, region.centre_grid_px, region.prompt.radius_grid_px);
   for (int i = 0; i < count; ++i) {
-    const Hole hole = ChamferDistance(pool.covered(), blocked).largest();
+    const Hole hole = ChamferDistance(covered, blocked).largest();
     if (hole.radius_grid_px < min_radius) return;
     const int radius = static_cast<int>(hole.radius_grid_px);
     set_disc(blocked, hole.centre_grid_px, radius);

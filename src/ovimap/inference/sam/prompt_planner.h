@@ -20,8 +20,8 @@ struct PlannedPrompt {
 /// Points in the middle of side x side equal cells of the image, row by row.
 std::vector<PromptPoints> grid_prompts(int width_px, int height_px, int side);
 
-/// Chooses where to ask the network next, given the masks so far, the largest unexplained areas
-/// first: geometric regions that no mask covers, by a point inside; regions whose point did not
+/// Chooses where to ask the network next, given the masks so far: objects that a map knows, by their
+/// boxes; then the largest unexplained areas: geometric regions that no mask covers, by a point inside; regions whose point did not
 /// explain them and small regions on much larger masks (a mug on a table), by their box; uncovered
 /// discs, by their centre.
 class PromptPlanner {
@@ -46,6 +46,7 @@ class PromptPlanner {
     Eigen::Vector2i centre_grid_px;
   };
 
+  void append_known(std::vector<Candidate>& candidates) const;
   void append_regions(const MaskPool& pool, std::vector<Candidate>& candidates) const;
   void append_holes(const MaskPool& pool, int count, std::vector<Candidate>& candidates) const;
   float min_hole_radius_grid_px() const;

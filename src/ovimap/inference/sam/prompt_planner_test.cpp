@@ -65,6 +65,23 @@ TEST(PromptPlanner, AsksUncoveredRegionsLargestFirst) {
   EXPECT_EQ(areas, (std::vector<int>{9000, 5000, 600}));  // 100 is under min_region_px
 }
 
+TEST(PromptPlanner, AsksKnownObjectsFirstByTheirBoxes) {
+  SamConfig config;
+  config.min_hole_radius_px = 1000;  // regions alone
+  const MaskPool pool(config, test_grid());
+  std::vector<MaskPrompt> regions = {region_at(150, 60, 9000), region_at(60, 200, 200),
+                                     region_at(200, 200, 400), region_at(30, 30, 100)};
+  for (std::size_t i = 1; i < 4; ++i) regions[i].known = true;
+  PromptPlanner planner(config, test_grid(), regions);
+  const std::vector<PlannedPrompt> asked = ask_all(planner, pool, 3);
+  ASSERT_EQ(asked.size(), 3u);
+  EXPECT_EQ(planner.region_of(asked[0])->area_px, 400);
+  EXPECT_EQ(planner.region_of(asked[1])->area_px, 200);  // under min_region_px, over min_mask_px
+  EXPECT_EQ(planner.region_of(asked[2])->area_px, 9000);
+  EXPECT_TRUE(asked[0].boxed && asked[1].boxed);
+  EXPECT_FALSE(asked[2].boxed);
+}
+
 TEST(PromptPlanner, PointPromptsCarryAPaddingPoint) {
   SamConfig config;
   config.min_hole_radius_px = 1000;  // regions alone

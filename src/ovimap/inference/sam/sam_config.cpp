@@ -41,6 +41,8 @@ void list_fields(SamConfig& config, ConfigFields& fields) {
              "how well a mask must fill a geometric region of its own to be no part");
   fields.add("own_region_margin", config.own_region_margin, 0.f, 1.f,
              "... if it scores at most this much less than the larger one");
+  fields.add("min_shown_share", config.min_shown_share, 0.f, 1.f,
+             "a mask of which smaller ones leave less in sight is no entity");
   fields.add("min_region_px", config.min_region_px, 1, kMaxPixels,
              "smaller geometric regions prompt nothing (colour pixels)");
   fields.add("explained_share", config.explained_share, 0.f, 1.f,

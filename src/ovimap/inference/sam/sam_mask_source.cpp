@@ -30,7 +30,11 @@ void SamMaskSource::ask_where_unexplained(const ImageFeatures& features,
                                           std::span<const MaskPrompt> regions,
                                           MaskPool& pool) const {
   PromptPlanner planner(config_, pool.grid(), regions);
-  for (int budget = config_.max_decoder_prompts; budget > 0;) {
+  const auto known = static_cast<int>(
+      std::count_if(regions.begin(), regions.end(), [](const auto& region) { return region.known; }));
+  // Known objects have as many prompts of their own: new ones are to be found beside them.
+  const int allowed = config_.max_decoder_prompts + std::min(known, config_.max_decoder_prompts);
+  for (int budget = allowed; budget > 0;) {
     const std::vector<PlannedPrompt> batch =
         planner.next(pool, std::min(budget, config_.decoder_batch));
     if (batch.empty()) break;

@@ -10,6 +10,7 @@
 #include "ovimap/base/version.h"
 #include "ovimap/map/fusion/integrate.h"
 #include "ovimap/map/rays/surface_lookup.h"
+#include "ovimap/pipeline/mapping/mask_prompts.h"
 
 namespace ovimap {
 
@@ -67,10 +68,18 @@ FrameReport Mapper::process(const Frame& frame) {
   const PreparedFrame prepared = prepare_frame(borrowed, config_, timers_);
   std::optional<FrameSegments> cut;
   if (frames_ % config_.mask_interval == 0)
-    cut = cut_segments(prepared, masks_.get(), config_, timers_);
+    cut = cut_segments(prepared, masks_.get(), config_, timers_, known_objects(prepared));
   FrameReport report = fuse(prepared, cut ? &*cut : nullptr);
   if (frames_ % config_.view_interval == 0) report.views = look_at_objects(frame);
   return report;
+}
+
+std::vector<MaskPrompt> Mapper::known_objects(const PreparedFrame& prepared) {
+  Mapper* const guide = guide_ ? guide_ : config_.ask_for_known ? this : nullptr;
+  if (!guide || !masks_ || !masks_->is_slow() || guide->frames() == 0) return {};
+  const Frame& frame = *prepared.frame;
+  return object_prompts(guide->project(frame).instances, prepared.registration,
+                        frame.color_camera);
 }
 
 FrameReport Mapper::fuse(const PreparedFrame& prepared, const FrameSegments* cut) {

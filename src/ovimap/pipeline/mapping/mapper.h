@@ -74,6 +74,11 @@ class Mapper {
   /// The map seen from a frame's depth camera, guided by its depth (method section 8).
   InstanceView project(const Frame& frame);
 
+  /// From now on a network is asked for the objects that `guide` shows in a frame, by their boxes,
+  /// before anything else: a finished map of the same recording makes this one its second pass.
+  /// `guide` must stay.
+  void ask_for_objects_of(Mapper& guide) { guide_ = &guide; }
+
   /// What super-points look like now; views that the encoder has not answered have no embedding
   /// yet.
   const SuperPointLooks& looks() const { return builder_->looks(); }
@@ -123,11 +128,13 @@ class Mapper {
   std::vector<SegmentAssociation> find_labels(const PreparedFrame& prepared,
                                               const FrameSegments* cut);
   Image<InstanceId> instances_of(const Image<Label>& labels) const;
+  std::vector<MaskPrompt> known_objects(const PreparedFrame& prepared);
   FrameReport observe(const Frame& frame, const FrameSegments* cut,
                       std::span<const SegmentAssociation> associations);
 
   MapperConfig config_;
   std::shared_ptr<MaskSource> masks_;
+  Mapper* guide_ = nullptr;  ///< whose objects are asked for; null: as the config says
   VoxelMap map_;
   InstanceRegistry registry_;
   std::unique_ptr<AppearanceBuilder> builder_;

@@ -33,6 +33,8 @@ void list_fields(MapperConfig& config, ConfigFields& fields) {
       "2D masks every n-th frame; 0: by network_mask_interval for networks, every frame otherwise");
   fields.add("network_mask_interval", config.network_mask_interval, 1, 1000000,
              "what mask_interval 0 means for networks, frames");
+  fields.add("ask_for_known", config.ask_for_known,
+             "networks are asked for the objects of the map so far, by their boxes; not by live runs");
   fields.add("occlusion_margin_m", config.occlusion_margin_m, 0.f, 10.f,
              "how much nearer a surface hides a point from the colour camera, metres");
   fields.add("allow_still_camera", config.allow_still_camera,

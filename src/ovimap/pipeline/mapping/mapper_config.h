@@ -37,6 +37,8 @@ struct MapperConfig {
       0;  ///< 2D masks are asked for every n-th frame, the frames between add geometry and
           ///< colour; 0: every 5th frame for networks, every frame otherwise
   int network_mask_interval = 5;  ///< what mask_interval 0 means for a mask source that is slow
+  bool ask_for_known = false;     ///< networks are asked for the objects of the map so far, by their
+                                  ///< boxes, where they should be in sight
   float occlusion_margin_m =
       0.05f;  ///< how much nearer a surface must be to hide a point from the colour camera
   bool allow_still_camera = false;  ///< a recording in which every pose is the same is no mistake

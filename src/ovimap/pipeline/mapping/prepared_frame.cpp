@@ -2,36 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/pipeline/mapping/prepared_frame.h"
 
+#include "ovimap/pipeline/mapping/mask_prompts.h"
+
 namespace ovimap {
-
-namespace {
-
-/// Where a promptable network should look: every region's place in the colour image.
-std::vector<MaskPrompt> prompts_of(const DepthRegions& regions, const Registration& registration,
-                                   const PinholeCamera& color_camera) {
-  const Image<std::int32_t>& color_index = registration.color_index();
-  std::vector<MaskPrompt> prompts(regions.regions.size());
-  const int color_width = color_camera.width;
-  for (std::size_t i = 0; i < regions.ids.size(); ++i) {
-    if (regions.ids[i] == 0 || color_index[i] == Registration::kNoColor) continue;
-    MaskPrompt& prompt = prompts[regions.ids[i] - 1u];
-    ++prompt.area_px;
-    prompt.extent_px.extend(Eigen::Vector2f(static_cast<float>(color_index[i] % color_width),
-                                            static_cast<float>(color_index[i] / color_width)));
-  }
-  const std::vector<Eigen::Vector2i> interiors = deepest_pixels(regions);
-  for (std::size_t i = 0; i < prompts.size(); ++i) {
-    const Eigen::Vector2i& interior = interiors[i];
-    const std::int32_t index = color_index.at(interior.x(), interior.y());
-    if (index == Registration::kNoColor) prompts[i].area_px = 0;
-    prompts[i].interior_px = Eigen::Vector2f(static_cast<float>(index % color_width),
-                                             static_cast<float>(index / color_width));
-  }
-  std::erase_if(prompts, [](const MaskPrompt& prompt) { return prompt.area_px == 0; });
-  return prompts;
-}
-
-}  // namespace
 
 PreparedFrame prepare_frame(std::shared_ptr<const Frame> frame, const MapperConfig& config,
                             StageTimers& timers) {
@@ -52,7 +25,8 @@ PreparedFrame prepare_frame(std::shared_ptr<const Frame> frame, const MapperConf
 }
 
 std::optional<FrameSegments> cut_segments(const PreparedFrame& prepared, MaskSource* masks,
-                                          const MapperConfig& config, StageTimers& timers) {
+                                          const MapperConfig& config, StageTimers& timers,
+                                          std::span<const MaskPrompt> known) {
   const Frame& frame = *prepared.frame;
   const DepthRegions regions = [&] {
     auto t = timers.measure("regions");
@@ -66,7 +40,11 @@ std::optional<FrameSegments> cut_segments(const PreparedFrame& prepared, MaskSou
   }
   const std::optional<Entities> entities = [&] {
     auto t = timers.measure("masks");
-    return masks->entities(frame, prompts_of(regions, prepared.registration, frame.color_camera));
+    std::vector<MaskPrompt> prompts(known.begin(), known.end());
+    for (const MaskPrompt& region :
+         region_prompts(regions, prepared.registration, frame.color_camera))
+      prompts.push_back(region);
+    return masks->entities(frame, prompts);
   }();
   if (!entities) return std::nullopt;
   if (!entities->ids.same_size(frame.color))
