@@ -24,8 +24,7 @@ ApproachConfig config_of(const json& body) {
   for (const auto& [name, value] : body.items()) {
     if (name == "instance" || name == "from") continue;
     if (!value.is_number()) throw BadRequest(400, concat("'", name, "' must be a number"));
-    const bool whole = is_whole(value, 1e6);  // 3.0 is one as well
-    fields.set(name, whole ? std::to_string(value.get<std::int64_t>()) : value.dump());
+    fields.set(name, concat(static_cast<float>(value.get<double>())));  // 3.0 and 1e-99 too
   }
   return config;
 }
