@@ -197,7 +197,7 @@ def encoders_section(program, rooms, work):
 
 def evidence_section(program, rooms, work):
     def map_of(room):
-        map_file = work / f"{room.name}.ovimap"
+        map_file = work / f"{'-'.join(room.parts[-2:])}.ovimap"
         if not map_file.exists():
             run_json(program, "embed", "gt", room, *FEW_CROPS, "-o", map_file)
         return map_file
@@ -225,7 +225,7 @@ def kitchen_evidence(program, map_file):
 
 
 def write_evidence(options):
-    rooms = tuple(sorted(file.parent for file in options.rooms.glob("*/traj.txt")))
+    rooms = tuple(sorted(file.parent for file in options.rooms.glob("**/traj.txt")))
     with tempfile.TemporaryDirectory() as folder:
         text = evidence_section(options.program, rooms, pathlib.Path(folder))
     if options.kitchen_map:

@@ -37,7 +37,7 @@ TEST_F(MapChecking, AWholeMapHasNoFault) {
   EXPECT_TRUE(check.faults.empty()) << faults();
   EXPECT_EQ(check.blocks, saved_.map.block_count());
   EXPECT_GT(check.tiles, 5u);
-  EXPECT_EQ(check.tables, 21u);
+  EXPECT_EQ(check.tables, 23u);
   MapEdit rename;
   rename.instances = {1};
   rename.name = "cup";

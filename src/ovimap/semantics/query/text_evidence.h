@@ -21,7 +21,7 @@ class ConfigFields;
 struct EvidenceConfig {
   float size_weight = 0.5f;        ///< of size and place beside the picture; 0: the picture alone
   float most_size_ratio = 3.f;     ///< what they may say at most, in log likelihood
-  float thing_weight = 1.f;        ///< of what a recognizer of things tells; 0: nothing
+  float thing_weight = 0.25f;     ///< of what a recognizer of things tells; 0: nothing
   float most_thing_ratio = 6.f;    ///< what it may say at most, in log likelihood
   float writing_weight = 3.f;      ///< of words that are written on the object; 0: none
   float competition = 0.5f;        ///< how much other words for an object take from a text; 0: none

@@ -22,9 +22,11 @@ NamedThings::NamedThings(const Concepts& concepts, const SeenThings& seen)
   if (kinds_.empty()) return;
   const auto& household = concepts_.household();
   household_.setOnes(ratios_.rows(), static_cast<Eigen::Index>(household.size()));
-  for (std::size_t word = 0; word < household.size(); ++word)
-    if (const Eigen::VectorXf ratios = of_named({household[word].kind}); ratios.size() > 0)
-      household_.col(static_cast<Eigen::Index>(word)) = ratios.array().exp();
+  for (std::size_t word = 0; word < household.size(); ++word) {
+    const Eigen::VectorXf ratios = of_named({household[word].kind});
+    known_.push_back(ratios.size() > 0);
+    if (known_.back()) household_.col(static_cast<Eigen::Index>(word)) = ratios.array().exp();
+  }
 }
 
 Eigen::VectorXf NamedThings::of_named(const Kinds& kinds) const {
@@ -50,6 +52,7 @@ Eigen::VectorXf NamedThings::log_ratios(std::string_view text) const {
   // A word for several things is as likely as they are on the mean.
   Eigen::VectorXf sum = Eigen::VectorXf::Zero(ratios_.rows());
   float below = 0.f;
+  bool known = false;
   const auto& household = concepts_.household();
   for (std::size_t word = 0; word < household.size(); ++word) {
     const auto is_below = [&](Concepts::Kind kind) {
@@ -58,8 +61,9 @@ Eigen::VectorXf NamedThings::log_ratios(std::string_view text) const {
     if (!std::any_of(kinds.begin(), kinds.end(), is_below)) continue;
     sum += household_.col(static_cast<Eigen::Index>(word));
     below += 1.f;
+    known = known || known_[word];
   }
-  if (below == 0.f) return {};
+  if (!known) return {};
   return (sum / below).array().log();
 }
 

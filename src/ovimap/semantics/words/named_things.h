@@ -38,6 +38,7 @@ class NamedThings {
   std::vector<Kinds> kinds_;  ///< of each thing that a recognizer knows
   Eigen::MatrixXf ratios_;    ///< [objects, things]
   Eigen::MatrixXf household_;  ///< [objects, household words] likelihood ratios; 1: not known
+  std::vector<bool> known_;    ///< of each household word: whether the recognizer has a name for it
 };
 
 }  // namespace ovimap
