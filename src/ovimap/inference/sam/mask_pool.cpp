@@ -170,18 +170,17 @@ std::vector<std::size_t> MaskPool::hidden_of(const std::vector<std::size_t>& lar
   return hidden;
 }
 
-/// The masks that entities are made of, largest first. What was a part of a hidden one is looked at
-/// again without it.
-std::vector<std::size_t> MaskPool::whole_masks() const {
+/// All masks but hidden ones, largest first. What was a part of a hidden one is looked at again
+/// without it.
+std::vector<std::size_t> MaskPool::shown_masks() const {
   std::vector<std::size_t> order(masks_.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [this](std::size_t a, std::size_t b) {
     return masks_[a].area > masks_[b].area;
   });
   while (true) {
-    std::vector<std::size_t> whole = whole_of(order);
-    const std::vector<std::size_t> hidden = hidden_of(whole);
-    if (hidden.empty()) return whole;
+    const std::vector<std::size_t> hidden = hidden_of(whole_of(order));
+    if (hidden.empty()) return order;
     std::erase_if(order, [&](std::size_t i) {
       return std::find(hidden.begin(), hidden.end(), i) != hidden.end();
     });
@@ -190,12 +189,12 @@ std::vector<std::size_t> MaskPool::whole_masks() const {
 
 BitMask MaskPool::covered() const {
   BitMask covered(grid_.width, grid_.height);
-  for (const std::size_t i : whole_masks()) covered |= masks_[i].mask;
+  for (const std::size_t i : shown_masks()) covered |= masks_[i].mask;
   return covered;
 }
 
 Entities MaskPool::entities() const {
-  const std::vector<std::size_t> order = whole_masks();
+  const std::vector<std::size_t> order = whole_of(shown_masks());
   Entities entities{IdImage(grid_.image_width_px, grid_.image_height_px), {}};
   for (const std::size_t i : order) entities.scores.push_back(masks_[i].score);
   parallel_for(static_cast<std::size_t>(grid_.image_height_px), kRowsPerTask, [&](std::size_t row) {

@@ -56,7 +56,7 @@ class MaskPool {
   float share_inside(const AcceptedMask& mask, const MaskPrompt& region) const;
   void add(AcceptedMask mask);
   bool is_part(const AcceptedMask& mask, const AcceptedMask& larger) const;
-  std::vector<std::size_t> whole_masks() const;
+  std::vector<std::size_t> shown_masks() const;
   std::vector<std::size_t> whole_of(std::vector<std::size_t> largest_first) const;
   std::vector<std::size_t> hidden_of(const std::vector<std::size_t>& largest_first) const;
 

@@ -173,7 +173,9 @@ TEST(MaskPool, KeepsAThingOnItsSupport) {
 // A mask of the whole scene beneath those of a wall and a desk whose mask leaves out what lies on it:
 // the pens and papers in its gaps are not one entity with each other and the floor's rim.
 TEST(MaskPool, AMaskThatOthersHideIsNoEntityAndExplainsNothing) {
-  MaskPool pool(test_config(), test_grid());
+  SamConfig config = test_config();
+  config.min_shown_share = 0.5f;
+  MaskPool pool(config, test_grid());
   const MaskPrompt wall = region_of({2, 2, 26, 12}), desk = region_of({2, 14, 26, 28});
   pool.offer(proposals_of({{{0, 0, 28, 30}, 0.90f}}));
   EXPECT_EQ(pool.covered().count(), 28 * 30);
@@ -187,7 +189,9 @@ TEST(MaskPool, AMaskThatOthersHideIsNoEntityAndExplainsNothing) {
 }
 
 TEST(MaskPool, PartsOfAHiddenMaskAreLookedAtWithoutIt) {
-  MaskPool pool(test_config(), test_grid());
+  SamConfig config = test_config();
+  config.min_shown_share = 0.5f;
+  MaskPool pool(config, test_grid());
   const MaskPrompt wall = region_of({2, 2, 26, 12}), desk = region_of({2, 14, 26, 28});
   pool.offer(proposals_of({{{0, 0, 28, 30}, 0.90f}}));
   pool.offer(proposals_of({{{2, 2, 26, 12}, 0.90f}}), &wall);

@@ -35,7 +35,7 @@ struct SamConfig {
   float better_margin = 0.1f;       ///< ... scores at least this much more, or
   float own_region_iou = 0.5f;      ///< ... fills a geometric region of its own to this degree and
   float own_region_margin = 0.05f;  ///< scores at most this much less
-  float min_shown_share = 0.5f;  ///< a mask of which smaller ones leave less in sight is no entity
+  float min_shown_share = 0.f;   ///< a mask of which smaller ones leave less in sight is no entity
 
   // Where the network is asked.
   int min_region_px = 500;       ///< smaller geometric regions prompt nothing
