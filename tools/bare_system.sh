@@ -44,7 +44,7 @@ bare_open() {
 
 bare_close() {
   trap - EXIT
-  umount "$ROOT_FOLDER/proc" "$ROOT_FOLDER/dev"
+  umount -l "$ROOT_FOLDER/proc" "$ROOT_FOLDER/dev"  # also where a process of the trial is not quite gone
   rm -rf --one-file-system "$ROOT_FOLDER" "$ROOT_FOLDER.log"
 }
 

@@ -16,9 +16,18 @@ namespace ovimap::python {
 
 namespace {
 
+/// A Python string's text, of an attribute of the value's type.
+std::string type_text(nb::handle value, const char* attribute) {
+  return nb::str(value.type().attr(attribute)).c_str();
+}
+
+bool is_numpy_bool(nb::handle value) {
+  const std::string name = type_text(value, "__name__");
+  return type_text(value, "__module__") == "numpy" && (name == "bool" || name == "bool_");
+}
+
 std::string text_of(nb::handle value) {
-  const std::string type = nb::cast<std::string>(nb::type_name(value.type()));
-  if (nb::isinstance<nb::bool_>(value) || type == "numpy.bool" || type == "numpy.bool_")
+  if (nb::isinstance<nb::bool_>(value) || is_numpy_bool(value))
     return PyObject_IsTrue(value.ptr()) == 1 ? "true" : "false";
   return nb::cast<std::string>(nb::str(value));
 }
