@@ -2,17 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/pipeline/approach/ground_ways.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <queue>
 #include <tuple>
 
+#include "ovimap/pipeline/grids/cell_parts.h"
+
 namespace ovimap {
 
 namespace {
 
-constexpr std::uint8_t kFreeLevel = 254;  // of map_server's pictures
-constexpr std::uint8_t kStart = 8;        // no step
+constexpr std::uint8_t kStart = 8;  // no step
 
 const std::array<Eigen::Vector2i, 8>& steps() {
   static const std::array<Eigen::Vector2i, 8> all = {
@@ -43,8 +45,7 @@ PassableCells::PassableCells(const GridSlice& slice, float radius_m)
 }
 
 Eigen::Vector2f PassableCells::place_of(const Eigen::Vector2i& cell) const {
-  const Eigen::Vector2i from_below(cell.x(), height() - 1 - cell.y());
-  return origin_ + ((from_below.cast<float>().array() + 0.5f) * cell_m_).matrix();
+  return middle_of_cell(origin_, cell_m_, height(), cell.x(), cell.y());
 }
 
 std::optional<Eigen::Vector2i> PassableCells::nearest(const Eigen::Vector2f& place,
@@ -61,24 +62,11 @@ std::optional<Eigen::Vector2i> PassableCells::nearest(const Eigen::Vector2f& pla
 }
 
 std::optional<Eigen::Vector2i> PassableCells::in_largest_part() const {
-  Image<std::uint8_t> seen(width(), height());
-  std::optional<Eigen::Vector2i> best;
-  std::size_t most = 0;
-  for (int y = 0; y < height(); ++y)
-    for (int x = 0; x < width(); ++x) {
-      if (!at({x, y}) || seen.at(x, y)) continue;
-      std::vector<Eigen::Vector2i> part = {{x, y}};
-      seen.at(x, y) = 1;
-      for (std::size_t i = 0; i < part.size(); ++i)
-        for (const Eigen::Vector2i& step : steps()) {
-          const Eigen::Vector2i next = part[i] + step;
-          if (!at(next) || seen.at(next.x(), next.y())) continue;
-          seen.at(next.x(), next.y()) = 1;
-          part.push_back(next);
-        }
-      if (part.size() > most) most = part.size(), best = part.front();
-    }
-  return best;
+  const auto parts = connected_parts(passable_, 1, Corners::kConnected);
+  const auto largest = std::max_element(
+      parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); });
+  if (largest == parts.end()) return std::nullopt;
+  return largest->front();
 }
 
 GroundWays::GroundWays(const PassableCells& cells, const Eigen::Vector2i& from)

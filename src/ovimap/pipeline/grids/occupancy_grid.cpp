@@ -16,7 +16,6 @@ namespace ovimap {
 
 namespace {
 
-constexpr std::uint8_t kOccupiedLevel = 0, kFreeLevel = 254, kUnknownLevel = 205;
 constexpr int kMargin = 1;  // cells around the surface
 
 /// Height of the lowest large surface that faces up; the lowest point where none does.
@@ -109,10 +108,6 @@ float metres(float squared_cells, float cell_m) {
                                       : std::sqrt(squared_cells) * cell_m;
 }
 
-int layer_at(const OccupancyGrid& grid, float height_m) {
-  return static_cast<int>(std::floor((grid.floor_m + height_m - grid.origin.z()) / grid.cell_m));
-}
-
 GridSlice empty_slice(const OccupancyGrid& grid, float low_m, float high_m) {
   GridSlice slice;
   slice.occupancy = Image<std::uint8_t>(grid.size.x(), grid.size.y());
@@ -179,6 +174,16 @@ OccupancyGrid make_occupancy_grid(const MapDocument& document, const Mesh& mesh,
   space.margin_m = std::max(space.margin_m, config.cell_m);
   mark_free(ObservedSpace(document.map, document.depth_camera, poses, space), grid);
   return grid;
+}
+
+int layer_at(const OccupancyGrid& grid, float height_m) {
+  return static_cast<int>(std::floor((grid.floor_m + height_m - grid.origin.z()) / grid.cell_m));
+}
+
+Eigen::Vector2f middle_of_cell(const Eigen::Vector2f& origin, float cell_m, int height, int x,
+                               int row) {
+  return origin + cell_m * Eigen::Vector2f(static_cast<float>(x) + 0.5f,
+                                           static_cast<float>(height - row) - 0.5f);
 }
 
 GridSlice band_of(const OccupancyGrid& grid, float low_m, float high_m,

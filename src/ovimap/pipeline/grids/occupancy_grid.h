@@ -52,9 +52,12 @@ OccupancyGrid make_occupancy_grid(const MapDocument& document, const OccupancyCo
 OccupancyGrid make_occupancy_grid(const MapDocument& document, const Mesh& mesh,
                                   const OccupancyConfig& config = {});
 
+/// What a slice's picture holds, as map_server has it.
+inline constexpr std::uint8_t kOccupiedLevel = 0, kFreeLevel = 254, kUnknownLevel = 205;
+
 /// What a planner in the plane needs, row 0 at the largest y.
 struct GridSlice {
-  Image<std::uint8_t> occupancy;  ///< map_server's: 0 occupied, 254 free, 205 unknown
+  Image<std::uint8_t> occupancy;  ///< kOccupiedLevel, kFreeLevel or kUnknownLevel
   Image<float> distance_m;        ///< to the nearest obstacle; infinite where there is none
   Eigen::Vector2f origin = Eigen::Vector2f::Zero();  ///< lower left corner, grid frame, metres
   float cell_m = 0;
@@ -65,6 +68,14 @@ struct GridSlice {
 /// one to the other can run into. Distances are within the plane.
 GridSlice band_of(const OccupancyGrid& grid, float low_m, float high_m,
                   const OccupancyConfig& config);
+
+/// Number of the layer of cells at a height above the floor; it may lie outside the grid.
+int layer_at(const OccupancyGrid& grid, float height_m);
+
+/// The middle of a cell of a picture whose lower left corner lies at `origin`, row 0 at the largest
+/// y; grid frame, metres.
+Eigen::Vector2f middle_of_cell(const Eigen::Vector2f& origin, float cell_m, int height, int x,
+                               int row);
 
 /// The layers of cells at some heights above the floor. Distances are in space, to obstacles of the
 /// whole grid, floor and ceiling among them. Throws Error for a height outside the grid.

@@ -7,7 +7,6 @@
 namespace ovimap {
 
 PlaceGraph find_places(const GridSlice& walking, const RoomPlan& plan, float least_radius_m) {
-  constexpr std::uint8_t kFreeLevel = 254;  // of map_server's pictures
   const int width = walking.occupancy.width(), height = walking.occupancy.height();
   std::vector<Place> free;
   for (int y = 0; y < height; ++y)
@@ -15,9 +14,7 @@ PlaceGraph find_places(const GridSlice& walking, const RoomPlan& plan, float lea
       const float radius = walking.distance_m.at(x, y);
       if (walking.occupancy.at(x, y) != kFreeLevel || radius < least_radius_m) continue;
       Place place;
-      place.middle_m =
-          walking.origin + walking.cell_m * Eigen::Vector2f(static_cast<float>(x) + 0.5f,
-                                                            static_cast<float>(height - y) - 0.5f);
+      place.middle_m = middle_of_cell(walking.origin, walking.cell_m, height, x, y);
       place.radius_m = radius;
       place.room = plan.room_at(place.middle_m);
       free.push_back(place);

@@ -10,46 +10,22 @@
 
 #include "ovimap/base/config.h"
 #include "ovimap/map/rays/distance_transform.h"
+#include "ovimap/pipeline/grids/cell_parts.h"
 #include "ovimap/pipeline/rooms/watershed.h"
 
 namespace ovimap {
 
 namespace {
 
-constexpr std::uint8_t kFreeLevel = 254;  // of map_server's pictures
 constexpr float kUnderCeiling_m = 0.15f;  // what hangs there is no wall
 
 using Cell = Eigen::Vector2i;
 const std::array<Cell, 4> kNeighbors = {{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
 
-/// The connected parts (4-neighbours) of the cells with that value.
-std::vector<std::vector<Cell>> parts_of(const Image<std::uint8_t>& mask, std::uint8_t value) {
-  std::vector<std::vector<Cell>> parts;
-  Image<std::uint8_t> seen(mask.width(), mask.height());
-  for (int y = 0; y < mask.height(); ++y)
-    for (int x = 0; x < mask.width(); ++x) {
-      if (mask.at(x, y) != value || seen.at(x, y)) continue;
-      std::vector<Cell> part = {{x, y}};
-      seen.at(x, y) = 1;
-      for (std::size_t i = 0; i < part.size(); ++i)
-        for (const Cell& step : kNeighbors) {
-          const Cell next = part[i] + step;
-          if (!mask.contains(next.x(), next.y()) || seen.at(next.x(), next.y()) ||
-              mask.at(next.x(), next.y()) != value)
-            continue;
-          seen.at(next.x(), next.y()) = 1;
-          part.push_back(next);
-        }
-      parts.push_back(std::move(part));
-    }
-  return parts;
-}
-
 /// Height above the floor of the layer above `from_m` that is occupied most: the ceiling, where
 /// frames show it.
 float ceiling_m(const OccupancyGrid& grid, float from_m) {
-  const int first = std::clamp(
-      static_cast<int>((grid.floor_m + from_m - grid.origin.z()) / grid.cell_m), 0, grid.size.z());
+  const int first = std::clamp(layer_at(grid, from_m), 0, grid.size.z());
   const std::size_t layer =
       static_cast<std::size_t>(grid.size.x()) * static_cast<std::size_t>(grid.size.y());
   std::vector<std::size_t> counts;
@@ -75,7 +51,7 @@ Image<std::uint8_t> free_between(const OccupancyGrid& grid, float low_m, float h
 
 /// Lamps, plants and what was not seen between free cells are no walls.
 void fill_islands(Image<std::uint8_t>& free, float cell_m, const RoomConfig& config) {
-  for (const std::vector<Cell>& part : parts_of(free, 0))
+  for (const std::vector<Cell>& part : connected_parts(free, 0, Corners::kApart))
     if (static_cast<float>(part.size()) * cell_m * cell_m < config.least_wall_m2)
       for (const Cell& cell : part) free.at(cell.x(), cell.y()) = 1;
 }
@@ -128,16 +104,14 @@ std::vector<RoomDoor> find_doors(const Image<std::uint16_t>& rooms, const Image<
       }
   std::vector<RoomDoor> doors;
   for (const auto& [pair, mask] : meetings)
-    for (const std::vector<Cell>& part : parts_of(mask, 1)) {
+    for (const std::vector<Cell>& part : connected_parts(mask, 1, Corners::kApart)) {
       const Cell widest =
           *std::max_element(part.begin(), part.end(), [&](const Cell& a, const Cell& b) {
             return room_to_wall.at(a.x(), a.y()) < room_to_wall.at(b.x(), b.y());
           });
       RoomDoor door{pair.first, pair.second, {}, 2 * room_to_wall.at(widest.x(), widest.y())};
       door.place_m =
-          plan.origin +
-          cell_m * Eigen::Vector2f(static_cast<float>(widest.x()) + 0.5f,
-                                   static_cast<float>(reached.height() - widest.y()) - 0.5f);
+          middle_of_cell(plan.origin, cell_m, reached.height(), widest.x(), widest.y());
       doors.push_back(door);
     }
   return doors;
@@ -192,12 +166,9 @@ void number_rooms(RoomPlan& plan, const Image<float>& room_to_wall) {
     Room room;
     room.id = static_cast<int>(plan.rooms.size()) + 1;
     room.area_m2 = static_cast<float>(facts.first) * plan.cell_m * plan.cell_m;
-    const auto column = static_cast<float>(facts.second % width),
-               row = static_cast<float>(facts.second / width);
-    room.center_m =
-        plan.origin +
-        plan.cell_m *
-            Eigen::Vector2f(column + 0.5f, static_cast<float>(plan.floor.height()) - row - 0.5f);
+    room.center_m = middle_of_cell(plan.origin, plan.cell_m, plan.floor.height(),
+                                   static_cast<int>(facts.second % width),
+                                   static_cast<int>(facts.second / width));
     numbers[label] = static_cast<std::uint16_t>(room.id);
     plan.rooms.push_back(room);
   }
