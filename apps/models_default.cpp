@@ -14,6 +14,7 @@
 #include "ovimap/base/error.h"
 #include "ovimap/base/installation/installed_data.h"
 #include "ovimap/hub/model_fetch.h"
+#include "ovimap/inference/encoders/image_text_encoder.h"
 #include "ovimap/inference/models/model_folder.h"
 
 namespace ovimap::apps {
@@ -21,8 +22,6 @@ namespace ovimap::apps {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* kDefaultEncoder = "default-encoder";
 
 struct Builder {
   std::string python;

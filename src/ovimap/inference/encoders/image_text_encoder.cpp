@@ -23,11 +23,8 @@ std::unique_ptr<ImageTextEncoder> make_image_text_encoder(
     const std::vector<std::filesystem::path>& model_dirs, EncoderUse use) {
   if (spec.empty() || spec == "none") return nullptr;
   const std::string name = spec == "default" ? kDefaultEncoder : spec;
-  const std::filesystem::path path(name);
-  const std::filesystem::path folder = std::filesystem::is_regular_file(path / "model.yaml")
-                                           ? path
-                                           : find_model(name, model_search_path(model_dirs));
-  return std::make_unique<DualEncoder>(read_model_folder(folder), runtime, use);
+  return std::make_unique<DualEncoder>(
+      read_model_folder(named_model(name, model_search_path(model_dirs))), runtime, use);
 }
 
 }  // namespace ovimap

@@ -90,6 +90,11 @@ struct ModelListing {
 /// All models on the search path, the first of each name only, sorted by name within a folder.
 std::vector<ModelListing> list_models(const std::vector<std::filesystem::path>& search_path);
 
+/// The folder of the model that a user calls `name`: a folder that holds one, or a model's name on the
+/// search path. Throws as find_model.
+std::filesystem::path named_model(const std::string& name,
+                                  const std::vector<std::filesystem::path>& search_path);
+
 /// The folder of the model called `name`. Throws Error with the folders searched when there is
 /// none.
 std::filesystem::path find_model(const std::string& name,

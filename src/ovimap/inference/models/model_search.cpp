@@ -96,6 +96,11 @@ std::vector<ModelListing> list_models(const std::vector<fs::path>& search_path) 
   return models;
 }
 
+fs::path named_model(const std::string& name, const std::vector<fs::path>& search_path) {
+  return fs::is_regular_file(fs::path(name) / "model.yaml") ? fs::path(name)
+                                                            : find_model(name, search_path);
+}
+
 fs::path find_model(const std::string& name, const std::vector<fs::path>& search_path) {
   for (const fs::path& place : search_path)
     if (fs::is_regular_file(place / name / "model.yaml")) return place / name;

@@ -64,9 +64,7 @@ std::vector<std::filesystem::path> folders_of(const std::string& spec,
   }
   std::istringstream names(spec);
   for (std::string name; std::getline(names, name, ',');)
-    folders.push_back(std::filesystem::is_regular_file(std::filesystem::path(name) / "model.yaml")
-                          ? std::filesystem::path(name)
-                          : find_model(name, path));
+    folders.push_back(named_model(name, path));
   return folders;
 }
 

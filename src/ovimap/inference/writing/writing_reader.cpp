@@ -222,11 +222,8 @@ WrittenLine WritingReader::spell(const RgbImage& image) const {
 std::unique_ptr<WritingReader> make_writing_reader(
     const std::string& spec, const RuntimeConfig& runtime,
     const std::vector<std::filesystem::path>& model_dirs) {
-  const std::filesystem::path path(spec);
-  const std::filesystem::path folder = std::filesystem::is_regular_file(path / "model.yaml")
-                                           ? path
-                                           : find_model(spec, model_search_path(model_dirs));
-  return std::make_unique<WritingReader>(read_model_folder(folder), runtime);
+  return std::make_unique<WritingReader>(
+      read_model_folder(named_model(spec, model_search_path(model_dirs))), runtime);
 }
 
 }  // namespace ovimap
