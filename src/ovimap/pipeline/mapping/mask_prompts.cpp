@@ -9,12 +9,34 @@ namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kStrayDivisor = 100;  ///< a hundredth at each side may be stray voxels
+constexpr std::size_t kStrayDivisor = 100;  // a hundredth at each side may be stray voxels
 
-/// From the (values.size() / divisor)-th smallest value to the one as far from the largest.
-std::pair<float, float> inner_range(std::vector<int>& values, std::size_t divisor) {
-  const std::size_t low = divisor == 0 ? 0 : values.size() / divisor,
-                    high = values.size() - 1 - low;
+using Extents = std::vector<Eigen::AlignedBox2f>;  // of each region in the colour image
+
+/// Calls visit(region, x, y) for every pixel of a region that the colour image shows.
+template <class Visit>
+void for_each_color_pixel(const DepthRegions& regions, const Registration& registration,
+                          const PinholeCamera& color_camera, const Visit& visit) {
+  const Image<std::int32_t>& color_index = registration.color_index();
+  for (std::size_t i = 0; i < regions.ids.size(); ++i)
+    if (regions.ids[i] != 0 && color_index[i] != Registration::kNoColor)
+      visit(regions.ids[i] - 1u, color_index[i] % color_camera.width,
+            color_index[i] / color_camera.width);
+}
+
+/// Boxes around all pixels.
+Extents whole_extents(const DepthRegions& regions, const Registration& registration,
+                      const PinholeCamera& color_camera) {
+  Extents extents(regions.regions.size());
+  for_each_color_pixel(regions, registration, color_camera, [&](std::size_t region, int x, int y) {
+    extents[region].extend(Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)));
+  });
+  return extents;
+}
+
+/// Its smallest and its largest value but for stray ones.
+std::pair<float, float> inner_range(std::vector<int>& values) {
+  const std::size_t low = values.size() / kStrayDivisor, high = values.size() - 1 - low;
   const auto at = [&values](std::size_t rank) {
     const auto found = values.begin() + static_cast<std::ptrdiff_t>(rank);
     std::nth_element(values.begin(), found, values.end());
@@ -23,31 +45,39 @@ std::pair<float, float> inner_range(std::vector<int>& values, std::size_t diviso
   return {at(low), at(high)};
 }
 
-/// `stray_divisor`: 0 when every pixel of a region counts for its box.
-std::vector<MaskPrompt> prompts_of(const DepthRegions& regions, const Registration& registration,
-                                   const PinholeCamera& color_camera, std::size_t stray_divisor) {
-  struct Pixels {
-    std::vector<int> columns, rows;
-  };
-  const Image<std::int32_t>& color_index = registration.color_index();
-  std::vector<Pixels> pixels(regions.regions.size());
-  for (std::size_t i = 0; i < regions.ids.size(); ++i) {
-    if (regions.ids[i] == 0 || color_index[i] == Registration::kNoColor) continue;
-    pixels[regions.ids[i] - 1u].columns.push_back(color_index[i] % color_camera.width);
-    pixels[regions.ids[i] - 1u].rows.push_back(color_index[i] / color_camera.width);
+/// Boxes around all but stray pixels.
+Extents inner_extents(const DepthRegions& regions, const Registration& registration,
+                      const PinholeCamera& color_camera) {
+  std::vector<std::vector<int>> columns(regions.regions.size()), rows(regions.regions.size());
+  for_each_color_pixel(regions, registration, color_camera, [&](std::size_t region, int x, int y) {
+    columns[region].push_back(x);
+    rows[region].push_back(y);
+  });
+  Extents extents(regions.regions.size());
+  for (std::size_t i = 0; i < extents.size(); ++i) {
+    if (columns[i].empty()) continue;
+    const auto [left, right] = inner_range(columns[i]);
+    const auto [top, bottom] = inner_range(rows[i]);
+    extents[i] = {Eigen::Vector2f(left, top), Eigen::Vector2f(right, bottom)};
   }
+  return extents;
+}
+
+std::vector<MaskPrompt> prompts_of(const DepthRegions& regions, const Registration& registration,
+                                   const PinholeCamera& color_camera, const Extents& extents) {
+  std::vector<int> areas_px(regions.regions.size(), 0);
+  for_each_color_pixel(regions, registration, color_camera,
+                       [&](std::size_t region, int, int) { ++areas_px[region]; });
   const std::vector<Eigen::Vector2i> interiors = deepest_pixels(regions);
   std::vector<MaskPrompt> prompts;
-  for (std::size_t i = 0; i < pixels.size(); ++i) {
-    const std::int32_t index = color_index.at(interiors[i].x(), interiors[i].y());
-    if (pixels[i].columns.empty() || index == Registration::kNoColor) continue;
-    const auto [left, right] = inner_range(pixels[i].columns, stray_divisor);
-    const auto [top, bottom] = inner_range(pixels[i].rows, stray_divisor);
+  for (std::size_t i = 0; i < extents.size(); ++i) {
+    const std::int32_t index =
+        registration.color_index().at(interiors[i].x(), interiors[i].y());
+    if (areas_px[i] == 0 || index == Registration::kNoColor) continue;
     prompts.push_back({.interior_px = {static_cast<float>(index % color_camera.width),
                                        static_cast<float>(index / color_camera.width)},
-                       .extent_px = Eigen::AlignedBox2f(Eigen::Vector2f(left, top),
-                                                        Eigen::Vector2f(right, bottom)),
-                       .area_px = static_cast<int>(pixels[i].columns.size())});
+                       .extent_px = extents[i],
+                       .area_px = areas_px[i]});
   }
   return prompts;
 }
@@ -74,14 +104,16 @@ DepthRegions regions_of(const Image<InstanceId>& instances) {
 std::vector<MaskPrompt> region_prompts(const DepthRegions& regions,
                                        const Registration& registration,
                                        const PinholeCamera& color_camera) {
-  return prompts_of(regions, registration, color_camera, 0);
+  return prompts_of(regions, registration, color_camera,
+                    whole_extents(regions, registration, color_camera));
 }
 
 std::vector<MaskPrompt> object_prompts(const Image<InstanceId>& instances,
                                        const Registration& registration,
                                        const PinholeCamera& color_camera) {
-  std::vector<MaskPrompt> prompts =
-      prompts_of(regions_of(instances), registration, color_camera, kStrayDivisor);
+  const DepthRegions regions = regions_of(instances);
+  std::vector<MaskPrompt> prompts = prompts_of(
+      regions, registration, color_camera, inner_extents(regions, registration, color_camera));
   for (MaskPrompt& prompt : prompts) prompt.known = true;
   return prompts;
 }
