@@ -12,18 +12,18 @@ COSTS="$BARE/compile-costs.$SUITE"
 bare_open "$SUITE"
 git clone -q "$ROOT" "$ROOT_FOLDER/root/ovimap"
 # Stands before every compiler call; the source is its last argument.
-cat > "$ROOT_FOLDER/root/timed" << 'LAUNCHER'
+cat > "$ROOT_FOLDER/opt/timed" << 'LAUNCHER'
 #!/bin/bash
 TIMEFORMAT="%U %S ${*: -1}"
-{ time "$@" 2>&3; } 3>&2 2>> /root/costs
+{ time "$@" 2>&3; } 3>&2 2>> /opt/costs
 LAUNCHER
-chmod +x "$ROOT_FOLDER/root/timed"
-touch "$ROOT_FOLDER/root/costs"
+chmod +x "$ROOT_FOLDER/opt/timed"
+touch "$ROOT_FOLDER/opt/costs"
 
 bare_timed "make and git" "apt-get update -q; apt-get install -y -q --no-install-recommends make git"
 bare_timed "set-up (download)" "make -C ovimap setup-program"
-bare_timed "build" "export CMAKE_CXX_COMPILER_LAUNCHER=/root/timed; make -C ovimap build-program"
+bare_timed "build" "export CMAKE_CXX_COMPILER_LAUNCHER=/opt/timed; make -C ovimap build-program"
 bare_timed "demo" "make -C ovimap demo"
-awk '{print $1 + $2, $3}' "$ROOT_FOLDER/root/costs" | sort -rn > "$COSTS"
+awk '{print $1 + $2, $3}' "$ROOT_FOLDER/opt/costs" | sort -rn > "$COSTS"
 awk '{sum += $1} END {printf "%d sources, %.0f s of processor time; the dearest:\n", NR, sum}' "$COSTS"
 head -n 20 "$COSTS"

@@ -149,9 +149,7 @@ void bind_mesh(nb::module_& module) {
 }
 
 std::string objects_json(const SavedMap& map) {
-  std::vector<InstanceId> ids;
-  for (const SearchObject& object : map.index().objects()) ids.push_back(object.id);
-  return scene_json(map.path(), map.info(), find_relations(ids, map.scene().shapes)) + "\n";
+  return scene_json(map.path(), map.info(), find_relations(ids_of(map.index()), map.scene().shapes)) + "\n";
 }
 
 void export_map(const SavedMap& map, const std::filesystem::path& out) {

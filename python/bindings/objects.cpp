@@ -56,9 +56,7 @@ Named guess_names(SavedMap& map) {
 }
 
 std::vector<ObjectRelation> relations(const SavedMap& map) {
-  std::vector<InstanceId> ids;
-  for (const SearchObject& object : map.index().objects()) ids.push_back(object.id);
-  return find_relations(ids, map.scene().shapes);
+  return find_relations(ids_of(map.index()), map.scene().shapes);
 }
 
 std::vector<nb::bytes> crops(SavedMap& map, InstanceId id) {

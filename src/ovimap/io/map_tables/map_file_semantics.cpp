@@ -258,7 +258,7 @@ SuperPointLooks read_looks(SQLite::Database& database, const LabelForest& forest
     look.queries = looks.integer<int>();
   }
   auto writing = read_writing(database, forest);
-  auto things = read_recognized(database, forest, read_things(database).size());
+  auto things = read_recognized(database, forest, settings.recognizer.things.size());
   RowReader views(database, kSuperPointViews);
   while (views.next()) {
     ObjectView view;

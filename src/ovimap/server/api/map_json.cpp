@@ -236,11 +236,9 @@ json answer_json(const MapAnswer& answered) {
 
 json relations_json(const ServedMap& map) {
   const auto now = map.snapshot();
-  std::vector<InstanceId> ids;
-  for (const SearchObject& object : now->index().objects()) ids.push_back(object.id);
   json list = json::array();
   for (const ObjectRelation& relation :
-       find_relations(ids, now->objects->scene.shapes, map.relations()))
+       find_relations(ids_of(now->index()), now->objects->scene.shapes, map.relations()))
     list.push_back({{"object", relation.object},
                     {"relation", relation_name(relation.relation)},
                     {"anchor", relation.anchor},

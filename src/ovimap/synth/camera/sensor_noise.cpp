@@ -23,9 +23,8 @@ enum NoiseStream : std::uint64_t {
   kLensStream = 5ull << 40
 };
 
-constexpr std::uint64_t kLensSeed = 1;       // a camera keeps its lens
-constexpr float kLensCellsAcross = 4.f;      // of the image's width
-
+constexpr std::uint64_t kLensSeed = 1;   // a camera keeps its lens
+constexpr float kLensCellsAcross = 4.f;  // of the image's width
 
 /// Whether depth jumps between the pixel and one of its eight neighbours.
 bool on_depth_edge(const DepthImage& depth, int x, int y, float jump) {
