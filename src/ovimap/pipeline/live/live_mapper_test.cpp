@@ -275,8 +275,10 @@ std::int64_t embedded_views(const SuperPointLooks& looks) {
 
 TEST(LiveMapper, AnEncoderThatFailsIsCountedAndCostsItsViewsAlone) {
   constexpr int kAlways = 1000000;
+  LiveConfig live = live_config(1);
+  live.wait_for_masks = true;  // however slow the machine, there are objects to look at
   for (const int failures : {1, kAlways}) {
-    LiveMapper mapper(mapper_config(1), live_config(1), std::make_shared<DeskMasks>(),
+    LiveMapper mapper(mapper_config(1), live, std::make_shared<DeskMasks>(),
                       std::make_shared<FailingColors>(failures));
     for (const Frame& frame : desk_frames()) mapper.push_and_wait(frame);
     mapper.drain();
