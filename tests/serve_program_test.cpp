@@ -158,7 +158,8 @@ TEST_F(ServeProgramTest, AnswersInWords) {
   }
   EXPECT_EQ(ask({{"text", "largest object"}}, 200)["reading"], "largest [object]");
   EXPECT_FALSE(ask({{"text", "table"}}, 200).contains("heat"));
-  for (const auto& match : ask({{"like", objects[0]["id"]}}, 200)["matches"])
+  const json alike = ask({{"like", objects[0]["id"]}}, 200);
+  for (const auto& match : alike["matches"])
     EXPECT_NE(match["id"], objects[0]["id"]);
   ask({{"text", "thing"}, {"not", {"thing"}}}, 200);
   ask({{"text", "  "}}, 400);

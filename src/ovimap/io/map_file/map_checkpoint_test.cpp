@@ -3,7 +3,9 @@
 #include "ovimap/io/map_file/map_checkpoint.h"
 
 #include <sys/wait.h>
+#include <unistd.h>
 
+#include <cstdlib>
 #include <set>
 #include <thread>
 
@@ -138,12 +140,14 @@ TEST_F(Checkpoints, AFolderThatCannotBeWrittenIsNamed) {
             std::string::npos);
 }
 
-/// Writes checkpoints until it is killed. The state after n of them is known from n alone.
-[[noreturn]] void write_for_ever(const fs::path& path) {
+/// Writes checkpoints until it is killed, a byte to `begun` after the first. The state after n of them
+/// is known from n alone.
+[[noreturn]] void write_for_ever(const fs::path& path, int begun) {
   std::mt19937 random(4);
   MapDocument document = random_document(60, 4);
   CheckpointFile file(path, CheckpointFile::Start::kAnew);
   file.write(checkpoint_of(document, document.map.ordered_slots()));
+  if (::write(begun, "!", 1) != 1) std::abort();
   for (;;) {
     const std::vector<std::uint32_t> changed = go_on(document, random);
     file.write(checkpoint_of(document, changed));
@@ -155,9 +159,15 @@ TEST_F(Checkpoints, KilledInTheMiddleOfWritingLeavesTheOneBefore) {
   std::mt19937 when(4);
   for (int round = 0; round < 20; ++round) {
     fs::remove(path);
+    int pipe[2];
+    ASSERT_EQ(::pipe(pipe), 0);
     const pid_t child = ::fork();
-    if (child == 0) write_for_ever(path);
-    std::this_thread::sleep_for(std::chrono::milliseconds(100 + when() % 100));
+    if (child == 0) write_for_ever(path, pipe[1]);
+    ::close(pipe[1]);
+    char begun = 0;
+    ASSERT_EQ(::read(pipe[0], &begun, 1), 1);
+    ::close(pipe[0]);
+    std::this_thread::sleep_for(std::chrono::milliseconds(when() % 100));
     ::kill(child, SIGKILL);
     ::waitpid(child, nullptr, 0);
     const MapDocument loaded = load_map(path);

@@ -236,7 +236,8 @@ TEST_F(HttpServerTest, TellsHowObjectsStandToEachOther) {
     get("/api/instances/" + std::to_string(relation["object"].get<int>()));
     get("/api/instances/" + std::to_string(relation["anchor"].get<int>()));
   }
-  for (const auto& color : get("/api/instances/1")["colors"]) EXPECT_GE(color["share"], 0.1);
+  const json object = get("/api/instances/1");
+  for (const auto& color : object["colors"]) EXPECT_GE(color["share"], 0.1);
 }
 
 TEST_F(HttpServerTest, ChecksWhatIsAskedWhereToStand) {
