@@ -3,60 +3,19 @@
 #include "ovimap/segment/depth_estimate.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
 #include <vector>
 
 #include "ovimap/base/config.h"
 #include "ovimap/base/parallel.h"
-#include "ovimap/base/vectorize.h"
 
 namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kRowsPerTask = 60;     // each sums up the rows of a radius above it as well
-constexpr std::size_t kSampleStep = 7;       // pixels; no divisor of usual widths
-constexpr std::size_t kFewestSamples = 500;  // for a median good to some per cent
-constexpr float kMedianOfNormal = 0.6745f;   // of |x| where sigma is 1
-constexpr float kLeastScale = 0.02f;         // exact depth still has a last digit
-constexpr float kMostSquares = 25.f;         // squared sigmas; what lies further off tells no more
-constexpr float kStepsPerSquare = 256.f;     // of a residual as a whole number
-
-/// Half octaves of range from 1/8 m: the exponent of a float and its first binary place.
-constexpr int kRanges = 20;
-int range_of(float depth_m) {
-  constexpr int kFirst = static_cast<int>(std::bit_cast<std::uint32_t>(0.125f) >> 22);
-  return std::clamp(static_cast<int>(std::bit_cast<std::uint32_t>(depth_m) >> 22) - kFirst, 0,
-                    kRanges - 1);
-}
-using Scales = std::array<float, kRanges>;
-
-/// Sigma of absolute residuals; the median is moved by little but noise.
-float sigma_of(std::vector<float>& residuals) {
-  const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
-  std::nth_element(residuals.begin(), middle, residuals.end());
-  return std::max(kLeastScale, *middle / kMedianOfNormal);
-}
-
-/// The frame's noise as a multiple of the model's, by range.
-Scales noise_scales(const DepthImage& depth, const DepthSurface& surface,
-                    const DepthNoiseConfig& noise) {
-  std::array<std::vector<float>, kRanges> residuals;
-  std::vector<float> all;
-  for (std::size_t i = 0; i < depth.size(); i += kSampleStep) {
-    if (depth[i] <= 0.f || surface.plane_slope[i] <= 0.f) continue;
-    const float smooth = surface.smooth_depth_m[i];
-    all.push_back(std::abs(depth[i] - smooth) / noise.sigma_m(smooth));
-    residuals[static_cast<std::size_t>(range_of(smooth))].push_back(all.back());
-  }
-  Scales scales;
-  scales.fill(all.size() < kFewestSamples ? 1.f : sigma_of(all));
-  for (std::size_t range = 0; range < kRanges; ++range)
-    if (residuals[range].size() >= kFewestSamples) scales[range] = sigma_of(residuals[range]);
-  return scales;
-}
+constexpr std::size_t kRowsPerTask = 60;  // each sums up the rows of a radius above it as well
+constexpr float kMostSquares = 25.f;      // squared sigmas; what lies further off tells no more
+constexpr float kStepsPerSquare = 256.f;  // of a residual as a whole number
 
 /// A squared residual in steps, and in the high half that there is one: sums of both at once,
 /// exact, whatever their order.
@@ -65,13 +24,11 @@ constexpr Residual kOne = Residual{1} << 32;
 
 class Estimator {
  public:
-  Estimator(const DepthImage& depth, const DepthSurface& surface, const DepthNoiseConfig& noise,
-            const DepthEstimateConfig& config)
+  Estimator(const DepthImage& depth, const DepthSurface& surface, const DepthNoiseConfig& model)
       : depth_(depth),
         surface_(surface),
-        noise_(noise),
-        scales_(noise_scales(depth, surface, noise)),
-        inverse_correlated_(1.f / config.correlated_px),
+        model_(model),
+        alike_(alike_of(surface.noise, surface.radius_px)),
         width_(static_cast<std::size_t>(depth.width())),
         row_sums_(depth.width(), depth.height()),
         estimate_{DepthImage(depth.width(), depth.height()),
@@ -93,6 +50,22 @@ class Estimator {
   }
 
  private:
+  /// What a frame's noise says of the mean of a window's pixels.
+  struct Alike {
+    ByRange pixels{1.f};  ///< so many count as one sample
+    ByRange most{1.f};    ///< variance of a plane over that of a pixel, in whatever window
+  };
+  static Alike alike_of(const FrameNoise& noise, int radius_px) {
+    const auto full = static_cast<float>((2 * radius_px + 1) * (2 * radius_px + 1));
+    Alike alike;
+    for (std::size_t range = 0; range < ByRange::kRanges; ++range) {
+      const float share = noise.plane[range] / noise.pixel[range];
+      alike.pixels[range] = std::max(1.f, full * share * share);
+      alike.most[range] = std::max(1.f, share * share);
+    }
+    return alike;
+  }
+
   /// Sigma of each pixel as measured, and its squared residual in sigmas.
   void measure_row(int y, std::vector<Residual>& residuals) {
     const float *depth = depth_.row(y), *smooth = surface_.smooth_depth_m.row(y),
@@ -101,8 +74,7 @@ class Estimator {
     for (std::size_t x = 0; x < width_; ++x) {
       residuals[x] = 0;
       if (depth[x] <= 0.f) continue;
-      sigma[x] =
-          noise_.sigma_m(smooth[x]) * scales_[static_cast<std::size_t>(range_of(smooth[x]))];
+      sigma[x] = model_.sigma_m(smooth[x]) * surface_.noise.pixel.at(smooth[x]);
       if (slope[x] <= 0.f) continue;
       const float off = (depth[x] - smooth[x]) / sigma[x];
       residuals[x] =
@@ -151,17 +123,17 @@ class Estimator {
       const float excess = squares - samples;
       const float raw = slope[x] > 0.f ? (excess > 0.f ? excess / squares : 0.f) : 1.f;
       estimate[x] = depth[x] > 0.f ? smooth[x] + raw * (depth[x] - smooth[x]) : 0.f;
-      const float window = static_cast<float>((left[x] + right[x] + 1) * (up[x] + down[x] + 1));
-      const float alike = std::min(1.f, 1.f / (window * inverse_correlated_));
+      const auto window = static_cast<float>((left[x] + right[x] + 1) * (up[x] + down[x] + 1));
+      const float alike =
+          std::min(alike_.most.at(smooth[x]), alike_.pixels.at(smooth[x]) / window);
       sigma[x] *= std::sqrt(raw * raw + (1.f - raw) * (1.f - raw) * alike);
     }
   }
 
   const DepthImage& depth_;
   const DepthSurface& surface_;
-  const DepthNoiseConfig& noise_;
-  const Scales scales_;
-  const float inverse_correlated_;
+  const DepthNoiseConfig& model_;
+  const Alike alike_;
   const std::size_t width_;
   Image<Residual> row_sums_;
   DepthEstimate estimate_;
@@ -173,14 +145,12 @@ void list_fields(DepthEstimateConfig& config, ConfigFields& fields) {
   fields.add("enabled", config.enabled,
              "fuse depth as planes and measurement together have it, weighed by its variance; off: "
              "as measured, weighed by 1/z^2");
-  fields.add("correlated_px", config.correlated_px, 1.f, 1000.f,
-             "so many neighbouring pixels err alike and count as one sample");
 }
 
 DepthEstimate estimate_depth(const DepthImage& depth, const DepthSurface& surface,
-                             const DepthNoiseConfig& noise, const DepthEstimateConfig& config) {
+                             const DepthNoiseConfig& model, const DepthEstimateConfig& config) {
   if (!config.enabled) return {depth, {}};
-  return Estimator(depth, surface, noise, config).estimate();
+  return Estimator(depth, surface, model).estimate();
 }
 
 }  // namespace ovimap

@@ -7,10 +7,7 @@
 namespace ovimap {
 
 struct DepthEstimateConfig {
-  bool enabled = true;        ///< off: depth is fused as it was measured, with weights of 1/z^2
-  float correlated_px = 9.f;  ///< so many neighbouring pixels err alike and count as one sample:
-                              ///< matching windows of stereo and structured light are some pixels
-                              ///< wide
+  bool enabled = true;  ///< off: depth is fused as it was measured, with weights of 1/z^2
 };
 void list_fields(DepthEstimateConfig& config, ConfigFields& fields);
 
@@ -25,10 +22,10 @@ struct DepthEstimate {
 /// with the fitted planes as local means. Where residuals are what noise alone leaves, the plane is
 /// believed; where they are larger, there is something that no plane describes.
 ///
-/// How noisy the sensor is the frame itself tells: the median residual of each half octave of
-/// range, most of what is seen being smooth. `noise` gives the growth within a range, and all of it
-/// in frames too small to tell.
+/// How noisy the sensor is the frame itself tells (DepthSurface::noise), both a single pixel and the
+/// plane through a window of them. `model`, with which the surface was fitted, gives the growth
+/// within a range.
 DepthEstimate estimate_depth(const DepthImage& depth, const DepthSurface& surface,
-                             const DepthNoiseConfig& noise, const DepthEstimateConfig& config);
+                             const DepthNoiseConfig& model, const DepthEstimateConfig& config);
 
 }  // namespace ovimap

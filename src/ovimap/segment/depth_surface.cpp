@@ -54,6 +54,7 @@ DepthSurface fit_depth_surface(const DepthImage& depth, const PinholeCamera& cam
   const InverseDepth inverse(depth);
   find_breaks(inverse, config, surface);
   fit_planes(inverse, camera, surface);
+  surface.noise = read_noise(depth, surface, camera, config.noise);
   return surface;
 }
 

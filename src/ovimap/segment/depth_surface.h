@@ -8,6 +8,7 @@
 
 #include "ovimap/geometry/camera.h"
 #include "ovimap/image/image.h"
+#include "ovimap/segment/frame_noise.h"
 
 namespace ovimap {
 
@@ -50,6 +51,7 @@ struct DepthSurface {
       normals;               ///< unit, towards the camera, camera frame; 0 where no plane fits
   Image<float> plane_slope;  ///< metres off the plane per metre of depth along the pixel's ray:
                              ///< |normal . ray|, the ray with unit depth; 0 where no plane fits
+  FrameNoise noise;          ///< in multiples of DepthSurfaceConfig::noise
 };
 
 /// Fits a plane to the unbroken neighbourhood of every pixel of `depth` (metres, 0 = invalid).

@@ -69,7 +69,7 @@ inline float fold(const DepthSurface& surface, const PinholeCamera& camera,
       (static_cast<float>(std::min(static_cast<int>(depth / step_m), 199)) + 0.5f) * step_m;
   const float angle =
       std::max(config.concave_angle_rad,
-               config.concave_sigmas * std::sqrt(2.f) *
+               config.concave_sigmas * std::sqrt(2.f) * surface.noise.normal.at(middle) *
                    normal_sigma_rad(middle, surface.radius_px, camera, config.surface.noise));
   const float strength = 1.f - n1.dot(n2);
   if (strength < 1.f - std::cos(std::min(angle, 3.f))) return 0.f;
