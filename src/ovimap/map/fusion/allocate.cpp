@@ -61,11 +61,7 @@ class BandBlocks {
       : rays_(camera, world_from_camera.linear().cast<float>()),
         origin_(world_from_camera.translation().cast<float>()),
         truncation_m_(config.truncation_m()),
-        inverse_block_size_(1.f / config.block_size_m()),
-        // Samples at most half a block apart leave out only corners that the ray cuts by less than
-        // that; an odd number of them includes the point itself.
-        samples_(1 + 2 * static_cast<int>(
-                             std::ceil(config.truncation_m() / (0.5f * config.block_size_m())))) {
+        inverse_block_size_(1.f / config.block_size_m()) {
     // Neighbouring sampled pixels may be a quarter of a block apart on the surface. A pixel whose
     // column and row are multiples of 2^k, and not both of 2^(k+1), is left out where every 2^(k+1)
     // pixels are enough.
@@ -74,53 +70,84 @@ class BandBlocks {
     nearest_m_[kMostSkips] = 0.f;
   }
 
-  void add_row(const float* depth, int y, int width, KeyCollector& keys) const {
+  /// Blocks within the truncation go to `needed`. Where the deviation is known (else null) those of
+  /// wider bands go to `reached`.
+  void add_row(const float* depth, const float* sigma, int y, int width, KeyCollector& needed,
+               KeyCollector& reached) const {
     float nearest_m[1 << kMostSkips];  // by column, which repeats
     for (int x = 0; x < 1 << kMostSkips; ++x)
       nearest_m[x] =
           nearest_m_[std::min(std::countr_zero(static_cast<unsigned>(x | y)), kMostSkips)];
-    for (int x = 0; x < width; ++x)
-      if (depth[x] > nearest_m[x % (1 << kMostSkips)]) add(rays_.at(x, y), depth[x], keys);
+    for (int x = 0; x < width; ++x) {
+      if (!(depth[x] > nearest_m[x % (1 << kMostSkips)])) continue;
+      const Eigen::Vector3f ray = rays_.at(x, y);
+      add(ray, depth[x], truncation_m_, needed);
+      const float band_m = sigma ? std::min(kBandSigmas * sigma[x], kMostBand_m) : 0.f;
+      if (band_m > truncation_m_) add(ray, depth[x], band_m, reached);
+    }
   }
 
  private:
-  void add(const Eigen::Vector3f& ray, float depth_m, KeyCollector& keys) const {
-    const Eigen::Vector3f reach = ray * (truncation_m_ / ray.norm());
-    const Eigen::Vector3f start = origin_ + ray * depth_m - reach;
-    const Eigen::Vector3f step = reach * (2.f / static_cast<float>(samples_ - 1));
-    for (int i = 0; i < samples_; ++i)
-      keys.add(pack_index(block_at(start + step * static_cast<float>(i), inverse_block_size_)));
+  void add(const Eigen::Vector3f& ray, float depth_m, float band_m, KeyCollector& keys) const {
+    // Samples at most half a block apart leave out only corners that the ray cuts by less than
+    // that; an odd number of them includes the point itself.
+    const int half = static_cast<int>(std::ceil(2.f * band_m * inverse_block_size_));
+    const Eigen::Vector3f step = ray * (band_m / (ray.norm() * static_cast<float>(half)));
+    const Eigen::Vector3f point = origin_ + ray * depth_m;
+    for (int i = -half; i <= half; ++i)
+      keys.add(pack_index(block_at(point + step * static_cast<float>(i), inverse_block_size_)));
   }
 
   static constexpr int kMostSkips = 3;  ///< every 2^3 pixels at least
   PixelRays rays_;
   Eigen::Vector3f origin_;
   float truncation_m_, inverse_block_size_;
-  int samples_;
   float nearest_m_[kMostSkips + 1];  ///< depth from which such a pixel counts, by k
+};
+
+/// The keys of parts of an image, each once.
+class FrameKeys {
+ public:
+  explicit FrameKeys(std::size_t parts) : parts_(parts) {}
+  void put(std::size_t part, KeyCollector& keys) { parts_[part] = keys.take(); }
+  std::vector<std::uint64_t> all() const {
+    std::vector<std::uint64_t> keys;
+    for (const auto& part : parts_) keys.insert(keys.end(), part.begin(), part.end());
+    sort_unique(keys);
+    return keys;
+  }
+
+ private:
+  std::vector<std::vector<std::uint64_t>> parts_;
 };
 
 }  // namespace
 
-std::vector<std::uint32_t> allocate_blocks(VoxelMap& map, const DepthImage& depth,
-                                           const PinholeCamera& camera,
-                                           const Pose& world_from_camera) {
-  check_reach(map.config(), world_from_camera);
-  const BandBlocks band(map.config(), camera, world_from_camera);
+std::vector<std::uint32_t> allocate_blocks(VoxelMap& map, const Observation& observation) {
+  const DepthImage& depth = observation.depth;
+  check_reach(map.config(), observation.world_from_camera);
+  const BandBlocks band(map.config(), observation.camera, observation.world_from_camera);
   const auto rows = static_cast<std::size_t>(depth.height());
-  std::vector<std::vector<std::uint64_t>> keys((rows + kRowsPerTask - 1) / kRowsPerTask);
+  const std::size_t parts = (rows + kRowsPerTask - 1) / kRowsPerTask;
+  FrameKeys needed(parts), reached(parts);
   parallel_for_ranges(rows, kRowsPerTask, [&](std::size_t begin, std::size_t end) {
-    KeyCollector collector;
+    KeyCollector needed_here, reached_here;
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
-      band.add_row(depth.row(y), y, depth.width(), collector);
-    keys[begin / kRowsPerTask] = collector.take();
+      band.add_row(depth.row(y), observation.sigma_m ? observation.sigma_m->row(y) : nullptr, y,
+                   depth.width(), needed_here, reached_here);
+    needed.put(begin / kRowsPerTask, needed_here);
+    reached.put(begin / kRowsPerTask, reached_here);
   });
-  std::vector<std::uint64_t> all;
-  for (const auto& part : keys) all.insert(all.end(), part.begin(), part.end());
-  sort_unique(all);
-  std::vector<std::uint32_t> slots(all.size());
-  std::transform(all.begin(), all.end(), slots.begin(),
-                 [&map](std::uint64_t key) { return map.find_or_create(unpack_index(key)); });
+  std::vector<std::uint64_t> keys = needed.all();
+  for (const std::uint64_t key : keys) map.find_or_create(unpack_index(key));
+  const std::vector<std::uint64_t> others = reached.all();
+  keys.insert(keys.end(), others.begin(), others.end());
+  sort_unique(keys);
+  std::vector<std::uint32_t> slots;
+  slots.reserve(keys.size());
+  for (const std::uint64_t key : keys)
+    if (const std::uint32_t slot = map.find_slot(unpack_index(key)); slot != kNoBlock)
+      slots.push_back(slot);
   return slots;
 }
 

@@ -29,6 +29,7 @@ static_assert(std::endian::native == std::endian::little);
 struct ObservedRow {
   Floats distance_m;  ///< to the surface, positive in front
   Floats weight;      ///< of the observation; 0: the voxel keeps what it has
+  Floats sigma_m;     ///< of the depth; 0: unknown
   Ints observed;      ///< mask: the weight is not 0
 };
 
@@ -48,28 +49,38 @@ OVIMAP_INLINE Floats slopes(const FusionView& view, const ProjectedRow& row, Int
 }
 
 /// What an observation's weight is the inverse of (Observation::sigma_m).
-OVIMAP_INLINE Floats variance(const FusionView& view, const ProjectedRow& row, Floats depth) {
+OVIMAP_INLINE Floats variance(const FusionView& view, Floats depth, Floats sigma_m) {
   if (!view.frame.sigma_m) return depth * depth;
-  const Floats sigma = gather(view.frame.sigma_m->data(), row.pixel) * view.voxels_per_m;
+  const Floats sigma = sigma_m * view.voxels_per_m;
   return sigma * sigma + FusionView::kLeastVariance;
 }
 
-/// Distances and weights, in steps of 1/4096, falling to zero between one voxel and one truncation
-/// behind the surface; below half a step they are 0. Returns whether any voxel is observed.
+/// Voxels on the observed surface: those that it may run through.
+OVIMAP_INLINE Ints on_surface(const FusionView& view, const ObservedRow& seen) {
+  return seen.observed &
+         (magnitude(seen.distance_m) <= larger(broadcast(view.label_band_m), seen.sigma_m));
+}
+
+/// Distances and weights, in steps of 1/4096, falling to zero over the last voxels of the band behind
+/// the surface, as many as there are from one voxel to the truncation; below half a step they are 0.
+/// Returns whether any voxel is observed.
 OVIMAP_INLINE bool observe(const FusionView& view, const ProjectedRow& row, ObservedRow& seen) {
   if (!any(row.inside)) return false;
   const Floats depth = gather(view.frame.depth.data(), row.pixel);
   const Floats in_front = depth - row.z_m;
   // Along the ray the distance is range / z times as long: both sides are squared, times z^2.
-  const Floats reach = row.z_m * view.truncation_m;
+  seen.sigma_m = view.frame.sigma_m ? gather(view.frame.sigma_m->data(), row.pixel) : Floats{};
+  const Floats band = larger(broadcast(view.truncation_m),
+                             smaller(broadcast(kMostBand_m), kBandSigmas * seen.sigma_m));
+  const Floats reach = row.z_m * band;
   const Ints near =
       row.inside & (depth > 0.f) & (in_front * in_front * row.range_squared < reach * reach);
   if (!any(near)) return false;
   seen.distance_m = in_front * slopes(view, row, near);
   const Floats falloff =
-      smaller(broadcast(1.f), (seen.distance_m + view.truncation_m) * view.inverse_falloff);
+      smaller(broadcast(1.f), (seen.distance_m + band) * view.inverse_falloff);
   // Adding a number drops what lies below its last bit: the steps of a weight.
-  const Floats rounded = falloff / variance(view, row, depth) + kWeightRounder - kWeightRounder;
+  const Floats rounded = falloff / variance(view, depth, seen.sigma_m) + kWeightRounder - kWeightRounder;
   seen.observed = near & (rounded > 0.f);
   seen.weight = seen.observed ? rounded : Floats{};
   return any(seen.observed);
@@ -120,10 +131,10 @@ class Voter {
   Voter(const FusionView& view, VoxelBlock& block) : view_(view), block_(block) {}
 
   OVIMAP_INLINE void vote(const ProjectedRow& row, const ObservedRow& seen, int first_voxel) {
-    const Ints on_surface = seen.observed & (magnitude(seen.distance_m) <= view_.label_band_m);
-    if (!any(on_surface)) return;
+    const Ints shown = on_surface(view_, seen);
+    if (!any(shown)) return;
     for (int i = 0; i < kLanes; ++i)
-      if (on_surface[i])
+      if (shown[i])
         vote((*view_.frame.segment_ids)[static_cast<std::size_t>(row.pixel[i])], first_voxel + i,
              view_.votes(row.z_m[i]));
   }
@@ -204,10 +215,10 @@ OVIMAP_INLINE void for_each_row(const FusionView& view, const VoxelBlock& block,
 /// What a frame ends on it does not see through.
 OVIMAP_INLINE void end_doubts(const FusionView& view, const ObservedRow& seen,
                               std::uint8_t* doubts) {
-  const Ints on_surface = seen.observed & (magnitude(seen.distance_m) <= view.label_band_m);
-  if (!any(on_surface)) return;
+  const Ints shown = on_surface(view, seen);
+  if (!any(shown)) return;
   for (int i = 0; i < kLanes; ++i)
-    if (on_surface[i]) doubts[i] = 0;
+    if (shown[i]) doubts[i] = 0;
 }
 
 }  // namespace

@@ -15,8 +15,7 @@ constexpr std::size_t kBlocksPerTask = 16;
 template <class Update>
 std::vector<std::uint32_t> update_blocks(VoxelMap& map, const Observation& observation,
                                          const Update& update) {
-  std::vector<std::uint32_t> slots =
-      allocate_blocks(map, observation.depth, observation.camera, observation.world_from_camera);
+  std::vector<std::uint32_t> slots = allocate_blocks(map, observation);
   const FusionView view(map.config(), observation);
   parallel_for(slots.size(), kBlocksPerTask, [&](std::size_t i) {
     VoxelBlock& block = map.writable_block(slots[i]);

@@ -25,6 +25,10 @@ struct Observation {
   std::span<const Label> segment_labels = {};  ///< label of segment id, at [id - 1]
 };
 
+/// The band around a surface is as wide as so many standard deviations of its depth, where that is
+/// more than the truncation, and no wider than this: what errs by more tells nothing.
+inline constexpr float kBandSigmas = 3.f, kMostBand_m = 1.f;
+
 /// Fuses one frame into the map: distance, colour and label support, one pass over the blocks near
 /// the observed surface (method section 5; linear drop-off behind the surface).
 ///
@@ -35,8 +39,13 @@ struct Observation {
 ///
 /// Where a plane was fitted the distance is that to the plane: the difference of depths times the
 /// plane's slope, else times the length of the ray. Projective distances alone are too long on
-/// surfaces seen at a slant, and differ from view to view. Voxels further than the truncation from
-/// the surface along their ray keep what they have.
+/// surfaces seen at a slant, and differ from view to view.
+///
+/// Voxels further than the truncation from the surface along their ray keep what they have, where the
+/// depth is good. Where it may lie further off than that (kBandSigmas), the band is as wide as its
+/// error: else only frames that err towards a voxel would count there, and each would leave a sheet of
+/// its own. Distances are stored up to the truncation all the same, so that their mean is that of a
+/// robust estimator. Labels go to voxels within one sigma of the surface, or label_band_voxels.
 ///
 /// The only writer of voxels, with vote_labels and clear_free_space. Returns the slots of the blocks it visited, in
 /// block-index order.
@@ -47,10 +56,8 @@ std::vector<std::uint32_t> integrate(VoxelMap& map, const Observation& observati
 /// segments. Returns likewise.
 std::vector<std::uint32_t> vote_labels(VoxelMap& map, const Observation& observation);
 
-/// Creates the blocks within the truncation band of the observed surface and returns the slots of
-/// all blocks in that band, in block-index order.
-std::vector<std::uint32_t> allocate_blocks(VoxelMap& map, const DepthImage& depth,
-                                           const PinholeCamera& camera,
-                                           const Pose& world_from_camera);
+/// Creates the blocks within the truncation of the observed surface and returns their slots, and those
+/// of other blocks that are there within the band of an uncertain depth, in block-index order.
+std::vector<std::uint32_t> allocate_blocks(VoxelMap& map, const Observation& observation);
 
 }  // namespace ovimap

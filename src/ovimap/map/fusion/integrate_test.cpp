@@ -8,6 +8,7 @@
 #include "ovimap/map/fusion/block_update.h"
 #include "ovimap/map/fusion/plain_fusion.h"
 #include "ovimap/map/rays/sphere_fixture.h"
+#include "ovimap/map/rays/surface_lookup.h"
 #include "ovimap/map/voxels/label_slots.h"
 
 namespace ovimap {
@@ -64,6 +65,69 @@ TEST(Integrate, WhoSeesAVoxelFromNearTellsMore) {
   EXPECT_EQ(view.votes(1e-3f), 255);
   config.pixel_votes = false;
   EXPECT_EQ(FusionView(config, observation).votes(1.f), 1);
+}
+
+/// Distance along the axis from `near_m` on at which a map of a wall passes from front to back, for
+/// every pass.
+std::vector<float> passes(const VoxelMap& map, float near_m, float far_m) {
+  std::vector<float> found;
+  VoxelFinder finder(map);
+  float last_m = 0;
+  for (float z = near_m; z < far_m; z += map.config().voxel_size_m) {
+    const bool seen = finder.seek(Eigen::Vector3f(0.f, 0.f, z)) && finder.observed();
+    const float here_m = seen ? finder.distance_m() : 0.f;
+    if (last_m > 0.f && here_m < 0.f) found.push_back(z);
+    last_m = here_m;
+  }
+  return found;
+}
+
+TEST(Integrate, DepthThatErrsByMoreThanTheTruncationLeavesOneSurface) {
+  const PinholeCamera camera{64, 48, 50, 50, 31.5f, 23.5f};
+  const Pose pose = Pose::Identity();
+  const auto surfaces = [&](bool known) {
+    VoxelMap map;  // truncation of 5 cm
+    const Image<float> sigma(64, 48, 0.08f);
+    for (int frame = 0; frame < 200; ++frame) {
+      const float spread = 0.08f * 3.4641016f;  // uniform, of that deviation
+      const DepthImage depth(
+          64, 48, 4.f + spread * (static_cast<float>(frame * 79 % 200) / 199.f - 0.5f));
+      integrate(map, {.depth = depth,
+                      .camera = camera,
+                      .world_from_camera = pose,
+                      .sigma_m = known ? &sigma : nullptr});
+    }
+    return passes(map, 3.5f, 4.5f);
+  };
+  const std::vector<float> found = surfaces(true);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NEAR(found[0], 4.f, 0.025f);
+  EXPECT_FALSE(surfaces(false).size() == 1 && std::abs(surfaces(false)[0] - 4.f) < 0.025f)
+      << "the case is too easy";
+}
+
+TEST(Integrate, LabelsReachAsFarAsTheSurfaceMayLie) {
+  const PinholeCamera camera{64, 48, 50, 50, 31.5f, 23.5f};
+  const DepthImage depth(64, 48, 2.f);
+  const Image<float> sigma(64, 48, 0.03f);
+  const IdImage segments(64, 48, 1);
+  const Pose pose = Pose::Identity();
+  VoxelMap map;
+  const std::vector<Label> labels = {map.labels().create()};
+  integrate(map, {.depth = depth,
+                  .camera = camera,
+                  .world_from_camera = pose,
+                  .sigma_m = &sigma,
+                  .segment_ids = &segments,
+                  .segment_labels = labels});
+  VoxelFinder finder(map);
+  const auto label_at = [&](float z) {
+    return finder.seek(Eigen::Vector3f(0.f, 0.f, z)) ? map.label(finder.ref()) : kNoLabel;
+  };
+  EXPECT_EQ(label_at(1.975f), labels[0]);
+  EXPECT_EQ(label_at(2.025f), labels[0]);
+  EXPECT_EQ(label_at(1.955f), kNoLabel);
+  EXPECT_EQ(label_at(2.045f), kNoLabel);
 }
 
 TEST(Integrate, GivesTheSameBitsForEveryThreadCount) {
@@ -173,15 +237,32 @@ TEST(AllocateBlocks, RefusesBlocksThatWouldHaveTheKeysOfOthers) {
   VoxelMap map(config);
   Pose pose = Pose::Identity();
   pose.translation().y() = -7900;
-  for (const std::uint32_t slot : allocate_blocks(map, depth, camera, pose))
+  for (const std::uint32_t slot : allocate_blocks(map, {.depth = depth, .camera = camera, .world_from_camera = pose}))
     EXPECT_LT(map.block_index(slot).y(), 0);
   pose.translation().y() = -9000;  // of poses up to 10 km are taken
   try {
-    allocate_blocks(map, depth, camera, pose);
+    allocate_blocks(map, {.depth = depth, .camera = camera, .world_from_camera = pose});
     FAIL();
   } catch (const Error& fault) {
     EXPECT_NE(std::string(fault.what()).find("9000 m from the origin"), std::string::npos);
   }
+}
+
+TEST(AllocateBlocks, CreatesNoneBeyondTheTruncationButReturnsThoseThatAreThere) {
+  const PinholeCamera camera{64, 48, 50, 50, 31.5f, 23.5f};
+  const DepthImage near(64, 48, 2.f), far(64, 48, 2.3f);
+  const Image<float> sigma(64, 48, 0.15f);
+  const Pose pose = Pose::Identity();
+  VoxelMap map;
+  const std::size_t created =
+      allocate_blocks(map, {.depth = near, .camera = camera, .world_from_camera = pose}).size();
+  const Observation behind{
+      .depth = far, .camera = camera, .world_from_camera = pose, .sigma_m = &sigma};
+  const std::size_t returned = allocate_blocks(map, behind).size();
+  EXPECT_EQ(returned, map.block_count());
+  EXPECT_GT(returned, map.block_count() - created);
+  VoxelMap alone;
+  EXPECT_EQ(allocate_blocks(alone, behind).size(), map.block_count() - created);
 }
 
 TEST(AllocateBlocks, CoversTheBandOfEveryPixel) {
@@ -189,7 +270,7 @@ TEST(AllocateBlocks, CoversTheBandOfEveryPixel) {
   VoxelMap map;
   const DepthImage depth = scene.depth();
   const Pose pose = scene.pose(0.3);
-  allocate_blocks(map, depth, scene.camera, pose);
+  allocate_blocks(map, {.depth = depth, .camera = scene.camera, .world_from_camera = pose});
   int points = 0, covered = 0;
   for (int y = 0; y < depth.height(); ++y)
     for (int x = 0; x < depth.width(); ++x) {

@@ -44,10 +44,14 @@ class VoxelFusion {
     return fitted > 0.f ? std::max(fitted, 0.1f) : view_.ray_length(static_cast<int>(pixel));
   }
 
+  float sigma_m(std::size_t pixel) const {
+    return view_.frame.sigma_m ? (*view_.frame.sigma_m)[pixel] : 0.f;
+  }
+
   float variance(std::size_t pixel) const {
     const float depth = view_.frame.depth[pixel];
     if (!view_.frame.sigma_m) return depth * depth;
-    const float sigma = (*view_.frame.sigma_m)[pixel] * view_.voxels_per_m;
+    const float sigma = sigma_m(pixel) * view_.voxels_per_m;
     return sigma * sigma + FusionView::kLeastVariance;
   }
 
@@ -58,10 +62,12 @@ class VoxelFusion {
     const float depth = view_.frame.depth[pixel], in_front = depth - point.z();
     const float range_squared =
         point.x() * point.x() + point.y() * point.y() + point.z() * point.z();
-    const float reach = point.z() * view_.truncation_m;
+    const float band =
+        std::max(view_.truncation_m, std::min(kMostBand_m, kBandSigmas * sigma_m(pixel)));
+    const float reach = point.z() * band;
     if (depth <= 0.f || in_front * in_front * range_squared >= reach * reach) return;
     const float distance = in_front * slope(pixel);
-    const float falloff = std::min(1.f, (distance + view_.truncation_m) * view_.inverse_falloff);
+    const float falloff = std::min(1.f, (distance + band) * view_.inverse_falloff);
     const float weight = std::nearbyint(falloff / variance(pixel) * 4096.f) / 4096.f;
     if (weight <= 0.f) return;
     const float sum = block_.weight[voxel] + weight, share = weight / sum;
@@ -71,7 +77,7 @@ class VoxelFusion {
     block_.tsdf[voxel] = static_cast<VoxelBlock::Tsdf>(rounded(old + share * (target - old)));
     block_.weight[voxel] = std::min(sum, view_.max_weight);
     if (view_.frame.color) blend_color(voxel, (*view_.frame.color)[pixel], share);
-    if (std::fabs(distance) > view_.label_band_m) return;
+    if (std::fabs(distance) > std::max(view_.label_band_m, sigma_m(pixel))) return;
     if (view_.frame.segment_ids) vote(voxel, (*view_.frame.segment_ids)[pixel], point.z());
     if (!block_.doubts.empty()) block_.doubts[voxel] = 0;
   }
@@ -105,8 +111,7 @@ class VoxelFusion {
 
 inline void integrate(VoxelMap& map, const Observation& observation) {
   const FusionView view(map.config(), observation);
-  for (const std::uint32_t slot :
-       allocate_blocks(map, observation.depth, observation.camera, observation.world_from_camera)) {
+  for (const std::uint32_t slot : allocate_blocks(map, observation)) {
     resolve_labels(map.writable_block(slot), map.labels());
     VoxelFusion(view, map.writable_block(slot)).fuse();
   }
