@@ -13,7 +13,8 @@ struct VisitHistoryConfig {
   float same_shape = 0.15f;   ///< mean distance of two surfaces laid over each other, as a share of
                               ///< their reach, up to which they may be of one thing
   float same_colors = 0.5f;   ///< least share of two surfaces that has the same colours
-  float doubt = 0.75f;  ///< the likeliest pair is one thing when it is so much nearer than the next
+  float doubt = 0.5f;  ///< the likeliest pair is one thing when it is so much nearer than the next:
+                       ///< pairs of things of one shape differ by nearly as much
 };
 
 /// Writes down what the last visit of `after` changed against `before`, the same map without that
