@@ -2,10 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
-#include <string>
-
 #include "ovimap/io/map_tables/map_document.h"
+#include "ovimap/io/map_tables/map_file_meta.h"
 #include "ovimap/io/map_tables/map_file_rows.h"
 
 namespace SQLite {
@@ -13,15 +11,6 @@ class Database;
 }
 
 namespace ovimap {
-
-/// What the table `meta` holds besides the fields of MapRecord.
-struct MapMeta {
-  VoxelMapConfig map_config;
-  std::int64_t frames = 0;
-  std::uint64_t blocks = 0;
-  std::uint64_t content_hash = 0;  ///< 0 when unfinished
-  bool unfinished = false;         ///< as in MapRecord
-};
 
 /// Where objects are described: as mapping found them, and as people corrected them.
 struct InstanceTables {
@@ -47,7 +36,6 @@ LabelForest read_forest(SQLite::Database& database);
 
 /// The parts of the way back. Each fills its part of `record` and throws Error with a phrase when
 /// the file does not hold what was written.
-MapMeta read_meta(SQLite::Database& database, MapRecord& record);
 void write_instances(SQLite::Database& database, const MapRecord& record,
                      const InstanceTables& tables);  ///< with their names
 void read_instances(SQLite::Database& database, MapRecord& record, const InstanceTables& tables);
@@ -59,8 +47,5 @@ void read_registry(SQLite::Database& database, int schema, const LabelForest& fo
 /// A label that exists, and an instance that was once given out.
 Label take_label(RowReader& rows, const LabelForest& forest);
 InstanceId take_instance(RowReader& rows, InstanceId last_id);
-
-/// 16 hexadecimal digits.
-std::string hash_text(std::uint64_t hash);
 
 }  // namespace ovimap
