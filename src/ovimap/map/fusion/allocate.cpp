@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <iterator>
 
 #include "ovimap/base/error.h"
 #include "ovimap/base/parallel.h"
@@ -138,16 +139,20 @@ std::vector<std::uint32_t> allocate_blocks(VoxelMap& map, const Observation& obs
     needed.put(begin / kRowsPerTask, needed_here);
     reached.put(begin / kRowsPerTask, reached_here);
   });
-  std::vector<std::uint64_t> keys = needed.all();
-  for (const std::uint64_t key : keys) map.find_or_create(unpack_index(key));
-  const std::vector<std::uint64_t> others = reached.all();
-  keys.insert(keys.end(), others.begin(), others.end());
-  sort_unique(keys);
+  const std::vector<std::uint64_t> to_create = needed.all(), to_find = reached.all();
+  std::vector<std::uint64_t> keys;
+  std::set_union(to_create.begin(), to_create.end(), to_find.begin(), to_find.end(),
+                 std::back_inserter(keys));
   std::vector<std::uint32_t> slots;
   slots.reserve(keys.size());
-  for (const std::uint64_t key : keys)
-    if (const std::uint32_t slot = map.find_slot(unpack_index(key)); slot != kNoBlock)
-      slots.push_back(slot);
+  auto next = to_create.begin();
+  for (const std::uint64_t key : keys) {
+    const bool create = next != to_create.end() && *next == key;
+    next += create;
+    const BlockIndex index = unpack_index(key);
+    const std::uint32_t slot = create ? map.find_or_create(index) : map.find_slot(index);
+    if (slot != kNoBlock) slots.push_back(slot);
+  }
   return slots;
 }
 
