@@ -11,7 +11,11 @@ namespace {
 
 constexpr std::size_t kStrayDivisor = 100;  // a hundredth at each side may be stray voxels
 
-using Extents = std::vector<Eigen::AlignedBox2f>;  // of each region in the colour image
+/// What the colour image shows of a region.
+struct ShownRegion {
+  Eigen::AlignedBox2f extent_px;
+  int area_px = 0;
+};
 
 /// Calls visit(region, x, y) for every pixel of a region that the colour image shows.
 template <class Visit>
@@ -24,14 +28,16 @@ void for_each_color_pixel(const DepthRegions& regions, const Registration& regis
             color_index[i] / color_camera.width);
 }
 
-/// Boxes around all pixels.
-Extents whole_extents(const DepthRegions& regions, const Registration& registration,
-                      const PinholeCamera& color_camera) {
-  Extents extents(regions.regions.size());
+/// With boxes around all pixels.
+std::vector<ShownRegion> whole_regions(const DepthRegions& regions,
+                                       const Registration& registration,
+                                       const PinholeCamera& color_camera) {
+  std::vector<ShownRegion> shown(regions.regions.size());
   for_each_color_pixel(regions, registration, color_camera, [&](std::size_t region, int x, int y) {
-    extents[region].extend(Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)));
+    shown[region].extent_px.extend(Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)));
+    ++shown[region].area_px;
   });
-  return extents;
+  return shown;
 }
 
 /// Its smallest and its largest value but for stray ones.
@@ -45,39 +51,40 @@ std::pair<float, float> inner_range(std::vector<int>& values) {
   return {at(low), at(high)};
 }
 
-/// Boxes around all but stray pixels.
-Extents inner_extents(const DepthRegions& regions, const Registration& registration,
-                      const PinholeCamera& color_camera) {
+/// With boxes around all but stray pixels.
+std::vector<ShownRegion> inner_regions(const DepthRegions& regions,
+                                       const Registration& registration,
+                                       const PinholeCamera& color_camera) {
   std::vector<std::vector<int>> columns(regions.regions.size()), rows(regions.regions.size());
   for_each_color_pixel(regions, registration, color_camera, [&](std::size_t region, int x, int y) {
     columns[region].push_back(x);
     rows[region].push_back(y);
   });
-  Extents extents(regions.regions.size());
-  for (std::size_t i = 0; i < extents.size(); ++i) {
+  std::vector<ShownRegion> shown(regions.regions.size());
+  for (std::size_t i = 0; i < shown.size(); ++i) {
     if (columns[i].empty()) continue;
     const auto [left, right] = inner_range(columns[i]);
     const auto [top, bottom] = inner_range(rows[i]);
-    extents[i] = {Eigen::Vector2f(left, top), Eigen::Vector2f(right, bottom)};
+    shown[i] = {{Eigen::Vector2f(left, top), Eigen::Vector2f(right, bottom)},
+                static_cast<int>(columns[i].size())};
   }
-  return extents;
+  return shown;
 }
 
-std::vector<MaskPrompt> prompts_of(const DepthRegions& regions, const Registration& registration,
-                                   const PinholeCamera& color_camera, const Extents& extents) {
-  std::vector<int> areas_px(regions.regions.size(), 0);
-  for_each_color_pixel(regions, registration, color_camera,
-                       [&](std::size_t region, int, int) { ++areas_px[region]; });
+std::vector<MaskPrompt> prompts_of(const DepthRegions& regions,
+                                   const std::vector<ShownRegion>& shown,
+                                   const Registration& registration,
+                                   const PinholeCamera& color_camera) {
   const std::vector<Eigen::Vector2i> interiors = deepest_pixels(regions);
   std::vector<MaskPrompt> prompts;
-  for (std::size_t i = 0; i < extents.size(); ++i) {
+  for (std::size_t i = 0; i < shown.size(); ++i) {
     const std::int32_t index =
         registration.color_index().at(interiors[i].x(), interiors[i].y());
-    if (areas_px[i] == 0 || index == Registration::kNoColor) continue;
+    if (shown[i].area_px == 0 || index == Registration::kNoColor) continue;
     prompts.push_back({.interior_px = {static_cast<float>(index % color_camera.width),
                                        static_cast<float>(index / color_camera.width)},
-                       .extent_px = extents[i],
-                       .area_px = areas_px[i]});
+                       .extent_px = shown[i].extent_px,
+                       .area_px = shown[i].area_px});
   }
   return prompts;
 }
@@ -104,16 +111,17 @@ DepthRegions regions_of(const Image<InstanceId>& instances) {
 std::vector<MaskPrompt> region_prompts(const DepthRegions& regions,
                                        const Registration& registration,
                                        const PinholeCamera& color_camera) {
-  return prompts_of(regions, registration, color_camera,
-                    whole_extents(regions, registration, color_camera));
+  return prompts_of(regions, whole_regions(regions, registration, color_camera), registration,
+                    color_camera);
 }
 
 std::vector<MaskPrompt> object_prompts(const Image<InstanceId>& instances,
                                        const Registration& registration,
                                        const PinholeCamera& color_camera) {
   const DepthRegions regions = regions_of(instances);
-  std::vector<MaskPrompt> prompts = prompts_of(
-      regions, registration, color_camera, inner_extents(regions, registration, color_camera));
+  std::vector<MaskPrompt> prompts =
+      prompts_of(regions, inner_regions(regions, registration, color_camera), registration,
+                 color_camera);
   for (MaskPrompt& prompt : prompts) prompt.known = true;
   return prompts;
 }
