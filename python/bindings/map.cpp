@@ -149,7 +149,8 @@ void bind_mesh(nb::module_& module) {
 }
 
 std::string objects_json(const SavedMap& map) {
-  return scene_json(map.path(), map.info(), find_relations(ids_of(map.index()), map.scene().shapes)) + "\n";
+  const auto relations = find_relations(ids_of(map.index()), map.scene().shapes);
+  return scene_json(map.path(), map.info(), relations) + "\n";
 }
 
 void export_map(const SavedMap& map, const std::filesystem::path& out) {

@@ -23,15 +23,16 @@ constexpr float kFullWindow = 0.9f;          // of its pixels
 class Residuals {
  public:
   void add(float depth_m, float sigmas) {
-    all_.push_back(sigmas);
-    by_range_[ByRange::range_of(depth_m)].push_back(all_.back());
+    by_range_[ByRange::range_of(depth_m)].push_back(sigmas);
   }
 
   /// Their medians, which are moved by little but noise, over what they are where sigma is 1.
   /// Nothing where there are too few of them to tell.
   std::optional<ByRange> sigmas(float median_of_one) {
-    if (all_.size() < kFewestSamples) return std::nullopt;
-    ByRange found(sigma_of(all_, median_of_one));
+    std::vector<float> all;
+    for (const std::vector<float>& some : by_range_) all.insert(all.end(), some.begin(), some.end());
+    if (all.size() < kFewestSamples) return std::nullopt;
+    ByRange found(sigma_of(all, median_of_one));
     for (std::size_t range = 0; range < ByRange::kRanges; ++range)
       if (by_range_[range].size() >= kFewestSamples)
         found[range] = sigma_of(by_range_[range], median_of_one);
@@ -46,7 +47,6 @@ class Residuals {
   }
 
   std::array<std::vector<float>, ByRange::kRanges> by_range_;
-  std::vector<float> all_;
 };
 
 Residuals of_pixels(const DepthImage& depth, const DepthSurface& surface,

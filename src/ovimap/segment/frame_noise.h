@@ -43,8 +43,9 @@ class ByRange {
 /// promises.
 struct FrameNoise {
   ByRange pixel{1.f};   ///< sigma of a pixel, off the plane through its neighbours
-  ByRange plane{1.f};   ///< of a plane fitted in a full window, off the planes around it, in sigmas of a
-                        ///< pixel: what is left of the pixels' errors, and what they share
+  ByRange plane{1.f};   ///< of a plane fitted in a full window, off the planes around it, in
+                        ///< sigmas of a pixel: what is left of its pixels' errors, and what these
+                        ///< share
   ByRange normal{1.f};  ///< of such a plane's normal (normal_sigma_rad)
 };
 

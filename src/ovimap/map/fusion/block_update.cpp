@@ -61,9 +61,9 @@ OVIMAP_INLINE Ints on_surface(const FusionView& view, const ObservedRow& seen) {
          (magnitude(seen.distance_m) <= larger(broadcast(view.label_band_m), seen.sigma_m));
 }
 
-/// Distances and weights, in steps of 1/4096, falling to zero over the last voxels of the band behind
-/// the surface, as many as there are from one voxel to the truncation; below half a step they are 0.
-/// Returns whether any voxel is observed.
+/// Distances and weights, in steps of 1/4096, falling to zero over the last voxels of the band
+/// behind the surface, as many as there are from one voxel to the truncation; below half a step
+/// they are 0. Returns whether any voxel is observed.
 OVIMAP_INLINE bool observe(const FusionView& view, const ProjectedRow& row, ObservedRow& seen) {
   if (!any(row.inside)) return false;
   const Floats depth = gather(view.frame.depth.data(), row.pixel);
@@ -80,7 +80,8 @@ OVIMAP_INLINE bool observe(const FusionView& view, const ProjectedRow& row, Obse
   const Floats falloff =
       smaller(broadcast(1.f), (seen.distance_m + band) * view.inverse_falloff);
   // Adding a number drops what lies below its last bit: the steps of a weight.
-  const Floats rounded = falloff / variance(view, depth, seen.sigma_m) + kWeightRounder - kWeightRounder;
+  const Floats weight = falloff / variance(view, depth, seen.sigma_m);
+  const Floats rounded = weight + kWeightRounder - kWeightRounder;
   seen.observed = near & (rounded > 0.f);
   seen.weight = seen.observed ? rounded : Floats{};
   return any(seen.observed);

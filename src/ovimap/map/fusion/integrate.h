@@ -41,11 +41,12 @@ inline constexpr float kBandSigmas = 3.f, kMostBand_m = 1.f;
 /// plane's slope, else times the length of the ray. Projective distances alone are too long on
 /// surfaces seen at a slant, and differ from view to view.
 ///
-/// Voxels further than the truncation from the surface along their ray keep what they have, where the
-/// depth is good. Where it may lie further off than that (kBandSigmas), the band is as wide as its
-/// error: else only frames that err towards a voxel would count there, and each would leave a sheet of
-/// its own. Distances are stored up to the truncation all the same, so that their mean is that of a
-/// robust estimator. Labels go to voxels within one sigma of the surface, or label_band_voxels.
+/// Voxels further than the truncation from the surface along their ray keep what they have, where
+/// the depth is good. Where it may lie further off than that (kBandSigmas), the band is as wide as
+/// its error: else only frames that err towards a voxel would count there, and each would leave a
+/// sheet of its own. Distances are stored up to the truncation all the same, so that their mean is
+/// that of a robust estimator. Labels go to voxels within one sigma of the surface, or
+/// label_band_voxels.
 ///
 /// The only writer of voxels, with vote_labels and clear_free_space. Returns the slots of the blocks it visited, in
 /// block-index order.
@@ -56,8 +57,8 @@ std::vector<std::uint32_t> integrate(VoxelMap& map, const Observation& observati
 /// segments. Returns likewise.
 std::vector<std::uint32_t> vote_labels(VoxelMap& map, const Observation& observation);
 
-/// Creates the blocks within the truncation of the observed surface and returns their slots, and those
-/// of other blocks that are there within the band of an uncertain depth, in block-index order.
+/// Creates the blocks within the truncation of the observed surface and returns their slots, and
+/// those of other blocks that are there within the band of an uncertain depth, in block-index order.
 std::vector<std::uint32_t> allocate_blocks(VoxelMap& map, const Observation& observation);
 
 }  // namespace ovimap

@@ -239,11 +239,12 @@ TEST(AllocateBlocks, RefusesBlocksThatWouldHaveTheKeysOfOthers) {
   VoxelMap map(config);
   Pose pose = Pose::Identity();
   pose.translation().y() = -7900;
-  for (const std::uint32_t slot : allocate_blocks(map, {.depth = depth, .camera = camera, .world_from_camera = pose}))
+  const Observation observation{.depth = depth, .camera = camera, .world_from_camera = pose};
+  for (const std::uint32_t slot : allocate_blocks(map, observation))
     EXPECT_LT(map.block_index(slot).y(), 0);
   pose.translation().y() = -9000;  // of poses up to 10 km are taken
   try {
-    allocate_blocks(map, {.depth = depth, .camera = camera, .world_from_camera = pose});
+    allocate_blocks(map, observation);
     FAIL();
   } catch (const Error& fault) {
     EXPECT_NE(std::string(fault.what()).find("9000 m from the origin"), std::string::npos);

@@ -22,6 +22,7 @@ std::span<const Cell> steps(Corners corners) {
 
 std::vector<std::vector<Cell>> connected_parts(const Image<std::uint8_t>& cells,
                                                std::uint8_t value, Corners corners) {
+  const std::span<const Cell> around = steps(corners);
   std::vector<std::vector<Cell>> parts;
   Image<std::uint8_t> seen(cells.width(), cells.height());
   for (int y = 0; y < cells.height(); ++y)
@@ -30,7 +31,7 @@ std::vector<std::vector<Cell>> connected_parts(const Image<std::uint8_t>& cells,
       std::vector<Cell> part = {{x, y}};
       seen.at(x, y) = 1;
       for (std::size_t i = 0; i < part.size(); ++i)
-        for (const Cell& step : steps(corners)) {
+        for (const Cell& step : around) {
           const Cell next = part[i] + step;
           if (!cells.contains(next.x(), next.y()) || seen.at(next.x(), next.y()) ||
               cells.at(next.x(), next.y()) != value)
