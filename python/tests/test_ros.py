@@ -155,6 +155,16 @@ class Robot:
         self.depth.publish(image(time_ns, depth, "32FC1" if metres else "16UC1", optical))
 
 
+def distances_to_depth(world_points, frame):
+    """How far points (N x 3, metres) are from the frame's depth along its viewing rays' z, in metres; of those in the image alone."""
+    camera, depth = frame.camera, np.array(frame.depth)
+    x, y, z = (np.linalg.inv(frame.world_from_camera) @ np.c_[world_points, np.ones(len(world_points))].T)[:3]
+    column, row = np.rint(camera.fx * x / z + camera.cx).astype(int), np.rint(camera.fy * y / z + camera.cy).astype(int)
+    inside = (z > 0) & (column >= 0) & (column < camera.width) & (row >= 0) & (row < camera.height)
+    assert inside.sum() > 100, "the camera saw the cloud"
+    return np.abs(z[inside] - depth[row[inside], column[inside]])
+
+
 @needs_program
 @pytest.mark.parametrize("metres", [False, True])
 def test_a_robots_images_are_mapped_and_the_map_comes_back(node, room, tmp_path, metres):
@@ -183,11 +193,8 @@ def test_a_robots_images_are_mapped_and_the_map_comes_back(node, room, tmp_path,
     assert cloud.header.frame_id == found.header.frame_id == "map"
     points = cloud.data.view(POINT)
     assert {str(number) for number in np.unique(points["instance"])} - {"0"}
-    depth, camera, pose = (np.array(robot.recorded[0].depth), robot.recorded[0].camera, np.array(robot.recorded[0].world_from_camera))
-    z = depth[camera.height // 2, camera.width // 2]
-    seen = pose @ [(camera.width // 2 - camera.cx) / camera.fx * z, (camera.height // 2 - camera.cy) / camera.fy * z, z, 1]
-    near = np.linalg.norm(np.stack([points["x"], points["y"], points["z"]], 1) - seen[:3], axis=1).min()
-    assert near < 0.03, "the surface is where the camera saw it"
+    # Which objects the first cloud holds is a matter of timing; each of them lies where the camera saw it.
+    assert np.median(distances_to_depth(np.stack([points["x"], points["y"], points["z"]], 1), robot.recorded[0])) < 0.03
     assert len(ovimap.Map.open(out)) > 0
 
 
