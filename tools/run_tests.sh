@@ -9,6 +9,7 @@ shift
 report="$build/test-report.xml"
 log="$build/test-output.log"
 rm -f "$report"  # one of an earlier run would be counted
+export TSAN_OPTIONS="suppressions=$(realpath tests/thread_sanitizer.txt) ${TSAN_OPTIONS:-}"  # read under ThreadSanitizer alone
 
 # Of ctest's lines: each failure as it happens, and every 100th test.
 show_progress() {
