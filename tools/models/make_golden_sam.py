@@ -12,6 +12,7 @@ batched    embedding, points [N,P,2], labels                                  an
 sam        points [1,P,2], mask_input, has_mask_input, orig_im_size besides   one
 sam2       two high-resolution features, mask_input, has_mask_input besides   any number
 efficient  points [1,N,P,2], labels [1,N,P], orig_im_size (int64) besides     any number
+finder     as batched; besides a finder that sees blue things of three by three cells
 """
 
 import argparse
@@ -43,10 +44,11 @@ networks:
     file: decoder.onnx
     inputs: {{{features}, {inputs}}}
     outputs: {{masks: {masks}, scores: {scores}}}
-sha256:
+{networks}sha256:
   encoder.onnx: {encoder}
   decoder.onnx: {decoder}
-"""
+{digests}"""
+FINDER = "  finder: {file: finder.onnx, inputs: {embedding: embedding}, outputs: {things: things}}\n"
 
 
 def node(kind, inputs, output, **attributes):
@@ -217,6 +219,15 @@ def efficient_decoder():
     return model_bytes("efficient", nodes, inputs, outputs, constants() | {"two": np.int64([2])})
 
 
+def finder():
+    """Of blue less red, smoothed so that the middle of a thing stands out: how deep; boxes reach one and a half cells to all sides."""
+    weight, bias = np.zeros((6, 3, 1, 1), np.float32), np.log([1, *[1.5] * 4, 20.0]).astype(np.float32)
+    weight[0, :, 0, 0], bias[0] = (-3, 0, 3), -4
+    nodes = [node("AveragePool", "embedding", "smooth", kernel_shape=[3, 3], pads=[1] * 4), node("Conv", "smooth weight bias", "things")]
+    inputs, outputs = [info("embedding", [1, 3, "rows", "columns"])], [info("things", [1, 6, "rows", "columns"])]
+    return model_bytes("finder", nodes, inputs, outputs, {"weight": weight, "bias": bias})
+
+
 COMMON = "points: points, labels: labels"
 WITH_MASK = COMMON + ", mask_input: mask_input, has_mask_input: has_mask_input"
 HIGH_FEATURES = "embedding: embedding, high_res_0: high_res_feats_0, high_res_1: high_res_feats_1"
@@ -229,6 +240,7 @@ SIGNATURES = {
         "low_res_masks",
         "long_side",
     ),
+    "finder": (batched_decoder, "embedding: embedding", COMMON, "masks", "long_side"),
     "sam2": (sam2_decoder, HIGH_FEATURES, WITH_MASK, "low_res_masks", "stretch"),
     "efficient": (
         efficient_decoder,
@@ -248,6 +260,7 @@ def main():
         target = folder / signature
         target.mkdir(parents=True, exist_ok=True)
         files = {"encoder": encoder("high_res" in features), "decoder": decoder()}
+        files |= {"finder": finder()} if signature == "finder" else {}
         for name, data in files.items():
             (target / f"{name}.onnx").write_bytes(data)
         digests = {name: hashlib.sha256(data).hexdigest() for name, data in files.items()}
@@ -260,7 +273,10 @@ def main():
                 inputs=inputs,
                 masks=masks,
                 scores="iou_predictions",
-                **digests,
+                encoder=digests["encoder"],
+                decoder=digests["decoder"],
+                networks=FINDER if "finder" in files else "",
+                digests=f"  finder.onnx: {digests['finder']}\n" if "finder" in files else "",
             )
         )
 

@@ -6,6 +6,13 @@
 
 namespace ovimap {
 
+void list_fields(FinderConfig& config, ConfigFields& fields) {
+  fields.add("max_prompts", config.max_prompts, 0, 4096,
+             "things a frame that the model's finder sees and that are asked for; 0: none");
+  fields.add("min_depth", config.min_depth, 0.f, 1.f,
+             "how sure the finder is of a thing's middle at least");
+}
+
 void list_fields(SamConfig& config, ConfigFields& fields) {
   constexpr int kMaxPixels = 100000000;
   fields.add_choice<Prompting>(
@@ -55,6 +62,7 @@ void list_fields(SamConfig& config, ConfigFields& fields) {
              "rank of an uncovered disc's pixel against 1 in an uncovered region");
   fields.add("box_weight", config.box_weight, 0.f, 10.f,
              "rank of a pixel in a region asked by its box against 1 in an uncovered region");
+  fields.group("finder", [&](ConfigFields& group) { list_fields(config.finder, group); });
 }
 
 }  // namespace ovimap

@@ -11,6 +11,12 @@ enum class Prompting {
   kGrid,      ///< at the points of a regular grid, as SAM's own mask generator asks
 };
 
+/// Which things that a finder sees are asked for.
+struct FinderConfig {
+  int max_prompts = 30;     ///< a frame; 0: no finder is asked
+  float min_depth = 0.3f;   ///< of a thing's middle, from 0 at a border to 1; lower peaks are none
+};
+
 /// Settings of prompting a SAM-type network (method section 2).
 struct SamConfig {
   Prompting prompting = Prompting::kAdaptive;
@@ -44,7 +50,9 @@ struct SamConfig {
   int min_hole_radius_px = 12;   ///< uncovered discs of at least this radius are prompted
   float hole_weight = 0.8f;      ///< rank of an uncovered disc's pixel; 1 in uncovered regions
   float box_weight = 0.3f;       ///< rank of a pixel in a region asked by its box
+  FinderConfig finder;
 };
+void list_fields(FinderConfig& config, ConfigFields& fields);
 void list_fields(SamConfig& config, ConfigFields& fields);
 
 }  // namespace ovimap

@@ -11,7 +11,9 @@ namespace ovimap {
 
 SamMaskSource::SamMaskSource(const ModelFolder& model, const SamConfig& config,
                              const RuntimeConfig& runtime)
-    : network_(model, runtime), config_(config) {}
+    : network_(model, runtime), config_(config) {
+  if (EntityFinder::is_in(model) && config.finder.max_prompts > 0) finder_.emplace(model, runtime);
+}
 
 std::optional<Entities> SamMaskSource::entities(const Frame& frame,
                                                 std::span<const MaskPrompt> prompts) {
@@ -22,19 +24,35 @@ std::optional<Entities> SamMaskSource::entities(const Frame& frame,
   if (config_.prompting == Prompting::kGrid)
     ask_on_grid(features, pool);
   else
-    ask_where_unexplained(features, prompts, pool);
+    ask_where_expected(features, prompts, pool);
   return pool.entities();
+}
+
+std::vector<MaskPrompt> SamMaskSource::found_things(const ImageFeatures& features, int width_px,
+                                                    int height_px) const {
+  if (!finder_) return {};
+  return things_in(finder_->look(network_.embedding(features), features.frame), width_px,
+                   height_px, config_.finder);
+}
+
+void SamMaskSource::ask_where_expected(const ImageFeatures& features,
+                                       std::span<const MaskPrompt> prompts, MaskPool& pool) const {
+  // Objects of a map have as many prompts of their own: new ones are to be found beside them.
+  const auto objects = static_cast<int>(std::count_if(
+      prompts.begin(), prompts.end(), [](const MaskPrompt& prompt) { return prompt.known; }));
+  const int allowed =
+      config_.max_decoder_prompts + std::min(objects, config_.max_decoder_prompts);
+  std::vector<MaskPrompt> all =
+      found_things(features, pool.grid().image_width_px, pool.grid().image_height_px);
+  all.insert(all.end(), prompts.begin(), prompts.end());
+  ask_where_unexplained(features, all, allowed, pool);
 }
 
 void SamMaskSource::ask_where_unexplained(const ImageFeatures& features,
                                           std::span<const MaskPrompt> regions,
-                                          MaskPool& pool) const {
+                                          int prompts_allowed, MaskPool& pool) const {
   PromptPlanner planner(config_, pool.grid(), regions);
-  const auto known = static_cast<int>(
-      std::count_if(regions.begin(), regions.end(), [](const auto& region) { return region.known; }));
-  // Known objects have as many prompts of their own: new ones are to be found beside them.
-  const int allowed = config_.max_decoder_prompts + std::min(known, config_.max_decoder_prompts);
-  for (int budget = allowed; budget > 0;) {
+  for (int budget = prompts_allowed; budget > 0;) {
     const std::vector<PlannedPrompt> batch =
         planner.next(pool, std::min(budget, config_.decoder_batch));
     if (batch.empty()) break;

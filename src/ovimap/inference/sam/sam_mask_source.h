@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "ovimap/inference/masks/mask_source.h"
+#include "ovimap/inference/sam/entity_finder.h"
 #include "ovimap/inference/sam/mask_pool.h"
 #include "ovimap/inference/sam/sam_config.h"
 #include "ovimap/inference/sam/sam_network.h"
@@ -10,7 +13,8 @@
 namespace ovimap {
 
 /// Entities from a promptable network (method section 2), prompted adaptively: at geometric regions
-/// first, then wherever no accepted mask covers the image yet. Or on a dense grid, which takes
+/// first, then wherever no accepted mask covers the image yet; before both at the things that the
+/// model's own finder sees, if it has one. Or on a dense grid, which takes
 /// several times as long and is what the former is measured against.
 class SamMaskSource : public MaskSource {
  public:
@@ -21,11 +25,16 @@ class SamMaskSource : public MaskSource {
                                    std::span<const MaskPrompt> prompts) override;
 
  private:
+  void ask_where_expected(const ImageFeatures& features, std::span<const MaskPrompt> prompts,
+                          MaskPool& pool) const;
   void ask_where_unexplained(const ImageFeatures& features, std::span<const MaskPrompt> regions,
-                             MaskPool& pool) const;
+                             int prompts_allowed, MaskPool& pool) const;
+  std::vector<MaskPrompt> found_things(const ImageFeatures& features, int width_px,
+                                       int height_px) const;
   void ask_on_grid(const ImageFeatures& features, MaskPool& pool) const;
 
   SamNetwork network_;
+  std::optional<EntityFinder> finder_;  ///< where the model has one
   SamConfig config_;
 };
 

@@ -186,6 +186,19 @@ TEST(SamNetwork, SaysWhichTensorIsWrong) {
 
 // The real model, when tools/setup.sh has fetched it: plain objects on a plain ground must come
 // out.
+TEST(SamMaskSource, AsksForWhatItsFinderSees) {
+  SamConfig config = small_image_config();
+  config.min_hole_radius_px = 1000;  // nothing else is asked for
+  SamMaskSource source(golden("finder"), config, {});
+  const Entities entities = *source.entities(patches(), {});
+  ASSERT_EQ(entities.scores.size(), 1u);
+  EXPECT_EQ(entities.ids.at(21, 13), 1);
+  EXPECT_EQ(entities.ids.at(34, 24), 0);
+
+  config.finder.max_prompts = 0;
+  EXPECT_TRUE(SamMaskSource(golden("finder"), config, {}).entities(patches(), {})->scores.empty());
+}
+
 TEST(SamMaskSource, DefaultModelSeparatesPlainObjects) {
   const auto models = list_models(model_search_path({fs::path(OVIMAP_SOURCE_DIR) / ".models"}));
   if (std::none_of(models.begin(), models.end(),

@@ -129,6 +129,12 @@ ImageFeatures SamNetwork::encode(const RgbImage& image) const {
           encoder_.run(inputs, feature_outputs_)};
 }
 
+const FloatTensor& SamNetwork::embedding(const ImageFeatures& features) const {
+  const auto found = std::find(feature_roles_.begin(), feature_roles_.end(), "embedding");
+  const auto place = found == feature_roles_.end() ? 0 : found - feature_roles_.begin();
+  return features.tensors[static_cast<std::size_t>(place)];
+}
+
 std::vector<MaskProposals> SamNetwork::decode(const ImageFeatures& features,
                                               std::span<const PromptPoints> prompts) const {
   if (batches_) return decode_batch(features, prompts);

@@ -52,6 +52,9 @@ class SamNetwork {
   std::vector<MaskProposals> decode(const ImageFeatures& features,
                                     std::span<const PromptPoints> prompts) const;
 
+  /// The encoder's output of the role "embedding"; the first one where none is called so.
+  const FloatTensor& embedding(const ImageFeatures& features) const;
+
   /// Side of the decoder's square logit masks, in its pixels.
   int grid_size() const { return grid_size_; }
   int input_size_px() const { return input_.size_px; }

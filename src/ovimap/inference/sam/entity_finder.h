@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ovimap/inference/masks/mask_source.h"
+#include "ovimap/inference/models/image_tensor.h"
+#include "ovimap/inference/models/model_folder.h"
+#include "ovimap/inference/models/onnx_session.h"
+#include "ovimap/inference/sam/sam_config.h"
+
+namespace ovimap {
+
+/// What a finder says of every cell of an image, row by row: maps x rows x columns, as logits of how
+/// deep in its thing the cell lies (1 in the thing's middle, 0 at its border), logarithms of the
+/// distances in cells to the left, upper, right and lower side of the thing's box, and the logit of
+/// the share of that box which it fills.
+struct FinderMaps {
+  static constexpr int kMaps = 6;
+  int rows = 0, columns = 0;
+  std::vector<float> values;  ///< kMaps x rows x columns
+  Eigen::Vector2f image_from_cell = {1, 1};  ///< pixels of the image a cell is wide and high
+};
+
+/// The things whose middles the maps show, the surest first, at most `most`: where a cell lies deeper
+/// than its neighbours and at least `min_depth` deep. Of two whose boxes are nearly the same the
+/// surer one. Boxes end at the image's border.
+std::vector<MaskPrompt> things_in(const FinderMaps& maps, int width_px, int height_px,
+                                  const FinderConfig& config);
+
+/// Finds things where neither depth nor a gap between masks shows one: what lies flat on a table, or
+/// is one with what it stands on. A small network reads the features that a promptable network made
+/// of the image, and says where to ask that one, and for what box. Trained on rendered rooms alone
+/// (tools/models/train_finder.py); one-stage detection by centreness as in FCOS (Tian et al., ICCV
+/// 2019), where the centre is the pixel farthest from the thing's border.
+class EntityFinder {
+ public:
+  /// Of a model whose model.yaml describes the network "finder". Throws Error when a tensor's name
+  /// or shape is not what it says.
+  EntityFinder(const ModelFolder& model, const RuntimeConfig& runtime);
+
+  static bool is_in(const ModelFolder& model) { return model.networks.contains("finder"); }
+
+  /// `embedding` is of the whole square input, of which the image fills the upper left part as
+  /// `frame` says. Throws Error when the network fails.
+  FinderMaps look(const FloatTensor& embedding, const InputFrame& frame) const;
+
+ private:
+  std::string file_;  ///< for messages
+  std::string input_, output_;
+  int input_size_px_ = 0;
+  OnnxSession session_;
+};
+
+}  // namespace ovimap
