@@ -8,6 +8,7 @@ The encoder is taken as it is. The decoder is cut down and opened up:
   at full size (ovimap chooses itself, and scales up only what it keeps);
 - the previous-mask input, unused here, becomes the constant the network uses when there is none;
 - the number of prompts is open, so that several prompts share one run.
+Beside them goes the finder that train_finder.py made.
 """
 
 import argparse
@@ -22,6 +23,7 @@ from onnx import TensorProto, helper
 
 SAM_SHA256 = "800b1500d3e4422f9499706b75544b3604031e182f7f5f0f69f778e3512c4131"
 MODEL_YAML = pathlib.Path(__file__).with_name("mobilesam.yaml")
+FINDER = pathlib.Path(__file__).with_name("finder.onnx")
 
 # Tensors of the published decoder.
 ALL_MASKS = "/Reshape_9_output_0"
@@ -114,6 +116,7 @@ def main():
     args.model.mkdir(parents=True, exist_ok=True)
     (args.model / "encoder.onnx").write_bytes(encoder)
     (args.model / "decoder.onnx").write_bytes(decoder)
+    shutil.copyfile(FINDER, args.model / "finder.onnx")
     shutil.copyfile(MODEL_YAML, args.model / "model.yaml")
 
 
