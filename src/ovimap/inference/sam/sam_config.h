@@ -21,7 +21,7 @@ struct FinderConfig {
 struct SamConfig {
   Prompting prompting = Prompting::kAdaptive;
   int grid_side = 14;            ///< of kGrid: points along each side of the image
-  int max_decoder_prompts = 30;  ///< of kAdaptive, a frame: decoding is most of the time
+  int max_decoder_prompts = 40;  ///< of kAdaptive, a frame: decoding is most of the time
   int decoder_batch = 2;         ///< prompts decoded at once; between batches they are planned anew
 
   // Which proposals are masks at all.
