@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Trains the entity finder of the default mask model and writes finder.onnx: from MobileSAM's embedding of an image, where its things
 are (src/ovimap/inference/sam/entity_finder.h). Renders what it learns from, which no benchmark's unseen half shares anything with;
-a broken-off run goes on where it stopped. Two cores: half an hour to render and embed, half an hour to train.
+a broken-off run goes on where it stopped. Two cores need less than an hour.
 
     pip install -r tools/models/requirements-finder.txt  # in an environment of its own
     python3 tools/models/train_finder.py build/release/bin/ovimap .models/mobilesam WORK_FOLDER
