@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Trains the entity finder of the default mask model and writes finder.onnx: from MobileSAM's embedding of an image, where its things
 are (src/ovimap/inference/sam/entity_finder.h). Renders what it learns from, which no benchmark's unseen half shares anything with;
-a broken-off run goes on where it stopped. Two cores need less than an hour.
+a broken-off run goes on where it stopped. Two cores need an hour and a half.
 
     pip install -r tools/models/requirements-finder.txt  # in an environment of its own
     python3 tools/models/train_finder.py build/release/bin/ovimap .models/mobilesam WORK_FOLDER
@@ -138,7 +138,7 @@ def main():
     parser.add_argument("program", type=pathlib.Path)
     parser.add_argument("model", type=pathlib.Path, help="the folder of MobileSAM, for its encoder")
     parser.add_argument("work", type=pathlib.Path, help="folder for recordings and embeddings, 2 GB")
-    parser.add_argument("--steps", type=int, default=1200)
+    parser.add_argument("--steps", type=int, default=2000)
     parser.add_argument("--out", type=pathlib.Path, default=HERE / "finder.onnx")
     arguments = parser.parse_args()
     cache = arguments.work / "embedded"

@@ -3,32 +3,13 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
-#include "ovimap/inference/masks/mask_source.h"
 #include "ovimap/inference/models/image_tensor.h"
 #include "ovimap/inference/models/model_folder.h"
 #include "ovimap/inference/models/onnx_session.h"
-#include "ovimap/inference/sam/sam_config.h"
+#include "ovimap/inference/sam/thing_cells.h"
 
 namespace ovimap {
-
-/// What a finder says of every cell of an image, row by row: maps x rows x columns, as logits of how
-/// deep in its thing the cell lies (1 in the thing's middle, 0 at its border), logarithms of the
-/// distances in cells to the left, upper, right and lower side of the thing's box, and the logit of
-/// the share of that box which it fills.
-struct FinderMaps {
-  static constexpr int kMaps = 6;
-  int rows = 0, columns = 0;
-  std::vector<float> values;  ///< kMaps x rows x columns
-  Eigen::Vector2f image_from_cell = {1, 1};  ///< pixels of the image a cell is wide and high
-};
-
-/// The things whose middles the maps show, the surest first, at most `most`: where a cell lies deeper
-/// than its neighbours and at least `min_depth` deep. Of two whose boxes are nearly the same the
-/// surer one. Boxes end at the image's border.
-std::vector<MaskPrompt> things_in(const FinderMaps& maps, int width_px, int height_px,
-                                  const FinderConfig& config);
 
 /// Finds things where neither depth nor a gap between masks shows one: what lies flat on a table, or
 /// is one with what it stands on. A small network reads the features that a promptable network made

@@ -28,8 +28,9 @@ float iou(const AcceptedMask& a, const AcceptedMask& b) {
 
 }  // namespace
 
-MaskPool::MaskPool(const SamConfig& config, const LogitGrid& grid)
-    : config_(config), grid_(grid) {}
+MaskPool::MaskPool(const SamConfig& config, const LogitGrid& grid,
+                   std::optional<ThingCells> cells)
+    : config_(config), grid_(grid), cells_(std::move(cells)) {}
 
 std::optional<AcceptedMask> MaskPool::test(const MaskProposals& proposals, int token) const {
   const float predicted = proposals.predicted_iou[static_cast<std::size_t>(token)];
@@ -128,6 +129,7 @@ bool MaskPool::fills(const AcceptedMask& mask, const MaskPrompt& region) const {
 }
 
 void MaskPool::add(AcceptedMask mask) {
+  locate(mask);
   for (AcceptedMask& held : masks_) {
     if (iou(held, mask) <= config_.duplicate_iou) continue;
     if (mask.score > held.score) held = std::move(mask);
@@ -136,9 +138,32 @@ void MaskPool::add(AcceptedMask mask) {
   masks_.push_back(std::move(mask));
 }
 
+void MaskPool::locate(AcceptedMask& mask) const {
+  for (int y = 0; y < grid_.height; ++y)
+    for (int x = 0; x < grid_.width; ++x)
+      if (mask.mask.at(x, y)) {
+        const Eigen::Vector2f middle = Eigen::Vector2i(x, y).cast<float>();
+        mask.extent_px.extend(grid_.to_image(middle.array() - 0.5f));
+        mask.extent_px.extend(grid_.to_image(middle.array() + 0.5f));
+      }
+  if (!cells_) return;
+  for (int y = 0; y < cells_->rows(); ++y)
+    for (int x = 0; x < cells_->columns(); ++x) {
+      const Eigen::Vector2i at =
+          grid_.from_image(cells_->middle_px(x, y)).array().round().cast<int>();
+      if (at.x() >= grid_.width || at.y() >= grid_.height) continue;
+      if (mask.mask.at(at.x(), at.y())) mask.cells.push_back({x, y});
+    }
+}
+
+/// Asks the places in the smaller one which box is theirs: those in a mug say the mug's and not the
+/// table's, those in a sofa's seat the sofa's. Where no finder tells, the configured margins decide.
 bool MaskPool::is_part(const AcceptedMask& mask, const AcceptedMask& larger) const {
   const auto inside = static_cast<float>(mask.mask.overlap(larger.mask));
   if (inside <= config_.part_inside_share * static_cast<float>(mask.area)) return false;
+  if (!mask.cells.empty())
+    return mask.score * cells_->agreement(mask.cells, mask.extent_px) <
+           larger.score * cells_->agreement(mask.cells, larger.extent_px);
   const float margin = mask.own_region ? -config_.own_region_margin : config_.better_margin;
   return mask.score < larger.score + margin;
 }

@@ -10,6 +10,7 @@
 #include "ovimap/inference/masks/mask_source.h"
 #include "ovimap/inference/sam/sam_config.h"
 #include "ovimap/inference/sam/sam_network.h"
+#include "ovimap/inference/sam/thing_cells.h"
 
 namespace ovimap {
 
@@ -21,12 +22,16 @@ struct AcceptedMask {
   float score = 0;            ///< predicted IoU times stability, in [0, 1]
   bool own_region = false;    ///< fills the geometric region that prompted it
   std::vector<float> logits;  ///< size x size, for painting at full resolution
+  Eigen::AlignedBox2f extent_px;       ///< in the colour image
+  std::vector<Eigen::Vector2i> cells;  ///< of a finder: those whose middles it covers
 };
 
 /// Gathers the masks of one image and makes non-overlapping entities of them.
 class MaskPool {
  public:
-  MaskPool(const SamConfig& config, const LogitGrid& grid);
+  /// Where a finder looked at the image, its `cells` tell parts from things.
+  MaskPool(const SamConfig& config, const LogitGrid& grid,
+           std::optional<ThingCells> cells = std::nullopt);
 
   /// Takes one of the proposals that pass the quality tests, unless it repeats a mask held already.
   /// With the geometric `region` that prompted, the best whose size is like the region's; without,
@@ -55,6 +60,7 @@ class MaskPool {
   bool fills(const AcceptedMask& mask, const MaskPrompt& region) const;
   float share_inside(const AcceptedMask& mask, const MaskPrompt& region) const;
   void add(AcceptedMask mask);
+  void locate(AcceptedMask& mask) const;
   bool is_part(const AcceptedMask& mask, const AcceptedMask& larger) const;
   std::vector<std::size_t> shown_masks() const;
   std::vector<std::size_t> whole_of(std::vector<std::size_t> largest_first) const;
@@ -62,6 +68,7 @@ class MaskPool {
 
   SamConfig config_;
   LogitGrid grid_;
+  std::optional<ThingCells> cells_;
   std::vector<AcceptedMask> masks_;
 };
 

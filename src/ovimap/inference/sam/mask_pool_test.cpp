@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace ovimap {
 namespace {
 
@@ -198,6 +201,44 @@ TEST(MaskPool, PartsOfAHiddenMaskAreLookedAtWithoutIt) {
   pool.offer(proposals_of({{{2, 14, 26, 28}, 0.90f}}), &desk);
   pool.offer(proposals_of({{{26, 14, 28, 28}, 0.90f}}));  // inside the scene alone
   EXPECT_EQ(pool.entities().scores.size(), 3u);
+}
+
+/// A finder's cells of four image pixels, all of which see one box of grid pixels.
+ThingCells cells_that_see(const Box& box) {
+  constexpr int kSide = 16;
+  constexpr float kCellPx = 4;
+  FinderMaps maps{kSide, kSide, {}, {kCellPx, kCellPx}};
+  maps.values.assign(FinderMaps::kMaps * kSide * kSide, kSure);
+  const auto set = [&](int map, int x, int y, int grid_px) {
+    maps.values[static_cast<std::size_t>((map * kSide + y) * kSide + x)] =
+        std::log(std::max(0.01f, static_cast<float>(grid_px) / 2));
+  };
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {  // two grid pixels a cell
+      set(1, x, y, 2 * x + 1 - box.x0);
+      set(2, x, y, 2 * y + 1 - box.y0);
+      set(3, x, y, box.x1 - 2 * x - 1);
+      set(4, x, y, box.y1 - 2 * y - 1);
+    }
+  return {maps, 64, 64};
+}
+
+TEST(MaskPool, AFinderTellsAPartFromAThing) {
+  const Box small = {8, 8, 12, 12}, large = {0, 0, 20, 20};
+  for (const bool is_thing : {true, false}) {
+    MaskPool pool(test_config(), test_grid(), cells_that_see(is_thing ? small : large));
+    pool.offer(proposals_of({{small, 0.90f}}));
+    pool.offer(proposals_of({{large, 0.90f}}));
+    EXPECT_EQ(pool.entities().scores.size(), is_thing ? 2u : 1u);
+  }
+}
+
+TEST(MaskPool, WhereAFinderHasNoCellScoresDecide) {
+  const Box sliver = {8, 0, 9, 20}, large = {0, 0, 20, 20};  // no cell's middle lies in it
+  MaskPool pool(test_config(), test_grid(), cells_that_see(sliver));
+  pool.offer(proposals_of({{sliver, 0.90f}}));
+  pool.offer(proposals_of({{large, 0.90f}}));
+  EXPECT_EQ(pool.entities().scores.size(), 1u);
 }
 
 TEST(MaskPool, OfAKnownObjectOnlyALikeMaskIsTaken) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace ovimap {
 
@@ -143,8 +144,8 @@ Eigen::Vector2i PromptPlanner::to_grid(Eigen::Vector2f in_image_px) const {
 void PromptPlanner::append_known(std::vector<Candidate>& candidates) const {
   for (std::size_t i = 0; i < regions_.size(); ++i) {
     if (!regions_[i].known || states_[i] == RegionState::kDone) continue;
-    candidates.push_back({{box_prompt(regions_[i]), static_cast<int>(i), true, 0},
-                          static_cast<float>(regions_[i].area_px),
+    PlannedPrompt prompt{box_prompt(regions_[i]), static_cast<int>(i), true, 0};
+    candidates.push_back({std::move(prompt), static_cast<float>(regions_[i].area_px),
                           to_grid(regions_[i].interior_px)});
   }
 }

@@ -37,8 +37,8 @@ struct SamConfig {
 
   // Which masks become entities.
   float duplicate_iou = 0.7f;       ///< of two masks that overlap more, the better is kept
-  float part_inside_share = 0.8f;   ///< a mask this much inside a larger one is its part, unless it
-  float better_margin = 0.1f;       ///< ... scores at least this much more, or
+  float part_inside_share = 0.8f;   ///< so much inside a larger one it may be a part: a finder tells;
+  float better_margin = 0.1f;       ///< without one it is, unless it scores so much more, or
   float own_region_iou = 0.5f;      ///< ... fills a geometric region of its own to this degree and
   float own_region_margin = 0.05f;  ///< scores at most this much less
   float min_shown_share = 0.f;   ///< a mask of which smaller ones leave less in sight is no entity

@@ -20,30 +20,32 @@ std::optional<Entities> SamMaskSource::entities(const Frame& frame,
   const ImageFeatures features = network_.encode(frame.color);
   const LogitGrid grid = logit_grid(features.frame, network_.input_size_px(), network_.grid_size(),
                                     frame.color.width(), frame.color.height());
-  MaskPool pool(config_, grid);
+  const std::optional<ThingCells> cells = thing_cells(features, frame.color);
+  MaskPool pool(config_, grid, cells);
   if (config_.prompting == Prompting::kGrid)
     ask_on_grid(features, pool);
   else
-    ask_where_expected(features, prompts, pool);
+    ask_where_expected(features, cells, prompts, pool);
   return pool.entities();
 }
 
-std::vector<MaskPrompt> SamMaskSource::found_things(const ImageFeatures& features, int width_px,
-                                                    int height_px) const {
-  if (!finder_) return {};
-  return things_in(finder_->look(network_.embedding(features), features.frame), width_px,
-                   height_px, config_.finder);
+std::optional<ThingCells> SamMaskSource::thing_cells(const ImageFeatures& features,
+                                                     const RgbImage& image) const {
+  if (!finder_) return std::nullopt;
+  return ThingCells(finder_->look(network_.embedding(features), features.frame), image.width(),
+                    image.height());
 }
 
 void SamMaskSource::ask_where_expected(const ImageFeatures& features,
+                                       const std::optional<ThingCells>& cells,
                                        std::span<const MaskPrompt> prompts, MaskPool& pool) const {
   // Objects of a map have as many prompts of their own: new ones are to be found beside them.
   const auto objects = static_cast<int>(std::count_if(
       prompts.begin(), prompts.end(), [](const MaskPrompt& prompt) { return prompt.known; }));
   const int allowed =
       config_.max_decoder_prompts + std::min(objects, config_.max_decoder_prompts);
-  std::vector<MaskPrompt> all =
-      found_things(features, pool.grid().image_width_px, pool.grid().image_height_px);
+  std::vector<MaskPrompt> all;
+  if (cells) all = things_in(*cells, config_.finder);
   all.insert(all.end(), prompts.begin(), prompts.end());
   ask_where_unexplained(features, all, allowed, pool);
 }

@@ -25,12 +25,12 @@ class SamMaskSource : public MaskSource {
                                    std::span<const MaskPrompt> prompts) override;
 
  private:
-  void ask_where_expected(const ImageFeatures& features, std::span<const MaskPrompt> prompts,
-                          MaskPool& pool) const;
+  void ask_where_expected(const ImageFeatures& features, const std::optional<ThingCells>& cells,
+                          std::span<const MaskPrompt> prompts, MaskPool& pool) const;
   void ask_where_unexplained(const ImageFeatures& features, std::span<const MaskPrompt> regions,
                              int prompts_allowed, MaskPool& pool) const;
-  std::vector<MaskPrompt> found_things(const ImageFeatures& features, int width_px,
-                                       int height_px) const;
+  std::optional<ThingCells> thing_cells(const ImageFeatures& features,
+                                        const RgbImage& image) const;
   void ask_on_grid(const ImageFeatures& features, MaskPool& pool) const;
 
   SamNetwork network_;

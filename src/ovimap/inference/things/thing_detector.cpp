@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "ovimap/base/error.h"
+#include "ovimap/geometry/box_overlap.h"
 #include "ovimap/inference/models/image_tensor.h"
 
 namespace ovimap {
@@ -56,14 +57,6 @@ ThingDetector::Rows rows_of(const FloatTensor& tensor, Eigen::Index columns) {
 
 float ScoreRatio::log_ratio(float score, float background) const {
   return offset + slope * std::log((score + floor) / (background + floor));
-}
-
-float overlap(const Eigen::AlignedBox2f& a, const Eigen::AlignedBox2f& b) {
-  const auto area = [](const Eigen::AlignedBox2f& box) {
-    return box.isEmpty() ? 0.f : box.sizes().prod();
-  };
-  const float shared = area(a.intersection(b)), all = area(a) + area(b) - shared;
-  return all > 0.f ? shared / all : 0.f;
 }
 
 ThingDetector::ThingDetector(const ModelFolder& model, const RuntimeConfig& runtime)

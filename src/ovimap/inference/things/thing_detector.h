@@ -54,7 +54,4 @@ class ThingDetector {
   ScoreRatio ratio_;
 };
 
-/// Intersection over union of a box and an object's.
-float overlap(const Eigen::AlignedBox2f& a, const Eigen::AlignedBox2f& b);
-
 }  // namespace ovimap

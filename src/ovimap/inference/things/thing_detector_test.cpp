@@ -15,13 +15,6 @@ Eigen::AlignedBox2f box(float left, float top, float right, float bottom) {
   return {Eigen::Vector2f(left, top), Eigen::Vector2f(right, bottom)};
 }
 
-TEST(Overlap, IsIntersectionOverUnion) {
-  EXPECT_FLOAT_EQ(overlap(box(0, 0, 1, 1), box(0, 0, 1, 1)), 1.f);
-  EXPECT_FLOAT_EQ(overlap(box(0, 0, 1, 1), box(0.5f, 0, 1.5f, 1)), 1.f / 3);
-  EXPECT_FLOAT_EQ(overlap(box(0, 0, 0.4f, 1), box(0.5f, 0, 1, 1)), 0.f);
-  EXPECT_FLOAT_EQ(overlap(box(1, 1, 0, 0), box(0, 0, 1, 1)), 0.f) << "a box turned inside out";
-}
-
 TEST(ScoreRatio, IsMeasuredAgainstTheBackground) {
   const ScoreRatio ratio{0.03f, 2.f, -1.f};
   EXPECT_FLOAT_EQ(ratio.log_ratio(0.1f, 0.1f), -1.f);

@@ -10,6 +10,7 @@
 #include "ovimap/base/error.h"
 #include "ovimap/eval/geometry/nearest.h"
 #include "ovimap/frames/frame/frame_source.h"
+#include "ovimap/geometry/box_overlap.h"
 #include "ovimap/io/truth/truth.h"
 #include "ovimap/io/truth/truth_changes.h"
 #include "ovimap/map/surface/mesh_extraction.h"
@@ -77,11 +78,9 @@ class LookedThrough {
   float through_m_;
 };
 
+/// Where a thing is in neither, both agree.
 float box_overlap(const Eigen::AlignedBox3f& a, const Eigen::AlignedBox3f& b) {
-  if (a.isEmpty() || b.isEmpty()) return a.isEmpty() && b.isEmpty() ? 1.f : 0.f;
-  const Eigen::AlignedBox3f both = a.intersection(b);
-  if (both.isEmpty()) return 0.f;
-  return both.volume() / (a.volume() + b.volume() - both.volume());
+  return a.isEmpty() && b.isEmpty() ? 1.f : overlap(a, b);
 }
 
 /// One event for each change, the best first come.
