@@ -44,8 +44,14 @@ class Reader:
     def __init__(self, program, folder):
         self.program, self.folder = program, folder
 
+    def number(self):
+        """What section 4 answered with, whichever number that object got."""
+        asked = self.run('ovimap query room.ovimap "sofa" --json')
+        return str(json.loads(asked.stdout)["results"][0]["instances"][0]["id"])
+
     def words(self, command):
         name, *arguments = shlex.split(command)
+        arguments = [self.number() if argument == "NUMBER" else argument for argument in arguments]
         return [*([self.program] if name == "ovimap" else [sys.executable, "-m", TOOLS[name]]), *arguments]
 
     def run(self, command):

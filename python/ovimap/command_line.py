@@ -42,9 +42,12 @@ def run_command(name: str, options: argparse.Namespace, *, extra: str, packages:
         said = str(fault)
     except OSError as fault:
         said = line_of(fault)
-    except ModuleNotFoundError as fault:
-        if fault.name not in packages:
+    except ImportError as fault:
+        package = (fault.name or "").split(".")[0]
+        if package not in packages:
             raise
-        said = f"{fault.name} is not installed; pip install 'ovimap[{extra}]'"
+        said = f"{package} cannot be loaded ({fault}); install the library of the system that it names (docs/cameras.md)"
+        if isinstance(fault, ModuleNotFoundError):
+            said = f"{package} is not installed; pip install 'ovimap[{extra}]'"
     print(f"{name}: {said}", file=sys.stderr)
     return MENDABLE

@@ -264,6 +264,15 @@ def test_no_server_and_no_library_are_told(recording, capsys, monkeypatch):
     assert capsys.readouterr().err == "ovimap-camera: pyrealsense2 is not installed; pip install 'ovimap[realsense]'\n"
 
 
+def test_a_library_that_lacks_one_of_the_system_is_told(tmp_path, capsys, monkeypatch):
+    (tmp_path / "pyrealsense2.py").write_text("raise ImportError('libusb-1.0.so.0: no such file', name='pyrealsense2.pyrealsense2')")
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(__import__("sys").modules, "pyrealsense2")
+    assert main(["realsense"]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith("ovimap-camera: pyrealsense2 cannot be loaded (libusb-1.0.so.0: no such file); install")
+
+
 def test_oak_messages_become_a_rig_and_images():
     dai = pytest.importorskip("depthai", reason="depthai is not installed; run tools/setup.sh --tests")
     from ovimap.cameras.oak import image_of, rig_of_messages
