@@ -74,9 +74,9 @@ class Attacked:
 
     @classmethod
     def tearDownClass(cls):
-        if cls.server:
-            cls.server.stop()
+        code = cls.server.stop()[0] if cls.server else 0
         cls.scratch.cleanup()
+        assert code == 0, f"the server ended with {code}"  # a sanitizer's report alone shows here
 
     def setUp(self):
         cls = type(self)

@@ -27,6 +27,9 @@ BUSY_FACTOR = 10  # of the echo's time, on top
 TRIES = 3
 PATIENCE_S = 10.0  # more than the normal client has
 SHORTEST_WATCH_S = 1.0  # that is about a hundred requests
+# ThreadSanitizer keeps several bytes for each byte in use and makes the program many times slower: what is promised of memory and of
+# time is promised of the program without it. That everybody is answered holds with it as well.
+KEEPS_BOUNDS = os.environ.get("OVIMAP_SANITIZER") != "thread"
 
 
 class KeptWaiting(AssertionError):
@@ -70,6 +73,8 @@ def fault_of(requests, mapping):
     failed = [request for request in requests if request[1] < 0]
     if failed:
         return f"{len(failed)} of {len(requests)} requests of the normal client failed"
+    if not KEEPS_BOUNDS:
+        return ""
     took, echo = (sorted(column) for column in list(zip(*requests))[1:])
     usual = int(USUAL_SHARE * (len(took) - 1))
     allowed, slowest_allowed = USUAL_S + BUSY_FACTOR * echo[usual], SLOWEST_S + BUSY_FACTOR * echo[-1]
@@ -135,7 +140,7 @@ class Server:
         fault = fault_of(self.witness.requests(), mapping)
         if fault:
             raise KeptWaiting(fault)
-        assert not bounded_memory or grown < MOST_GROWTH_BYTES, f"resident memory grew by {grown >> 20} MiB"
+        assert not (bounded_memory and KEEPS_BOUNDS) or grown < MOST_GROWTH_BYTES, f"resident memory grew by {grown >> 20} MiB"
         assert self.ask("GET", "/api/map")[0] == 200
 
     def stop(self):
