@@ -21,21 +21,21 @@ EntityConsensus after(const std::vector<Frame>& frames, float apart_weight = 0.5
 
 TEST(EntityConsensus, MostFramesDecide) {
   const Frame joined = {{1, 7}, {2, 7}}, apart = {{1, 7}, {2, 3}};
-  EXPECT_EQ(after({joined, apart}).objects().at(2), 1u);
-  EXPECT_EQ(after({joined, apart, apart}).objects().at(2), 2u) << "weighed alike: no joining";
-  EXPECT_EQ(after({joined, apart}, 1.f).objects().at(2), 2u);
+  EXPECT_EQ(after({joined, apart}).settle().at(2), 1u);
+  EXPECT_EQ(after({joined, apart, apart}).settle().at(2), 2u) << "weighed alike: no joining";
+  EXPECT_EQ(after({joined, apart}, 1.f).settle().at(2), 2u);
 }
 
 TEST(EntityConsensus, AMaskThatOnceSpansTwoObjectsDoesNoHarm) {
   std::vector<Frame> frames(6, {{1, 1}, {2, 1}, {3, 2}, {4, 2}});
   frames.push_back({{1, 1}, {2, 1}, {3, 1}, {4, 1}});
-  const std::map<Label, Label> objects = after(frames).objects();
+  const std::map<Label, Label> objects = after(frames).settle();
   EXPECT_EQ(objects, (std::map<Label, Label>{{1, 1}, {2, 1}, {3, 3}, {4, 3}}));
 }
 
 TEST(EntityConsensus, APartStaysWithItsObjectThoughItIsNeverSeenWithAllOfIt) {
   const std::map<Label, Label> objects =
-      after({{{1, 1}, {2, 1}}, {{2, 1}, {3, 1}}, {{3, 1}, {4, 1}}}).objects();
+      after({{{1, 1}, {2, 1}}, {{2, 1}, {3, 1}}, {{3, 1}, {4, 1}}}).settle();
   for (const auto& [root, object] : objects) EXPECT_EQ(object, 1u) << root;
   EXPECT_EQ(objects.size(), 4u);
 }
@@ -47,9 +47,9 @@ TEST(EntityConsensus, TheOrderOfFramesDoesNotMatter) {
     for (Label root = 1; root <= 12; ++root)
       if (random() % 3 != 0)
         frame[root] = static_cast<std::uint16_t>(root / 3 + (random() % 4 == 0) + 1);
-  const std::map<Label, Label> objects = after(frames).objects();
+  const std::map<Label, Label> objects = after(frames).settle();
   std::shuffle(frames.begin(), frames.end(), random);
-  EXPECT_EQ(after(frames).objects(), objects);
+  EXPECT_EQ(after(frames).settle(), objects);
   EXPECT_EQ(objects.size(), 12u);
 }
 
@@ -91,33 +91,73 @@ TEST(EntityConsensus, IsGreedyAdditiveEdgeContraction) {
       for (Label root = 1; root <= 9; ++root)
         if (random() % 3 != 0)
           frame[root] = static_cast<std::uint16_t>((root + random() % 4) / 3 + 1);
-    EXPECT_EQ(after(frames).objects(), plain_objects(frames, 0.5)) << "round " << round;
+    EXPECT_EQ(after(frames).settle(), plain_objects(frames, 0.5)) << "round " << round;
   }
 }
 
-TEST(EntityConsensus, IsTheSameWhetherAskedAfterEveryFrameOrOnce) {
+std::vector<Frame> random_frames(std::mt19937& random, int count) {
+  std::vector<Frame> frames(static_cast<std::size_t>(count));
+  for (Frame& frame : frames)
+    for (Label root = 1; root <= 30; ++root)
+      if (random() % 4 == 0) frame[root] = static_cast<std::uint16_t>(root / 4 + random() % 2 + 1);
+  return frames;
+}
+
+TEST(EntityConsensus, SettlesAlikeHoweverOftenItWasUpdated) {
   std::mt19937 random(3);
   for (int round = 0; round < 20; ++round) {
     EntityConsensus often;
-    for (int i = 0; i < 40; ++i) {
-      Frame frame;
-      for (Label root = 1; root <= 30; ++root)
-        if (random() % 4 == 0) frame[root] = static_cast<std::uint16_t>(root / 4 + random() % 2 + 1);
+    for (const Frame& frame : random_frames(random, 40)) {
       often.observe(frame);
-      EntityConsensus once;
-      once.restore(often.sightings(), often.frames());
-      ASSERT_EQ(often.objects(), once.objects()) << "round " << round << ", frame " << i;
+      often.update();
     }
+    EntityConsensus once;
+    once.restore(often.sightings(), often.frames(), {});
+    ASSERT_EQ(often.settle(), once.settle()) << "round " << round;
+  }
+}
+
+TEST(EntityConsensus, LooksAtObjectsInSightAlone) {
+  EntityConsensus consensus = after({{{1, 1}, {2, 1}, {3, 2}, {4, 2}}});
+  EXPECT_EQ(consensus.update(), (std::map<Label, Label>{{1, 1}, {2, 1}, {3, 3}, {4, 3}}));
+  EXPECT_TRUE(consensus.update().empty()) << "nothing came since";
+  consensus.observe({{2, 5}, {5, 5}});
+  EXPECT_EQ(consensus.update(), (std::map<Label, Label>{{1, 1}, {2, 1}, {5, 1}}));
+  consensus.observe({{1, 1}, {2, 2}});
+  EXPECT_EQ(consensus.update().at(2), 1u);
+  for (int i = 0; i < 2; ++i) consensus.observe({{1, 1}, {2, 2}});
+  EXPECT_EQ(consensus.update(), (std::map<Label, Label>{{1, 1}, {2, 2}, {5, 2}})) << "taken apart";
+}
+
+TEST(EntityConsensus, UpdatesWhatIsAlwaysInSightAsItSettles) {
+  std::mt19937 random(8);
+  EntityConsensus consensus;
+  for (int i = 0; i < 20; ++i) {
+    Frame frame;
+    for (Label root = 1; root <= 30; ++root)
+      frame[root] = static_cast<std::uint16_t>(root / 4 + random() % 2 + 1);
+    consensus.observe(frame);
+    const std::map<Label, Label> updated = consensus.update();
+    ASSERT_EQ(updated, consensus.settle()) << "frame " << i;
   }
 }
 
 TEST(EntityConsensus, GoesOnWhereItStopped) {
-  const std::vector<Frame> begun = {{{1, 7}, {2, 7}}, {{1, 7}, {2, 3}}};
-  EntityConsensus whole = after(begun), resumed;
-  resumed.restore(whole.sightings(), whole.frames());
-  for (EntityConsensus* consensus : {&whole, &resumed}) consensus->observe({{1, 7}, {2, 3}});
+  std::mt19937 random(5);
+  const std::vector<Frame> frames = random_frames(random, 40);
+  EntityConsensus whole, resumed;
+  std::map<Label, Label> objects;
+  for (int i = 0; i < 20; ++i) {
+    whole.observe(frames[static_cast<std::size_t>(i)]);
+    for (const auto& [root, object] : whole.update()) objects[root] = object;
+  }
+  resumed.restore(whole.sightings(), whole.frames(), objects);
+  for (int i = 20; i < 40; ++i) {
+    for (EntityConsensus* consensus : {&whole, &resumed})
+      consensus->observe(frames[static_cast<std::size_t>(i)]);
+    ASSERT_EQ(resumed.update(), whole.update()) << "frame " << i;
+  }
   EXPECT_EQ(resumed.sightings(), whole.sightings());
-  EXPECT_EQ(resumed.objects(), whole.objects());
 }
 
 }  // namespace

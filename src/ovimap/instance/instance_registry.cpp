@@ -59,7 +59,7 @@ void InstanceRegistry::observe(const Segments& segments,
                                std::int64_t frame_index, bool has_entities, LabelForest& forest) {
   if (config_.instances == InstanceReading::kConsensus) {
     see_entities(segments, associations, forest, has_entities);
-    find_objects();
+    group(consensus_.update());
   } else {
     const bool by_votes = has_entities && config_.instances == InstanceReading::kEntityVotes;
     if (by_votes) vote(segments, associations, forest);
@@ -131,33 +131,37 @@ void InstanceRegistry::see_entities(const Segments& segments,
   consensus_.observe(entity_of_root);
 }
 
+void InstanceRegistry::settle() {
+  if (config_.instances == InstanceReading::kConsensus) group(consensus_.settle());
+}
+
 /// An object goes by the oldest id among its super-points. The others are its aliases for as long
 /// as they belong to it.
-void InstanceRegistry::find_objects() {
-  const std::map<Label, Label>& object_of = consensus_.objects();
-  const auto object = [&](Label root) {
-    const auto found = object_of.find(root);
-    return found == object_of.end() ? root : found->second;
-  };
+void InstanceRegistry::group(const std::map<Label, Label>& object_of) {
   std::map<Label, InstanceId> oldest;
-  for (const auto& [root, point] : super_points_) {
-    if (point.votes.empty()) continue;
-    const InstanceId own = point.votes.begin()->first;
-    const auto [found, first] = oldest.try_emplace(object(root), own);
+  for (const auto& [root, object] : object_of) {
+    const InstanceId own = own_id(root);
+    if (own == 0) continue;
+    const auto [found, first] = oldest.try_emplace(object, own);
     if (!first) found->second = std::min(found->second, own);
   }
-  std::vector<Label> moved;
-  for (const auto& [root, point] : super_points_) {
-    if (point.votes.empty()) continue;
-    const InstanceId own = point.votes.begin()->first, id = oldest.at(object(root));
-    const auto before = member_of_.find(root);
-    if (before == member_of_.end() || before->second != id) moved.push_back(root);
+  for (const auto& [root, object] : object_of) {
+    const InstanceId own = own_id(root);
+    if (own == 0) continue;
+    const InstanceId id = oldest.at(object);
     if (own == id)
       aliases_.erase(own);
     else
       aliases_[own] = id;
   }
-  for (const Label root : moved) regroup(root);
+  for (const auto& [root, object] : object_of) regroup(root);
+}
+
+/// That which a super-point got when it was first seen in an entity; 0: a map file may lack it.
+InstanceId InstanceRegistry::own_id(Label root) const {
+  const auto found = super_points_.find(root);
+  if (found == super_points_.end() || found->second.votes.empty()) return 0;
+  return found->second.votes.begin()->first;
 }
 
 void InstanceRegistry::merge_super_points(std::span<const SegmentAssociation> associations,
@@ -303,8 +307,13 @@ void InstanceRegistry::restore(State state) {
   super_points_ = std::move(state.super_points);
   aliases_ = std::move(state.aliases);
   merging_.restore(std::move(state.pair_counts));
+  std::map<InstanceId, Label> object_with;
+  std::map<Label, Label> object_of;
+  for (const auto& [root, point] : super_points_)
+    if (!point.votes.empty())
+      object_of[root] = object_with.try_emplace(resolve(own_id(root)), root).first->second;
   consensus_.restore(std::move(state.entity_sightings),
-                     static_cast<std::uint32_t>(state.entity_frames));
+                     static_cast<std::uint32_t>(state.entity_frames), object_of);
   frames_ = static_cast<std::uint32_t>(state.frames);
   last_id_ = state.last_id;
   members_.clear();

@@ -72,6 +72,10 @@ class InstanceRegistry {
   void observe(const Segments& segments, std::span<const SegmentAssociation> associations,
                std::int64_t frame_index, bool has_entities, LabelForest& forest);
 
+  /// After the last frame: finds the objects anew from all that was seen. observe() does so among
+  /// those in sight.
+  void settle();
+
   /// The instance of a super-point root; 0 when it is none (background, too little evidence).
   InstanceId instance_of(Label root) const;
 
@@ -121,7 +125,8 @@ class InstanceRegistry {
             const LabelForest& forest);
   void see_entities(const Segments& segments, std::span<const SegmentAssociation> associations,
                     const LabelForest& forest, bool has_entities);
-  void find_objects();
+  void group(const std::map<Label, Label>& object_of);
+  InstanceId own_id(Label root) const;
   void merge_super_points(std::span<const SegmentAssociation> associations, LabelForest& forest);
   void absorb(Label keep, Label drop);
   bool supported(const SuperPoint& point, int votes) const;

@@ -23,7 +23,8 @@ DepthSurface allocate(int width, int height, int radius_px) {
           bytes,
           Image<float>(width, height),
           Image<Eigen::Vector3f>(width, height, Eigen::Vector3f::Zero()),
-          Image<float>(width, height)};
+          Image<float>(width, height),
+          FrameNoise{}};
 }
 
 }  // namespace

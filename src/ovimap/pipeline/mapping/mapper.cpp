@@ -208,6 +208,10 @@ void Mapper::await_encoder() {
 
 void Mapper::finish() {
   {
+    auto t = timers_.measure("registry");
+    registry_.settle();
+  }
+  {
     auto t = timers_.measure("await_encoder");
     builder_->finish(map_.labels());
   }
