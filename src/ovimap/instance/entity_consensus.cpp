@@ -3,7 +3,6 @@
 #include "ovimap/instance/entity_consensus.h"
 
 #include <algorithm>
-#include <ranges>
 #include <utility>
 
 #include "ovimap/base/config.h"
@@ -36,9 +35,10 @@ std::map<Label, Label> EntityConsensus::update() {
 }
 
 std::map<Label, Label> EntityConsensus::settle() {
-  const auto all = sightings_ | std::views::keys;
+  std::set<Label> all;
+  for (const auto& [root, seen] : sightings_) all.insert(all.end(), root);
   shown_.clear();
-  return contract({all.begin(), all.end()});
+  return contract(all);
 }
 
 /// `roots`: of an object all or none.
