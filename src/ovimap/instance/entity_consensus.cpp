@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "ovimap/base/config.h"
+#include "ovimap/instance/judged_contraction.h"
 
 namespace ovimap {
 
@@ -31,20 +32,28 @@ std::map<Label, Label> EntityConsensus::update() {
     const std::vector<Label>& members = members_.at(object);
     roots.insert(members.begin(), members.end());
   }
-  return contract(roots);
+  return regrouped(contract_edges(std::vector<Label>(roots.begin(), roots.end()), sightings_,
+                                  config_.apart_weight));
 }
 
 std::map<Label, Label> EntityConsensus::settle() {
-  std::set<Label> all;
-  for (const auto& [root, seen] : sightings_) all.insert(all.end(), root);
-  shown_.clear();
-  return contract(all);
+  return regrouped(contract_edges(take_all(), sightings_, config_.apart_weight));
 }
 
-/// `roots`: of an object all or none.
-std::map<Label, Label> EntityConsensus::contract(const std::set<Label>& roots) {
-  const std::vector<Label> ascending(roots.begin(), roots.end());
-  std::map<Label, Label> object_of = contract_edges(ascending, sightings_, config_.apart_weight);
+std::map<Label, Label> EntityConsensus::settle(const SuperPointShapes& shapes) {
+  return regrouped(contract_by_judge(take_all(), sightings_, shapes, config_.apart_weight));
+}
+
+/// Every root; none waits for update() any more.
+std::vector<Label> EntityConsensus::take_all() {
+  shown_.clear();
+  std::vector<Label> all;
+  for (const auto& [root, seen] : sightings_) all.push_back(root);
+  return all;
+}
+
+/// Notes what belongs together: of an object all roots or none.
+std::map<Label, Label> EntityConsensus::regrouped(std::map<Label, Label> object_of) {
   regroup(object_of);
   return object_of;
 }

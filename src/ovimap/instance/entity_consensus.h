@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ovimap/instance/edge_contraction.h"
+#include "ovimap/instance/super_point_shapes.h"
 
 namespace ovimap {
 
@@ -46,6 +47,8 @@ class EntityConsensus {
 
   /// The same of all super-points.
   std::map<Label, Label> settle();
+  /// Of all super-points by a judge that looks at their surfaces as well (contract_by_judge).
+  std::map<Label, Label> settle(const SuperPointShapes& shapes);
 
   const EntitySightings& sightings() const { return sightings_; }
   std::uint32_t frames() const { return frames_; }
@@ -56,7 +59,8 @@ class EntityConsensus {
                const std::map<Label, Label>& objects);
 
  private:
-  std::map<Label, Label> contract(const std::set<Label>& roots);
+  std::vector<Label> take_all();
+  std::map<Label, Label> regrouped(std::map<Label, Label> object_of);
   void regroup(const std::map<Label, Label>& object_of);
 
   ConsensusConfig config_;

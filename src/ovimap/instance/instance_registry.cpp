@@ -50,6 +50,8 @@ void list_fields(InstanceConfig& config, ConfigFields& fields) {
                                      "what an instance is when there are 2D masks");
   fields.add("min_vote_share", config.min_vote_share, 0.f, 100.f,
              "votes needed per frame without such a vote");
+  fields.add("judged", config.judged,
+             "objects are found at the end by a judge of super-points that looks at their surfaces");
   list_fields(config.consensus, fields);
   list_fields(config.merging, fields);
 }
@@ -133,6 +135,10 @@ void InstanceRegistry::see_entities(const Segments& segments,
 
 void InstanceRegistry::settle() {
   if (config_.instances == InstanceReading::kConsensus) group(consensus_.settle());
+}
+
+void InstanceRegistry::settle(const SuperPointShapes& shapes) {
+  group(consensus_.settle(shapes));
 }
 
 /// An object goes by the oldest id among its super-points. The others are its aliases for as long

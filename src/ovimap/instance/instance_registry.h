@@ -28,6 +28,8 @@ struct InstanceConfig {
   InstanceReading instances = InstanceReading::kConsensus;
   float min_vote_share =
       0.1f;  ///< votes needed per frame in which the super-point was seen without voting so
+  bool judged = true;  ///< kConsensus: settle() asks a judge that was trained on rendered rooms, who
+                       ///< looks at surfaces as well as at masks
   ConsensusConfig consensus;
   MergeConfig merging;
 };
@@ -75,6 +77,8 @@ class InstanceRegistry {
   /// After the last frame: finds the objects anew from all that was seen. observe() does so among
   /// those in sight.
   void settle();
+  /// The same by what the map's surface tells as well; for consensus alone.
+  void settle(const SuperPointShapes& shapes);
 
   /// The instance of a super-point root; 0 when it is none (background, too little evidence).
   InstanceId instance_of(Label root) const;

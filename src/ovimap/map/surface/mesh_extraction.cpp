@@ -145,16 +145,6 @@ class BlockMesher {
   const std::vector<std::uint32_t>& slots_;
 };
 
-void add_normals(Mesh& mesh) {
-  mesh.normals.assign(mesh.vertices.size(), Eigen::Vector3f::Zero());
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const Eigen::Vector3f twice_area =
-        (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
-    for (std::uint32_t vertex : {a, b, c}) mesh.normals[vertex] += twice_area;
-  }
-  for (Eigen::Vector3f& normal : mesh.normals) normal.normalize();
-}
-
 /// Joins the parts and leaves out vertices that no triangle uses (edges at the border of observed
 /// space).
 Mesh join(const std::vector<BlockMesh>& meshes, std::uint32_t vertex_count) {
@@ -181,6 +171,16 @@ Mesh join(const std::vector<BlockMesh>& meshes, std::uint32_t vertex_count) {
 }
 
 }  // namespace
+
+void add_normals(Mesh& mesh) {
+  mesh.normals.assign(mesh.vertices.size(), Eigen::Vector3f::Zero());
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Eigen::Vector3f twice_area =
+        (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
+    for (std::uint32_t vertex : {a, b, c}) mesh.normals[vertex] += twice_area;
+  }
+  for (Eigen::Vector3f& normal : mesh.normals) normal.normalize();
+}
 
 Mesh extract_mesh(const VoxelMap& map) {
   const std::vector<std::uint32_t> slots = map.ordered_slots();

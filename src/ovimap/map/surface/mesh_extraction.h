@@ -11,4 +11,7 @@ namespace ovimap {
 /// super-point label of each vertex (merges resolved). Equal maps give equal meshes.
 Mesh extract_mesh(const VoxelMap& map);
 
+/// Gives each vertex the mean normal of the triangles around it, weighed by their areas.
+void add_normals(Mesh& mesh);
+
 }  // namespace ovimap

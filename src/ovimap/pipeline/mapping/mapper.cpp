@@ -208,8 +208,11 @@ void Mapper::await_encoder() {
 
 void Mapper::finish() {
   {
-    auto t = timers_.measure("registry");
-    registry_.settle();
+    auto t = timers_.measure("objects");
+    if (config_.instance.instances == InstanceReading::kConsensus && config_.instance.judged)
+      registry_.settle(measure_super_points(map_));
+    else
+      registry_.settle();
   }
   {
     auto t = timers_.measure("await_encoder");

@@ -1,0 +1,141 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The ovimap authors
+# SPDX-License-Identifier: Apache-2.0
+"""Trains the judge that says which super-points are one thing and writes src/ovimap/instance/pair_judge_weights.h: renders rooms and desks
+of the tuned halves of the benchmarks, of seeds that no benchmark and no other network uses, maps them with MobileSAM's masks and with
+true ones, and learns from all pairs of clusters that a grouping meets (bench/quality/pair_samples.cpp).
+
+    python3 tools/models/train_pair_judge.py build/release/bin WORK_FOLDER    # needs NumPy; an hour on two cores
+
+In every other round the sampler follows the judge that it was built with, so build again and train again to learn from one's mistakes.
+A broken-off run goes on where it stopped.
+"""
+
+import argparse
+import pathlib
+import subprocess
+
+import numpy as np
+
+HEADER = pathlib.Path(__file__).parents[2] / "src/ovimap/instance/pair_judge_weights.h"
+INPUTS, HIDDEN, NETWORKS = 21, 24, 4  # PairFeature::kCount; several networks that differ in their chance err less together
+STEPS, BATCH, RATE, DECAY = 5000, 1024, 3e-3, 1e-3
+WALK, STILL = ["--fps", "1"], ["--noise", "--frames", "40"]
+DESKS, ROOMS = ["writing-desk", "breakfast-table", "book-shelf"], ["living-room", "bedroom", "kitchen"]
+# Kind, seed, options, every how many frames masks are asked for.
+SCENES = [(kind, seed, WALK if kind in DESKS else STILL, 2) for seed in (201, 202) for kind in DESKS + ROOMS] + [("courtyard", 201, WALK, 3)]
+TRUE_MASKS = {(kind, 201) for kind in DESKS + ROOMS} | {("writing-desk", 202)}
+
+
+def run(*command):
+    subprocess.run([str(word) for word in command], check=True, stdout=subprocess.DEVNULL)
+
+
+def mapped(programs, work, scene, name, masks, interval):
+    """The map of a recording; masks of the network are asked for once and kept."""
+    file = work / "maps" / f"{name}.ovimap"
+    if not file.exists():
+        if masks == "sam":
+            masks = work / "masks" / name
+            run(programs / "ovimap", "masks", scene, "--frames", f"::{interval}", "-o", masks)
+        run(programs / "ovimap", "run", scene, "--masks", masks, "--encoder", "none",
+            *(["--set", f"mask_interval={interval}"] if masks == "gt" else []), "-o", file)  # fmt: skip
+    return file
+
+
+def samples(programs, work):
+    """Features and verdicts of each map's pairs."""
+    for folder in ("maps", "pairs"):
+        (work / folder).mkdir(parents=True, exist_ok=True)
+    for kind, seed, options, interval in SCENES:
+        rendered = work / "scenes" / f"{kind}-{seed}"
+        if not (rendered / "done").exists():
+            run(programs / "ovimap", "synth", rendered, "--room", kind, "--seed", seed, *options)
+            (rendered / "done").touch()
+        scene = next(path.parent for path in rendered.glob("*/results"))
+        for masks in ["sam"] + ["gt"] * ((kind, seed) in TRUE_MASKS):
+            name = f"{kind}-{seed}-{masks}"
+            file = work / "pairs" / name
+            run(programs / "ovimap_pair_samples", mapped(programs, work, scene, name, masks, interval), scene, file)
+            values = np.fromfile(file, np.float32).reshape(-1, INPUTS + 1)
+            print(f"{name}: {len(values)} pairs, {100 * values[:, INPUTS].mean():.0f} % of one thing", flush=True)
+            yield values[:, :INPUTS], values[:, INPUTS]
+
+
+class Network:
+    """Two hidden layers, trained by Adam on the cross entropy."""
+
+    def __init__(self, chance):
+        def weights(outputs, inputs, gain):
+            return chance.normal(0, np.sqrt(gain / inputs), (outputs, inputs))
+
+        self.parameters = [weights(HIDDEN, INPUTS, 2), np.zeros(HIDDEN), weights(HIDDEN, HIDDEN, 2), np.zeros(HIDDEN), weights(1, HIDDEN, 1)[0], np.zeros(1)]
+        self.means, self.squares = ([np.zeros_like(p) for p in self.parameters] for _ in range(2))
+        self.steps = 0
+
+    def gradients(self, inputs, verdicts):
+        first, first_bias, second, second_bias, last, last_bias = self.parameters
+        a = np.maximum(inputs @ first.T + first_bias, 0)
+        b = np.maximum(a @ second.T + second_bias, 0)
+        error = (1 / (1 + np.exp(-(b @ last + last_bias[0]))) - verdicts) / len(verdicts)
+        at_b = np.outer(error, last) * (b > 0)
+        at_a = at_b @ second * (a > 0)
+        return at_a.T @ inputs, at_a.sum(0), at_b.T @ a, at_b.sum(0), b.T @ error, np.array([error.sum()])
+
+    def learn(self, inputs, verdicts, rate):
+        self.steps += 1
+        for p, mean, square, g in zip(self.parameters, self.means, self.squares, self.gradients(inputs, verdicts)):
+            mean += 0.1 * (g - mean)
+            square += 0.001 * (g * g - square)
+            step = mean / (1 - 0.9**self.steps) / (np.sqrt(square / (1 - 0.999**self.steps)) + 1e-8)
+            p -= rate * (step + (DECAY * p if p.ndim > 1 else 0))
+
+
+def trained(scenes, mean, inverse_deviation, seed):
+    """Every scene is heard as much as any other."""
+    chance = np.random.default_rng(seed)
+    network, share = Network(chance), BATCH // len(scenes) + 1
+    for step in range(STEPS):
+        chosen = [(inputs[i], verdicts[i]) for inputs, verdicts in scenes for i in [chance.integers(0, len(verdicts), share)]]
+        inputs, verdicts = (np.concatenate(part) for part in zip(*chosen))
+        network.learn((inputs - mean) * inverse_deviation, verdicts, RATE * 0.5 * (1 + np.cos(np.pi * step / STEPS)))
+    return network
+
+
+def literal(values):
+    if values.ndim == 0:
+        number = f"{values:.6g}"
+        return number + ("f" if "." in number or "e" in number else ".f")
+    return "{" + (", " if values.ndim == 1 else ",\n    ").join(literal(value) for value in values) + "}"
+
+
+def header(networks, mean, inverse_deviation):
+    stacked = [np.stack(parameter) for parameter in zip(*(network.parameters for network in networks))]
+    arrays = [("kMean[kInputs]", mean), ("kInverseDeviation[kInputs]", inverse_deviation),
+              ("kFirst[kNetworks][kHidden][kInputs]", stacked[0]), ("kFirstBias[kNetworks][kHidden]", stacked[1]),
+              ("kSecond[kNetworks][kHidden][kHidden]", stacked[2]), ("kSecondBias[kNetworks][kHidden]", stacked[3]),
+              ("kLast[kNetworks][kHidden]", stacked[4]), ("kLastBias[kNetworks]", stacked[5][:, 0])]  # fmt: skip
+    lines = ["// SPDX-FileCopyrightText: 2026 The ovimap authors", "// SPDX-License-Identifier: Apache-2.0",
+             "// Written by tools/models/train_pair_judge.py.", "#pragma once", "", "#include <cstddef>", "",
+             "namespace ovimap::pair_judge_weights {", "",
+             f"inline constexpr std::size_t kNetworks = {len(networks)}, kHidden = {HIDDEN}, kInputs = {INPUTS};",
+             *(f"inline constexpr float {name} = {literal(values)};" for name, values in arrays), "",
+             "}  // namespace ovimap::pair_judge_weights", ""]  # fmt: skip
+    return "\n".join(lines)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("programs", type=pathlib.Path, help="folder of ovimap and ovimap_pair_samples")
+    parser.add_argument("work", type=pathlib.Path, help="folder for recordings, masks, maps and pairs, 3 GB")
+    parser.add_argument("--out", type=pathlib.Path, default=HEADER)
+    arguments = parser.parse_args()
+    scenes = list(samples(arguments.programs.resolve(), arguments.work))
+    inputs = np.concatenate([inputs for inputs, _ in scenes])
+    mean, inverse_deviation = inputs.mean(0), 1 / (inputs.std(0) + 1e-6)
+    networks = [trained(scenes, mean, inverse_deviation, seed) for seed in range(NETWORKS)]
+    arguments.out.write_text(header(networks, mean, inverse_deviation))
+
+
+if __name__ == "__main__":
+    main()
