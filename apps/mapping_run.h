@@ -11,7 +11,8 @@ namespace ovimap::apps {
 /// How the camera was tracked.
 struct TrackingRun {
   TrackSummary summary;
-  LoopReport loops;
+  LoopCorrections corrections;  ///< while frames came
+  LoopReport loops;             ///< after the last one
 };
 
 /// A recording, mapped.

@@ -87,6 +87,8 @@ nlohmann::json tracking_json(const TrackingRun& tracking) {
           {"lost", lost},
           {"found_times", done.found_times},
           {"frames_degenerate", done.degenerate},
+          {"loop_corrections", tracking.corrections.times},
+          {"loop_corrected_m", tracking.corrections.furthest_m},
           {"loop_candidates", tracking.loops.candidates},
           {"loops_closed", tracking.loops.closed},
           {"loops_dropped", tracking.loops.dropped},
@@ -98,6 +100,11 @@ void print_tracking(const TrackingRun& tracking) {
   if (tracking.summary.degenerate > 0)
     std::printf("in %zu frames the images did not tell every direction of the motion\n",
                 tracking.summary.degenerate);
+  if (const LoopCorrections& corrected = tracking.corrections; corrected.times > 0)
+    std::printf("places were seen again while frames came: the map was corrected %zu %s, and poses "
+                "moved by up to %.1f cm\n",
+                corrected.times, corrected.times == 1 ? "time" : "times",
+                100 * corrected.furthest_m);
   if (tracking.loops.closed > 0)
     std::printf("%zu places were seen again%s; poses moved by up to %.1f cm\n",
                 tracking.loops.closed,

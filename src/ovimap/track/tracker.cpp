@@ -58,6 +58,14 @@ void Tracker::begin_in(std::vector<Keyframe> places) {
   begun_ = lost_ = true;
 }
 
+void Tracker::correct(const std::vector<Pose>& poses) {
+  OVIMAP_ASSERT(poses.size() == keyframes_.size() && !poses.empty());
+  const Pose moved = poses.back() * keyframes_.back().world_from_camera.inverse();
+  for (std::size_t i = 0; i < poses.size(); ++i) keyframes_[i].world_from_camera = poses[i];
+  last_pose_ = moved * last_pose_;
+  reference_is_old_ = true;  // it shows the map as it was
+}
+
 /// The first frame is where the world is.
 bool Tracker::start(const Frame& frame) {
   begun_ = true;
@@ -166,7 +174,8 @@ void Tracker::keep_keyframe() {
   if (!keyframes_.empty() && !result.relocated &&
       !config_.keyframes.far(keyframes_.back().world_from_camera, result.world_from_camera))
     return;
-  keyframes_.push_back(make_keyframe(pyramid_, result.index, result.world_from_camera));
+  keyframes_.push_back(
+      make_keyframe(pyramid_, first_number_ + result.index, result.world_from_camera));
   codes_.push_back(keyframes_.back().code);
 }
 

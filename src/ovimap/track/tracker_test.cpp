@@ -103,6 +103,80 @@ TEST_F(TrackerTest, AnotherPlaceIsLost) {
   EXPECT_TRUE(see(fixture::room_pose(9)).tracked);
 }
 
+/// Bare walls hide some directions of the motion: the frames in which they do are told.
+TEST_F(TrackerTest, WithoutTextureWhatDepthDoesNotTellIsTold) {
+  camera_.textured = false;
+  see(fixture::room_pose(0));
+  double last_off_m = 0;
+  for (int i = 1; i < 20; ++i) {
+    const TrackedFrame& tracked = see(fixture::room_pose(i));
+    const double off = off_m(tracked, fixture::room_pose(i));
+    EXPECT_TRUE(!tracked.tracked || tracked.degenerate > 0 || off - last_off_m < 0.01) << i;
+    last_off_m = off;
+  }
+  EXPECT_GT(summarise(tracker_.log()).degenerate, 0u);
+}
+
+/// Somebody walks through the picture, half as wide as it: what is not sure is lost, nothing is
+/// believed to be where it is not, and where the camera was before it is found again.
+TEST_F(TrackerTest, AMovingPersonDoesNotCarryTheCameraAlong) {
+  for (int i = 0; i < 10; ++i) see(fixture::room_pose(i));
+  for (int i = 10; i < 30; ++i) {
+    Frame frame = camera_.take(fixture::room_pose(i), next_);
+    const int width = frame.depth.width(), left = (i - 10) * width / 40;
+    for (int y = 0; y < frame.depth.height(); ++y)
+      for (int x = left; x < left + width / 2; ++x) {
+        frame.depth.at(x, y) = 0.6f;
+        const auto stripe = static_cast<std::uint8_t>((x - left) / 6 % 2 == 0 ? 40 : 200);
+        frame.color.at(x, y) = {stripe, stripe, stripe};
+      }
+    const TrackedFrame& seen = see(frame);
+    EXPECT_TRUE(!seen.tracked || off_m(seen, fixture::room_pose(i)) < 0.03) << i;
+  }
+  const TrackedFrame& found = see(fixture::room_pose(8));
+  EXPECT_TRUE(found.tracked);
+  EXPECT_LT(off_m(found, fixture::room_pose(8)), 0.02);
+}
+
+/// Two recordings in one file: what follows is another place. Nothing of it is believed, and what
+/// comes back to the first place is.
+TEST_F(TrackerTest, OfTwoRecordingsInOneTheFirstIsMapped) {
+  const auto behind = [](int i) {
+    Pose pose = fixture::room_pose(i);
+    pose.rotate(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitY()));
+    return pose;
+  };
+  for (int i = 0; i < 10; ++i) see(fixture::room_pose(i));
+  const std::uint64_t before = map_.content_hash();
+  for (int i = 0; i < 10; ++i) EXPECT_FALSE(see(behind(i)).tracked) << i;
+  EXPECT_EQ(map_.content_hash(), before);
+  EXPECT_EQ(summary_line(summarise(tracker_.log())),
+            "tracked 10 of 20 frames, lost 1 time (frames 10 to 19)");
+}
+
+/// A loop was closed: the camera and its places are elsewhere, and so is the map.
+TEST_F(TrackerTest, GoesOnInAMapThatWasCorrected) {
+  for (int i = 0; i < 10; ++i) see(fixture::room_pose(i));
+  Vector6d shift;
+  shift << 0.3, 0, -0.2, 0, 0.1, 0;
+  const Pose moved = small_motion(shift);
+  std::vector<Pose> poses;
+  for (const Keyframe& keyframe : tracker_.keyframes())
+    poses.push_back(moved * keyframe.world_from_camera);
+  tracker_.correct(poses);
+  map_ = fixture::coarse_map();
+  for (int i = 0; i < 10; ++i) {
+    Frame frame = camera_.take(fixture::room_pose(i), i);
+    frame.world_from_camera = moved * first_.inverse() * fixture::room_pose(i);
+    fixture::fuse(frame, map_);
+  }
+  first_ = first_ * moved.inverse();
+  const TrackedFrame& tracked = see(fixture::room_pose(10));
+  ASSERT_TRUE(tracked.tracked);
+  EXPECT_FALSE(tracked.relocated);
+  EXPECT_LT(off_m(tracked, fixture::room_pose(10)), 0.015);
+}
+
 TEST_F(TrackerTest, FirstFrameWithDepthIsTheWorld) {
   EXPECT_FALSE(see(dark()).tracked);
   const TrackedFrame& first = see(fixture::room_pose(0));

@@ -27,6 +27,14 @@ std::unique_ptr<Mapper> forgiving_mapper(const MapperConfig& config,
   return mapper;
 }
 
+/// Gives a frame the pose that it has by now.
+void move_to(const Pose& world_from_camera, PreparedFrame& prepared) {
+  if (prepared.frame->world_from_camera.matrix() == world_from_camera.matrix()) return;
+  auto moved = std::make_shared<Frame>(*prepared.frame);
+  moved->world_from_camera = world_from_camera;
+  prepared.frame = std::move(moved);
+}
+
 }  // namespace
 
 void list_fields(LiveConfig& config, ConfigFields& fields) {
@@ -144,7 +152,7 @@ void LiveMapper::restore(MapDocument&& document) {
 void LiveMapper::fuse_frames() {
   while (auto next = prepared_.pop()) {
     apply_late_masks();
-    if (tracker_ && !locate(*next->frame)) continue;
+    if (finder_ && !locate(*next->frame)) continue;
     fuse(std::move(*next));
   }
   wanted_masks_.close();
@@ -165,12 +173,9 @@ void LiveMapper::count_encoder_failures() {
 bool LiveMapper::locate(PreparedFrame& prepared) {
   begin("track");
   auto frame = std::make_shared<Frame>(*prepared.frame);
-  auto t = mapper_->timers().measure("track");
-  const TrackedFrame& tracked = tracker_->track(*frame, mapper_->map());
-  frame->world_from_camera = tracked.world_from_camera;
-  frame->posed = true;
+  const bool found = finder_->locate(*frame, *mapper_);
   prepared.frame = std::move(frame);
-  if (tracked.tracked) return true;
+  if (found) return true;
   const std::lock_guard lock(mutex_);
   ++statistics_.frames_lost;
   return false;
@@ -205,6 +210,7 @@ void LiveMapper::fuse(Prepared prepared) {
     begin("views");
     mapper_->look_at_objects(frame, Mapper::Encoder::kRunOn);
   }
+  if (finder_) finder_->close_loops(*mapper_, frames_, frame.depth_camera);
   if (after_frame) after_frame(*mapper_, frames_, frame.depth_camera);
   count_encoder_failures();
   const std::lock_guard lock(mutex_);
@@ -222,11 +228,14 @@ void LiveMapper::apply_masks(Prepared late) {
   --masks_under_way_;
   if (!late.cut) return schedule_.went_without();
   begin("apply_masks");
-  mapper_->label(*late.frame, *late.cut);
   const auto entry = std::find_if(frames_.rbegin(), frames_.rend(), [&](const FrameLogEntry& e) {
     return e.index == mapper_->number_of(*late.frame->frame);
   });
-  if (entry != frames_.rend()) entry->labelled = true;
+  if (entry != frames_.rend()) {
+    entry->labelled = true;
+    move_to(entry->world_from_camera, *late.frame);
+  }
+  mapper_->label(*late.frame, *late.cut);
   if (after_frame) after_frame(*mapper_, frames_, late.frame->frame->depth_camera);
   const std::lock_guard lock(mutex_);
   ++statistics_.mask_frames;

@@ -14,7 +14,7 @@
 #include "ovimap/io/map_tables/map_document.h"
 #include "ovimap/pipeline/live/mask_schedule.h"
 #include "ovimap/pipeline/mapping/mapper.h"
-#include "ovimap/track/tracker.h"
+#include "ovimap/pipeline/sequence/pose_finder.h"
 
 namespace ovimap {
 
@@ -63,7 +63,7 @@ class LiveMapper {
     mapper_->recognize_with(std::move(recognizer));
   }
   /// Finds the poses of the frames instead of taking theirs. Before the first push only.
-  void track_with(std::shared_ptr<Tracker> tracker) { tracker_ = std::move(tracker); }
+  void track_with(std::shared_ptr<PoseFinder> finder) { finder_ = std::move(finder); }
 
   /// Takes a frame without waiting; false when it had to be dropped. Throws what a stage threw.
   bool push(Frame frame);
@@ -131,7 +131,7 @@ class LiveMapper {
   MapperConfig config_;
   LiveConfig live_;
   std::shared_ptr<MaskSource> mask_source_;
-  std::shared_ptr<Tracker> tracker_;  ///< null: frames have poses; the fusing thread's
+  std::shared_ptr<PoseFinder> finder_;  ///< null: frames have poses; the fusing thread's
   std::unique_ptr<Mapper> mapper_;  ///< the fusing thread's, until that ends
   MaskSchedule schedule_;
   StageTimers prepare_timers_, mask_timers_;
