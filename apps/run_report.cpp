@@ -45,6 +45,7 @@ nlohmann::json live_json(const LiveRunResult& live, double fps) {
           {"frames_fused", done.frames_fused},
           {"frames_dropped", done.frames_dropped},
           {"frames_lost", done.frames_lost},
+          {"pose_updates", done.pose_updates},
           {"frames_read_late", live.frames_read_late},
           {"camera_seconds", live.camera_seconds},
           {"mask_frames", done.mask_frames},

@@ -90,6 +90,11 @@ void LiveMapper::push_and_wait(Frame frame) {
   if (!taken) ++statistics_.frames_dropped;  // drained or cancelled
 }
 
+void LiveMapper::move_and_wait(PoseUpdate update) {
+  incoming_.push({nullptr, Clock::now(), std::make_shared<const PoseUpdate>(std::move(update))});
+  rethrow_failure();
+}
+
 void LiveMapper::drain() {
   incoming_.close();
   join();
@@ -130,6 +135,10 @@ LiveStatistics LiveMapper::statistics() const {
 
 void LiveMapper::prepare_frames() {
   while (auto next = incoming_.pop()) {
+    if (next->update) {
+      prepared_.push({nullptr, nullptr, next->pushed, std::move(next->update)});
+      continue;
+    }
     begin("prepare");
     Prepared prepared{nullptr, nullptr, next->pushed};
     prepared.frame = std::make_shared<PreparedFrame>(
@@ -144,6 +153,7 @@ void LiveMapper::prepare_frames() {
 
 void LiveMapper::restore(MapDocument&& document) {
   frames_ = document.frames;
+  depth_camera_ = document.depth_camera;
   mapper_->restore(std::move(document));
 }
 
@@ -152,6 +162,10 @@ void LiveMapper::restore(MapDocument&& document) {
 void LiveMapper::fuse_frames() {
   while (auto next = prepared_.pop()) {
     apply_late_masks();
+    if (next->update) {
+      move(*next->update);
+      continue;
+    }
     if (finder_ && !locate(*next->frame)) continue;
     fuse(std::move(*next));
   }
@@ -181,6 +195,17 @@ bool LiveMapper::locate(PreparedFrame& prepared) {
   return false;
 }
 
+void LiveMapper::move(const PoseUpdate& update) {
+  begin("move");
+  if (mapper_->kept_frames().empty() || mapper_->map().has_store()) return;
+  const std::vector<MovedPose> moves = moves_of(update, frames_);
+  if (moves.empty()) return;
+  move_frames(moves, update.by_time, *mapper_, frames_, depth_camera_);
+  if (after_frame) after_frame(*mapper_, frames_, depth_camera_);
+  const std::lock_guard lock(mutex_);
+  ++statistics_.pose_updates;
+}
+
 void LiveMapper::fuse(Prepared prepared) {
   begin("fuse");
   const Frame& frame = *prepared.frame->frame;
@@ -200,6 +225,7 @@ void LiveMapper::fuse(Prepared prepared) {
       ++statistics_.masks_skipped;
     }
   }
+  depth_camera_ = frame.depth_camera;
   mapper_->fuse(*prepared.frame, prepared.cut.get());
   const double lag_ms = milliseconds_since(prepared.pushed);
   frames_.push_back({mapper_->number_of(frame), frame.timestamp_s, frame.name,
