@@ -131,8 +131,9 @@ void Tracker::accept(std::int64_t index, const Alignment& alignment, const Refer
   last_pose_ = result.world_from_camera;
   last_index_ = index;
   last_given_.reset();
-  // As much as went out of sight now may go again before the next frame.
-  const double overlap = alignment.quality.overlap;
+  // What something nearer hides is as much out of sight as what is beyond the image's edge; as much
+  // as went now may go again before the next frame.
+  const double overlap = alignment.quality.overlap * alignment.quality.agreement;
   const double next_overlap = overlap - std::max(0., last_overlap_ - overlap);
   last_overlap_ = overlap;
   reference_is_old_ = ++reference_age_ >= config_.reference_frames || relocated ||

@@ -103,6 +103,33 @@ TEST_F(TrackerTest, AnotherPlaceIsLost) {
   EXPECT_TRUE(see(fixture::room_pose(9)).tracked);
 }
 
+/// The camera passes close by a board that hides, piece by piece, all that it saw before, and what
+/// comes out behind it was never seen: the surface must be cast anew while there is enough of it.
+TEST_F(TrackerTest, GoesOnBehindWhatHidesTheView) {
+  const Pose start = fixture::room_pose(0);
+  const double board_z = 0.5, board_left = -0.9, board_right = -0.25;  // in the first camera's frame
+  for (int i = 0; i < 40; ++i) {
+    const double along = -0.03 * i;
+    const Pose pose = start * Eigen::Translation3d(along, 0, 0);
+    Frame frame = camera_.take(pose, next_);
+    for (int y = 0; y < frame.depth.height(); ++y)
+      for (int x = 0; x < frame.depth.width(); ++x) {
+        const Eigen::Vector3d ray =
+            camera_.camera.unproject(static_cast<float>(x), static_cast<float>(y), 1.f)
+                .cast<double>();
+        const Eigen::Vector3d point = board_z * ray + Eigen::Vector3d(along, 0, 0);
+        if (point.x() < board_left || point.x() > board_right) continue;
+        const Eigen::Vector3d place = 4 * point;
+        frame.depth.at(x, y) = static_cast<float>(board_z);
+        frame.color.at(x, y) = {camera_.shade(place, 0), camera_.shade(place, 1),
+                                camera_.shade(place, 2)};
+      }
+    const TrackedFrame& tracked = see(frame);
+    ASSERT_TRUE(tracked.tracked) << i;
+    EXPECT_LT(off_m(tracked, pose), 0.03) << i;
+  }
+}
+
 /// Bare walls hide some directions of the motion: the frames in which they do are told.
 TEST_F(TrackerTest, WithoutTextureWhatDepthDoesNotTellIsTold) {
   camera_.textured = false;
