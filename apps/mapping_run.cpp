@@ -248,7 +248,8 @@ std::shared_ptr<PoseFinder> make_finder(const MappingInputs& inputs, const Begun
 /// Frames that were kept for that alone are not saved.
 TrackingRun finish_tracking(const PoseFinder& finder, const ProgramConfig& config, bool keep_frames,
                             MapDocument& map) {
-  TrackingRun tracking{summarise(finder.tracker().log()), finder.corrections(), {}};
+  TrackingRun tracking{summarise(finder.tracker().log()), finder.corrections(), {},
+                       sensor_doubt(finder.tracker().sensor(), config.track)};
   if (!map.kept_frames.empty()) {
     Progress progress("closing loops");
     tracking.loops = close_map_loops(

@@ -13,6 +13,7 @@ struct TrackingRun {
   TrackSummary summary;
   LoopCorrections corrections;  ///< while frames came
   LoopReport loops;             ///< after the last one
+  std::string sensor_doubt;     ///< empty: the camera is as it is described
 };
 
 /// A recording, mapped.

@@ -84,6 +84,7 @@ nlohmann::json tracking_json(const TrackingRun& tracking) {
   nlohmann::json lost = nlohmann::json::array();
   for (const auto& [first, last] : done.lost) lost.push_back({first, last});
   return {{"frames", done.frames},
+          {"camera_doubt", tracking.sensor_doubt},
           {"frames_tracked", done.tracked},
           {"lost", lost},
           {"found_times", done.found_times},
@@ -125,6 +126,8 @@ double frames_per_second(const MappingRun& run) {
 
 void report_faults(const MappingRun& run) {
   report_skipped(run.sequence);
+  if (run.tracking && !run.tracking->sensor_doubt.empty())
+    std::fprintf(stderr, "ovimap: %s\n", run.tracking->sensor_doubt.c_str());
   if (masks_all_absent(run))
     std::fprintf(stderr,
                  "ovimap: none of the %zu frames had masks, so the map tells no objects apart; "

@@ -12,6 +12,7 @@ namespace ovimap {
 namespace {
 
 constexpr std::int64_t kLongestGap = 6;  // frames; longer ones predict nothing more
+constexpr int kListenEvery = 5;          // frames; neighbours say the same of the sensor
 constexpr int kLeastWidth_px = 2 * kCoarsestWidth_px;  // smaller images lack levels
 
 double share_with_depth(const TrackLevel& level) {
@@ -114,6 +115,10 @@ bool Tracker::follow(const Frame& frame) {
     return false;
   accept(frame.index, *alignment, *reference_, lost_);
   if (frame.posed) last_given_ = frame.world_from_camera;
+  // Frames that are far from their reference tell the most.
+  if (!lost_ && (reference_is_old_ || reference_age_ % kListenEvery == 0))
+    sensor_.add(reference_->levels[kSurfaceLevel], pyramid_[kSurfaceLevel],
+                alignment->reference_from_frame, config_.alignment);
   return true;
 }
 
@@ -208,6 +213,17 @@ std::string summary_line(const TrackSummary& summary) {
   if (summary.lost.size() > kMostNamed) line += ", ...";
   if (!summary.lost.empty()) line += ")";
   return line;
+}
+
+std::string sensor_doubt(const SensorEvidence& evidence, const TrackConfig& config) {
+  const auto focal = evidence.log_focal_ratio();
+  if (!focal || !focal->beyond(static_cast<double>(config.focal_off),
+                               static_cast<double>(config.focal_sigmas)))
+    return {};
+  return concat("the images say that the focal length is some ",
+                std::lround(100 * std::fabs(std::expm1(focal->value))), " % ",
+                focal->value > 0 ? "larger" : "smaller",
+                " than given; check fx and fy of camera.yaml or of the recording");
 }
 
 }  // namespace ovimap

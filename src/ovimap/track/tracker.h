@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "ovimap/track/alignment/sensor_evidence.h"
 #include "ovimap/track/places/track_config.h"
 
 namespace ovimap {
@@ -52,6 +53,8 @@ class Tracker {
   const std::vector<TrackedFrame>& log() const { return log_; }
   const std::vector<Keyframe>& keyframes() const { return keyframes_; }
   const TrackConfig& config() const { return config_; }
+  /// What the frames so far say of the camera.
+  const SensorEvidence& sensor() const { return sensor_; }
 
  private:
   bool start(const Frame& frame);
@@ -76,6 +79,7 @@ class Tracker {
   std::int64_t last_index_ = 0;
   std::int64_t last_gap_ = 1;       ///< frames between those
   std::optional<Pose> last_given_;  ///< pose that came with that frame
+  SensorEvidence sensor_;
   bool begun_ = false, lost_ = false;
   std::vector<TrackedFrame> log_;
   std::vector<Keyframe> keyframes_;
@@ -85,5 +89,8 @@ class Tracker {
 TrackSummary summarise(const std::vector<TrackedFrame>& log);
 /// "tracked 498 of 500 frames, lost 1 time (frames 100 to 101)".
 std::string summary_line(const TrackSummary& summary);
+
+/// What the residuals say against the camera's description, in a sentence; empty: nothing.
+std::string sensor_doubt(const SensorEvidence& evidence, const TrackConfig& config);
 
 }  // namespace ovimap

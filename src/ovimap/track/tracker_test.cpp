@@ -224,6 +224,41 @@ TEST_F(TrackerTest, BeginsInAMapThatIsThere) {
   EXPECT_LT(fixture::distance_m(found.world_from_camera, fixture::room_pose(11)), 0.02);
 }
 
+class SensorTest : public TrackerTest {
+ protected:
+  /// A camera that turns to and fro while it goes; `change` makes what is wrong.
+  template <class Change>
+  void walk(const Change& change) {
+    camera_.camera = {320, 240, 280.f, 280.f, 159.5f, 119.5f};
+    for (int i = 0; i < 60; ++i) {
+      Frame frame = camera_.take(pose(i), next_);
+      change(frame);
+      see(frame);
+    }
+  }
+  static Pose pose(int i) {
+    Pose pose = fixture::room_pose(i / 3);
+    pose.rotate(Eigen::AngleAxisd(0.1 * std::sin(0.1 * i), Eigen::Vector3d::UnitY()));
+    return pose;
+  }
+  std::string doubt() const { return sensor_doubt(tracker_.sensor(), tracker_.config()); }
+};
+
+TEST_F(SensorTest, NothingIsSaidOfASoundCamera) {
+  walk([](Frame&) {});
+  EXPECT_EQ(doubt(), "");
+  ASSERT_TRUE(tracker_.sensor().log_focal_ratio());
+  EXPECT_LT(std::fabs(tracker_.sensor().log_focal_ratio()->value), 0.02);
+}
+
+TEST_F(SensorTest, AWrongFocalLengthIsTold) {
+  walk([](Frame& frame) {
+    frame.depth_camera.fx *= 0.88f, frame.depth_camera.fy *= 0.88f;
+    frame.color_camera = frame.depth_camera;
+  });
+  EXPECT_NE(doubt().find("larger than given; check fx and fy"), std::string::npos) << doubt();
+}
+
 TEST(Tracker, IsTheSameForAnyNumberOfThreads) {
   const auto last_pose = [](int threads) {
     const ThreadLimit limit(threads);
