@@ -263,6 +263,8 @@ TrackingRun finish_tracking(const PoseFinder& finder, const ProgramConfig& confi
 MappingRun finished_run(MappingInputs&& inputs, MapHeader header, Mapper&& mapper,
                         SequenceResult sequence, std::unique_ptr<Checkpointer> checkpoints) {
   MappingRun run;
+  if (checkpoints && inputs.tracking)  // who kills the closing of loops leaves all frames mapped
+    checkpoints->store(mapper, sequence.frames, sequence.depth_camera);
   run.source = std::move(inputs.source);
   run.masks_wanted = inputs.masks != nullptr;
   run.sequence = std::move(sequence);
