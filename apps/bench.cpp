@@ -136,7 +136,7 @@ int bench(const BenchOptions& options) {
                                 {source.get(), options.mapping.model_dirs});
   Mapper mapper(config.mapper, std::move(masks), make_encoder(options.mapping, config));
   const auto checkpoints = bound_memory(config.memory);
-  Tracker tracker(config.track);
+  PoseFinder finder(Tracker(config.track), config.loops);
   Progress progress("measuring");
   const double cpu_before = cpu_seconds();
   const SequenceResult result = run_sequence(
@@ -145,7 +145,7 @@ int bench(const BenchOptions& options) {
         progress.show(done, total);
         return true;
       },
-      {}, checkpoints.get(), options.track ? &tracker : nullptr);
+      {}, checkpoints.get(), options.track ? &finder : nullptr);
   const double cpu_ms =
       1e3 * (cpu_seconds() - cpu_before) / static_cast<double>(result.frames.size());
   const LocatedFrames located(*source, result.frames);

@@ -65,6 +65,7 @@ struct MappingInputs {
   std::shared_ptr<MaskSource> masks;
   std::shared_ptr<ImageTextEncoder> encoder;
   std::shared_ptr<const ThingRecognizer> recognizer;
+  std::shared_ptr<PoseFinder> finder;  ///< null: poses are given
 };
 
 /// What a run goes on with, and where its checkpoints go.
@@ -211,8 +212,10 @@ SequenceResult resume(BegunRun& begun, MapHeader& header, MappingInputs& inputs,
   sequence.frames = begun.document->frames;
   sequence.depth_camera = begun.document->depth_camera;
   mapper.restore(std::move(*begun.document));
-  if (inputs.source && !header.history.visits.empty())  // pushed frames have the map's numbers
-    mapper.number_from(header.history.visits.back().first_index);
+  const auto& visits = header.history.visits;
+  if (!inputs.source || visits.empty()) return sequence;  // pushed frames have the map's numbers
+  mapper.number_from(visits.back().first_index);
+  if (inputs.finder) inputs.finder->tracker().number_from(visits.back().first_index);
   return sequence;
 }
 
@@ -228,9 +231,9 @@ MapHeader make_header(const MappingInputs& inputs, const MappingOptions& options
           effective_config(inputs.config, options, mapper, inputs.encoder)};
 }
 
-/// The tracker of a run whose poses are to be found, at home in what the run goes on with.
-std::optional<Tracker> make_tracker(const MappingInputs& inputs, const BegunRun& begun) {
-  if (!inputs.tracking) return std::nullopt;
+/// Finds the poses of a run that has none, at home in what the run goes on with; else null.
+std::shared_ptr<PoseFinder> make_finder(const MappingInputs& inputs, const BegunRun& begun) {
+  if (!inputs.tracking) return nullptr;
   Tracker tracker(inputs.config.track);
   if (begun.document && !begun.document->frames.empty()) {
     if (begun.document->kept_frames.empty())
@@ -238,14 +241,15 @@ std::optional<Tracker> make_tracker(const MappingInputs& inputs, const BegunRun&
                   "--set frame_store.max_mb=1000");
     tracker.begin_in(keyframes_of(*begun.document, inputs.config.track.keyframes));
   }
-  return tracker;
+  return std::make_shared<PoseFinder>(std::move(tracker), inputs.config.loops);
 }
 
 /// What tracking did, and, where the camera came by a place again, the map with its loops closed.
 /// Frames that were kept for that alone are not saved.
-TrackingRun finish_tracking(const Tracker& tracker, const ProgramConfig& config, bool keep_frames,
+TrackingRun finish_tracking(const PoseFinder& finder, const ProgramConfig& config, bool keep_frames,
                             MapDocument& map) {
-  TrackingRun tracking{summarise(tracker.log()), {}};
+  TrackingRun tracking{summarise(finder.tracker().log()), finder.corrections(), {},
+                       sensor_doubt(finder.tracker().sensor(), config.track)};
   if (!map.kept_frames.empty()) {
     Progress progress("closing loops");
     tracking.loops = close_map_loops(
@@ -259,6 +263,8 @@ TrackingRun finish_tracking(const Tracker& tracker, const ProgramConfig& config,
 MappingRun finished_run(MappingInputs&& inputs, MapHeader header, Mapper&& mapper,
                         SequenceResult sequence, std::unique_ptr<Checkpointer> checkpoints) {
   MappingRun run;
+  if (checkpoints && inputs.tracking)  // who kills the closing of loops leaves all frames mapped
+    checkpoints->store(mapper, sequence.frames, sequence.depth_camera);
   run.source = std::move(inputs.source);
   run.masks_wanted = inputs.masks != nullptr;
   run.sequence = std::move(sequence);
@@ -307,7 +313,7 @@ MappingRun map_recording(const MappingOptions& options, const std::string& title
   MappingInputs inputs(options);
   BegunRun begun = find_begun(target, inputs.config.memory);
   inputs.open_networks(options, keep_masks);
-  std::optional<Tracker> tracker = make_tracker(inputs, begun);
+  const auto finder = inputs.finder = make_finder(inputs, begun);
   Mapper mapper(inputs.config.mapper, inputs.masks, inputs.encoder);
   mapper.recognize_with(inputs.recognizer);
   MapHeader header = make_header(inputs, options, mapper.config());
@@ -328,13 +334,13 @@ MappingRun map_recording(const MappingOptions& options, const std::string& title
           progress.show(done, total);
           return !interrupted();
         },
-        std::move(sequence), checkpoints.get(), tracker ? &*tracker : nullptr);
+        std::move(sequence), checkpoints.get(), finder.get());
   }
   const ProgramConfig config = inputs.config;
   const bool keep_frames = !inputs.keeps_for_loops;
   MappingRun run = finished_run(std::move(inputs), std::move(header), std::move(mapper),
                                 std::move(sequence), std::move(checkpoints));
-  if (tracker) run.tracking = finish_tracking(*tracker, config, keep_frames, run.document);
+  if (finder) run.tracking = finish_tracking(*finder, config, keep_frames, run.document);
   if (!target.continued.empty() && config.memory.max_mb == 0)  // which takes both maps in memory
     tell_visit(load_map(target.continued), run.document);
   return run;
@@ -351,10 +357,8 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
   }).get();
   LiveMapper mapper(inputs.config.mapper, inputs.config.live, inputs.masks, inputs.encoder);
   mapper.recognize_with(inputs.recognizer);
-  std::shared_ptr<Tracker> tracker;
-  if (auto made = make_tracker(inputs, begun))
-    tracker = std::make_shared<Tracker>(std::move(*made));
-  mapper.track_with(tracker);
+  const auto finder = inputs.finder = make_finder(inputs, begun);
+  mapper.track_with(finder);
   MapHeader header = make_header(inputs, options, mapper.config());
   const std::string pace = intake ? std::string("pushed") : concat(fps, " frames/s");
   header.config_text.insert(0, concat("# live, ", pace, "\n"));
@@ -388,7 +392,7 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
   const bool keep_frames = !inputs.keeps_for_loops;
   MappingRun run = finished_run(std::move(inputs), std::move(header), mapper.take(), live.sequence,
                                 std::move(checkpoints));
-  if (tracker) run.tracking = finish_tracking(*tracker, config, keep_frames, run.document);
+  if (finder) run.tracking = finish_tracking(*finder, config, keep_frames, run.document);
   run.live = std::move(live);
   return run;
 }

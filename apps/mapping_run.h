@@ -11,7 +11,9 @@ namespace ovimap::apps {
 /// How the camera was tracked.
 struct TrackingRun {
   TrackSummary summary;
-  LoopReport loops;
+  LoopCorrections corrections;  ///< while frames came
+  LoopReport loops;             ///< after the last one
+  std::string sensor_doubt;     ///< empty: the camera is as it is described
 };
 
 /// A recording, mapped.

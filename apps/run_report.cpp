@@ -45,6 +45,7 @@ nlohmann::json live_json(const LiveRunResult& live, double fps) {
           {"frames_fused", done.frames_fused},
           {"frames_dropped", done.frames_dropped},
           {"frames_lost", done.frames_lost},
+          {"pose_updates", done.pose_updates},
           {"frames_read_late", live.frames_read_late},
           {"camera_seconds", live.camera_seconds},
           {"mask_frames", done.mask_frames},
@@ -83,10 +84,13 @@ nlohmann::json tracking_json(const TrackingRun& tracking) {
   nlohmann::json lost = nlohmann::json::array();
   for (const auto& [first, last] : done.lost) lost.push_back({first, last});
   return {{"frames", done.frames},
+          {"camera_doubt", tracking.sensor_doubt},
           {"frames_tracked", done.tracked},
           {"lost", lost},
           {"found_times", done.found_times},
           {"frames_degenerate", done.degenerate},
+          {"loop_corrections", tracking.corrections.times},
+          {"loop_corrected_m", tracking.corrections.furthest_m},
           {"loop_candidates", tracking.loops.candidates},
           {"loops_closed", tracking.loops.closed},
           {"loops_dropped", tracking.loops.dropped},
@@ -98,6 +102,11 @@ void print_tracking(const TrackingRun& tracking) {
   if (tracking.summary.degenerate > 0)
     std::printf("in %zu frames the images did not tell every direction of the motion\n",
                 tracking.summary.degenerate);
+  if (const LoopCorrections& corrected = tracking.corrections; corrected.times > 0)
+    std::printf("places were seen again while frames came: the map was corrected %zu %s, and poses "
+                "moved by up to %.1f cm\n",
+                corrected.times, corrected.times == 1 ? "time" : "times",
+                100 * corrected.furthest_m);
   if (tracking.loops.closed > 0)
     std::printf("%zu places were seen again%s; poses moved by up to %.1f cm\n",
                 tracking.loops.closed,
@@ -117,6 +126,8 @@ double frames_per_second(const MappingRun& run) {
 
 void report_faults(const MappingRun& run) {
   report_skipped(run.sequence);
+  if (run.tracking && !run.tracking->sensor_doubt.empty())
+    std::fprintf(stderr, "ovimap: %s\n", run.tracking->sensor_doubt.c_str());
   if (masks_all_absent(run))
     std::fprintf(stderr,
                  "ovimap: none of the %zu frames had masks, so the map tells no objects apart; "

@@ -90,6 +90,9 @@ void serve_live(const ServeOptions& options) {
   service.served.encoder = options.mapping.encoder;
   service.server.frames = config.source;
   if (options.mapping.poses == "track") service.server.frames.poses = PoseNeed::kNone;
+  service.server.moves_frames = config.mapper.frame_store.max_mb > 0 && config.memory.max_mb == 0 &&
+                                options.mapping.poses != "track" &&
+                                options.mapping.poses != "refine";
   if (options.pushed()) service.intake = &intake;
   service.run([&](const HttpServer& server) { announce(options, server); },
               [&](const MappingRun& run) {

@@ -26,6 +26,7 @@ REST_S = 2.0  # the server lets connections go that rest for 5 seconds
 DEFAULT_PORT = 8080  # of `ovimap serve`
 CAMERAS = ("camera", "depth_camera", "color_camera")
 FIGURES = ("width", "height", "fx", "fy", "cx", "cy")
+MOST_NODES = 150  # of a pose graph in one request of at most 64 KiB
 MOST_BYTES = 32 << 20  # of a frame; the server refuses more
 
 
@@ -104,6 +105,20 @@ class FrameSender:
             headers["Ovimap-Retry"] = "1"  # the server has counted this frame as left out
         self.taken += 1
         return True
+
+    def correct_poses(self, poses: Mapping[float, npt.ArrayLike]) -> None:
+        """Says where the camera was at these times, by now: a pose graph whose loop was closed. What was sent so far moves there,
+        and the map with it.
+
+        poses: of the depth camera as send() takes them, by time in seconds; of frames between two nothing need be said. Of more
+            than MOST_NODES every so manieth is sent.
+
+        Raises SendError where the server keeps no frames (docs/http-api.md), or finds poses itself."""
+        times = sorted(poses)
+        chosen = times[:: -(-len(times) // MOST_NODES)] if times else []
+        if times and chosen[-1] != times[-1]:
+            chosen.append(times[-1])
+        self._post_json("/api/poses", {"poses": [{"timestamp_s": _time(time), "pose": _pose(poses[time])} for time in chosen]})
 
     def finish(self, wait_s: float = 600.0) -> None:
         """Says that no more frames come and waits until the map is saved. Raises SendError when it is not by then, or when

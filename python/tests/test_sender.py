@@ -98,6 +98,24 @@ def test_sent_frames_give_the_recordings_map(shots, hash_of_the_recording, tmp_p
 
 
 @needs_program
+def test_a_graph_moves_what_was_sent(shots, tmp_path):
+    out = tmp_path / "moved.ovimap"
+    off = np.eye(4)
+    off[0, 3] = 0.3
+    with Serving(out, "--set", "frame_store.max_mb=100") as server:
+        sender = FrameSender(server.address, shots.camera)
+        for i in range(4):
+            assert sender.send(*shots.files[i], off @ shots.poses[i], 0.1 * i, patience_s=60)
+        sender.correct_poses({0.1 * i: shots.poses[i] for i in (0, 3)})
+        assert sender.send(*shots.files[4], shots.poses[4], 0.4, patience_s=60)
+        sender.finish()
+        assert server.saved()["live"]["pose_updates"] == 1
+    with Serving(tmp_path / "fixed.ovimap") as server:
+        with pytest.raises(SendError, match="frame_store.max_mb"):
+            FrameSender(server.address, shots.camera).correct_poses({0.0: np.eye(4)})
+
+
+@needs_program
 def test_a_resumed_run_goes_on_counting(shots, hash_of_the_recording, tmp_path):
     for options, chosen in (((), range(FRAMES // 2)), (("--resume",), range(FRAMES // 2, FRAMES))):
         with Serving(tmp_path / "sent.ovimap", *options) as server:

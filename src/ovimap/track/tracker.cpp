@@ -12,6 +12,7 @@ namespace ovimap {
 namespace {
 
 constexpr std::int64_t kLongestGap = 6;  // frames; longer ones predict nothing more
+constexpr int kListenEvery = 5;          // frames; neighbours say the same of the sensor
 constexpr int kLeastWidth_px = 2 * kCoarsestWidth_px;  // smaller images lack levels
 
 double share_with_depth(const TrackLevel& level) {
@@ -56,6 +57,14 @@ void Tracker::begin_in(std::vector<Keyframe> places) {
   keyframes_ = std::move(places);
   for (const Keyframe& keyframe : keyframes_) codes_.push_back(keyframe.code);
   begun_ = lost_ = true;
+}
+
+void Tracker::correct(const std::vector<Pose>& poses) {
+  OVIMAP_ASSERT(poses.size() == keyframes_.size() && !poses.empty());
+  const Pose moved = poses.back() * keyframes_.back().world_from_camera.inverse();
+  for (std::size_t i = 0; i < poses.size(); ++i) keyframes_[i].world_from_camera = poses[i];
+  last_pose_ = moved * last_pose_;
+  reference_is_old_ = true;  // it shows the map as it was
 }
 
 /// The first frame is where the world is.
@@ -106,6 +115,10 @@ bool Tracker::follow(const Frame& frame) {
     return false;
   accept(frame.index, *alignment, *reference_, lost_);
   if (frame.posed) last_given_ = frame.world_from_camera;
+  // Frames that are far from their reference tell the most.
+  if (!lost_ && (reference_is_old_ || reference_age_ % kListenEvery == 0))
+    sensor_.add(reference_->levels[kSurfaceLevel], pyramid_[kSurfaceLevel],
+                alignment->reference_from_frame, config_.alignment);
   return true;
 }
 
@@ -123,8 +136,9 @@ void Tracker::accept(std::int64_t index, const Alignment& alignment, const Refer
   last_pose_ = result.world_from_camera;
   last_index_ = index;
   last_given_.reset();
-  // As much as went out of sight now may go again before the next frame.
-  const double overlap = alignment.quality.overlap;
+  // What something nearer hides is as much out of sight as what is beyond the image's edge; as much
+  // as went now may go again before the next frame.
+  const double overlap = alignment.quality.overlap * alignment.quality.agreement;
   const double next_overlap = overlap - std::max(0., last_overlap_ - overlap);
   last_overlap_ = overlap;
   reference_is_old_ = ++reference_age_ >= config_.reference_frames || relocated ||
@@ -166,7 +180,8 @@ void Tracker::keep_keyframe() {
   if (!keyframes_.empty() && !result.relocated &&
       !config_.keyframes.far(keyframes_.back().world_from_camera, result.world_from_camera))
     return;
-  keyframes_.push_back(make_keyframe(pyramid_, result.index, result.world_from_camera));
+  keyframes_.push_back(
+      make_keyframe(pyramid_, first_number_ + result.index, result.world_from_camera));
   codes_.push_back(keyframes_.back().code);
 }
 
@@ -198,6 +213,17 @@ std::string summary_line(const TrackSummary& summary) {
   if (summary.lost.size() > kMostNamed) line += ", ...";
   if (!summary.lost.empty()) line += ")";
   return line;
+}
+
+std::string sensor_doubt(const SensorEvidence& evidence, const TrackConfig& config) {
+  const auto focal = evidence.log_focal_ratio();
+  if (!focal || !focal->beyond(static_cast<double>(config.focal_off),
+                               static_cast<double>(config.focal_sigmas)))
+    return {};
+  return concat("the images say that the focal length is some ",
+                std::lround(100 * std::fabs(std::expm1(focal->value))), " % ",
+                focal->value > 0 ? "larger" : "smaller",
+                " than given; check fx and fy of camera.yaml or of the recording");
 }
 
 }  // namespace ovimap

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "ovimap/track/alignment/sensor_evidence.h"
 #include "ovimap/track/places/track_config.h"
 
 namespace ovimap {
@@ -42,9 +43,18 @@ class Tracker {
   /// to be found.
   void begin_in(std::vector<Keyframe> places);
 
+  /// Keyframes get numbers from there on: that of frame 0. Before the first frame.
+  void number_from(std::int64_t first) { first_number_ = first; }
+
+  /// Moves the keyframes to these poses, and with the last of them the camera: a loop was closed.
+  /// What was logged stays. The map must be that of the new poses when the next frame comes.
+  void correct(const std::vector<Pose>& poses);
+
   const std::vector<TrackedFrame>& log() const { return log_; }
   const std::vector<Keyframe>& keyframes() const { return keyframes_; }
   const TrackConfig& config() const { return config_; }
+  /// What the frames so far say of the camera.
+  const SensorEvidence& sensor() const { return sensor_; }
 
  private:
   bool start(const Frame& frame);
@@ -65,9 +75,11 @@ class Tracker {
   double last_overlap_ = 1;  ///< of the last tracked frame with the reference
   Pose last_pose_ = Pose::Identity();
   Pose last_motion_ = Pose::Identity();  ///< last camera from the one before
+  std::int64_t first_number_ = 0;
   std::int64_t last_index_ = 0;
   std::int64_t last_gap_ = 1;       ///< frames between those
   std::optional<Pose> last_given_;  ///< pose that came with that frame
+  SensorEvidence sensor_;
   bool begun_ = false, lost_ = false;
   std::vector<TrackedFrame> log_;
   std::vector<Keyframe> keyframes_;
@@ -77,5 +89,8 @@ class Tracker {
 TrackSummary summarise(const std::vector<TrackedFrame>& log);
 /// "tracked 498 of 500 frames, lost 1 time (frames 100 to 101)".
 std::string summary_line(const TrackSummary& summary);
+
+/// What the residuals say against the camera's description, in a sentence; empty: nothing.
+std::string sensor_doubt(const SensorEvidence& evidence, const TrackConfig& config);
 
 }  // namespace ovimap

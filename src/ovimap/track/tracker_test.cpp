@@ -103,6 +103,107 @@ TEST_F(TrackerTest, AnotherPlaceIsLost) {
   EXPECT_TRUE(see(fixture::room_pose(9)).tracked);
 }
 
+/// The camera passes close by a board that hides, piece by piece, all that it saw before, and what
+/// comes out behind it was never seen: the surface must be cast anew while there is enough of it.
+TEST_F(TrackerTest, GoesOnBehindWhatHidesTheView) {
+  const Pose start = fixture::room_pose(0);
+  const double board_z = 0.5, board_left = -0.9, board_right = -0.25;  // in the first camera's frame
+  for (int i = 0; i < 40; ++i) {
+    const double along = -0.03 * i;
+    const Pose pose = start * Eigen::Translation3d(along, 0, 0);
+    Frame frame = camera_.take(pose, next_);
+    for (int y = 0; y < frame.depth.height(); ++y)
+      for (int x = 0; x < frame.depth.width(); ++x) {
+        const Eigen::Vector3d ray =
+            camera_.camera.unproject(static_cast<float>(x), static_cast<float>(y), 1.f)
+                .cast<double>();
+        const Eigen::Vector3d point = board_z * ray + Eigen::Vector3d(along, 0, 0);
+        if (point.x() < board_left || point.x() > board_right) continue;
+        const Eigen::Vector3d place = 4 * point;
+        frame.depth.at(x, y) = static_cast<float>(board_z);
+        frame.color.at(x, y) = {camera_.shade(place, 0), camera_.shade(place, 1),
+                                camera_.shade(place, 2)};
+      }
+    const TrackedFrame& tracked = see(frame);
+    ASSERT_TRUE(tracked.tracked) << i;
+    EXPECT_LT(off_m(tracked, pose), 0.03) << i;
+  }
+}
+
+/// Bare walls hide some directions of the motion: the frames in which they do are told.
+TEST_F(TrackerTest, WithoutTextureWhatDepthDoesNotTellIsTold) {
+  camera_.textured = false;
+  see(fixture::room_pose(0));
+  double last_off_m = 0;
+  for (int i = 1; i < 20; ++i) {
+    const TrackedFrame& tracked = see(fixture::room_pose(i));
+    const double off = off_m(tracked, fixture::room_pose(i));
+    EXPECT_TRUE(!tracked.tracked || tracked.degenerate > 0 || off - last_off_m < 0.01) << i;
+    last_off_m = off;
+  }
+  EXPECT_GT(summarise(tracker_.log()).degenerate, 0u);
+}
+
+/// Somebody walks through the picture, half as wide as it: what is not sure is lost, nothing is
+/// believed to be where it is not, and where the camera was before it is found again.
+TEST_F(TrackerTest, AMovingPersonDoesNotCarryTheCameraAlong) {
+  for (int i = 0; i < 10; ++i) see(fixture::room_pose(i));
+  for (int i = 10; i < 30; ++i) {
+    Frame frame = camera_.take(fixture::room_pose(i), next_);
+    const int width = frame.depth.width(), left = (i - 10) * width / 40;
+    for (int y = 0; y < frame.depth.height(); ++y)
+      for (int x = left; x < left + width / 2; ++x) {
+        frame.depth.at(x, y) = 0.6f;
+        const auto stripe = static_cast<std::uint8_t>((x - left) / 6 % 2 == 0 ? 40 : 200);
+        frame.color.at(x, y) = {stripe, stripe, stripe};
+      }
+    const TrackedFrame& seen = see(frame);
+    EXPECT_TRUE(!seen.tracked || off_m(seen, fixture::room_pose(i)) < 0.03) << i;
+  }
+  const TrackedFrame& found = see(fixture::room_pose(8));
+  EXPECT_TRUE(found.tracked);
+  EXPECT_LT(off_m(found, fixture::room_pose(8)), 0.02);
+}
+
+/// Two recordings in one file: what follows is another place. Nothing of it is believed, and what
+/// comes back to the first place is.
+TEST_F(TrackerTest, OfTwoRecordingsInOneTheFirstIsMapped) {
+  const auto behind = [](int i) {
+    Pose pose = fixture::room_pose(i);
+    pose.rotate(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitY()));
+    return pose;
+  };
+  for (int i = 0; i < 10; ++i) see(fixture::room_pose(i));
+  const std::uint64_t before = map_.content_hash();
+  for (int i = 0; i < 10; ++i) EXPECT_FALSE(see(behind(i)).tracked) << i;
+  EXPECT_EQ(map_.content_hash(), before);
+  EXPECT_EQ(summary_line(summarise(tracker_.log())),
+            "tracked 10 of 20 frames, lost 1 time (frames 10 to 19)");
+}
+
+/// A loop was closed: the camera and its places are elsewhere, and so is the map.
+TEST_F(TrackerTest, GoesOnInAMapThatWasCorrected) {
+  for (int i = 0; i < 10; ++i) see(fixture::room_pose(i));
+  Vector6d shift;
+  shift << 0.3, 0, -0.2, 0, 0.1, 0;
+  const Pose moved = small_motion(shift);
+  std::vector<Pose> poses;
+  for (const Keyframe& keyframe : tracker_.keyframes())
+    poses.push_back(moved * keyframe.world_from_camera);
+  tracker_.correct(poses);
+  map_ = fixture::coarse_map();
+  for (int i = 0; i < 10; ++i) {
+    Frame frame = camera_.take(fixture::room_pose(i), i);
+    frame.world_from_camera = moved * first_.inverse() * fixture::room_pose(i);
+    fixture::fuse(frame, map_);
+  }
+  first_ = first_ * moved.inverse();
+  const TrackedFrame& tracked = see(fixture::room_pose(10));
+  ASSERT_TRUE(tracked.tracked);
+  EXPECT_FALSE(tracked.relocated);
+  EXPECT_LT(off_m(tracked, fixture::room_pose(10)), 0.015);
+}
+
 TEST_F(TrackerTest, FirstFrameWithDepthIsTheWorld) {
   EXPECT_FALSE(see(dark()).tracked);
   const TrackedFrame& first = see(fixture::room_pose(0));
@@ -121,6 +222,41 @@ TEST_F(TrackerTest, BeginsInAMapThatIsThere) {
   const TrackedFrame& found = see(fixture::room_pose(11));
   ASSERT_TRUE(found.tracked);
   EXPECT_LT(fixture::distance_m(found.world_from_camera, fixture::room_pose(11)), 0.02);
+}
+
+class SensorTest : public TrackerTest {
+ protected:
+  /// A camera that turns to and fro while it goes; `change` makes what is wrong.
+  template <class Change>
+  void walk(const Change& change) {
+    camera_.camera = {320, 240, 280.f, 280.f, 159.5f, 119.5f};
+    for (int i = 0; i < 60; ++i) {
+      Frame frame = camera_.take(pose(i), next_);
+      change(frame);
+      see(frame);
+    }
+  }
+  static Pose pose(int i) {
+    Pose pose = fixture::room_pose(i / 3);
+    pose.rotate(Eigen::AngleAxisd(0.1 * std::sin(0.1 * i), Eigen::Vector3d::UnitY()));
+    return pose;
+  }
+  std::string doubt() const { return sensor_doubt(tracker_.sensor(), tracker_.config()); }
+};
+
+TEST_F(SensorTest, NothingIsSaidOfASoundCamera) {
+  walk([](Frame&) {});
+  EXPECT_EQ(doubt(), "");
+  ASSERT_TRUE(tracker_.sensor().log_focal_ratio());
+  EXPECT_LT(std::fabs(tracker_.sensor().log_focal_ratio()->value), 0.02);
+}
+
+TEST_F(SensorTest, AWrongFocalLengthIsTold) {
+  walk([](Frame& frame) {
+    frame.depth_camera.fx *= 0.88f, frame.depth_camera.fy *= 0.88f;
+    frame.color_camera = frame.depth_camera;
+  });
+  EXPECT_NE(doubt().find("larger than given; check fx and fy"), std::string::npos) << doubt();
 }
 
 TEST(Tracker, IsTheSameForAnyNumberOfThreads) {

@@ -103,6 +103,14 @@ std::uint32_t VoxelMap::find_or_create(const BlockIndex& index) {
   return slot;
 }
 
+void VoxelMap::empty_blocks() {
+  for (std::uint32_t slot = 0; slot < blocks_.size(); ++slot) {
+    VoxelBlock& block = writable_block(slot);
+    block = VoxelBlock(indices_[slot]);
+    block.forest_epoch = labels_.epoch();
+  }
+}
+
 void VoxelMap::create_away(const BlockIndex& index) {
   std::uint32_t& slot = place_of(index);
   OVIMAP_ASSERT(slot == kNoBlock);

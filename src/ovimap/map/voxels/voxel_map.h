@@ -186,6 +186,9 @@ class VoxelMap {
   /// can be referred to.
   std::uint32_t find_or_create(const BlockIndex& index);
 
+  /// Makes every block one that was never observed. Blocks stay, and so do labels.
+  void empty_blocks();
+
   /// Slots in the order of their block indices (z, y, x): the same for every way the map was built.
   std::vector<std::uint32_t> ordered_slots() const;
 

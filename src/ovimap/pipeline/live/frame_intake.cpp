@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/pipeline/live/frame_intake.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
+#include <utility>
 
 namespace ovimap {
 
@@ -42,6 +44,20 @@ FrameIntake::Answer FrameIntake::offer(Frame frame, Offer offer) {
   return Answer::kTaken;
 }
 
+bool FrameIntake::correct(PoseUpdate update) {
+  const std::lock_guard lock(mutex_);
+  if (finished_) return false;
+  update_ = std::move(update);
+  frames_before_update_ = frames_.size();
+  changed_.notify_all();
+  return true;
+}
+
+std::optional<PoseUpdate> FrameIntake::next_update() {
+  const std::lock_guard lock(mutex_);
+  return update_is_due() ? std::exchange(update_, std::nullopt) : std::nullopt;
+}
+
 void FrameIntake::finish() {
   const std::lock_guard lock(mutex_);
   finished_ = true;
@@ -54,6 +70,7 @@ void FrameIntake::resume_at(std::int64_t index, const PinholeCamera& depth_camer
   depth_camera_ = depth_camera;
   const auto others = static_cast<std::int64_t>(std::erase_if(
       frames_, [&](const Frame& frame) { return frame.depth_camera != depth_camera; }));
+  frames_before_update_ = std::min(frames_before_update_, frames_.size());
   taken_ -= others;
   skipped_ += others;
 }
@@ -65,10 +82,12 @@ std::optional<PinholeCamera> FrameIntake::depth_camera() const {
 
 std::optional<Frame> FrameIntake::next(std::chrono::milliseconds patience) {
   std::unique_lock lock(mutex_);
-  changed_.wait_for(lock, patience, [&] { return finished_ || !frames_.empty(); });
-  if (frames_.empty()) return std::nullopt;
+  changed_.wait_for(lock, patience,
+                    [&] { return finished_ || !frames_.empty() || update_is_due(); });
+  if (frames_.empty() || update_is_due()) return std::nullopt;
   std::optional<Frame> frame(std::move(frames_.front()));
   frames_.pop_front();
+  if (update_) --frames_before_update_;
   frame->index = next_index_++;
   if (frame->name.empty()) frame->name = name_of(frame->index);
   return frame;
@@ -76,7 +95,7 @@ std::optional<Frame> FrameIntake::next(std::chrono::milliseconds patience) {
 
 bool FrameIntake::ended() const {
   const std::lock_guard lock(mutex_);
-  return finished_ && frames_.empty();
+  return finished_ && frames_.empty() && !update_;
 }
 
 FrameIntake::Counts FrameIntake::counts() const {

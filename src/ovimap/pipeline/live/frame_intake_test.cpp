@@ -86,6 +86,57 @@ TEST(FrameIntake, HandsOutWhatWaitsOnceItIsFinished) {
   EXPECT_FALSE(intake.next(std::chrono::hours(1))) << "nobody need wait any more";
 }
 
+TEST(FrameIntake, ACorrectionOfPosesWaitsForTheFramesBeforeIt) {
+  FrameIntake intake(4);
+  intake.offer(Frame());
+  EXPECT_TRUE(intake.correct(PoseUpdate{false, {{1, Pose::Identity()}}}));
+  EXPECT_TRUE(intake.correct(PoseUpdate{false, {{2, Pose::Identity()}}})) << "instead of the first";
+  intake.offer(Frame());
+  EXPECT_FALSE(intake.next_update());
+  EXPECT_TRUE(intake.next(milliseconds(0)));
+  EXPECT_FALSE(intake.next(std::chrono::hours(1))) << "the correction comes first";
+  intake.finish();
+  EXPECT_EQ(intake.next_update()->nodes[0].at, 2);
+  EXPECT_FALSE(intake.next_update());
+  EXPECT_FALSE(intake.ended());
+  EXPECT_TRUE(intake.next(milliseconds(0)));
+  EXPECT_TRUE(intake.ended());
+  EXPECT_FALSE(intake.correct(PoseUpdate()));
+}
+
+/// Frames come with poses that are off to one side, then the graph says where they are: the frames
+/// sent until then, and the map, move there.
+TEST(FrameIntake, CorrectedPosesMoveTheMap) {
+  const fixture::Sequence sequence;
+  MapperConfig config;
+  config.frame_store.max_mb = 100;
+  FrameIntake intake(100);
+  PoseUpdate update;
+  for (int i = 0; i < sequence.frames; ++i) {
+    Frame frame = frame_of(sequence, i);
+    if (i < sequence.frames - 1) {
+      update.nodes.push_back({static_cast<double>(i), frame.world_from_camera});
+      frame.world_from_camera.translation().x() += 0.1;
+    }
+    if (i == sequence.frames - 1) intake.correct(std::move(update));
+    intake.offer(std::move(frame));
+  }
+  intake.finish();
+  LiveMapper live(config, {});
+  std::size_t shown = 0;
+  live.after_frame = [&](Mapper& mapper, const auto&, const PinholeCamera&) {
+    shown = std::max(shown, mapper.touched_blocks().size());
+  };
+  const LiveRunResult result = run_pushed(intake, live);
+  EXPECT_EQ(result.statistics.pose_updates, 1);
+  for (const FrameLogEntry& frame : result.sequence.frames)
+    EXPECT_TRUE(frame.world_from_camera.isApprox(
+        fixture::room_pose(static_cast<int>(frame.index)), 1e-9))
+        << frame.index;
+  const Mapper made = live.take();
+  EXPECT_GT(shown, made.map().block_count() * 9 / 10) << "whoever shows the map hears of all";
+}
+
 TEST(FrameIntake, PushedFramesMapAsMapperDoes) {
   const fixture::Sequence sequence;
   MapperConfig config;

@@ -27,6 +27,14 @@ std::unique_ptr<Mapper> forgiving_mapper(const MapperConfig& config,
   return mapper;
 }
 
+/// Gives a frame the pose that it has by now.
+void move_to(const Pose& world_from_camera, PreparedFrame& prepared) {
+  if (prepared.frame->world_from_camera.matrix() == world_from_camera.matrix()) return;
+  auto moved = std::make_shared<Frame>(*prepared.frame);
+  moved->world_from_camera = world_from_camera;
+  prepared.frame = std::move(moved);
+}
+
 }  // namespace
 
 void list_fields(LiveConfig& config, ConfigFields& fields) {
@@ -82,6 +90,11 @@ void LiveMapper::push_and_wait(Frame frame) {
   if (!taken) ++statistics_.frames_dropped;  // drained or cancelled
 }
 
+void LiveMapper::move_and_wait(PoseUpdate update) {
+  incoming_.push({nullptr, Clock::now(), std::make_shared<const PoseUpdate>(std::move(update))});
+  rethrow_failure();
+}
+
 void LiveMapper::drain() {
   incoming_.close();
   join();
@@ -122,6 +135,10 @@ LiveStatistics LiveMapper::statistics() const {
 
 void LiveMapper::prepare_frames() {
   while (auto next = incoming_.pop()) {
+    if (next->update) {
+      prepared_.push({nullptr, nullptr, next->pushed, std::move(next->update)});
+      continue;
+    }
     begin("prepare");
     Prepared prepared{nullptr, nullptr, next->pushed};
     prepared.frame = std::make_shared<PreparedFrame>(
@@ -136,6 +153,7 @@ void LiveMapper::prepare_frames() {
 
 void LiveMapper::restore(MapDocument&& document) {
   frames_ = document.frames;
+  depth_camera_ = document.depth_camera;
   mapper_->restore(std::move(document));
 }
 
@@ -144,7 +162,11 @@ void LiveMapper::restore(MapDocument&& document) {
 void LiveMapper::fuse_frames() {
   while (auto next = prepared_.pop()) {
     apply_late_masks();
-    if (tracker_ && !locate(*next->frame)) continue;
+    if (next->update) {
+      move(*next->update);
+      continue;
+    }
+    if (finder_ && !locate(*next->frame)) continue;
     fuse(std::move(*next));
   }
   wanted_masks_.close();
@@ -165,15 +187,23 @@ void LiveMapper::count_encoder_failures() {
 bool LiveMapper::locate(PreparedFrame& prepared) {
   begin("track");
   auto frame = std::make_shared<Frame>(*prepared.frame);
-  auto t = mapper_->timers().measure("track");
-  const TrackedFrame& tracked = tracker_->track(*frame, mapper_->map());
-  frame->world_from_camera = tracked.world_from_camera;
-  frame->posed = true;
+  const bool found = finder_->locate(*frame, *mapper_);
   prepared.frame = std::move(frame);
-  if (tracked.tracked) return true;
+  if (found) return true;
   const std::lock_guard lock(mutex_);
   ++statistics_.frames_lost;
   return false;
+}
+
+void LiveMapper::move(const PoseUpdate& update) {
+  begin("move");
+  if (mapper_->kept_frames().empty() || mapper_->map().has_store()) return;
+  const std::vector<MovedPose> moves = moves_of(update, frames_);
+  if (moves.empty()) return;
+  move_frames(moves, update.by_time, *mapper_, frames_, depth_camera_);
+  if (after_frame) after_frame(*mapper_, frames_, depth_camera_);
+  const std::lock_guard lock(mutex_);
+  ++statistics_.pose_updates;
 }
 
 void LiveMapper::fuse(Prepared prepared) {
@@ -195,6 +225,7 @@ void LiveMapper::fuse(Prepared prepared) {
       ++statistics_.masks_skipped;
     }
   }
+  depth_camera_ = frame.depth_camera;
   mapper_->fuse(*prepared.frame, prepared.cut.get());
   const double lag_ms = milliseconds_since(prepared.pushed);
   frames_.push_back({mapper_->number_of(frame), frame.timestamp_s, frame.name,
@@ -205,6 +236,7 @@ void LiveMapper::fuse(Prepared prepared) {
     begin("views");
     mapper_->look_at_objects(frame, Mapper::Encoder::kRunOn);
   }
+  if (finder_) finder_->close_loops(*mapper_, frames_, frame.depth_camera);
   if (after_frame) after_frame(*mapper_, frames_, frame.depth_camera);
   count_encoder_failures();
   const std::lock_guard lock(mutex_);
@@ -222,11 +254,14 @@ void LiveMapper::apply_masks(Prepared late) {
   --masks_under_way_;
   if (!late.cut) return schedule_.went_without();
   begin("apply_masks");
-  mapper_->label(*late.frame, *late.cut);
   const auto entry = std::find_if(frames_.rbegin(), frames_.rend(), [&](const FrameLogEntry& e) {
     return e.index == mapper_->number_of(*late.frame->frame);
   });
-  if (entry != frames_.rend()) entry->labelled = true;
+  if (entry != frames_.rend()) {
+    entry->labelled = true;
+    move_to(entry->world_from_camera, *late.frame);
+  }
+  mapper_->label(*late.frame, *late.cut);
   if (after_frame) after_frame(*mapper_, frames_, late.frame->frame->depth_camera);
   const std::lock_guard lock(mutex_);
   ++statistics_.mask_frames;

@@ -14,7 +14,8 @@
 #include "ovimap/io/map_tables/map_document.h"
 #include "ovimap/pipeline/live/mask_schedule.h"
 #include "ovimap/pipeline/mapping/mapper.h"
-#include "ovimap/track/tracker.h"
+#include "ovimap/pipeline/sequence/moved_frames.h"
+#include "ovimap/pipeline/sequence/pose_finder.h"
 
 namespace ovimap {
 
@@ -32,6 +33,7 @@ void list_fields(LiveConfig& config, ConfigFields& fields);
 struct LiveStatistics {
   std::int64_t frames_pushed = 0, frames_fused = 0, frames_dropped = 0;
   std::int64_t frames_lost = 0;    ///< fused nowhere, for the camera was lost
+  std::int64_t pose_updates = 0;   ///< that moved the map
   std::int64_t mask_frames = 0;    ///< frames whose masks are in the map
   std::int64_t masks_late = 0;     ///< ... after their frame was fused
   std::int64_t masks_skipped = 0;  ///< frames that wanted masks while the network was busy
@@ -63,12 +65,17 @@ class LiveMapper {
     mapper_->recognize_with(std::move(recognizer));
   }
   /// Finds the poses of the frames instead of taking theirs. Before the first push only.
-  void track_with(std::shared_ptr<Tracker> tracker) { tracker_ = std::move(tracker); }
+  void track_with(std::shared_ptr<PoseFinder> finder) { finder_ = std::move(finder); }
 
   /// Takes a frame without waiting; false when it had to be dropped. Throws what a stage threw.
   bool push(Frame frame);
   /// Waits for room instead. Throws what a stage threw.
   void push_and_wait(Frame frame);
+
+  /// Moves the frames that were pushed so far, as far as they are in the map when their turn comes,
+  /// and the map with them (move_frames); waits for room. Does nothing where no frames are kept.
+  /// Frames are not fused meanwhile. Throws what a stage threw.
+  void move_and_wait(PoseUpdate update);
 
   /// Goes on where a stored map stopped, made with the same config. Before the first push only.
   void restore(MapDocument&& document);
@@ -102,17 +109,20 @@ class LiveMapper {
   struct Incoming {
     std::shared_ptr<const Frame> frame;
     Clock::time_point pushed;
+    std::shared_ptr<const PoseUpdate> update = nullptr;  ///< instead of a frame
   };
   struct Prepared {
     std::shared_ptr<PreparedFrame> frame;
     std::shared_ptr<const FrameSegments> cut;  ///< null: not masked, or masks are to come
     Clock::time_point pushed;
+    std::shared_ptr<const PoseUpdate> update = nullptr;  ///< instead of a frame
   };
 
   void prepare_frames();
   void fuse_frames();
   void find_masks();
   bool locate(PreparedFrame& prepared);
+  void move(const PoseUpdate& update);
   void fuse(Prepared prepared);
   void count_encoder_failures();
   void apply_masks(Prepared late);
@@ -131,7 +141,7 @@ class LiveMapper {
   MapperConfig config_;
   LiveConfig live_;
   std::shared_ptr<MaskSource> mask_source_;
-  std::shared_ptr<Tracker> tracker_;  ///< null: frames have poses; the fusing thread's
+  std::shared_ptr<PoseFinder> finder_;  ///< null: frames have poses; the fusing thread's
   std::unique_ptr<Mapper> mapper_;  ///< the fusing thread's, until that ends
   MaskSchedule schedule_;
   StageTimers prepare_timers_, mask_timers_;
@@ -141,6 +151,7 @@ class LiveMapper {
   BoundedQueue<Prepared> wanted_masks_, found_masks_;
   std::int64_t masks_under_way_ = 0;  ///< the fusing thread's, as the next
   std::vector<FrameLogEntry> frames_;
+  PinholeCamera depth_camera_;  ///< of the last frame that was fused
 
   std::atomic<bool> cancelled_ = false;
   mutable std::mutex mutex_;  ///< guards what follows

@@ -100,6 +100,8 @@ LiveRunResult run_pushed(FrameIntake& intake, LiveMapper& mapper, const LiveProg
   LiveRunResult result;
   std::optional<Clock::time_point> start;  // the first frame's
   for (std::size_t done = 0; !intake.ended();) {
+    if (std::optional<PoseUpdate> update = intake.next_update())
+      mapper.move_and_wait(std::move(*update));
     if (std::optional<Frame> frame = intake.next(kLook)) {
       if (!start) start = Clock::now();
       result.sequence.depth_camera = frame->depth_camera;

@@ -50,6 +50,14 @@ void Checkpointer::end_frames(Mapper& mapper) {
   if (tiles_->bounded()) finish_writing(mapper);
 }
 
+void Checkpointer::store(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
+                         const PinholeCamera& depth_camera) {
+  if (off()) return;
+  finish_writing(mapper);
+  begin(mapper, frames, depth_camera);
+  finish_writing(mapper);
+}
+
 bool Checkpointer::due(std::size_t frames) const {
   const std::chrono::duration<float> passed = std::chrono::steady_clock::now() - last_;
   return (config_.seconds > 0 && passed.count() >= config_.seconds) ||

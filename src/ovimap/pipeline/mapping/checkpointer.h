@@ -42,6 +42,10 @@ class Checkpointer {
   /// The last frame is fused: waits for what is being written, if tiles may have to leave memory
   /// from here on.
   void end_frames(Mapper& mapper);
+  /// Stores everything by now and waits for it, unless there are no checkpoints (CheckpointConfig):
+  /// what comes next takes long. Throws what after_frame throws.
+  void store(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
+             const PinholeCamera& depth_camera);
   /// Adds what tiles' leaving memory and coming back took (TileKeeper::report).
   void report(StageTimers& timers) { tiles_->report(timers); }
   /// The log of corrections, as later checkpoints keep it.

@@ -111,6 +111,23 @@ TEST_F(CheckpointerTest, SoDoesOneWhoseMasksAreMissingOnSomeFrames) {
   expect_resumed_runs_to_end_alike();
 }
 
+/// What comes after the last frame may take long, and whoever kills it loses no frame.
+TEST_F(CheckpointerTest, ARunKilledAfterItsLastFrameEndsAsIfItWasNot) {
+  Mapper whole = mapper();
+  const SequenceResult sequence = run_sequence(scene_, positions({}, scene_.size()), whole);
+  const Bytes expected = finish(std::move(whole), sequence);
+  {
+    Mapper begun = mapper();
+    Checkpointer checkpoints = checkpointer(1000, CheckpointFile::Start::kAnew);
+    run_sequence(scene_, positions({}, scene_.size()), begun, nullptr, {}, &checkpoints);
+    ASSERT_FALSE(holds_checkpoint(partial_));
+    checkpoints.store(begun, sequence.frames, sequence.depth_camera);
+  }
+  ASSERT_TRUE(holds_checkpoint(partial_));
+  EXPECT_EQ(load_map(partial_).frames.size(), sequence.frames.size());
+  EXPECT_EQ(resume(), expected);
+}
+
 TEST_F(CheckpointerTest, CheckpointsDoNotChangeTheMap) {
   Mapper plain = mapper(), watched = mapper();
   const SequenceResult sequence = run_sequence(scene_, positions({}, scene_.size()), plain);

@@ -10,6 +10,7 @@
 #include "ovimap/base/version.h"
 #include "ovimap/map/fusion/integrate.h"
 #include "ovimap/map/rays/surface_lookup.h"
+#include "ovimap/pipeline/mapping/kept_fusion.h"
 #include "ovimap/pipeline/mapping/mask_prompts.h"
 
 namespace ovimap {
@@ -119,6 +120,17 @@ FrameReport Mapper::label(const PreparedFrame& prepared, const FrameSegments& cu
   }
   frame_store_.add_labels(number_of(*prepared.frame), cut.segments.ids, labels);
   return observe(*prepared.frame, &cut, associations);
+}
+
+void Mapper::fuse_again(const std::vector<Pose>& poses, const PinholeCamera& depth_camera) {
+  OVIMAP_ASSERT(poses.size() == static_cast<std::size_t>(frames_) && !map_.has_store());
+  auto t = timers_.measure("fuse_again");
+  map_.empty_blocks();
+  KeptFusion fusion(config_, depth_camera);
+  for (const auto& [position, kept] : frame_store_.frames())
+    fusion.fuse(*kept, poses[position], map_);
+  looks_ = fusion.looks();
+  touched_blocks_ = map_.ordered_slots();
 }
 
 std::vector<SegmentAssociation> Mapper::find_labels(const PreparedFrame& prepared,

@@ -71,6 +71,13 @@ class Mapper {
   /// Whether few enough views wait for the encoder to look for more.
   bool encoder_keeps_up() const { return builder_->keeps_up(); }
 
+  /// Fuses the frames that are kept anew, from these poses of all frames so far (world_from_camera
+  /// of their depth camera); labels stay what they are, and so do objects. The map stays the same
+  /// one: its blocks are emptied and filled again, and those that nothing fills stay empty.
+  /// touched_blocks() are all. Frames must be kept, and all voxels be in memory (without a store).
+  /// Throws Error when a kept frame is damaged.
+  void fuse_again(const std::vector<Pose>& poses, const PinholeCamera& depth_camera);
+
   /// The map seen from a frame's depth camera, guided by its depth (method section 8).
   InstanceView project(const Frame& frame);
 

@@ -5,9 +5,7 @@
 #include <algorithm>
 
 #include "ovimap/base/error.h"
-#include "ovimap/map/fusion/free_space.h"
-#include "ovimap/map/fusion/integrate.h"
-#include "ovimap/pipeline/mapping/frame_store.h"
+#include "ovimap/pipeline/mapping/kept_fusion.h"
 #include "ovimap/pipeline/sequence/map_description.h"
 
 namespace ovimap {
@@ -29,34 +27,6 @@ PoseCorrection compare(const std::vector<FrameLogEntry>& frames, const std::vect
   return correction;
 }
 
-/// The super-points that a frame's segments belong to by now.
-std::vector<Label> roots_of(const std::vector<Label>& labels, const LabelForest& forest) {
-  std::vector<Label> roots;
-  for (const Label label : labels) roots.push_back(forest.root(label));
-  return roots;
-}
-
-void fuse_again(const KeptFrame& kept, const PinholeCamera& camera, const Pose& world_from_camera,
-                const MapperConfig& config, SeparateLooks& looks, VoxelMap& map) {
-  const KeptImages images = decode_kept(kept, camera);
-  const DepthSurface surface = fit_depth_surface(images.depth, camera, config.segment.surface);
-  const std::vector<Label> labels = roots_of(kept.labels, map.labels());
-  const DepthEstimate estimate =
-      estimate_depth(images.depth, surface, config.segment.surface.noise, config.depth);
-  const Observation observation{
-      .depth = estimate.depth_m,
-      .camera = camera,
-      .world_from_camera = world_from_camera,
-      .color = &images.color,
-      .plane_slope = &surface.plane_slope,
-      .sigma_m = estimate.sigma_m.empty() ? nullptr : &estimate.sigma_m,
-      .segment_ids = labels.empty() ? nullptr : &images.segment_ids,
-      .segment_labels = labels};
-  if (looks.next(world_from_camera, config.free_space))
-    clear_free_space(map, observation, config.free_space);
-  integrate(map, observation);
-}
-
 }  // namespace
 
 PoseCorrection correct_poses(MapDocument& document, const std::vector<Pose>& poses,
@@ -75,10 +45,10 @@ PoseCorrection correct_poses(MapDocument& document, const std::vector<Pose>& pos
   VoxelMap map(document.map.config());
   map.labels() = document.map.labels();
   document.map = VoxelMap(map.config());
-  SeparateLooks looks;
+  KeptFusion fusion(config, document.depth_camera);
   for (const auto& [position, kept] : document.kept_frames) {
     try {
-      fuse_again(*kept, document.depth_camera, poses[position], config, looks, map);
+      fusion.fuse(*kept, poses[position], map);
     } catch (const Error& fault) {
       throw Error(concat("the kept frame ", position, " cannot be fused again (", fault.what(),
                          "); map the recording anew with the corrected poses"));

@@ -3,6 +3,7 @@
 #include "ovimap/pipeline/revise/map_loops.h"
 
 #include "ovimap/pipeline/mapping/frame_store.h"
+#include "ovimap/track/graph/moved_poses.h"
 
 namespace ovimap {
 
@@ -41,13 +42,13 @@ LoopReport close_map_loops(MapDocument& map, const MapperConfig& mapper, const T
                     closure.dropped,  closure.furthest_m, std::nullopt};
   if (closure.closed == 0 || closure.furthest_m < map.map.config().voxel_size_m / 2) return report;
   std::vector<Pose> poses;
-  std::vector<std::int64_t> order;
+  std::vector<double> at;
   for (const FrameLogEntry& frame : map.frames) {
     poses.push_back(frame.world_from_camera);
-    order.push_back(frame.index);
+    at.push_back(static_cast<double>(frame.index));
   }
-  report.correction = correct_poses(map, follow_keyframes(poses, order, keyframes, closure.poses),
-                                    mapper, progress);
+  report.correction = correct_poses(
+      map, follow(poses, at, moved_keyframes(keyframes, closure.poses)), mapper, progress);
   return report;
 }
 

@@ -28,17 +28,6 @@ std::string fuse(const Frame& frame, Mapper& mapper, bool others_went_well, Fram
   }
 }
 
-/// Gives the frame its pose; returns what kept it from one, empty when nothing did.
-std::string locate(Frame& frame, Mapper& mapper, Tracker& tracker) {
-  const TrackedFrame& tracked = [&]() -> const TrackedFrame& {
-    auto t = mapper.timers().measure("track");
-    return tracker.track(frame, mapper.map());
-  }();
-  frame.world_from_camera = tracked.world_from_camera;
-  frame.posed = true;
-  return tracked.tracked ? std::string() : concat(frame.name, ": the camera is lost");
-}
-
 }  // namespace
 
 std::string commonest_fault(const std::vector<SkippedFrame>& skipped) {
@@ -67,7 +56,7 @@ std::vector<Pose> poses_of(const std::vector<FrameLogEntry>& frames) {
 
 SequenceResult run_sequence(const FrameSource& source, const std::vector<std::int64_t>& positions,
                             Mapper& mapper, const SequenceProgress& progress, SequenceResult begun,
-                            Checkpointer* checkpoints, Tracker* tracker) {
+                            Checkpointer* checkpoints, PoseFinder* finder) {
   const auto start = std::chrono::steady_clock::now();
   const auto read = [&source](std::int64_t position) {
     return std::async(std::launch::async, [&source, position] { return source.read(position); });
@@ -82,7 +71,8 @@ SequenceResult run_sequence(const FrameSource& source, const std::vector<std::in
     }();
     if (i + 1 < positions.size()) next = read(positions[i + 1]);
     FrameReport report;
-    if (current.frame && tracker) current.fault = locate(*current.frame, mapper, *tracker);
+    if (current.frame && finder && !finder->locate(*current.frame, mapper))
+      current.fault = concat(current.frame->name, ": the camera is lost");
     if (current.frame && current.fault.empty())
       current.fault = fuse(*current.frame, mapper, !result.frames.empty(), report);
     if (current.fault.empty()) {
@@ -90,6 +80,7 @@ SequenceResult run_sequence(const FrameSource& source, const std::vector<std::in
       if (result.frames.empty()) result.depth_camera = frame.depth_camera;
       result.frames.push_back({mapper.number_of(frame), frame.timestamp_s, frame.name,
                                frame.world_from_camera, report.labelled});
+      if (finder) finder->close_loops(mapper, result.frames, result.depth_camera);
       if (checkpoints) checkpoints->after_frame(mapper, result.frames, result.depth_camera);
     } else {
       result.skipped.push_back({positions[i], current.fault});

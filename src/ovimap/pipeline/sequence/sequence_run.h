@@ -11,7 +11,7 @@
 #include "ovimap/io/map_tables/map_document.h"
 #include "ovimap/pipeline/mapping/checkpointer.h"
 #include "ovimap/pipeline/mapping/mapper.h"
-#include "ovimap/track/tracker.h"
+#include "ovimap/pipeline/sequence/pose_finder.h"
 
 namespace ovimap {
 
@@ -39,11 +39,11 @@ using SequenceProgress =
 /// Throws Error as well when every frame has the same pose (unless
 /// MapperConfig::allow_still_camera).
 /// `begun`: what an earlier run did that this one goes on with. `checkpoints` may be null.
-/// `tracker`: finds the poses; what it cannot place is skipped. Null: frames have theirs.
+/// `finder`: finds the poses; what it cannot place is skipped. Null: frames have theirs.
 SequenceResult run_sequence(const FrameSource& source, const std::vector<std::int64_t>& positions,
                             Mapper& mapper, const SequenceProgress& progress = nullptr,
                             SequenceResult begun = {}, Checkpointer* checkpoints = nullptr,
-                            Tracker* tracker = nullptr);
+                            PoseFinder* finder = nullptr);
 
 /// The fault that most skipped frames have, by the first of them.
 std::string commonest_fault(const std::vector<SkippedFrame>& skipped);

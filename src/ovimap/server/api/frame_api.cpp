@@ -65,6 +65,30 @@ double time_of(const json& about) {
   return about["timestamp_s"];
 }
 
+/// One node of a pose graph, which says when it was: by the index of a frame, or a time.
+PoseUpdate::Node node_of(const json& item, const char* key, const CameraRig& rig) {
+  if (!item.is_object()) throw BadRequest(400, "each of 'poses' must be an object");
+  check_keys(item, {key, "pose"});
+  if (!item.contains(key) || !item[key].is_number())
+    throw BadRequest(400, concat("each of 'poses' needs '", key, "', a number, as the first has"));
+  const std::optional<Eigen::Matrix4d> pose = pose_of(item);
+  if (!pose) throw BadRequest(400, "each of 'poses' needs 'pose'");
+  if (const std::string bad = pose_fault(*pose); !bad.empty())
+    throw BadRequest(400, concat("the pose at ", item[key].dump(), " is no rigid transform: ", bad));
+  return {item[key].get<double>(), rig.world_from_depth_camera(*pose)};
+}
+
+PoseUpdate update_of(const json& body, const CameraRig& rig) {
+  check_keys(body, {"poses"});
+  const json poses = body.contains("poses") ? body["poses"] : json();
+  if (!poses.is_array() || poses.empty())
+    throw BadRequest(400, "'poses' must be a list of {timestamp_s or index, pose}");
+  PoseUpdate update{poses[0].is_object() && poses[0].contains("timestamp_s"), {}};
+  for (const json& item : poses)
+    update.nodes.push_back(node_of(item, update.by_time ? "timestamp_s" : "index", rig));
+  return update;
+}
+
 /// Names become those of files: no paths.
 std::string name_of(const json& about) {
   const std::string name = field<std::string>(about, "name").value_or("");
@@ -154,6 +178,19 @@ HttpReply FrameApi::reply_to(FrameIntake::Answer answer) const {
                           "this one again");
   reply.headers["Retry-After"] = "1";
   return reply;
+}
+
+HttpReply FrameApi::poses(const HttpRequest& request) {
+  const json body = body_of(request);
+  intake();
+  if (!moves_frames_)
+    throw BadRequest(409, "poses of this map cannot be corrected; start the server with --set "
+                          "frame_store.max_mb=1000, and without --poses and memory.max_mb");
+  const std::lock_guard lock(mutex_);
+  if (!decoder_) throw BadRequest(409, "no camera is known yet; POST /api/camera first");
+  if (!intake_->correct(update_of(body, decoder_->rig())))
+    return fault(409, "the map is finished; `ovimap correct` takes poses from a file");
+  return counts(202);
 }
 
 HttpReply FrameApi::finish() {

@@ -18,8 +18,9 @@ namespace ovimap {
 class FrameApi {
  public:
   /// `intake` may be null: then every request is refused and told how frames are taken.
-  FrameApi(FrameIntake* intake, const FrameSourceConfig& config)
-      : intake_(intake), config_(config) {}
+  /// `moves_frames`: poses can be corrected, for the run keeps its frames.
+  FrameApi(FrameIntake* intake, const FrameSourceConfig& config, bool moves_frames = false)
+      : intake_(intake), config_(config), moves_frames_(moves_frames) {}
 
   bool takes_frames() const { return intake_ != nullptr; }
 
@@ -30,6 +31,7 @@ class FrameApi {
   // Handlers of POST. They throw BadRequest, and Error for what a frame or a camera has wrong.
   HttpReply camera(const HttpRequest& request);
   HttpReply frame(const HttpRequest& request);
+  HttpReply poses(const HttpRequest& request);
   HttpReply finish();
 
  private:
@@ -39,6 +41,7 @@ class FrameApi {
 
   FrameIntake* intake_;
   const FrameSourceConfig config_;
+  const bool moves_frames_;
   std::mutex mutex_;
   std::shared_ptr<const FrameDecoder> decoder_;  ///< null until a camera is given
 };

@@ -177,6 +177,63 @@ TEST_F(FrameApiTest, DeeplyNestedJsonIsRefused) {
   push(frame(0), 200);
 }
 
+class PoseApiTest : public FrameApiTest {
+ protected:
+  void serve_moving(FrameIntake& intake) {
+    ServerConfig config;
+    config.moves_frames = true;
+    serve(&intake, config);
+  }
+  json post(const json& body, int status) const {
+    return parsed(running_->client().post("/api/poses", body.dump(), "application/json"), status);
+  }
+  json node(int index) const { return {{"index", index}, {"pose", about(index)["pose"]}}; }
+};
+
+TEST_F(PoseApiTest, TakesThePosesOfAGraph) {
+  FrameIntake intake(4);
+  serve_moving(intake);
+  const json graph = {{"poses", {about(0), about(3)}}};
+  post(graph, 409);  // no camera yet
+  set_camera(camera(), 200);
+  post(graph, 202);
+  PoseUpdate update = *intake.next_update();
+  EXPECT_TRUE(update.by_time);
+  ASSERT_EQ(update.nodes.size(), 2u);
+  EXPECT_DOUBLE_EQ(update.nodes[1].at, 0.3);
+  EXPECT_TRUE(update.nodes[1].world_from_camera.isApprox(fixture::room_pose(3), 1e-9));
+  post({{"poses", {node(2)}}}, 202);
+  update = *intake.next_update();
+  EXPECT_FALSE(update.by_time);
+  EXPECT_DOUBLE_EQ(update.nodes[0].at, 2);
+  intake.finish();
+  EXPECT_NE(post(graph, 409)["error"].get<std::string>().find("ovimap correct"), std::string::npos);
+}
+
+TEST_F(PoseApiTest, SaysWhatIsWrongWithAGraph) {
+  FrameIntake intake(4);
+  serve_moving(intake);
+  set_camera(camera(), 200);
+  json skewed = node(1), vague = node(1), lacking = node(1);
+  skewed["pose"] = json(std::vector<double>(16, 1.));
+  vague.erase("index");
+  lacking.erase("pose");
+  for (const json& wrong :
+       {json::object(), json{{"poses", 3}}, json{{"poses", json::array()}}, json{{"graph", 3}},
+        json{{"poses", {3}}}, json{{"poses", {skewed}}}, json{{"poses", {vague}}},
+        json{{"poses", {lacking}}}, json{{"poses", {node(1), about(2)}}}})
+    post(wrong, 400);
+  EXPECT_FALSE(intake.next_update());
+}
+
+TEST_F(PoseApiTest, WhereNoFramesAreKeptItSaysHowToKeepThem) {
+  FrameIntake intake(4);
+  serve(&intake);
+  set_camera(camera(), 200);
+  EXPECT_NE(post({{"poses", {node(1)}}}, 409)["error"].get<std::string>().find("frame_store.max_mb"),
+            std::string::npos);
+}
+
 TEST_F(FrameApiTest, WithoutAnIntakeItSaysHowToGetOne) {
   serve(nullptr);
   EXPECT_NE(set_camera(camera(), 409)["error"].get<std::string>().find("--live http"),

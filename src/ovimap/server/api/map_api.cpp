@@ -262,6 +262,7 @@ Router map_api(ServedMap& map, FrameApi& frames) {
   work("/api/camera", [&frames](Request r) { return frames.camera(r); });
   add("POST", "/api/frames", BodyType::kFrame, RouteCost::kFrame,
       [&frames](Request r) { return frames.frame(r); });
+  work("/api/poses", [&frames](Request r) { return frames.poses(r); });
   add("POST", "/api/finish", BodyType::kNone, RouteCost::kWork,
       [&frames](Request) { return frames.finish(); });
   return router;

@@ -33,6 +33,7 @@ struct ServerConfig {
   double work_per_second = 10;             ///< queries, corrections, exports, which cost the most
   double work_burst = 40;
   FrameSourceConfig frames;  ///< limits of the depth in pushed frames
+  bool moves_frames = false;  ///< whether their poses can be corrected: the run keeps its frames
   int patience_s = 5;        ///< for a whole head, and for each piece of a body, read or written
   int idle_s = 5;            ///< that a connection rests between two requests
 

@@ -66,7 +66,7 @@ RequestDesk::RequestDesk(ServedMap& map, const ServerConfig& config, FrameIntake
     : config_(config),
       access_({config.token, config.host_names, config.encrypted()}),
       files_(config.viewer),
-      frames_(intake, config.frames),
+      frames_(intake, config.frames, config.moves_frames),
       api_(map_api(map, frames_)),
       requests_(config.requests_per_second, config.request_burst),
       work_(config.work_per_second, config.work_burst),

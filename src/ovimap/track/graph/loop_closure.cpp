@@ -10,17 +10,6 @@ namespace ovimap {
 
 namespace {
 
-/// The way that the camera went up to each keyframe, metres.
-std::vector<double> paths_of(const std::vector<Keyframe>& keyframes) {
-  std::vector<double> paths;
-  for (std::size_t i = 0; i < keyframes.size(); ++i)
-    paths.push_back(i == 0 ? 0
-                           : paths.back() + (keyframes[i].world_from_camera.translation() -
-                                             keyframes[i - 1].world_from_camera.translation())
-                                                .norm());
-  return paths;
-}
-
 struct Candidate {
   double rank = 0;  ///< smaller first
   std::size_t place = 0;
@@ -47,16 +36,6 @@ std::vector<Candidate> candidates_of(std::size_t at, const std::vector<Keyframe>
   return found;
 }
 
-std::vector<PoseEdge> edges_between_neighbours(const std::vector<Keyframe>& keyframes,
-                                               const LoopConfig& config) {
-  std::vector<PoseEdge> edges;
-  for (std::size_t i = 1; i < keyframes.size(); ++i)
-    edges.push_back({i - 1, i,
-                     keyframes[i - 1].world_from_camera.inverse() * keyframes[i].world_from_camera,
-                     config.step_sigma_m, config.step_sigma_rad, false});
-  return edges;
-}
-
 /// The pair's edge when its frames show one place.
 std::optional<PoseEdge> verified(const Keyframe& earlier, const Keyframe& later,
                                  const TrackConfig& track) {
@@ -71,21 +50,6 @@ std::optional<PoseEdge> verified(const Keyframe& earlier, const Keyframe& later,
   edge.from_to = alignment->reference_from_frame;
   edge.loop = true;
   return edge;
-}
-
-void find_loops(const std::vector<Keyframe>& keyframes, const TrackConfig& track,
-                const LoopConfig& config, std::vector<PoseEdge>& edges, LoopClosure& closure) {
-  const std::vector<double> paths = paths_of(keyframes);
-  for (std::size_t at = 0; at < keyframes.size(); ++at)
-    for (const Candidate& candidate : candidates_of(at, keyframes, paths, config)) {
-      ++closure.candidates;
-      auto edge = verified(keyframes[candidate.place], keyframes[at], track);
-      if (!edge) continue;
-      edge->from = candidate.place, edge->to = at;
-      edge->sigma_m = config.loop_sigma_m, edge->sigma_rad = config.loop_sigma_rad;
-      edges.push_back(*edge);
-      ++closure.closed;
-    }
 }
 
 }  // namespace
@@ -110,18 +74,50 @@ void list_fields(LoopConfig& config, ConfigFields& fields) {
              "standard deviation of its turn, radians");
   fields.add("most_sigmas", config.most_sigmas, 0.1f, 1e6f,
              "loops that the others contradict by more are dropped, standard deviations");
+  fields.add("online", config.online, "close loops while frames come, not at the end alone");
+  fields.add("agreeing", config.agreeing, 1, 1000,
+             "loops that agree before the map is corrected while frames come");
+  fields.add("least_voxels", config.least_voxels, 0.f, 1e6f,
+             "what moves less is left to the end, voxels");
+  fields.add("pause_m", config.pause_m, 0.f, 1e6f,
+             "the camera goes so far before the map is corrected again, metres");
 }
 
-LoopClosure close_loops(const std::vector<Keyframe>& keyframes, const TrackConfig& track,
-                        const LoopConfig& config) {
+std::size_t LoopGraph::take(const std::vector<Keyframe>& keyframes) {
+  std::size_t found = 0;
+  for (std::size_t at = paths_m_.size(); at < keyframes.size(); ++at) {
+    if (at == 0) {
+      paths_m_.push_back(0);
+      continue;
+    }
+    const Pose step =
+        keyframes[at - 1].world_from_camera.inverse() * keyframes[at].world_from_camera;
+    edges_.push_back({at - 1, at, step, config_.step_sigma_m, config_.step_sigma_rad, false});
+    paths_m_.push_back(paths_m_.back() + step.translation().norm());
+    for (const Candidate& candidate : candidates_of(at, keyframes, paths_m_, config_)) {
+      ++candidates_;
+      auto edge = verified(keyframes[candidate.place], keyframes[at], track_);
+      if (!edge) continue;
+      edge->from = candidate.place, edge->to = at;
+      edge->sigma_m = config_.loop_sigma_m, edge->sigma_rad = config_.loop_sigma_rad;
+      edges_.push_back(*edge);
+      ++found;
+    }
+  }
+  return found;
+}
+
+LoopClosure LoopGraph::solve(const std::vector<Keyframe>& keyframes) const {
   LoopClosure closure;
+  closure.candidates = candidates_;
   for (const Keyframe& keyframe : keyframes) closure.poses.push_back(keyframe.world_from_camera);
-  std::vector<PoseEdge> edges = edges_between_neighbours(keyframes, config);
-  find_loops(keyframes, track, config, edges, closure);
+  std::vector<PoseEdge> edges = edges_;
+  const auto is_loop = [](const PoseEdge& edge) { return edge.loop; };
+  closure.closed = static_cast<std::size_t>(std::count_if(edges.begin(), edges.end(), is_loop));
   if (closure.closed == 0) return closure;
   std::vector<Pose> poses = optimise_poses(closure.poses, edges);
   closure.dropped = std::erase_if(edges, [&](const PoseEdge& edge) {
-    return edge.loop && edge_error(poses, edge) > config.most_sigmas;
+    return edge.loop && edge_error(poses, edge) > config_.most_sigmas;
   });
   closure.closed -= closure.dropped;
   if (closure.dropped > 0) poses = optimise_poses(closure.poses, edges);
@@ -132,33 +128,11 @@ LoopClosure close_loops(const std::vector<Keyframe>& keyframes, const TrackConfi
   return closure;
 }
 
-std::vector<Pose> follow_keyframes(const std::vector<Pose>& poses,
-                                   const std::vector<std::int64_t>& order,
-                                   const std::vector<Keyframe>& keyframes,
-                                   const std::vector<Pose>& corrected) {
-  OVIMAP_ASSERT(poses.size() == order.size() && keyframes.size() == corrected.size());
-  std::vector<Pose> result;
-  std::size_t before = 0;
-  for (std::size_t i = 0; i < poses.size() && !keyframes.empty(); ++i) {
-    while (before + 1 < keyframes.size() && keyframes[before + 1].index <= order[i]) ++before;
-    const std::size_t after = std::min(before + 1, keyframes.size() - 1);
-    const auto moved = [&](std::size_t k) {
-      return Pose(corrected[k] * keyframes[k].world_from_camera.inverse() * poses[i]);
-    };
-    const Pose first = moved(before), second = moved(after);
-    const auto gap = static_cast<double>(keyframes[after].index - keyframes[before].index);
-    const double share =
-        gap > 0 ? std::clamp(static_cast<double>(order[i] - keyframes[before].index) / gap, 0., 1.)
-                : 0;
-    Pose pose = Pose::Identity();
-    pose.linear() = Eigen::Quaterniond(first.linear())
-                        .slerp(share, Eigen::Quaterniond(second.linear()))
-                        .normalized()
-                        .matrix();
-    pose.translation() = (1 - share) * first.translation() + share * second.translation();
-    result.push_back(pose);
-  }
-  return result;
+LoopClosure close_loops(const std::vector<Keyframe>& keyframes, const TrackConfig& track,
+                        const LoopConfig& config) {
+  LoopGraph graph(track, config);
+  graph.take(keyframes);
+  return graph.solve(keyframes);
 }
 
 }  // namespace ovimap

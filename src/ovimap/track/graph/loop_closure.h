@@ -16,6 +16,11 @@ struct LoopConfig {
   float step_sigma_m = 0.008f, step_sigma_rad = 0.006f;  ///< of the motion between two keyframes
   float loop_sigma_m = 0.01f, loop_sigma_rad = 0.006f;   ///< of a verified place
   float most_sigmas = 8.f;  ///< loops that the poses of all contradict more are dropped
+  // While frames come.
+  bool online = true;
+  int agreeing = 2;         ///< loops that agree before the map is corrected
+  float least_voxels = 2.f;  ///< keyframes that moved less are left to the end
+  float pause_m = 2.f;       ///< the camera goes so far before the next correction
 };
 void list_fields(LoopConfig& config, ConfigFields& fields);
 
@@ -26,16 +31,33 @@ struct LoopClosure {
   double furthest_m = 0;  ///< largest move of a keyframe
 };
 
-/// Finds places that were seen again (their codes, or poses that the drift makes possible), aligns
-/// the frames of each pair, believes what a lost frame would have to reach, and solves for the
-/// poses that agree with all of it. Keyframes in the order in which they were taken.
+/// Keyframes as they come, how the camera went from each to the next, and which places it saw again.
+class LoopGraph {
+ public:
+  LoopGraph(const TrackConfig& track, const LoopConfig& config) : track_(track), config_(config) {}
+
+  /// Takes those of `keyframes`, which are in the order in which they were taken, that came since
+  /// the last time. Finds places that they show again (their codes, or poses that the drift makes
+  /// possible), aligns the frames of each pair and believes what a lost frame would have to reach.
+  /// The way to a new keyframe is that of its pose, and stays that when poses are corrected later.
+  /// Returns how many loops are new.
+  std::size_t take(const std::vector<Keyframe>& keyframes);
+
+  /// The poses that agree with all of it; the first keyframe stays.
+  LoopClosure solve(const std::vector<Keyframe>& keyframes) const;
+
+  double path_m() const { return paths_m_.empty() ? 0 : paths_m_.back(); }
+
+ private:
+  TrackConfig track_;
+  LoopConfig config_;
+  std::vector<PoseEdge> edges_;
+  std::vector<double> paths_m_;  ///< the way up to each keyframe
+  std::size_t candidates_ = 0;
+};
+
+/// Closes the loops of keyframes that are all there.
 LoopClosure close_loops(const std::vector<Keyframe>& keyframes, const TrackConfig& track,
                         const LoopConfig& config);
-
-/// Moves poses as the keyframes around them moved. `order[i]`: the source index of poses[i].
-std::vector<Pose> follow_keyframes(const std::vector<Pose>& poses,
-                                   const std::vector<std::int64_t>& order,
-                                   const std::vector<Keyframe>& keyframes,
-                                   const std::vector<Pose>& corrected);
 
 }  // namespace ovimap

@@ -94,18 +94,5 @@ TEST(LoopClosure, FindsThePlaceThatWasSeenAgain) {
   EXPECT_LT(fixture::distance_m(closure.poses.back(), truth.back()), 0.02);
 }
 
-TEST(FollowKeyframes, MovesPosesBetweenTheirKeyframes) {
-  std::vector<Keyframe> keyframes(2);
-  keyframes[1].index = 10;
-  keyframes[1].world_from_camera.translation().x() = 1;
-  std::vector<Pose> corrected = {Pose::Identity(), keyframes[1].world_from_camera};
-  corrected[1].translation().y() = 0.2;
-  Pose middle = Pose::Identity();
-  middle.translation().x() = 0.5;
-  const std::vector<Pose> moved = follow_keyframes({middle, middle}, {5, 20}, keyframes, corrected);
-  EXPECT_NEAR(moved[0].translation().y(), 0.1, 1e-9);
-  EXPECT_NEAR(moved[1].translation().y(), 0.2, 1e-9);
-}
-
 }  // namespace
 }  // namespace ovimap

@@ -40,6 +40,10 @@ void list_fields(TrackConfig& config, ConfigFields& fields) {
              "min_correlation of a frame that was lost");
   fields.add("max_range_m", config.max_range_m, 0.1f, 1000.f,
              "how far the map's surface is cast, metres");
+  fields.add("focal_off", config.focal_off, 0.f, 10.f,
+             "a focal length is doubted that seems to be off by a larger share");
+  fields.add("focal_sigmas", config.focal_sigmas, 0.f, 1000.f,
+             "and that is as many standard errors");
 }
 
 bool believable(const AlignmentQuality& quality, const TrackConfig& config, bool lost) {

@@ -27,6 +27,9 @@ struct TrackConfig {
   float relocated_agreement = 0.7f;  ///< what a found place must reach
   float relocated_correlation = 0.85f;
   float max_range_m = 8.f;  ///< how far the map's surface is cast
+  // When the user is told that the focal length is not the camera's.
+  float focal_off = 0.05f;    ///< share by which it is off
+  float focal_sigmas = 5.f;  ///< standard errors
 };
 void list_fields(TrackConfig& config, ConfigFields& fields);
 
