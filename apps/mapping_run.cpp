@@ -169,11 +169,13 @@ void skip_done(std::vector<std::int64_t>& range, const MapRecord& begun) {
 }
 
 /// The history with the visit that begins, to whose frames the mapper gives numbers of their own.
-MapHistory with_visit(const MapRecord& begun, const std::string& source) {
+MapHistory with_visit(const MapRecord& begun, const MapHeader& header) {
   MapHistory history = begun.history;
   if (history.visits.empty()) history.visits.push_back({begun.source, 0, 0});
   const std::int64_t next = begun.frames.empty() ? 0 : begun.frames.back().index + 1;
-  history.visits.push_back({source, static_cast<std::int64_t>(begun.frames.size()), next});
+  MapVisit visit{header.source, static_cast<std::int64_t>(begun.frames.size()), next};
+  if (!header.history.visits.empty()) visit.recorded_s = header.history.visits.front().recorded_s;
+  history.visits.push_back(std::move(visit));
   return history;
 }
 
@@ -200,7 +202,7 @@ SequenceResult resume(BegunRun& begun, MapHeader& header, MappingInputs& inputs,
   if (begun.new_visit) {
     require_same_map(*begun.document, mapper.config().map, inputs.encoder);
     require_fit(*begun.document, inputs);
-    header.history = with_visit(*begun.document, header.source);
+    header.history = with_visit(*begun.document, header);
   } else {
     require_same_settings(begun.document->config_text, header.config_text, "--resume");
     header.history = begun.document->history;
@@ -224,8 +226,10 @@ std::unique_ptr<Checkpointer> make_checkpointer(const BegunRun& begun, const Map
 
 MapHeader make_header(const MappingInputs& inputs, const MappingOptions& options,
                       const MapperConfig& mapper) {
-  return {inputs.source ? inputs.source->kind() + ":" + options.source : options.source,
-          effective_config(inputs.config, options, mapper, inputs.encoder)};
+  MapHeader header{inputs.source ? inputs.source->kind() + ":" + options.source : options.source,
+                   effective_config(inputs.config, options, mapper, inputs.encoder)};
+  if (options.recorded_s) header.history.visits.push_back({header.source, 0, 0, options.recorded_s});
+  return header;
 }
 
 /// The tracker of a run whose poses are to be found, at home in what the run goes on with.
