@@ -1,6 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
 """What a map says of its past."""
+import contextlib
+
 import ovimap
 import pytest
 
@@ -42,6 +44,17 @@ def test_questions_go_to_the_map_as_it_was(opened):
         opened.query("chair", at="visit 3")
     with pytest.raises(ovimap.Error, match="is no time"):
         opened.changes(since="some day")
+
+
+def test_agents_hear_what_changed(home_map):
+    from ovimap.agents.backend import open_map
+
+    with contextlib.closing(open_map(home_map)) as agent:
+        new = agent.find("what is new")
+        assert new.found and all("appeared at" in match.evidence for match in new.matches)
+        gone = agent.find("what is gone")
+        assert gone.found and gone.reading == "[anything] that is gone"
+        assert agent.verdicts(["what is gone"])[0].found
 
 
 def test_a_map_of_one_visit_has_no_past(saved_map):
