@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
+#include <algorithm>
 
 #include "ovimap/io/map_file/map_file_fixture.h"
 #include "ovimap/semantics/query/query_fixture.h"
@@ -49,6 +49,8 @@ class HistorySearchTest : public MapFolder {
     instance.views = 4;
     instance.super_points = {id};
     record_.instances.push_back(instance);
+    std::sort(record_.instances.begin(), record_.instances.end(),
+              [](const auto& a, const auto& b) { return a.id < b.id; });
     ObjectView view;
     view.frame = 1;
     view.visible_px = 100;
@@ -150,6 +152,13 @@ TEST_F(HistorySearchTest, WhatCameAndWentIsNoChange) {
   EXPECT_EQ(ids(ask("what changed since visit 1")), (std::vector<InstanceId>{3, 9}));
   EXPECT_EQ(ids(ask("what is gone since visit 2")), (std::vector<InstanceId>{9, 12}));
   EXPECT_EQ(place("clock", "visit 2"), 12);
+}
+
+TEST_F(HistorySearchTest, WhatIsLeftOfAThingIsNotIt) {
+  add(9);  // sides of the vase that nobody looked through
+  EXPECT_EQ(place("vase", "visit 3"), -1);
+  EXPECT_EQ(search("what is gone").events[8], 4u) << "as it was";
+  EXPECT_EQ(ids(ask("what is gone")), (std::vector<InstanceId>{9}));
 }
 
 TEST_F(HistorySearchTest, MapsThatKeptNothingStillHaveBoxes) {

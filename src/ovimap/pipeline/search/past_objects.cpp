@@ -10,6 +10,7 @@ namespace ovimap {
 
 namespace {
 
+/// What is left of a thing that is gone, sides that no visit looked at, is not it.
 PastStates states_now(const MapRecord& corrected) {
   PastStates states;
   for (const InstanceSummary& instance : corrected.instances) {
@@ -18,6 +19,10 @@ PastStates states_now(const MapRecord& corrected) {
         instance,
         surface == corrected.surfaces.end() ? std::vector<Eigen::Vector3f>{} : surface->second, 0};
   }
+  std::map<InstanceId, ObjectEventKind> last;
+  for (const ObjectEvent& event : corrected.history.events) last[event.instance] = event.kind;
+  for (const auto& [id, kind] : last)
+    if (kind == ObjectEventKind::kGone) states.erase(id);
   return states;
 }
 
