@@ -372,6 +372,10 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
     if (checkpoints) checkpoints->after_frame(map, frames, camera);
   };
   if (audience)
+    mapper.after_tracking = [audience](const TrackedFrame& frame) {
+      audience->after_tracking(frame);
+    };
+  if (audience)
     audience->begin(mapper.config(),
                     inputs.encoder ? inputs.encoder->identity() : EncoderIdentity{}, header.names,
                     header.edits);

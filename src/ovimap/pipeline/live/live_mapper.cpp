@@ -170,6 +170,7 @@ bool LiveMapper::locate(PreparedFrame& prepared) {
   frame->world_from_camera = tracked.world_from_camera;
   frame->posed = true;
   prepared.frame = std::move(frame);
+  if (after_tracking) after_tracking(tracked);
   if (tracked.tracked) return true;
   const std::lock_guard lock(mutex_);
   ++statistics_.frames_lost;

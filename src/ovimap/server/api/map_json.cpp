@@ -166,6 +166,7 @@ json map_json(const ServedMap& map) {
           {"version", now->version},
           {"mesh_version", map.mesh().version()},
           {"live", now->live},
+          {"tracking", json::parse(tracking_json(map.tracking()))},
           {"frames", info.frames},
           {"mask_frames", info.mask_frames},
           {"instances", now->record->instances.size()},

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/server/served/served_map.h"
 
+#include <array>
+
 #include "ovimap/base/thread_priority.h"
 #include "ovimap/io/corrections/map_corrections.h"
 #include "ovimap/io/corrections/map_edit_desk.h"
@@ -33,6 +35,21 @@ VoxelSource no_voxels(std::optional<VoxelMap>& place) {
 
 }  // namespace
 
+const char* camera_state_name(CameraState state) {
+  constexpr std::array kNames = {"given", "tracked", "lost"};
+  return kNames[static_cast<std::size_t>(state)];
+}
+
+std::string tracking_json(const CameraTracking& tracking) {
+  std::string pose;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 4; ++column)
+      pose += concat(pose.empty() ? "" : ",", tracking.world_from_camera.matrix()(row, column));
+  return concat("{\"state\":\"", camera_state_name(tracking.state),
+                "\",\"frames_lost\":", tracking.frames_lost, ",\"loops\":", tracking.loops,
+                ",\"world_from_camera\":[", pose, "]}");
+}
+
 ServedMap::ServedMap(const std::filesystem::path& map, const ServedMapConfig& config)
     : path_(map), config_(config) {
   MapDocument document = load_map(map);
@@ -59,6 +76,11 @@ ServedMap::~ServedMap() {
 std::shared_ptr<const MapSnapshot> ServedMap::snapshot() const {
   const std::lock_guard lock(mutex_);
   return snapshot_;
+}
+
+CameraTracking ServedMap::tracking() const {
+  const std::lock_guard lock(mutex_);
+  return tracking_;
 }
 
 // ------------------------------------------------------------------------------------ new states
@@ -284,6 +306,21 @@ void ServedMap::show(FoundMap found) {
 void ServedMap::show(std::vector<SurfacePatch> patches) {
   mesh_->update(std::move(patches));
   events_.publish("mesh", concat("{\"version\":", mesh_->version(), "}"));
+}
+
+void ServedMap::show(const CameraTracking& tracking) {
+  {
+    const std::lock_guard lock(mutex_);
+    tracking_ = tracking;
+  }
+  events_.publish("tracking", tracking_json(tracking));
+}
+
+void ServedMap::loops_closed(std::size_t count) {
+  CameraTracking now = tracking();
+  now.state = CameraState::kTracked;
+  now.loops = count;
+  show(now);
 }
 
 MapEdits ServedMap::close_log() {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ovimap/base/error.h"
+#include "ovimap/geometry/pose.h"
 #include "ovimap/io/map_file/map_edits.h"
 #include "ovimap/pipeline/approach/standing_space.h"
 #include "ovimap/pipeline/search/history_search.h"
@@ -57,6 +58,24 @@ struct NamedHistory {
   std::vector<ObjectName> names;  ///< by position; empty: not known
 };
 
+enum class CameraState {
+  kGiven,    ///< its poses come from elsewhere
+  kTracked,  ///< where it is, the map tells
+  kLost,     ///< nobody knows where it is
+};
+const char* camera_state_name(CameraState state);  ///< "given", "tracked", "lost"
+
+/// How the camera of a map that is being made is followed.
+struct CameraTracking {
+  CameraState state = CameraState::kGiven;
+  Pose world_from_camera = Pose::Identity();  ///< where it was tracked last
+  std::int64_t frames_lost = 0;               ///< since then
+  std::size_t loops = 0;                      ///< that were closed when the map was completed
+};
+
+/// The same as JSON: "state", "frames_lost", "loops", "world_from_camera" (12 numbers, row by row).
+std::string tracking_json(const CameraTracking& tracking);
+
 /// One map as clients see it: its surface, its objects, answers to queries, corrections. Whoever
 /// serves it over a network only reads it. A saved map, or one that is still being made, of which
 /// it is told what is found. Thread-safe.
@@ -77,6 +96,7 @@ class ServedMap {
   const RelationConfig& relations() const { return config_.query.relations; }
   EventHub& events() const { return events_; }
   std::shared_ptr<const MapSnapshot> snapshot() const;
+  CameraTracking tracking() const;
 
   /// What a text asks of the past, or it and times that history_of_question takes; nothing: it asks of
   /// the present. Throws Error for what is no query and no time.
@@ -105,6 +125,10 @@ class ServedMap {
   void show(FoundMap found);
   /// Takes changed pieces of the surface.
   void show(std::vector<SurfacePatch> patches);
+  /// How its camera is followed by now.
+  void show(const CameraTracking& tracking);
+  /// So many loops of the camera's way were closed when the map was completed.
+  void loops_closed(std::size_t count);
   /// The log as it goes into the file. From now on corrections are refused, until the map is saved.
   MapEdits close_log();
   /// The map is saved: from now on it is one like any other.
@@ -135,6 +159,7 @@ class ServedMap {
   mutable std::mutex mutex_;  ///< held for a moment only
   mutable std::condition_variable prepared_;
   std::shared_ptr<const MapSnapshot> snapshot_;
+  CameraTracking tracking_;
 
   mutable std::mutex standing_mutex_;  ///< guards what follows; held while it is read
   mutable std::shared_ptr<const StandingSpace> standing_;
