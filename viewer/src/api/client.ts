@@ -6,12 +6,14 @@ import type {
   Cameras,
   ChunkListing,
   Correction,
+  History,
   Instance,
   InstanceDetail,
   Labels,
   LoggedCorrection,
   MapInfo,
   MeshListing,
+  PastSurface,
   Question,
 } from './types';
 
@@ -72,6 +74,10 @@ export const api = {
     (await request(`/api/mesh/${level}/${at.x}/${at.y}/${at.z}?since=${since}`)).arrayBuffer(),
   labels: () => get<Labels>('/api/labels'),
   cameras: () => get<Cameras>('/api/cameras'),
+  history: () => get<History>('/api/history'),
+  /** What the object of an event was before it. */
+  pastSurface: (event: number) => get<PastSurface>(`/api/history/${event}/surface`),
+  pastCropUrl: (event: number) => `/api/history/${event}/crop`,
   query: (question: Question, signal?: AbortSignal) =>
     post<Answer>('/api/query', { ...question, heat: true }, signal),
   /** `from`: a point of the world where the robot is; without it there is no way. */

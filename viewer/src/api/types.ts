@@ -124,9 +124,58 @@ export interface Question {
   like?: number;
 }
 
+export interface Box {
+  min: Point;
+  max: Point;
+}
+
+export interface Visit {
+  visit: number;
+  source: string;
+  frames: number;
+  /** Seconds since 1970 (UTC); null: nobody knows. */
+  begin_s: number | null;
+  end_s: number | null;
+}
+
+/** What a visit found about an object. */
+export interface HistoryEvent {
+  id: number;
+  instance: number;
+  name: string;
+  /** What it clearly is; empty: not known. */
+  label: string;
+  event: 'appeared' | 'gone' | 'moved';
+  visit: number;
+  time_s: number | null;
+  before: Box | null;
+  after: Box | null;
+  may_be: number | null;
+  /** Whether the map keeps what it was before, and a picture of that. */
+  surface: boolean;
+  crop: boolean;
+}
+
+export interface History {
+  version: number;
+  visits: Visit[];
+  events: HistoryEvent[];
+}
+
+/** Three numbers a point: metres in the world, and red, green, blue to 255. */
+export interface PastSurface {
+  instance: number;
+  points: number[];
+  colors: number[];
+}
+
 export interface Match {
   id: number;
   name: string;
+  box: Box;
+  centroid: Point;
+  /** That ended what is shown; null: it is so now. */
+  event: number | null;
   score: number;
   standard_score: number;
   p_value: number | null;

@@ -7,6 +7,7 @@ import { ApproachMarks } from './approach-marks';
 import { CameraPath, meanDirection, viewpointOfFrame } from './camera-path';
 import { type ColoringInput, paint } from './coloring';
 import { cornersOf, overviewDirection, viewpointOf } from './framing';
+import { Ghosts } from './ghosts';
 import { Measure } from './measure';
 import { Movement } from './movement';
 import { type Pick, pick } from './picking';
@@ -37,6 +38,7 @@ export class MapView {
   readonly surface: Surface;
   readonly measure: Measure;
   readonly movement: Movement;
+  readonly ghosts = new Ghosts();
   private readonly stage: Stage;
   private readonly up: Vector3;
   private readonly selection = new Box3Helper(new Box3(), new Color('#2f6fed'));
@@ -59,7 +61,7 @@ export class MapView {
     this.movement = new Movement(this.stage.camera, canvas, () => this.stage.moved());
     this.selection.visible = false;
     this.stage.scene.add(this.surface.group, this.selection, this.measure.group);
-    this.stage.scene.add(this.approach.group);
+    this.stage.scene.add(this.approach.group, this.ghosts.group);
     this.uniform('light', this.up.toArray());
     this.listen(canvas, hooks);
   }
@@ -95,10 +97,31 @@ export class MapView {
 
   /** Goes near an object without changing the direction of view. */
   focus(instance: Instance): void {
+    this.focusBox(boxOfInstance(instance));
+  }
+
+  /** The same for a place in the world. */
+  focusBox(box: Box3): void {
     this.movement.moved = true;
     const from = this.stage.camera.position.clone().sub(this.movement.orbit.target);
-    const box = boxOfInstance(instance).expandByScalar(FOCUS_MARGIN_M);
-    this.movement.goTo(viewpointOf(cornersOf(box), this.stage.lens(), from, this.up), true);
+    const wider = box.clone().expandByScalar(FOCUS_MARGIN_M);
+    this.movement.goTo(viewpointOf(cornersOf(wider), this.stage.lens(), from, this.up), true);
+  }
+
+  /** Outlines a place that no object has, or nothing. */
+  outline(box: Box3 | null): void {
+    this.selection.visible = box !== null;
+    if (box) this.selection.box.copy(box);
+    this.selection.updateMatrixWorld(true);
+    this.stage.draw();
+  }
+
+  /** Draws objects where they are not any more, and leaves out some of those that are there. */
+  showPast(ghosts: ReadonlyMap<number, { faint: boolean }>, absent: ReadonlySet<number>): void {
+    this.ghosts.show(ghosts);
+    this.surface.table.leaveOut(absent);
+    this.surface.tableChanged();
+    this.stage.draw();
   }
 
   /** Where the last camera stood: a point of the world, null without cameras. */
