@@ -8,6 +8,7 @@ import { Corrections } from './corrections';
 import { listenToKeys } from './keyboard';
 import { MapState } from './map-state';
 import { Past } from './past';
+import { RoomsView } from './rooms-view';
 import { Rounds } from './rounds';
 import type { Mode } from './scene/coloring';
 import { MapView } from './scene/map-view';
@@ -50,6 +51,7 @@ export class App {
     onClear: () => this.clearQuery(),
     onSelect: (id) => this.select(id, true),
     onEvent: (event) => void this.past.choose(event),
+    onRoom: (room) => this.rooms.choose(room),
     eventOf: (id) => this.past.event(id),
   });
   private readonly corrections = new Corrections(this.state, this.status, {
@@ -79,7 +81,10 @@ export class App {
     list: (events) => this.showInstead(events && (() => this.search.showChanges(events))),
     select: (id) => this.selectThere(id),
   });
-  private readonly tools = new Tools(this.canvas, this.toolbar, this.status, this.past);
+  private readonly rooms = new RoomsView(this.status, {
+    list: (rooms) => this.showInstead(rooms && (() => this.search.showRooms(rooms))),
+  });
+  private readonly tools = new Tools(this.canvas, this.toolbar, this.status, this.past, this.rooms);
   private readonly refreshes = new Rounds(
     () => this.loadAgain(),
     () => (this.state.info?.live ? LIVE_PAUSE_MS : 0),
@@ -158,7 +163,7 @@ export class App {
     this.view?.setLabels(labels);
     this.showList();
     this.repaint();
-    await this.past.changed();
+    await Promise.all([this.past.changed(), this.rooms.changed()]);
     const editing = this.card.element.querySelector('form') !== null;
     const { selected } = this.state;
     if (selected !== 0 && !instances.some(({ id }) => id === selected)) this.select(0, false);
@@ -177,7 +182,7 @@ export class App {
       this.canvas.hidden = true;
       return this.status.setBanner(faultText(error));
     }
-    this.tools.view = this.commands.view = this.past.view = this.view;
+    this.tools.view = this.commands.view = this.past.view = this.rooms.view = this.view;
     this.canvas.after(this.view.measure.label);
     const observer = new ResizeObserver(() => this.coverView());
     for (const panel of [this.search.element, this.card.element]) observer.observe(panel);
@@ -372,6 +377,7 @@ export class App {
       m: () => this.tools.toggle('measure'),
       x: () => this.tools.toggle('section'),
       c: () => this.tools.toggle('path'),
+      r: () => this.tools.toggle('rooms'),
       v: () => this.tools.toggle('history'),
       g: () => this.tools.toggle('fly'),
       p: () => this.commands.run('picture'),

@@ -15,6 +15,7 @@ import type {
   MeshListing,
   PastSurface,
   Question,
+  Rooms,
 } from './types';
 
 /** A request that failed, said in a sentence that a person can act on. */
@@ -74,6 +75,7 @@ export const api = {
     (await request(`/api/mesh/${level}/${at.x}/${at.y}/${at.z}?since=${since}`)).arrayBuffer(),
   labels: () => get<Labels>('/api/labels'),
   cameras: () => get<Cameras>('/api/cameras'),
+  rooms: () => get<Rooms>('/api/rooms'),
   history: () => get<History>('/api/history'),
   /** What the object of an event was before it. */
   pastSurface: (event: number) => get<PastSurface>(`/api/history/${event}/surface`),

@@ -118,6 +118,22 @@ export interface Approach {
   reason: string;
 }
 
+/** A part of the floor within walls and doors. Points are of the world, on the floor. */
+export interface Room {
+  id: number;
+  name: string;
+  area_m2: number;
+  center: Point;
+  /** Polygons: around it, then around what stands in it. */
+  outline: Point[][];
+  objects: number[];
+}
+
+export interface Rooms {
+  rooms: Room[];
+  doors: { rooms: [number, number]; place: Point; width_m: number }[];
+}
+
 export interface Question {
   text?: string;
   not?: string[];

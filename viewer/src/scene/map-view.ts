@@ -1,7 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 import { Box3, Box3Helper, Color, Vector2, Vector3, Vector4 } from 'three';
-import type { Approach, Cameras, FrameEvent, Instance, Labels, MapInfo, Point } from '../api/types';
+import type {
+  Approach,
+  Cameras,
+  FrameEvent,
+  Instance,
+  Labels,
+  MapInfo,
+  Point,
+  Room,
+  Rooms,
+} from '../api/types';
 import type { Chunk } from '../mesh/chunk-format';
 import { ApproachMarks } from './approach-marks';
 import { CameraPath, meanDirection, viewpointOfFrame } from './camera-path';
@@ -11,6 +21,7 @@ import { Ghosts } from './ghosts';
 import { Measure } from './measure';
 import { Movement } from './movement';
 import { type Pick, pick } from './picking';
+import { RoomMarks, roomBox } from './room-marks';
 import { type Section, sectionPlane } from './section';
 import { type Covered, Stage } from './stage';
 import { Surface } from './surface';
@@ -43,6 +54,7 @@ export class MapView {
   private readonly up: Vector3;
   private readonly selection = new Box3Helper(new Box3(), new Color('#2f6fed'));
   private readonly approach = new ApproachMarks();
+  private readonly rooms = new RoomMarks();
   private path: CameraPath | null = null;
   private cameras: Cameras | null = null;
   private section: Section | null = null;
@@ -61,7 +73,7 @@ export class MapView {
     this.movement = new Movement(this.stage.camera, canvas, () => this.stage.moved());
     this.selection.visible = false;
     this.stage.scene.add(this.surface.group, this.selection, this.measure.group);
-    this.stage.scene.add(this.approach.group, this.ghosts.group);
+    this.stage.scene.add(this.approach.group, this.ghosts.group, this.rooms.group);
     this.uniform('light', this.up.toArray());
     this.listen(canvas, hooks);
   }
@@ -106,6 +118,16 @@ export class MapView {
     const from = this.stage.camera.position.clone().sub(this.movement.orbit.target);
     const wider = box.clone().expandByScalar(FOCUS_MARGIN_M);
     this.movement.goTo(viewpointOf(cornersOf(wider), this.stage.lens(), from, this.up), true);
+  }
+
+  focusRoom(room: Room): void {
+    this.focusBox(roomBox(room, this.up));
+  }
+
+  /** Draws rooms on the floor, or none. */
+  showRooms(rooms: Rooms | null): void {
+    this.rooms.show(rooms, this.up);
+    this.stage.draw();
   }
 
   /** Outlines a place that no object has, or nothing. */

@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
-import type { Answer, HistoryEvent, Instance, MapInfo } from '../api/types';
+import type { Answer, HistoryEvent, Instance, MapInfo, Room } from '../api/types';
 import { Combobox } from './combobox';
 import { h } from './dom';
 import { eventRow, pastRow } from './event-row';
 import { icon } from './icons';
 import { objectRow } from './object-row';
+import { roomRow } from './room-row';
 import { suggest, vocabularyOf } from './suggestions';
 import { plural, withTitles } from './words';
 
@@ -16,6 +17,7 @@ export interface SearchHooks {
   onClear: () => void;
   onSelect: (id: number) => void;
   onEvent: (event: HistoryEvent) => void;
+  onRoom: (room: Room) => void;
   eventOf: (id: number) => HistoryEvent | undefined;
 }
 
@@ -105,6 +107,14 @@ export class SearchPanel {
       events.map((event) =>
         eventRow(event, this.instances.get(event.instance), this.hooks.onEvent),
       ),
+      0,
+    );
+  }
+
+  showRooms(rooms: readonly Room[]): void {
+    this.listTitle.textContent = rooms.length > 0 ? 'Rooms' : 'No rooms were found';
+    this.fill(
+      rooms.map((room) => roomRow(room, this.hooks.onRoom)),
       0,
     );
   }
