@@ -3,6 +3,7 @@
 import { api } from './api/client';
 import { listen } from './api/events';
 import type { FrameEvent, Instance, Labels, MapInfo, MeshListing, Question } from './api/types';
+import { CameraState } from './camera-state';
 import { Commands } from './commands';
 import { Corrections } from './corrections';
 import { listenToKeys } from './keyboard';
@@ -40,6 +41,7 @@ export class App {
       'The map in 3D. Arrow keys turn it, W A S D move. The list holds the same objects.',
   });
   private readonly status = new Status();
+  private readonly camera = new CameraState(this.status);
   private readonly commands = new Commands(
     this.status,
     () => this.state.info?.title ?? 'map',
@@ -183,6 +185,7 @@ export class App {
       return this.status.setBanner(faultText(error));
     }
     this.tools.view = this.commands.view = this.past.view = this.rooms.view = this.view;
+    this.camera.view = this.view;
     this.canvas.after(this.view.measure.label);
     const observer = new ResizeObserver(() => this.coverView());
     for (const panel of [this.search.element, this.card.element]) observer.observe(panel);
@@ -229,10 +232,12 @@ export class App {
       if (this.state.info?.live) this.view?.followGrowth();
     };
     if (this.state.info?.live && !this.tools.isOn('path')) this.tools.toggle('path');
+    if (this.state.info?.live) this.camera.show(this.state.info.tracking);
     listen({
       onMap: () => void this.refresh().catch(failed),
       onMesh: () => void surfaceChanged().catch(failed),
       onFrame: (frame) => this.followCamera(frame),
+      onTracking: (tracking) => this.camera.show(tracking),
       onConnection: (connected) => this.status.setBanner(connected ? '' : lost),
     });
   }

@@ -13,6 +13,7 @@ export interface MapInfo {
   version: number;
   mesh_version: number;
   live: boolean;
+  tracking: Tracking;
   frames: number;
   mask_frames: number;
   instances: number;
@@ -23,6 +24,18 @@ export interface MapInfo {
   search: { state: 'preparing' | 'ready' | 'unavailable'; reason: string };
   classes: string | null;
   heat_ramp: Color[];
+}
+
+/** How the camera of a map that is being made is followed. */
+export interface Tracking {
+  /** given: its poses come from elsewhere. */
+  state: 'given' | 'tracked' | 'lost';
+  /** Since it was tracked last. */
+  frames_lost: number;
+  /** Closed when the map was completed. */
+  loops: number;
+  /** Where it was tracked last: three rows of the 4x4 matrix. */
+  world_from_camera: number[];
 }
 
 export interface NameGuess {

@@ -14,7 +14,7 @@ import type {
 } from '../api/types';
 import type { Chunk } from '../mesh/chunk-format';
 import { ApproachMarks } from './approach-marks';
-import { CameraPath, meanDirection, viewpointOfFrame } from './camera-path';
+import { CameraPath, LostCamera, meanDirection, viewpointOfFrame } from './camera-path';
 import { type ColoringInput, paint } from './coloring';
 import { cornersOf, overviewDirection, viewpointOf } from './framing';
 import { Ghosts } from './ghosts';
@@ -55,6 +55,7 @@ export class MapView {
   private readonly selection = new Box3Helper(new Box3(), new Color('#2f6fed'));
   private readonly approach = new ApproachMarks();
   private readonly rooms = new RoomMarks();
+  private readonly lost = new LostCamera();
   private path: CameraPath | null = null;
   private cameras: Cameras | null = null;
   private section: Section | null = null;
@@ -74,6 +75,7 @@ export class MapView {
     this.selection.visible = false;
     this.stage.scene.add(this.surface.group, this.selection, this.measure.group);
     this.stage.scene.add(this.approach.group, this.ghosts.group, this.rooms.group);
+    this.stage.scene.add(this.lost.group);
     this.uniform('light', this.up.toArray());
     this.listen(canvas, hooks);
   }
@@ -216,6 +218,12 @@ export class MapView {
 
   get cameraCount(): number {
     return this.cameras?.frames.length ?? 0;
+  }
+
+  /** Draws in red where the camera was tracked last, and what it saw there; null: it is not lost. */
+  showLost(world_from_camera: number[] | null): void {
+    if (this.cameras) this.lost.show(this.cameras.camera, world_from_camera);
+    this.stage.draw();
   }
 
   showPath(visible: boolean, frame: number): void {
