@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "ovimap/base/error.h"
+#include "ovimap/semantics/query/query_text.h"
 
 namespace ovimap {
 
@@ -107,10 +108,10 @@ class HistoryTeller {
   std::string reading_;
 };
 
-/// Takes away what a text is found to be.
-void leave_out(const std::string& text, const QueryEngine& engine, std::vector<bool>& among) {
+/// Takes away what a thing is found to be.
+void leave_out(const std::string& thing, const QueryEngine& engine, std::vector<bool>& among) {
   constexpr float kLikely = 0.5f;
-  const QueryAnswer answer = engine.find({text, {}, true, among});
+  const QueryAnswer answer = engine.find({concat('"', thing, '"'), {}, true, among});  // no grammar
   if (answer.verdict != Verdict::kFound) return;
   for (std::size_t i = 0; i < among.size(); ++i)
     if (answer.relevance[static_cast<Eigen::Index>(i)] >= kLikely) among[i] = false;
@@ -122,7 +123,8 @@ QueryAnswer list_all(const HistorySearch& history, const QueryEngine* engine, co
   const SearchIndex& index = history.search.index;
   std::vector<bool> among = history.among;
   if (among.empty()) among.assign(index.size(), true);
-  for (const std::string& text : query.not_texts) leave_out(text, *engine, among);
+  for (const std::string& text : query.not_texts)
+    for (const std::string& thing : split_terms(text)) leave_out(thing, *engine, among);
   const bool relevance = query.relevance;
   answer.relevance = Eigen::VectorXf::Zero(static_cast<Eigen::Index>(relevance ? index.size() : 0));
   for (std::size_t i = 0; i < index.size(); ++i) {

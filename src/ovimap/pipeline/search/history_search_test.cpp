@@ -146,6 +146,16 @@ TEST_F(HistorySearchTest, WhatChanged) {
   EXPECT_EQ(ask("chairs that moved since visit 3").reason, "nothing moved since visit 3");
 }
 
+TEST_F(HistorySearchTest, WhatItMustNotBe) {
+  const HistorySearch past = search("what changed");
+  const QueryEngine engine(past.search.index, &encoder_, {}, {}, past.search.scene);
+  const auto without = [&](const std::vector<std::string>& not_texts) {
+    return ids(ask_history(past, &engine, {"", not_texts}));
+  };
+  EXPECT_EQ(without({"mug, vase"}), (std::vector<InstanceId>{12}));
+  EXPECT_EQ(without({"sofa", ","}), (std::vector<InstanceId>{3, 9, 12}));
+}
+
 TEST_F(HistorySearchTest, WhatCameAndWentIsNoChange) {
   record_.history.events.push_back({12, ObjectEventKind::kGone, 3, 5, box_at(12), {}, 0, was(12, 12)});
   std::erase_if(record_.instances, [](const auto& instance) { return instance.id == 12; });
