@@ -72,6 +72,13 @@ HttpReply show_crop(const ServedMap& map, const HttpRequest& request) {
   return reply;
 }
 
+/// Empty where it is not given.
+std::string time_field(const json& body, const char* name) {
+  const auto text = field<std::string>(body, name);
+  if (text && text->empty()) throw BadRequest(400, concat("'", name, "' is empty; give a time"));
+  return text.value_or("");
+}
+
 HttpReply answer_query(const ServedMap& map, const HttpRequest& request) {
   const json body = body_of(request);
   check_keys(body, {"text", "not", "like", "heat", "at", "since"});
@@ -80,9 +87,9 @@ HttpReply answer_query(const ServedMap& map, const HttpRequest& request) {
   question.like = field<InstanceId>(body, "like");
   question.query.not_texts = texts_field(body, "not");
   question.query.relevance = field<bool>(body, "heat").value_or(false);
-  const std::string at = field<std::string>(body, "at").value_or(""),
-                    since = field<std::string>(body, "since").value_or("");
+  const std::string at = time_field(body, "at"), since = time_field(body, "since");
   const bool timed = !at.empty() || !since.empty();
+  if (text && text->empty()) throw BadRequest(400, "'text' is empty; say what to look for");
   if (question.like ? text.has_value() : !text.has_value() && !timed)
     throw BadRequest(400, "give either 'text' or 'like'");
   if (question.like && (timed || !question.query.not_texts.empty()))

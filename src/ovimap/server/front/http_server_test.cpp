@@ -123,6 +123,8 @@ TEST_F(HttpServerTest, AnswersWhatChangedWithoutAnEncoder) {
   EXPECT_EQ(changed({{"at", "visit 1"}}), (std::vector<int>{1, 2}));
   post("/api/query", "{\"at\":\"visit 9\"}", 409);
   post("/api/query", "{\"at\":\"some day\"}", 400);
+  post("/api/query", "{\"text\":\"mug\",\"since\":\"\"}", 400);
+  post("/api/query", "{\"text\":\"\",\"since\":\"visit 1\"}", 400);
   post("/api/query", "{\"at\":\"visit 1\",\"since\":\"visit 1\"}", 400);
   post("/api/query", "{\"like\":1,\"at\":\"visit 1\"}", 400);
   post("/api/query", "{\"text\":\"mug\",\"at\":\"visit 1\"}", 409);  // which needs an encoder
