@@ -124,7 +124,9 @@ QueryAnswer list_all(const HistorySearch& history, const QueryEngine* engine, co
   std::vector<bool> among = history.among;
   if (among.empty()) among.assign(index.size(), true);
   for (const std::string& text : query.not_texts)
-    for (const std::string& thing : split_terms(text)) leave_out(thing, *engine, among);
+    for (const std::string& thing :
+         split_terms(checked_query_text(text, QueryConfig().max_text_chars)))
+      leave_out(thing, *engine, among);
   const bool relevance = query.relevance;
   answer.relevance = Eigen::VectorXf::Zero(static_cast<Eigen::Index>(relevance ? index.size() : 0));
   for (std::size_t i = 0; i < index.size(); ++i) {

@@ -154,6 +154,7 @@ TEST_F(HistorySearchTest, WhatItMustNotBe) {
   };
   EXPECT_EQ(without({"mug, vase"}), (std::vector<InstanceId>{12}));
   EXPECT_EQ(without({"sofa", ","}), (std::vector<InstanceId>{3, 9, 12}));
+  EXPECT_NE(fault_of([&] { without({" "}); }), "");
 }
 
 TEST_F(HistorySearchTest, WhatCameAndWentIsNoChange) {
