@@ -271,6 +271,16 @@ void swap_instances(MapRecord& record, InstanceId a, InstanceId b) {
   record.registry.aliases = aliases;
 }
 
+void begin_visit(const MapRecord& begun, MapHeader& header) {
+  MapHistory history = begun.history;
+  if (history.visits.empty()) history.visits.push_back({begun.source, 0, 0});
+  const std::int64_t next = begun.frames.empty() ? 0 : begun.frames.back().index + 1;
+  history.visits.push_back({header.source, static_cast<std::int64_t>(begun.frames.size()), next});
+  if (!header.history.visits.empty())
+    history.visits.back().recorded_s = header.history.visits.front().recorded_s;
+  header.history = std::move(history);
+}
+
 void tell_visit(const MapDocument& before, MapDocument& after, const VisitHistoryConfig& config) {
   OVIMAP_ASSERT(after.history.visits.size() > 1);
   VisitTeller(before, after, config).tell();

@@ -17,6 +17,10 @@ struct VisitHistoryConfig {
                        ///< pairs of things of one shape differ by nearly as much
 };
 
+/// Gives a header, which may name one visit with its date, the history of the map that it goes on with
+/// and its own visit after that: the next frames of the map are of it.
+void begin_visit(const MapRecord& begun, MapHeader& header);
+
 /// Writes down what the last visit of `after` changed against `before`, the same map without that
 /// visit: events of its history, with what each thing was that left its place. An object that is gone from one place and found at another is the
 /// same when its looks (diff_maps), or else its shape and colours, say so, and goes on under the id

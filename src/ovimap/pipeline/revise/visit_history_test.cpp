@@ -148,6 +148,19 @@ TEST(VisitHistory, OfTwoAlikeNeitherIsTakenForTheOther) {
   EXPECT_GE(doubtful, 1);
 }
 
+TEST(VisitHistory, AVisitBeginsAfterTheFramesThatAreThere) {
+  MapRecord begun;
+  begun.source = "evening";
+  begun.frames.resize(3);
+  begun.frames.back().index = 7;
+  MapHeader header;
+  header.source = "morning";
+  header.history.visits = {{"morning", 0, 0, 1.7e9}};
+  begin_visit(begun, header);
+  EXPECT_EQ(header.history.visits,
+            (std::vector<MapVisit>{{"evening", 0, 0}, {"morning", 3, 8, 1.7e9}}));
+}
+
 TEST(VisitHistory, InstancesTradeIdsEverywhere) {
   MapRecord record;
   record.instances.resize(2);

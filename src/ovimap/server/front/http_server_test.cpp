@@ -87,7 +87,6 @@ TEST_F(HttpServerTest, TellsTheHistory) {
   EXPECT_EQ(history["visits"][1]["begin_s"], 1.7e9);
   ASSERT_EQ(history["events"].size(), 3u);
   const json& gone = history["events"][1];
-  EXPECT_EQ(gone["id"], 2);
   EXPECT_EQ(gone["instance"], 2);
   EXPECT_EQ(gone["event"], "gone");
   EXPECT_EQ(gone["surface"], true);
@@ -98,9 +97,8 @@ TEST_F(HttpServerTest, TellsTheHistory) {
   EXPECT_EQ(surface["points"].size(), 6u);
   EXPECT_EQ(surface["colors"], json({9, 0, 255, 0, 0, 0}));
   const auto crop = running_->client().get("/api/history/2/crop");
-  ASSERT_TRUE(crop);
-  EXPECT_EQ(crop->body, std::string("\x01\x02"));
-  for (const char* path : {"/api/history/1/surface", "/api/history/1/crop", "/api/history/0/surface",
+  EXPECT_TRUE(crop && crop->body == std::string("\x01\x02"));
+  for (const char* path : {"/api/history/1/surface", "/api/history/1/crop", "/api/history/0/crop",
                            "/api/history/4/surface", "/api/history/x/crop"})
     EXPECT_FALSE(get(path, 404)["error"].get<std::string>().empty()) << path;
 }
