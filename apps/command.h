@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -69,6 +70,7 @@ struct MappingOptions {
   std::string frames = ":";  ///< "A:B:STEP"
   std::string poses = "given";  ///< given, track, refine, or auto: given where there are any
   std::string max_memory;    ///< "300M"; empty: as the settings say
+  std::optional<double> recorded_s;  ///< when the recording was made, seconds since 1970 (UTC)
   int threads = 0;
 };
 void add_mapping_options(CLI::App& command, MappingOptions& options);

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
-// Two maps: what changed from one to the other, and one map of both.
+// Two maps, or one at two times: what changed from one to the other; and one map of both.
 #include <cstdio>
+#include <limits>
 
 #include "command.h"
 #include "ovimap/base/parallel.h"
@@ -14,6 +15,7 @@
 #include "ovimap/pipeline/revise/map_alignment.h"
 #include "ovimap/pipeline/revise/map_diff.h"
 #include "ovimap/pipeline/revise/map_merge.h"
+#include "ovimap/pipeline/search/history_search.h"
 
 namespace ovimap::apps {
 
@@ -21,6 +23,7 @@ namespace {
 
 struct CompareOptions {
   std::filesystem::path a, b, out, transform;
+  std::string since, until;
   bool align = false;
   int threads = 0;
   bool json = false;
@@ -109,9 +112,74 @@ void print_changes(const std::vector<ObjectChange>& changes, const MapDocument& 
   std::printf("%zu objects are where they were; of %zu nothing can be said\n", same, unseen);
 }
 
+nlohmann::json box_json(const Eigen::AlignedBox3f& box) {
+  if (box.isEmpty()) return nullptr;
+  const auto corner = [](const Eigen::Vector3f& at) {
+    return nlohmann::json{at.x(), at.y(), at.z()};
+  };
+  return {{"min", corner(box.min())}, {"max", corner(box.max())}};
+}
+
+nlohmann::json change_json(const HistoryChange& change, const MapHistory& history,
+                           const HistoryDates& dates) {
+  const ObjectEvent &first = history.events[change.first], &last = history.events[change.last];
+  const bool came = change.kind == ObjectEventKind::kAppeared,
+             went = change.kind == ObjectEventKind::kGone;
+  const auto date = dates.date_of(change.last);
+  return {{"change", change_name(came   ? ChangeKind::kNew
+                                 : went ? ChangeKind::kRemoved
+                                        : ChangeKind::kMoved)},
+          {"before", came ? nlohmann::json() : nlohmann::json(change.instance)},
+          {"after", went ? nlohmann::json() : nlohmann::json(change.instance)},
+          {"box_before", box_json(first.before)},
+          {"box_after", box_json(last.after)},
+          {"visit", last.visit},
+          {"time_s", date ? nlohmann::json(*date) : nlohmann::json()},
+          {"evidence", change_text(change, history, dates)}};
+}
+
+/// One map at two times, by what its visits found. Exit code 1: something changed.
+int diff_times(const CompareOptions& options) {
+  if (!options.out.empty() || !options.transform.empty() || options.align)
+    throw Error("--since and --until compare one map with itself; leave -o, --transform and --align out");
+  const MapRecord map = read_corrected_record(options.a);
+  const HistoryDates dates(map.history, map.frames);
+  const double now_s = seconds_now();
+  const MapMoment since =
+      options.since.empty() ? MapMoment{0, -std::numeric_limits<double>::infinity()}
+                            : since_of(time_of_text(options.since, now_s), dates.visits());
+  const MapMoment until = options.until.empty()
+                              ? MapMoment{dates.visits(), 0}
+                              : end_of(time_of_text(options.until, now_s), dates.visits());
+  const std::vector<HistoryChange> changes = changes_between(map.history, dates, since, until);
+  if (options.json) {
+    nlohmann::json list = nlohmann::json::array();
+    for (const HistoryChange& change : changes)
+      list.push_back(change_json(change, map.history, dates));
+    print_json({{"map", options.a.string()},
+                {"since", dates.text_of(since)},
+                {"until", dates.text_of(until)},
+                {"changes", list}});
+    return changes.empty() ? kDone : kAnswerIsNo;
+  }
+  for (const HistoryChange& change : changes) {
+    const auto name = map.names.find(change.instance);
+    std::printf("#%u%s: %s\n", change.instance,
+                name == map.names.end() ? "" : (" " + name->second).c_str(),
+                change_text(change, map.history, dates).c_str());
+  }
+  std::printf("%zu changes from %s to %s\n", changes.size(), dates.text_of(since).c_str(),
+              dates.text_of(until).c_str());
+  return changes.empty() ? kDone : kAnswerIsNo;
+}
+
 /// Exit code 1: something changed.
 int diff(const CompareOptions& options) {
   const ThreadLimit limit(options.threads);
+  const bool times = !options.since.empty() || !options.until.empty();
+  if (times == !options.b.empty())
+    throw Error("say what to compare the map with: another map, or with --since TIME its own past");
+  if (times) return diff_times(options);
   if (!options.out.empty()) {
     if (options.out.extension() != ".png" && options.out.extension() != ".ply")
       throw Error(concat("cannot draw into '", options.out.string(),
@@ -187,9 +255,9 @@ int merge(const CompareOptions& options) {
   return kDone;
 }
 
-void add_compare_options(CLI::App& command, CompareOptions& options) {
+CLI::Option* add_compare_options(CLI::App& command, CompareOptions& options) {
   command.add_option("A", options.a, "map file")->required();
-  command.add_option("B", options.b, "another map of the same place")->required();
+  CLI::Option* other = command.add_option("B", options.b, "another map of the same place");
   CLI::Option* given = command.add_option(
       "--transform", options.transform,
       "text file with the 4x4 matrix that takes B's points to A's frame; without it and without "
@@ -199,6 +267,7 @@ void add_compare_options(CLI::App& command, CompareOptions& options) {
   command.add_option("--threads", options.threads, "threads to use; 0: all cores")
       ->check(CLI::Range(0, 1024));
   command.add_flag("--json", options.json, "print one JSON object");
+  return other;
 }
 
 }  // namespace
@@ -210,12 +279,15 @@ Action add_diff(CLI::App& command) {
       "-o,--output", options->out,
       "draw it, .png (from above) or .ply: new green, moved blue, where it was light "
       "blue, removed red");
+  command.add_option("--since", options->since,
+                     "instead of B: what changed in A since a time, as `ovimap query --at` takes it");
+  command.add_option("--until", options->until, "and until this one; without, until its last visit");
   return [options] { return diff(*options); };
 }
 
 Action add_merge(CLI::App& command) {
   auto options = std::make_shared<CompareOptions>();
-  add_compare_options(command, *options);
+  add_compare_options(command, *options)->required();
   command.add_option("-o,--output", options->out, "map file to write")->required();
   return [options] { return merge(*options); };
 }

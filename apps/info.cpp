@@ -7,6 +7,7 @@
 #include "ovimap/io/map_file/map_check.h"
 #include "ovimap/io/map_file/map_file.h"
 #include "ovimap/io/map_file/map_file_access.h"
+#include "ovimap/pipeline/search/history_dates.h"
 #include "ovimap/pipeline/search/scene_graph.h"
 #include "ovimap/pipeline/sequence/timings_text.h"
 
@@ -41,42 +42,24 @@ int check_file(const InfoOptions& options) {
   return check.faults.empty() ? kDone : kAnswerIsNo;
 }
 
-std::string place(const Eigen::AlignedBox3f& box) {
-  const Eigen::Vector3f center = box.center();
-  char text[64];
-  std::snprintf(text, sizeof text, "(%.2f, %.2f, %.2f)", double{center.x()}, double{center.y()},
-                double{center.z()});
-  return text;
-}
-
-std::string sentence(const ObjectEvent& event) {
-  switch (event.kind) {
-    case ObjectEventKind::kGone:
-      return concat("gone from ", place(event.before));
-    case ObjectEventKind::kMoved:
-      return concat("moved from ", place(event.before), " to ", place(event.after));
-    case ObjectEventKind::kAppeared:
-      return concat("appeared at ", place(event.after),
-                    event.may_be == 0 ? std::string() : concat(", may be ", event.may_be));
-  }
-  return {};
+HistoryDates dates_of(const std::filesystem::path& path, const MapInfo& map) {
+  return {map.history, read_searchable_map(path).frames};
 }
 
 /// A line for each visit, and below it one for each thing that it found changed.
-void print_history(const MapInfo& map) {
-  const std::vector<MapVisit>& visits = map.history.visits;
-  if (visits.empty())
-    std::printf("visit 1, %lld frames: %s\n", static_cast<long long>(map.frames),
-                map.source.c_str());
+void print_history(const MapInfo& map, const HistoryDates& dates) {
+  std::vector<MapVisit> visits = map.history.visits;
+  if (visits.empty()) visits.push_back({map.source, 0, 0});
   for (std::size_t i = 0; i < visits.size(); ++i) {
     const std::int64_t end = i + 1 < visits.size() ? visits[i + 1].first_frame : map.frames;
-    std::printf("visit %zu, %lld frames: %s\n", i + 1,
+    const int visit = static_cast<int>(i + 1);
+    std::printf("%s, %lld frames: %s\n", dates.visit_text(visit).c_str(),
                 static_cast<long long>(end - visits[i].first_frame), visits[i].source.c_str());
     for (const ObjectEvent& event : map.history.events) {
-      if (event.visit != static_cast<int>(i + 1)) continue;
+      if (event.visit != visit) continue;
       const auto name = map.names.find(event.instance);
       std::printf("%6u  %-24s %s\n", event.instance,
-                  name == map.names.end() ? "" : name->second.c_str(), sentence(event).c_str());
+                  name == map.names.end() ? "" : name->second.c_str(), event_text(event).c_str());
     }
   }
 }
@@ -99,6 +82,17 @@ void print_rooms(const InfoOptions& options) {
                 double{door.place_m.x()}, double{door.place_m.y()}, double{door.width_m});
 }
 
+/// Adds when visits were and events happened, in seconds since 1970 (UTC) or null.
+void add_dates(const HistoryDates& dates, nlohmann::json& history) {
+  const auto known = [](const std::optional<double>& date) {
+    return date ? nlohmann::json(*date) : nlohmann::json();
+  };
+  for (std::size_t i = 0; i < history["visits"].size(); ++i)
+    history["visits"][i]["begin_s"] = known(dates.begin_of(static_cast<int>(i) + 1));
+  for (std::size_t i = 0; i < history["events"].size(); ++i)
+    history["events"][i]["time_s"] = known(dates.date_of(i));
+}
+
 int info(const InfoOptions& options) {
   if (options.recover && !recover_map(options.map))
     std::fprintf(stderr, "%s: nothing to recover\n", options.map.c_str());
@@ -109,11 +103,13 @@ int info(const InfoOptions& options) {
     auto document = nlohmann::json::parse(info_json(options.map, map));
     document["tiles_evicted"] = tiles.evicted;
     document["tiles_loaded"] = tiles.loaded;
+    if (!map.history.visits.empty())
+      add_dates(dates_of(options.map, map), document["history"]);
     print_json(document);
     return kDone;
   }
   if (options.history) {
-    print_history(map);
+    print_history(map, dates_of(options.map, map));
     return kDone;
   }
   if (options.rooms) {

@@ -169,15 +169,6 @@ void skip_done(std::vector<std::int64_t>& range, const MapRecord& begun) {
   std::erase_if(range, [&](std::int64_t position) { return first + position <= last; });
 }
 
-/// The history with the visit that begins, to whose frames the mapper gives numbers of their own.
-MapHistory with_visit(const MapRecord& begun, const std::string& source) {
-  MapHistory history = begun.history;
-  if (history.visits.empty()) history.visits.push_back({begun.source, 0, 0});
-  const std::int64_t next = begun.frames.empty() ? 0 : begun.frames.back().index + 1;
-  history.visits.push_back({source, static_cast<std::int64_t>(begun.frames.size()), next});
-  return history;
-}
-
 /// Throws Error unless the recording lies where the map is.
 void require_fit(const MapDocument& begun, const MappingInputs& inputs) {
   if (!inputs.config.visit.enabled || inputs.tracking) return;
@@ -201,7 +192,7 @@ SequenceResult resume(BegunRun& begun, MapHeader& header, MappingInputs& inputs,
   if (begun.new_visit) {
     require_same_map(*begun.document, mapper.config().map, inputs.encoder);
     require_fit(*begun.document, inputs);
-    header.history = with_visit(*begun.document, header.source);
+    begin_visit(*begun.document, header);
   } else {
     require_same_settings(begun.document->config_text, header.config_text, "--resume");
     header.history = begun.document->history;
@@ -227,8 +218,10 @@ std::unique_ptr<Checkpointer> make_checkpointer(const BegunRun& begun, const Map
 
 MapHeader make_header(const MappingInputs& inputs, const MappingOptions& options,
                       const MapperConfig& mapper) {
-  return {inputs.source ? inputs.source->kind() + ":" + options.source : options.source,
-          effective_config(inputs.config, options, mapper, inputs.encoder)};
+  MapHeader header{(inputs.source ? inputs.source->kind() + ":" : "") + options.source,
+                   effective_config(inputs.config, options, mapper, inputs.encoder)};
+  if (options.recorded_s) header.history.visits = {{header.source, 0, 0, options.recorded_s}};
+  return header;
 }
 
 /// Finds the poses of a run that has none, at home in what the run goes on with; else null.
@@ -371,6 +364,8 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
     if (audience && checkpoints) checkpoints->set_edits(audience->edits());
     if (checkpoints) checkpoints->after_frame(map, frames, camera);
   };
+  if (audience)
+    mapper.after_tracking = [audience](const auto& frame) { audience->after_tracking(frame); };
   if (audience)
     audience->begin(mapper.config(),
                     inputs.encoder ? inputs.encoder->identity() : EncoderIdentity{}, header.names,

@@ -56,6 +56,8 @@ class LiveAudience {
   /// As LiveMapper::after_frame.
   virtual void after_frame(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
                            const PinholeCamera& depth_camera) = 0;
+  /// As LiveMapper::after_tracking.
+  virtual void after_tracking(const TrackedFrame& frame) = 0;
   /// Corrections by now.
   virtual MapEdits edits() const = 0;
   /// The mapping has ended; returns the corrections that the map is saved with.

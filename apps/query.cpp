@@ -10,28 +10,12 @@
 #include "ovimap/io/map_file/map_edits.h"
 #include "ovimap/io/mesh/ply.h"
 #include "ovimap/io/pictures/pictures.h"
-#include "ovimap/pipeline/search/map_search.h"
-#include "ovimap/semantics/classes/object_names.h"
-#include "ovimap/semantics/query/query_engine.h"
-#include "ovimap/semantics/query/query_grammar.h"
-#include "ovimap/semantics/query/query_text.h"
 #include "ovimap/server/api/approach_json.h"
-#include "query_approach.h"
+#include "query_asking.h"
 
 namespace ovimap::apps {
 
 namespace {
-
-struct QueryOptions {
-  std::filesystem::path map, heat_map;
-  std::vector<std::string> texts, negatives, settings;
-  std::string near, encoder = "auto";
-  std::vector<std::filesystem::path> images, model_dirs;
-  std::vector<InstanceId> like;
-  int top = 0, threads = 0;  // 0: as configured
-  bool json = false;
-  ApproachOptions approach;
-};
 
 /// Where to stand for each object of the answers that were found.
 struct Approaches {
@@ -55,17 +39,6 @@ nlohmann::json point_json(const Eigen::Vector3f& point) {
   return {point.x(), point.y(), point.z()};
 }
 
-/// What each object is called: as a person named it, else a word that is clear, else "object".
-std::vector<std::string> titles_of(const SearchIndex& index, const QueryEngine& engine) {
-  std::vector<std::string> titles;
-  for (const SearchObject& object : index.objects()) titles.push_back(object.name);
-  if (!engine.matcher() || !engine.matcher()->evidence()) return titles;
-  const std::vector<ObjectName> names = name_objects(*engine.matcher()->evidence());
-  for (std::size_t i = 0; i < titles.size(); ++i)
-    if (titles[i].empty() && index.has_embedding(i)) titles[i] = names[i].word;
-  return titles;
-}
-
 nlohmann::json match_json(const QueryMatch& match, const SearchObject& object,
                           const std::string& title) {
   const auto number = [](const std::optional<double>& value) {
@@ -83,11 +56,12 @@ nlohmann::json match_json(const QueryMatch& match, const SearchObject& object,
           {"centroid", point_json(object.centroid)}};
 }
 
-nlohmann::json answer_json(const QueryAnswer& answer, const SearchIndex& index,
-                           const std::vector<std::string>& titles, const Approaches& approaches) {
+nlohmann::json answer_json(const Answered& answered, const Approaches& approaches) {
+  const QueryAnswer& answer = answered.answer;
   nlohmann::json instances = nlohmann::json::array();
   for (const QueryMatch& match : answer.matches) {
-    instances.push_back(match_json(match, index.object(match.position), titles[match.position]));
+    instances.push_back(match_json(match, answered.object(match), answered.title(match)));
+    instances.back()["past"] = answered.is_past(match);
     if (const auto there = approaches.of_object.find(match.id);
         there != approaches.of_object.end())
       instances.back()["approach"] = approach_json(there->second, approaches.space.grid);
@@ -105,8 +79,8 @@ nlohmann::json answer_json(const QueryAnswer& answer, const SearchIndex& index,
           {"instances", instances}};
 }
 
-void print_answer(const QueryAnswer& answer, const SearchIndex& index,
-                  const std::vector<std::string>& titles, const Approaches& approaches) {
+void print_answer(const Answered& answered, const Approaches& approaches) {
+  const QueryAnswer& answer = answered.answer;
   std::printf("%s: %s", answer.query.c_str(),
               answer.verdict == Verdict::kFound ? "found" : "not in the map");
   if (answer.count)
@@ -114,14 +88,15 @@ void print_answer(const QueryAnswer& answer, const SearchIndex& index,
                 answer.count->expected, answer.count->deviation);
   if (!answer.reading.empty()) std::printf(", read as %s", answer.reading.c_str());
   if (!answer.reason.empty()) std::printf(" (%s)", answer.reason.c_str());
-  std::printf(answer.verdict == Verdict::kFound ? "\n" : "; what comes nearest:\n");
+  const bool nearest = answer.verdict != Verdict::kFound && !answer.matches.empty();
+  std::printf(nearest ? "; what comes nearest:\n" : "\n");
   for (const QueryMatch& match : answer.matches) {
-    const SearchObject& object = index.object(match.position);
+    const SearchObject& object = answered.object(match);
     std::printf("  #%-5u %6.3f", match.id, double{match.score});
     if (match.probability) std::printf("  %3.0f %%", 100.0 * *match.probability);
     std::printf("  at %6.2f %6.2f %6.2f", double{object.centroid.x()}, double{object.centroid.y()},
                 double{object.centroid.z()});
-    if (const std::string& title = titles[match.position]; !title.empty())
+    if (const std::string& title = answered.title(match); !title.empty())
       std::printf("  %s", title.c_str());
     if (!match.evidence.empty()) std::printf("  %s", match.evidence.c_str());
     std::printf("\n");
@@ -152,30 +127,32 @@ std::filesystem::path heat_map_path(const std::filesystem::path& out, std::size_
          concat(out.stem().string(), "-", number, "-", slug(query), out.extension().string());
 }
 
-void write_heat_maps(const QueryOptions& options, const MapSearch& search,
-                     const std::vector<QueryAnswer>& answers) {
+void write_heat_maps(const QueryOptions& options, const Eigen::Vector3f& up,
+                     const std::vector<Answered>& answers) {
   const MapDocument document = load_corrected_map(options.map);
   Mesh mesh = mesh_of(document, options.map);
   for (std::size_t i = 0; i < answers.size(); ++i) {
-    const auto path = heat_map_path(options.heat_map, i + 1, answers.size(), answers[i].query);
-    color_by_relevance(mesh, search.index, answers[i].relevance);
+    const QueryAnswer& answer = answers[i].answer;
+    const auto path = heat_map_path(options.heat_map, i + 1, answers.size(), answer.query);
+    color_by_relevance(mesh, *answers[i].index, answer.relevance);
     if (path.extension() == ".ply") {
       write_ply(path, mesh);
       continue;
     }
     PictureConfig picture;
     picture.coloring = MeshColoring::kColors;
-    write_file(path, encode_png(top_down(mesh, search.info.up, picture)));
+    write_file(path, encode_png(top_down(mesh, up, picture)));
   }
 }
 
-Approaches find_approaches(const QueryOptions& options, const std::vector<QueryAnswer>& answers) {
+Approaches find_approaches(const QueryOptions& options, const std::vector<Answered>& answers) {
   Approaches result;
   if (!options.approach.asked) return result;
   result.space = make_standing_space(load_corrected_map(options.map));
-  for (const QueryAnswer& answer : answers)
-    for (const QueryMatch& match : answer.matches)
-      if (answer.verdict == Verdict::kFound && !result.of_object.contains(match.id))
+  for (const Answered& answered : answers)
+    for (const QueryMatch& match : answered.answer.matches)
+      if (answered.answer.verdict == Verdict::kFound && !answered.is_past(match) &&
+          !result.of_object.contains(match.id))
         result.of_object[match.id] =
             find_approach(result.space, match.id, options.approach.config,
                           options.approach.start());
@@ -185,7 +162,11 @@ Approaches find_approaches(const QueryOptions& options, const std::vector<QueryA
 void check_options(const QueryOptions& options) {
   check_approach_options(options.approach);
   const std::size_t queries = options.texts.size() + options.images.size() + options.like.size();
-  if (queries == 0) throw Error("nothing is asked; give a TEXT, --image FILE or --like ID");
+  const bool timed = !options.at.empty() || !options.since.empty();
+  if (queries == 0 && !timed)
+    throw Error("nothing is asked; give a TEXT, --image FILE or --like ID");
+  if (timed && !(options.images.empty() && options.like.empty()))
+    throw Error("--at and --since belong to a TEXT, or stand alone; leave --image and --like out");
   if (options.texts.empty() && !(options.negatives.empty() && options.near.empty()))
     throw Error("--not and --near belong to a TEXT; give one beside --image or --like");
   if (options.heat_map.empty()) return;
@@ -195,55 +176,23 @@ void check_options(const QueryOptions& options) {
                        "'; the name must end in .ply or .png"));
 }
 
-/// "TEXT near THIS". A text with a place of its own would tie `near` to that place.
-std::string near_to(const std::string& text, const std::string& near) {
-  if (near.empty()) return text;
-  if (parse_query(text).relation)
-    throw Error(concat("'", text, "' says where to look already; leave --near '", near,
-                       "' out, or ask for the thing alone"));
-  return text + " near " + near;
-}
-
-std::vector<QueryAnswer> ask(const QueryOptions& options, const QueryEngine& engine) {
-  const bool relevance = !options.heat_map.empty();
-  std::vector<QueryAnswer> answers;
-  for (const std::string& text : options.texts) {
-    answers.push_back(engine.find({near_to(text, options.near), options.negatives, relevance}));
-  }
-  for (const std::filesystem::path& image : options.images)
-    answers.push_back(engine.find_like(read_rgb(image), image.string(), relevance));
-  for (const InstanceId id : options.like) answers.push_back(engine.find_like(id, relevance));
-  return answers;
-}
-
 int query(QueryOptions& options) {
   const ThreadLimit limit(options.threads);
   check_options(options);
   const QueryConfig config = query_config(options);
-  for (const std::string& text : options.texts)  // before anything slow
-    checked_query_text(text, config.max_text_chars);
-  const MapSearch search = open_map_search(options.map, config.shapes);
-  require_embeddings(search.index);
-  const bool words = !options.texts.empty() || !options.images.empty();
-  RuntimeConfig runtime;
-  runtime.threads = options.threads;
-  const auto encoder =
-      words ? encoder_of_map(search.info.encoder, options.encoder, runtime, options.model_dirs)
-            : nullptr;
-  const QueryEngine engine(search.index, encoder.get(), config, {}, search.scene);
-
+  const std::vector<AskedText> texts = asked_texts(options, config);  // before anything slow
+  QueryAsker asker(options, config);
+  const std::vector<Answered> answers = asker.ask(texts);
+  if (!options.heat_map.empty()) write_heat_maps(options, asker.up(), answers);
+  const Approaches approaches = find_approaches(options, answers);
   bool found = false;
   nlohmann::json results = nlohmann::json::array();
-  const std::vector<QueryAnswer> answers = ask(options, engine);
-  const std::vector<std::string> titles = titles_of(search.index, engine);
-  if (!options.heat_map.empty()) write_heat_maps(options, search, answers);
-  const Approaches approaches = find_approaches(options, answers);
-  for (const QueryAnswer& answer : answers) {
-    found = found || answer.verdict == Verdict::kFound;
+  for (const Answered& answered : answers) {
+    found = found || answered.answer.verdict == Verdict::kFound;
     if (options.json)
-      results.push_back(answer_json(answer, search.index, titles, approaches));
+      results.push_back(answer_json(answered, approaches));
     else
-      print_answer(answer, search.index, titles, approaches);
+      print_answer(answered, approaches);
   }
   if (options.json) print_json({{"results", results}});
   return found ? kDone : kAnswerIsNo;
@@ -261,6 +210,11 @@ Action add_query(CLI::App& command) {
   command.add_option("--not", options->negatives, "what it must not be; commas separate")
       ->type_size(1)
       ->allow_extra_args(false);
+  auto* at = command.add_option("--at", options->at,
+                     "ask the map as it was: \"visit 1\", 2026-03-14, Monday, \"2 hours ago\"");
+  command.add_option("--since", options->since,
+                     "only what came, moved or went since then; without TEXT all of it")
+      ->excludes(at);
   command.add_option("--near", options->near, "only near this: as \"TEXT near THIS\"");
   command.add_option("--image", options->images, "what looks like this picture")
       ->type_size(1)

@@ -5,6 +5,7 @@
 #include "ovimap/io/map_file/map_file.h"
 #include "ovimap/pipeline/report/map_pictures.h"
 #include "ovimap/pipeline/sequence/trajectory_file.h"
+#include "ovimap/semantics/past/time_words.h"
 #include "run_report.h"
 
 namespace ovimap::apps {
@@ -15,6 +16,7 @@ struct RunOptions {
   MappingOptions mapping;
   std::filesystem::path map, continued;
   std::filesystem::path pictures, trajectory;
+  std::string recorded;
   bool json = false;
   bool live = false;
   bool resume = false;
@@ -22,10 +24,18 @@ struct RunOptions {
   double fps = 30;
 };
 
+/// When the recording began, as --recorded says.
+double recorded_s(const std::string& text) {
+  const TimeAsked time = time_of_text(text, seconds_now());
+  if (time.visit == 0) return time.begin_s;
+  throw Error(concat("--recorded '", text, "' is no date; give one such as 2026-03-14T09:30"));
+}
+
 int run(RunOptions options) {
   if (options.map.empty()) options.map = options.continued;
   if (options.map.empty())
     throw Error("say where the map goes with -o, or which one to go on with by --continue");
+  if (!options.recorded.empty()) options.mapping.recorded_s = recorded_s(options.recorded);
   const ThreadLimit limit(options.mapping.threads);
   check_map_target(options.map);
   if (!options.pictures.empty()) make_folder(options.pictures);
@@ -67,6 +77,9 @@ Action add_run(CLI::App& command) {
                   "a map of the same place to go on with, in whose world frame the recording's poses "
                   "are: what is gone leaves it, ids, names and corrections stay")
       ->excludes(live);
+  command.add_option("--recorded", options->recorded,
+                     "when the recording was made, as 2026-03-14T09:30 or \"yesterday evening\", so that the "
+                     "map's history has dates; without, frames whose times are dates say it");
   add_poses(command, options->mapping);
   command.add_option("--trajectory", options->trajectory,
                      "file to write the camera's poses to, a TUM line for each frame in the map");

@@ -35,13 +35,17 @@ class Service : public LiveAudience {
                    const PinholeCamera& depth_camera) override {
     feed_->after_frame(mapper, frames, depth_camera);
   }
+  void after_tracking(const TrackedFrame& frame) override { feed_->after_tracking(frame); }
   MapEdits edits() const override { return map_->snapshot()->record->edits; }
   MapEdits end() override {
     feed_.reset();
     return map_->close_log();
   }
 
-  void saved(MapDocument&& document) { map_->saved(std::move(document)); }
+  void saved(MapDocument&& document, std::size_t loops) {
+    map_->saved(std::move(document));
+    if (loops > 0) map_->loops_closed(loops);
+  }
   void serve_on() {
     while (!interrupted() && server_->runs()) std::this_thread::sleep_for(kLook);
   }
@@ -78,7 +82,8 @@ void LiveService::run(const Announce& announce,
   save_map(target.map, mapped.document);
   saved(mapped);
   const bool go_on = !interrupted();
-  if (go_on) service.saved(std::move(mapped.document));  // whose voxels may be in the checkpoint
+  const std::size_t loops = mapped.tracking ? mapped.tracking->loops.closed : 0;
+  if (go_on) service.saved(std::move(mapped.document), loops);  // its voxels may be in the checkpoint
   mapped.checkpoints->remove();
   if (go_on) service.serve_on();
 }

@@ -49,7 +49,9 @@ COLUMNS = {
     "instance_aliases": "id, target",
     "blocks": "tile, present, hash, data",
     "visits": "visit, source, first_frame, first_index",
+    "visit_times": "visit, recorded_s",
     "object_events": "id, instance, kind, visit, frame, before, after, may_be",
+    "past_objects": "event, centroid_x, centroid_y, centroid_z, points, views, super_points, surface, colors",
     "edits": "id, time_s, action, arguments, undone_by",
     "corrected_flags": "id, hidden, locked",
 }

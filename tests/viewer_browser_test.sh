@@ -5,7 +5,8 @@
 set -eu
 export OVIMAP_MAP=$1
 OVIMAP_ROOM=$(dirname "$1")/room/room  # what the map was made from
-export OVIMAP_ROOM
+OVIMAP_HOME=$(dirname "$1")/home.ovimap  # of two visits
+export OVIMAP_ROOM OVIMAP_HOME
 export OVIMAP_CHROMIUM=${OVIMAP_CHROMIUM:-$(command -v chromium || true)}
 [ -n "$OVIMAP_CHROMIUM" ] || { echo "Chromium is missing; run tools/setup.sh"; exit 77; }
 [ -s "$OVIMAP_MAP" ] || { echo "there is no map to show: the encoder is missing; run tools/setup.sh"; exit 77; }

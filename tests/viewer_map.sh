@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
-# The map that the tests of server and viewer look at: a small rendered room. Usage: viewer_map.sh PROGRAM MAP
+# The maps that the tests of server and viewer look at: a small rendered room, and beside it home.ovimap of two visits. Usage: viewer_map.sh PROGRAM MAP
 set -eu
 ovimap=$1 map=$2
 folder=$(dirname "$map")
@@ -10,3 +10,10 @@ mkdir -p "$folder"
 "$ovimap" models list | grep -q default-encoder || { echo "the default encoder is missing; run tools/setup.sh"; exit 77; }
 "$ovimap" synth "$folder/room" --room tiny
 "$ovimap" run "$folder/room/room" --masks gt --encoder default --frames ::2 -o "$map"
+# The same place on two days.
+home=$folder/home.ovimap
+rm -rf "$folder/visits" "$home"
+"$ovimap" synth "$folder/visits" --room tiny --visits 2
+options="--masks gt --encoder default --recognizer none"
+"$ovimap" run "$folder/visits/visit1" $options --recorded 2026-03-14T19:30 -o "$home"
+"$ovimap" run "$folder/visits/visit2" $options --recorded 2026-03-16T08:12 --continue "$home"

@@ -358,6 +358,7 @@ void bind_map(nb::module_& module) {
   bind_objects(module, map);
   bind_approach(module, map);
   bind_scene(map);
+  bind_history(module, map);
 }
 
 }  // namespace ovimap::python

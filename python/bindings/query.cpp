@@ -18,8 +18,14 @@ namespace {
 using Relevance = nb::ndarray<nb::numpy, const float, nb::ndim<1>>;
 
 QueryAnswer query(SavedMap& map, const std::string& text, const std::vector<std::string>& negatives,
-                  bool relevance) {
+                  bool relevance, const std::string& at, const std::string& since) {
+  const auto past = map.past_of(text, at, since);
+  if (past) return map.ask_past(*past, {text, negatives, relevance});
   return map.engine(true).find({text, negatives, relevance});
+}
+
+nb::object row_of(const QueryMatch& match) {
+  return match.position == SavedMap::kGone ? nb::none() : nb::cast(match.position);
 }
 
 QueryAnswer query_like(SavedMap& map, const nb::object& what, bool relevance) {
@@ -36,7 +42,8 @@ QueryAnswer query_like(SavedMap& map, const nb::object& what, bool relevance) {
 void bind_answers(nb::module_& module) {
   nb::class_<QueryMatch>(module, "QueryMatch", "An object that matches, more or less.")
       .def_ro("id", &QueryMatch::id, "of the object")
-      .def_ro("row", &QueryMatch::position, "its row in Map.instances and Map.embeddings")
+      .def_prop_ro("row", &row_of, nb::sig("def row(self) -> int | None"),
+                   "its row in Map.instances and Map.embeddings; None: it is gone")
       .def_ro("score", &QueryMatch::score, "cosine")
       .def_ro("standard_score", &QueryMatch::standard_score,
               "standard deviations above unrelated things")
@@ -76,9 +83,10 @@ void bind_query(nb::module_& module, nb::class_<SavedMap>& map) {
   bind_answers(module);
   map.def("query", &query, nb::arg("text"), nb::kw_only(),
           nb::arg("negatives") = std::vector<std::string>(), nb::arg("relevance") = false,
-          nb::call_guard<WithoutGil>(),
+          nb::arg("at") = "", nb::arg("since") = "", nb::call_guard<WithoutGil>(),
           "Asks in words: \"mug\", \"red chair, armchair\", \"mug on the table\" (docs/query.md). "
-          "negatives: what it must not be. relevance: rate every object. The first question opens "
+          "negatives: what it must not be. relevance: rate every object. at, since: the map as it was, "
+          "and only what changed: \"visit 1\", \"2026-03-14\", \"yesterday\". The first question opens "
           "the encoder. Raises Error for an empty text or a map without embeddings.")
       .def("query_like", &query_like, nb::arg("what"), nb::kw_only(), nb::arg("relevance") = false,
            nb::sig("def query_like(self, what: typing.Any, *, relevance: bool = False) -> "

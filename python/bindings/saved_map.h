@@ -13,7 +13,7 @@
 
 #include "ovimap/frames/frame/frame_source.h"
 #include "ovimap/pipeline/approach/standing_space.h"
-#include "ovimap/pipeline/search/map_search.h"
+#include "ovimap/pipeline/search/history_search.h"
 #include "ovimap/semantics/classes/object_names.h"
 #include "ovimap/semantics/query/query_engine.h"
 
@@ -37,6 +37,17 @@ class SavedMap {
 
   /// Thread-safe. `words`: whether the question needs the encoder.
   const QueryEngine& engine(bool words);
+
+  /// What it says of its past, with looks and without voxels. Read the first time. Thread-safe.
+  const MapRecord& record();
+
+  /// What the map says of its past; positions of matches are those of the objects as they are now, or
+  /// kGone. Thread-safe.
+  QueryAnswer ask_past(const HistoryPhrase& phrase, const Query& query);
+  /// What is asked of the past, as history_of_question takes it; nothing: it is of the present.
+  std::optional<HistoryPhrase> past_of(const std::string& text, const std::string& at,
+                                       const std::string& since) const;
+  static constexpr std::size_t kGone = ~std::size_t{0};
 
   /// The map as its file is by now. An encoder that is open already stays open for it.
   std::shared_ptr<SavedMap> reopened();
@@ -82,12 +93,16 @@ class SavedMap {
   std::mutex details_mutex_;  ///< guards what follows
   std::optional<std::vector<ObjectName>> names_;
   std::optional<SuperPointLooks> looks_;
+  std::optional<MapRecord> record_;
   std::optional<Mesh> surface_;
   std::optional<StandingSpace> standing_;
 };
 
 /// Adds the questions to Map.
 void bind_query(nb::module_& module, nb::class_<SavedMap>& map);
+
+/// Adds its visits and what they found to Map.
+void bind_history(nb::module_& module, nb::class_<SavedMap>& map);
 
 /// Adds where to stand to Map.
 void bind_approach(nb::module_& module, nb::class_<SavedMap>& map);

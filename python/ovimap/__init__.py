@@ -5,6 +5,7 @@
 from ._ovimap import (
     Approach,
     ApproachPose,
+    Change,
     CheckReport,
     ColorCalibration,
     Error,
@@ -31,6 +32,7 @@ from ._ovimap import (
     QueryMatch,
     Setting,
     StageSummary,
+    Visit,
     calibrate,
     check,
     commit,
@@ -49,6 +51,7 @@ __version__ = version()
 __all__ = [
     "Approach",
     "ApproachPose",
+    "Change",
     "CheckReport",
     "ColorCalibration",
     "Error",
@@ -75,6 +78,7 @@ __all__ = [
     "QueryMatch",
     "Setting",
     "StageSummary",
+    "Visit",
     "WatchEvent",
     "__version__",
     "calibrate",

@@ -31,6 +31,15 @@ def kitchen():
 
 
 @pytest.fixture(scope="session")
+def home_map():
+    """A map of two visits, 14 and 16 March 2026."""
+    given = os.environ.get("OVIMAP_TEST_HOME", "")
+    if not os.path.isfile(given):
+        pytest.skip("there is no map of two visits; run the test viewer_map first")
+    return given
+
+
+@pytest.fixture(scope="session")
 def saved_map(room, tmp_path_factory):
     """A map with embeddings."""
     given = os.environ.get("OVIMAP_TEST_MAP", "")

@@ -285,6 +285,38 @@ def test_a_service_answers_in_words(node, named_map):
 
 
 @needs_program
+def test_a_service_says_where_to_stand(node, named_map):
+    client = node.client(types.APPROACH, "/stood/approach")
+    robot = {"radius_m": 0.15, "camera_height_m": 1.0}
+    with ovimap_ros(named_map[0], "--name", "/stood", "--world", "house", "--no-grid", "--radius", 0.15, "--camera-height", 1):
+        until(lambda: client.ready)
+
+        def ask(text, *start):
+            points = [types.make("geometry_msgs/msg/Point", **dict(zip("xyz", place))) for place in start]
+            number = client.ask(types.make(f"{types.APPROACH}_Request", text=text, start=points))
+            got, reply = until(lambda: next(client.answers(), None))
+            assert got == number
+            return reply
+
+        reply = until(lambda: (answer := ask("chair")).matches.detections and answer)
+        opened = ovimap.Map.open(named_map[0])
+        expected = opened.approach(int(reply.matches.detections[0].id), **robot)
+        assert reply.found and reply.poses.header.frame_id == "house" and len(reply.poses.poses) == len(expected.poses) > 0
+        for pose, wanted in zip(reply.poses.poses, expected.poses):
+            assert np.allclose([pose.position.x, pose.position.y], [wanted.x, wanted.y], atol=1e-3)
+            assert np.isclose(np.cos(2 * np.arctan2(pose.orientation.z, pose.orientation.w) - wanted.yaw), 1, atol=1e-4)
+        assert not reply.way.poses, "nobody said where the robot is"
+        start = reply.poses.poses[-1].position
+        way = ask("chair", (start.x, start.y, start.z))
+        assert way.found and way.way.header.frame_id == "house"
+        end, best = way.way.poses[-1].pose, way.poses.poses[0]
+        assert np.allclose([end.position.x, end.position.y], [best.position.x, best.position.y], atol=1e-3)
+        assert np.isclose(end.orientation.z, best.orientation.z, atol=1e-6), "it looks at what is to be seen"
+        nothing = ask("elephant skeleton")
+        assert not nothing.found and not nothing.poses.poses and nothing.message
+
+
+@needs_program
 def test_a_map_that_is_corrected_or_replaced_is_followed(node, named_map, tmp_path):
     path = tmp_path / "changing.ovimap"
     shutil.copyfile(named_map[0], path)

@@ -45,6 +45,24 @@ test('shows, searches and corrects a map while it is made', async ({ page }) => 
   await map.stop();
 });
 
+test('a camera that is lost turns red, and says where it can be found', async ({ page, map }) => {
+  test.setTimeout(120_000);
+  const cameras = (await (await page.request.get(`${map.address}api/cameras`)).json()) as {
+    frames: { world_from_camera: number[] }[];
+  };
+  const pose = cameras.frames.at(-1)!.world_from_camera;
+  const tracking = { state: 'lost', frames_lost: 12, loops: 0, world_from_camera: pose };
+  await page.route('**/api/map', async (route) => {
+    const response = await route.fetch();
+    await route.fulfill({ json: { ...(await response.json()), live: true, tracking } });
+  });
+  await page.goto(map.address);
+  await wholePicture(page);
+  await expect(page.getByRole('alert')).toContainText('The camera has been lost for 12 frames');
+  await page.waitForTimeout(1000);
+  await page.screenshot({ path: `${PICTURES}/lost.png` });
+});
+
 test('Ctrl-C saves what was mapped', async ({ page }) => {
   test.setTimeout(120_000);
   const map = await RunningMap.live(2);

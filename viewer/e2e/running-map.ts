@@ -8,6 +8,7 @@ import { type Page, test as base } from '@playwright/test';
 
 const PROGRAM = process.env.OVIMAP_PROGRAM ?? '../build/release/bin/ovimap';
 const MAP = process.env.OVIMAP_MAP ?? '';
+const HOME = process.env.OVIMAP_HOME ?? ''; // a map of two visits
 const ROOM = process.env.OVIMAP_ROOM ?? ''; // the recording that the map was made from
 
 function place(): { folder: string; file: string } {
@@ -33,6 +34,13 @@ export class RunningMap {
   static async start(): Promise<RunningMap> {
     const { folder, file } = place();
     copyFileSync(MAP, file);
+    return RunningMap.run([file], folder, file);
+  }
+
+  /** A map of two visits. */
+  static async home(): Promise<RunningMap> {
+    const { folder, file } = place();
+    copyFileSync(HOME, file);
     return RunningMap.run([file], folder, file);
   }
 
@@ -70,7 +78,7 @@ export class RunningMap {
 
 export async function wholePicture(page: Page): Promise<void> {
   await page.waitForFunction(() => performance.getEntriesByName('whole-picture').length > 0, null, {
-    timeout: 40_000,
+    timeout: 90_000,
   });
 }
 

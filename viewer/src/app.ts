@@ -3,10 +3,13 @@
 import { api } from './api/client';
 import { listen } from './api/events';
 import type { FrameEvent, Instance, Labels, MapInfo, MeshListing, Question } from './api/types';
+import { CameraState } from './camera-state';
 import { Commands } from './commands';
 import { Corrections } from './corrections';
 import { listenToKeys } from './keyboard';
 import { MapState } from './map-state';
+import { Past } from './past';
+import { RoomsView } from './rooms-view';
 import { Rounds } from './rounds';
 import type { Mode } from './scene/coloring';
 import { MapView } from './scene/map-view';
@@ -38,6 +41,7 @@ export class App {
       'The map in 3D. Arrow keys turn it, W A S D move. The list holds the same objects.',
   });
   private readonly status = new Status();
+  private readonly camera = new CameraState(this.status);
   private readonly commands = new Commands(
     this.status,
     () => this.state.info?.title ?? 'map',
@@ -48,6 +52,9 @@ export class App {
     onQuery: (text, not) => void this.ask({ text, not }, text),
     onClear: () => this.clearQuery(),
     onSelect: (id) => this.select(id, true),
+    onEvent: (event) => void this.past.choose(event),
+    onRoom: (room) => this.rooms.choose(room),
+    eventOf: (id) => this.past.event(id),
   });
   private readonly corrections = new Corrections(this.state, this.status, {
     refresh: () => this.refresh(),
@@ -72,7 +79,14 @@ export class App {
     onTool: (tool) => this.tools.toggle(tool),
     onCommand: (command) => this.commands.run(command),
   });
-  private readonly tools = new Tools(this.canvas, this.toolbar, this.status);
+  private readonly past = new Past(this.status, {
+    list: (events) => this.showInstead(events && (() => this.search.showChanges(events))),
+    select: (id) => this.selectThere(id),
+  });
+  private readonly rooms = new RoomsView(this.status, {
+    list: (rooms) => this.showInstead(rooms && (() => this.search.showRooms(rooms))),
+  });
+  private readonly tools = new Tools(this.canvas, this.toolbar, this.status, this.past, this.rooms);
   private readonly refreshes = new Rounds(
     () => this.loadAgain(),
     () => (this.state.info?.live ? LIVE_PAUSE_MS : 0),
@@ -80,6 +94,7 @@ export class App {
   private view: MapView | null = null;
   private modeBefore: Mode = 'color';
   private asking: AbortController | null = null;
+  private instead: (() => void) | null = null; // shows something else than objects in the list
 
   constructor(root: HTMLElement) {
     root.append(
@@ -93,6 +108,7 @@ export class App {
         this.legend.element,
         this.tools.sectionPanel.element,
         this.tools.pathPanel.element,
+        this.past.panel.element,
         ...this.status.elements,
       ),
       this.commands.help.element,
@@ -149,6 +165,7 @@ export class App {
     this.view?.setLabels(labels);
     this.showList();
     this.repaint();
+    await Promise.all([this.past.changed(), this.rooms.changed()]);
     const editing = this.card.element.querySelector('form') !== null;
     const { selected } = this.state;
     if (selected !== 0 && !instances.some(({ id }) => id === selected)) this.select(0, false);
@@ -167,7 +184,8 @@ export class App {
       this.canvas.hidden = true;
       return this.status.setBanner(faultText(error));
     }
-    this.tools.view = this.commands.view = this.view;
+    this.tools.view = this.commands.view = this.past.view = this.rooms.view = this.view;
+    this.camera.view = this.view;
     this.canvas.after(this.view.measure.label);
     const observer = new ResizeObserver(() => this.coverView());
     for (const panel of [this.search.element, this.card.element]) observer.observe(panel);
@@ -214,10 +232,12 @@ export class App {
       if (this.state.info?.live) this.view?.followGrowth();
     };
     if (this.state.info?.live && !this.tools.isOn('path')) this.tools.toggle('path');
+    if (this.state.info?.live) this.camera.show(this.state.info.tracking);
     listen({
       onMap: () => void this.refresh().catch(failed),
       onMesh: () => void surfaceChanged().catch(failed),
       onFrame: (frame) => this.followCamera(frame),
+      onTracking: (tracking) => this.camera.show(tracking),
       onConnection: (connected) => this.status.setBanner(connected ? '' : lost),
     });
   }
@@ -286,6 +306,7 @@ export class App {
       return;
     }
     if (this.state.mode !== 'heat') this.modeBefore = this.state.mode;
+    await this.past.showAnswer(this.state.answer);
     this.select(0, false);
     this.showList();
     this.setMode('heat');
@@ -296,14 +317,28 @@ export class App {
     this.asking?.abort();
     const had = this.state.answer !== null;
     this.state.answer = null;
+    void this.past.showAnswer(null);
     this.showList();
     if (had && this.state.mode === 'heat') this.setMode(this.modeBefore);
     else this.repaint();
   }
 
+  private showInstead(show: (() => void) | null): void {
+    this.instead = show;
+    this.showList();
+  }
+
+  /** Selects an object that is there; 0: none. Whether it is. */
+  private selectThere(id: number): boolean {
+    const there = this.state.instances.has(id);
+    this.select(there ? id : 0, false);
+    return there;
+  }
+
   private showList(): void {
     const { answer, selected } = this.state;
     if (answer) this.search.showAnswer(answer, selected);
+    else if (this.instead) this.instead();
     else this.search.showAll(selected);
   }
 
@@ -347,6 +382,8 @@ export class App {
       m: () => this.tools.toggle('measure'),
       x: () => this.tools.toggle('section'),
       c: () => this.tools.toggle('path'),
+      r: () => this.tools.toggle('rooms'),
+      v: () => this.tools.toggle('history'),
       g: () => this.tools.toggle('fly'),
       p: () => this.commands.run('picture'),
       t: () => this.commands.run('theme'),

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
+import type { Past } from './past';
+import type { RoomsView } from './rooms-view';
 import type { MapView } from './scene/map-view';
 import { metres } from './scene/measure';
 import type { Pick } from './scene/picking';
@@ -8,7 +10,7 @@ import { SectionPanel } from './ui/section-panel';
 import type { Status } from './ui/status';
 import type { Tool, Toolbar } from './ui/toolbar';
 
-/** The tools of the view, each on or off: measuring, section plane, camera path, flying. */
+/** The tools of the view, each on or off: measuring, section plane, camera path, rooms, history, flying. */
 export class Tools {
   readonly sectionPanel = new SectionPanel((section) => this.view?.setSection(section));
   readonly pathPanel = new PathPanel({
@@ -22,6 +24,8 @@ export class Tools {
     private readonly canvas: HTMLElement,
     private readonly toolbar: Toolbar,
     private readonly status: Status,
+    private readonly past: Past,
+    private readonly rooms: RoomsView,
   ) {}
 
   toggle(tool: Tool): void {
@@ -33,6 +37,8 @@ export class Tools {
     if (tool === 'measure') this.setMeasuring(on);
     if (tool === 'section') this.setSection(on);
     if (tool === 'path') this.setPath(on);
+    if (tool === 'rooms') void this.rooms.toggle(on);
+    if (tool === 'history') void this.past.toggle(on);
   }
 
   isOn(tool: Tool): boolean {

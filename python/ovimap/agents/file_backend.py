@@ -61,6 +61,8 @@ class FileBackend(MapBackend):
             answer = opened.map.query(text, negatives=list(exclude))
             matches = []
             for match in answer.matches:
+                if match.id not in opened.objects:  # a question about the past may find what is gone
+                    continue
                 thing = opened.objects[match.id]
                 matches.append(Match(**vars(thing), probability=share(match.probability), score=rounded(match.standard_score), evidence=match.evidence))
             return Answer(self.name, answer.query, answer.found, answer.reading, answer.reason, matches)
@@ -156,7 +158,7 @@ class FileBackend(MapBackend):
         if not answer.found:
             return Verdict(False, None)
         best = answer.matches[0]
-        return Verdict(True, opened.objects[best.id], share(best.probability))
+        return Verdict(True, opened.objects.get(best.id), share(best.probability))
 
     @contextlib.contextmanager
     def _faults(self) -> Iterator[None]:

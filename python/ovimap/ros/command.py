@@ -105,11 +105,17 @@ def _publishing(options: argparse.Namespace, source: Source, mapping: Mapping | 
     if before is not None:
         before.follow(server)
     made = before or Publishing(Node(options.domain, name="ovimap_map"), server, frame, reporter, name=options.name, most_points=options.points,
-                                simulated_clock=options.sim_time)  # fmt: skip
+                                simulated_clock=options.sim_time, robot=_robot(options))  # fmt: skip
     if source.file is not None and not options.no_grid:
         _grid(made, source.file, reporter)
     reporter.again("source")
     return made
+
+
+def _robot(options: argparse.Namespace) -> dict[str, float]:
+    """What was said of it; for the rest the server has its own."""
+    said = {"radius_m": options.radius, "camera_height_m": options.camera_height, "fov_deg": options.fov, "range_m": options.range}
+    return {name: value for name, value in said.items() if value is not None}
 
 
 def _grid(publishing: Publishing, file: pathlib.Path, reporter: Reporter) -> None:
@@ -152,6 +158,11 @@ def _parser() -> argparse.ArgumentParser:
     out.add_argument("--sim-time", action="store_true", help="stamp messages with the time of /clock")
     out.add_argument("--no-grid", action="store_true", help="leave the occupancy grid out")
     out.add_argument("--no-publish", action="store_true", help="send frames alone")
+    robot = parser.add_argument_group("the robot, for the service approach (docs/robots.md, \"Where to stand\")")
+    robot.add_argument("--radius", type=float, metavar="M", help="of the robot, which is round (0.25)")
+    robot.add_argument("--camera-height", type=float, metavar="M", help="of its camera (1.2)")
+    robot.add_argument("--fov", type=float, metavar="DEGREES", help="what its camera sees, a cone (60)")
+    robot.add_argument("--range", type=float, metavar="M", help="from an object to the robot's middle, at most (2)")
     parser.add_argument("--domain", type=int, help="of DDS; default: ROS_DOMAIN_ID, or 0")
     parser.add_argument("--cafile", metavar="PEM", help="certificates to trust, for a server of https with one of its own")
     parser.set_defaults(command=_run)

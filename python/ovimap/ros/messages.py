@@ -18,6 +18,8 @@ CLOUD = "sensor_msgs/msg/PointCloud2"
 DETECTIONS = "vision_msgs/msg/Detection3DArray"
 MARKERS = "visualization_msgs/msg/MarkerArray"
 GRID = "nav_msgs/msg/OccupancyGrid"
+POSES = "geometry_msgs/msg/PoseArray"
+WAY = "nav_msgs/msg/Path"
 TRANSFORM = "tf2_msgs/msg/TFMessage"
 FLOAT32, UINT32 = 7, 6  # of sensor_msgs/PointField
 CUBE, TEXT, ADD, DELETE_ALL = 1, 9, 0, 3  # of visualization_msgs/Marker
@@ -97,6 +99,24 @@ def grid_message(grid: Grid, header: Any) -> Any:
     info = make("nav_msgs/msg/MapMetaData", map_load_time=header.stamp, resolution=grid.cell_m, width=columns, height=rows,
                 origin=_pose(corner, quaternion_of(turn)))
     return make(GRID, header=header, info=info, data=grid.cells.ravel())
+
+
+def poses_message(poses: list[dict[str, Any]], header: Any) -> Any:
+    """Where to stand, best first: on the floor, x ahead to what is to be seen, z up."""
+    return make(POSES, header=header, poses=[_standing(pose["position"], pose["direction"]) for pose in poses])
+
+
+def way_message(poses: list[dict[str, Any]], header: Any) -> Any:
+    """The way to the best of them: at each corner the robot looks to the next, at the end to what is to be seen. Empty where it has none."""
+    corners = poses[0]["way_in_world"] if poses else []
+    ahead = [np.subtract(after, before) for before, after in zip(corners, corners[1:])] + [poses[0]["direction"]] if corners else []
+    return make(WAY, header=header, poses=[make("geometry_msgs/msg/PoseStamped", header=header, pose=_standing(corner, way))
+                                           for corner, way in zip(corners, ahead)])  # fmt: skip
+
+
+def _standing(position: Any, ahead: Any) -> Any:
+    yaw = float(np.arctan2(ahead[1], ahead[0]))
+    return _pose(position, (0, 0, np.sin(yaw / 2), np.cos(yaw / 2)))
 
 
 def frames_message(things: list[dict[str, Any]], header: Any) -> Any:

@@ -23,11 +23,13 @@ from .messages import (
     grid_message,
     header_of,
     markers_message,
+    poses_message,
+    way_message,
 )
 from .node import CLOCK, LATCHED, STATIC_TRANSFORMS, Node
 from .reporter import Reporter
 from .served import MapServer
-from .types import QUERY, make
+from .types import APPROACH, QUERY, make
 
 SIMULATED_CLOCK = "rosgraph_msgs/msg/Clock"
 
@@ -51,19 +53,21 @@ class Clock:
 
 
 class Publishing:
-    """Publishes under `name`, "/ovimap" as a rule: objects, detections, markers, grid; and the service query.
+    """Publishes under `name`, "/ovimap" as a rule: objects, detections, markers, grid; and the services query and approach.
 
-    frame: gives the world's frame by now, in which all of it is; "" while there is none. most_points: of the cloud."""
+    frame: gives the world's frame by now, in which all of it is; "" while there is none. most_points: of the cloud. robot: its
+    settings, as POST /api/approach takes them."""
 
     def __init__(self, node: Node, server: MapServer, frame: Callable[[], str], reporter: Reporter, *, name: str = "/ovimap",
-                 most_points: int = 500_000, simulated_clock: bool = False) -> None:  # fmt: skip
+                 most_points: int = 500_000, simulated_clock: bool = False, robot: dict[str, float] | None = None) -> None:  # fmt: skip
         self._node, self._frame, self._report, self._most_points = node, frame, reporter, most_points
+        self._robot = robot or {}
         self.follow(server)
         self._clock = Clock(node, simulated_clock)
         self._out = {kind: node.publisher(kind, f"{name}/{topic}", LATCHED)
                      for kind, topic in ((CLOUD, "objects"), (DETECTIONS, "detections"), (MARKERS, "markers"), (GRID, "grid"))}
         self._frames = node.publisher(TRANSFORM, "/tf_static", STATIC_TRANSFORMS)
-        self._service = node.service(QUERY, f"{name}/query", self._answer)
+        self._services = [node.service(QUERY, f"{name}/query", self._answer), node.service(APPROACH, f"{name}/approach", self._stand)]
 
     def follow(self, server: MapServer) -> None:
         """From now on that server's map."""
@@ -76,7 +80,8 @@ class Publishing:
         while (left := end - time.monotonic()) > 0:
             self._node.wait(left)
             self._clock.listen()
-            self._service.serve()
+            for service in self._services:
+                service.serve()
 
     def update(self) -> None:
         """Publishes the map if it is another than last time. What the server refuses is said once."""
@@ -106,15 +111,36 @@ class Publishing:
         return header_of(self._frame(), self._clock.now_ns())
 
     def _answer(self, request: Any) -> Any:
-        """Of the service: what matches, best first, with its probability; the message says how it was understood, or what is wrong."""
+        """Of the service query: what matches, best first, with its probability; the message says how it was understood, or what is wrong."""
         header = self._header()
         try:
-            said = self._server.query(request.text)
-            scores = {match["id"]: float(match["probability"] or 0) for match in said["matches"]}
-            things = {thing["id"]: thing for thing in self._server.objects()}
+            found, message, matches, _ = self._find(request.text, header)
         except Error as fault:
-            return make(f"{QUERY}_Response", found=False, message=str(fault), matches=detections_message([], header))
+            found, message, matches = False, str(fault), detections_message([], header)
+        return make(f"{QUERY}_Response", found=found, message=message, matches=matches)
+
+    def _stand(self, request: Any) -> Any:
+        """Of the service approach: the same, and from where the best match is seen; found where it is and can be."""
+        header = self._header()
+        poses: list[dict[str, Any]] = []
+        try:
+            found, message, matches, best = self._find(request.text, header)
+            if found and best is not None:
+                start = [getattr(request.start[0], axis) for axis in "xyz"] if request.start else None
+                said = self._server.approach(best, start, self._robot)
+                poses, found = said["poses"], bool(said["poses"])
+                message = message if found else f"object {best} cannot be reached: {said['reason']}"
+        except Error as fault:
+            found, message, matches = False, str(fault), detections_message([], header)
+        return make(f"{APPROACH}_Response", found=found, message=message, matches=matches, poses=poses_message(poses, header),
+                    way=way_message(poses, header))  # fmt: skip
+
+    def _find(self, text: str, header: Any) -> tuple[bool, str, Any, int | None]:
+        """Whether it is there, how it was understood, what matches, and the best of that. Raises Error for what the server refuses."""
+        said = self._server.query(text)
+        scores = {match["id"]: float(match["probability"] or 0) for match in said["matches"]}
+        things = {thing["id"]: thing for thing in self._server.objects()}
         matching = [things[number] for number in scores if number in things]
+        best = matching[0]["id"] if matching else None
         message = said["reason"] or said["reading"] or said["verdict"]
-        return make(f"{QUERY}_Response", found=said["verdict"] == "found", message=message,
-                    matches=detections_message(matching, header, scores))
+        return said["verdict"] == "found", message, detections_message(matching, header, scores), best

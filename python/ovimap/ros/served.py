@@ -76,6 +76,12 @@ class MapServer:
     def query(self, text: str) -> dict[str, Any]:
         return self._json("/api/query", json.dumps({"text": text}).encode())
 
+    def approach(self, instance: int, start: list[float] | None, robot: dict[str, float]) -> dict[str, Any]:
+        """Where to stand to see an object: poses, or the reason why there are none. start: where the robot is, a point of the world, for
+        a way from there. robot: settings as POST /api/approach takes them."""
+        asked = {"instance": instance, **robot, **({} if start is None else {"from": start})}
+        return self._json("/api/approach", json.dumps(asked).encode())
+
     def cloud(self, most_points: int) -> Cloud:
         """The objects' surface; only what changed is fetched. Where it has more points, every n-th."""
         listed = self._json("/api/mesh?level=0&since=0")

@@ -18,8 +18,9 @@ from rosbags.typesys.store import Typestore
 
 idl: Any = _types  # which types cannot see that its classes are subscripted
 QUERY = "ovimap_msgs/srv/Query"
+APPROACH = "ovimap_msgs/srv/Approach"
 
-# vision_msgs 4 (since ROS 2 Humble), which is no part of ROS' core, and our service.
+# vision_msgs 4 (since ROS 2 Humble), which is no part of ROS' core, and our services.
 DEFINITIONS = {
     "vision_msgs/msg/ObjectHypothesis": "string class_id\nfloat64 score",
     "vision_msgs/msg/ObjectHypothesisWithPose": "ObjectHypothesis hypothesis\ngeometry_msgs/PoseWithCovariance pose",
@@ -28,6 +29,8 @@ DEFINITIONS = {
     "vision_msgs/msg/Detection3DArray": "std_msgs/Header header\nDetection3D[] detections",
     f"{QUERY}_Request": "string text",
     f"{QUERY}_Response": "bool found\nstring message\nvision_msgs/Detection3DArray matches",
+    f"{APPROACH}_Request": "string text\ngeometry_msgs/Point[<=1] start",
+    f"{APPROACH}_Response": "bool found\nstring message\nvision_msgs/Detection3DArray matches\ngeometry_msgs/PoseArray poses\nnav_msgs/Path way",
 }
 # rmw_cyclonedds puts this before the body of every request and reply: who asked, and which question it was.
 SERVICE_HEADER = [("client", idl.uint64), ("sequence_number", idl.int64)]

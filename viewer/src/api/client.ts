@@ -6,13 +6,16 @@ import type {
   Cameras,
   ChunkListing,
   Correction,
+  History,
   Instance,
   InstanceDetail,
   Labels,
   LoggedCorrection,
   MapInfo,
   MeshListing,
+  PastSurface,
   Question,
+  Rooms,
 } from './types';
 
 /** A request that failed, said in a sentence that a person can act on. */
@@ -72,6 +75,11 @@ export const api = {
     (await request(`/api/mesh/${level}/${at.x}/${at.y}/${at.z}?since=${since}`)).arrayBuffer(),
   labels: () => get<Labels>('/api/labels'),
   cameras: () => get<Cameras>('/api/cameras'),
+  rooms: () => get<Rooms>('/api/rooms'),
+  history: () => get<History>('/api/history'),
+  /** What the object of an event was before it. */
+  pastSurface: (event: number) => get<PastSurface>(`/api/history/${event}/surface`),
+  pastCropUrl: (event: number) => `/api/history/${event}/crop`,
   query: (question: Question, signal?: AbortSignal) =>
     post<Answer>('/api/query', { ...question, heat: true }, signal),
   /** `from`: a point of the world where the robot is; without it there is no way. */

@@ -1,12 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
-import type { FrameEvent } from './types';
+import type { FrameEvent, Tracking } from './types';
 
 export interface EventHandlers {
   /** Names, objects or the state of search changed. */
   onMap: () => void;
   onMesh: () => void;
   onFrame: (frame: FrameEvent) => void;
+  /** The camera was lost or found, or loops of its way were closed. */
+  onTracking: (tracking: Tracking) => void;
   /** The connection was lost (false) or came back (true). */
   onConnection: (connected: boolean) => void;
 }
@@ -19,6 +21,9 @@ export function listen(handlers: EventHandlers): void {
   source.addEventListener('mesh', handlers.onMesh);
   source.addEventListener('frame', (event: MessageEvent<string>) =>
     handlers.onFrame(JSON.parse(event.data) as FrameEvent),
+  );
+  source.addEventListener('tracking', (event: MessageEvent<string>) =>
+    handlers.onTracking(JSON.parse(event.data) as Tracking),
   );
   source.addEventListener('reset', () => {
     handlers.onMap();

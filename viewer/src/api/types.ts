@@ -13,6 +13,7 @@ export interface MapInfo {
   version: number;
   mesh_version: number;
   live: boolean;
+  tracking: Tracking;
   frames: number;
   mask_frames: number;
   instances: number;
@@ -23,6 +24,18 @@ export interface MapInfo {
   search: { state: 'preparing' | 'ready' | 'unavailable'; reason: string };
   classes: string | null;
   heat_ramp: Color[];
+}
+
+/** How the camera of a map that is being made is followed. */
+export interface Tracking {
+  /** given: its poses come from elsewhere. */
+  state: 'given' | 'tracked' | 'lost';
+  /** Since it was tracked last. */
+  frames_lost: number;
+  /** Closed when the map was completed. */
+  loops: number;
+  /** Where it was tracked last: three rows of the 4x4 matrix. */
+  world_from_camera: number[];
 }
 
 export interface NameGuess {
@@ -118,15 +131,80 @@ export interface Approach {
   reason: string;
 }
 
+/** A part of the floor within walls and doors. Points are of the world, on the floor. */
+export interface Room {
+  id: number;
+  name: string;
+  area_m2: number;
+  center: Point;
+  /** Polygons: around it, then around what stands in it. */
+  outline: Point[][];
+  objects: number[];
+}
+
+export interface Rooms {
+  rooms: Room[];
+  doors: { rooms: [number, number]; place: Point; width_m: number }[];
+}
+
 export interface Question {
   text?: string;
   not?: string[];
   like?: number;
 }
 
+export interface Box {
+  min: Point;
+  max: Point;
+}
+
+export interface Visit {
+  visit: number;
+  source: string;
+  frames: number;
+  /** Seconds since 1970 (UTC); null: nobody knows. */
+  begin_s: number | null;
+  end_s: number | null;
+}
+
+/** What a visit found about an object. */
+export interface HistoryEvent {
+  id: number;
+  instance: number;
+  name: string;
+  /** What it clearly is; empty: not known. */
+  label: string;
+  event: 'appeared' | 'gone' | 'moved';
+  visit: number;
+  time_s: number | null;
+  before: Box | null;
+  after: Box | null;
+  may_be: number | null;
+  /** Whether the map keeps what it was before, and a picture of that. */
+  surface: boolean;
+  crop: boolean;
+}
+
+export interface History {
+  version: number;
+  visits: Visit[];
+  events: HistoryEvent[];
+}
+
+/** Three numbers a point: metres in the world, and red, green, blue to 255. */
+export interface PastSurface {
+  instance: number;
+  points: number[];
+  colors: number[];
+}
+
 export interface Match {
   id: number;
   name: string;
+  box: Box;
+  centroid: Point;
+  /** That ended what is shown; null: it is so now. */
+  event: number | null;
   score: number;
   standard_score: number;
   p_value: number | null;

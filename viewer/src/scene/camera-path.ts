@@ -6,9 +6,10 @@ import type { Viewpoint } from './framing';
 import { disposeLines, lineSegments } from './lines';
 
 const FRUSTUM_DEPTH_M = 0.35;
+const LOST_DEPTH_M = 1; // as far as it should be seen from anywhere
+const LOST_COLOR = '#e02020';
 
-export function poseOf(cameras: Cameras, frame: number): Matrix4 {
-  const m = cameras.frames[frame]!.world_from_camera;
+function matrixOf(m: readonly number[]): Matrix4 {
   return new Matrix4().set(
     m[0]!, m[1]!, m[2]!, m[3]!,
     m[4]!, m[5]!, m[6]!, m[7]!,
@@ -17,10 +18,17 @@ export function poseOf(cameras: Cameras, frame: number): Matrix4 {
   ); // prettier-ignore
 }
 
+export function poseOf(cameras: Cameras, frame: number): Matrix4 {
+  return matrixOf(cameras.frames[frame]!.world_from_camera);
+}
+
 /** The edges of what a frame's camera saw, as pairs of points in the world. */
 export function frustumEdges(cameras: Cameras, frame: number, depth = FRUSTUM_DEPTH_M): Vector3[] {
-  const { width, height, fx, fy, cx, cy } = cameras.camera;
-  const pose = poseOf(cameras, frame);
+  return viewEdges(cameras.camera, poseOf(cameras, frame), depth);
+}
+
+function viewEdges(camera: Cameras['camera'], pose: Matrix4, depth: number): Vector3[] {
+  const { width, height, fx, fy, cx, cy } = camera;
   const apex = new Vector3().applyMatrix4(pose);
   const corners = [
     [0, 0],
@@ -67,5 +75,21 @@ export class CameraPath {
     this.group.add(this.way);
     this.frustum = lineSegments(frustumEdges(this.cameras, frame), '#2f9e63', true);
     this.group.add(this.frustum);
+  }
+}
+
+/** A camera that does not know where it is: red, where it was tracked last. */
+export class LostCamera {
+  readonly group = new Group();
+  private lines: LineSegments | null = null;
+
+  /** null: it is not lost. */
+  show(camera: Cameras['camera'], world_from_camera: number[] | null): void {
+    if (this.lines) disposeLines(this.lines);
+    this.lines = null;
+    if (!world_from_camera) return;
+    const edges = viewEdges(camera, matrixOf(world_from_camera), LOST_DEPTH_M);
+    this.lines = lineSegments(edges, LOST_COLOR, true);
+    this.group.add(this.lines);
   }
 }

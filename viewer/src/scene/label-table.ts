@@ -19,6 +19,7 @@ export class LabelTable {
   pixels = new Uint8Array(ROW * 4);
   private instances: readonly number[] = [];
   private hidden: ReadonlySet<number> = new Set();
+  private absent: ReadonlySet<number> = new Set();
   private colors: ReadonlyMap<number, Color> = new Map();
   private other: Color = NO_INSTANCE;
   private selected = 0;
@@ -35,6 +36,12 @@ export class LabelTable {
       this.height = 2 ** Math.ceil(Math.log2(count / ROW)); // rarely a new texture
       this.pixels = new Uint8Array(ROW * this.height * 4);
     }
+    this.fill();
+  }
+
+  /** Objects that are not drawn for now, whatever the labels say. */
+  leaveOut(absent: ReadonlySet<number>): void {
+    this.absent = absent;
     this.fill();
   }
 
@@ -57,7 +64,7 @@ export class LabelTable {
   }
 
   isHidden(label: number): boolean {
-    return this.hidden.has(this.instanceOf(label));
+    return this.isLeftOut(this.instanceOf(label));
   }
 
   private fill(): void {
@@ -68,8 +75,12 @@ export class LabelTable {
       this.pixels[at] = r;
       this.pixels[at + 1] = g;
       this.pixels[at + 2] = b;
-      this.pixels[at + 3] = this.hidden.has(id) ? HIDDEN : this.isSelected(id) ? SELECTED : PLAIN;
+      this.pixels[at + 3] = this.isLeftOut(id) ? HIDDEN : this.isSelected(id) ? SELECTED : PLAIN;
     }
+  }
+
+  private isLeftOut(id: number): boolean {
+    return this.hidden.has(id) || this.absent.has(id);
   }
 
   private isSelected(id: number): boolean {

@@ -1,15 +1,27 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 import { Box3, Box3Helper, Color, Vector2, Vector3, Vector4 } from 'three';
-import type { Approach, Cameras, FrameEvent, Instance, Labels, MapInfo, Point } from '../api/types';
+import type {
+  Approach,
+  Cameras,
+  FrameEvent,
+  Instance,
+  Labels,
+  MapInfo,
+  Point,
+  Room,
+  Rooms,
+} from '../api/types';
 import type { Chunk } from '../mesh/chunk-format';
 import { ApproachMarks } from './approach-marks';
-import { CameraPath, meanDirection, viewpointOfFrame } from './camera-path';
+import { CameraPath, LostCamera, meanDirection, viewpointOfFrame } from './camera-path';
 import { type ColoringInput, paint } from './coloring';
 import { cornersOf, overviewDirection, viewpointOf } from './framing';
+import { Ghosts } from './ghosts';
 import { Measure } from './measure';
 import { Movement } from './movement';
 import { type Pick, pick } from './picking';
+import { RoomMarks, roomBox } from './room-marks';
 import { type Section, sectionPlane } from './section';
 import { type Covered, Stage } from './stage';
 import { Surface } from './surface';
@@ -37,10 +49,13 @@ export class MapView {
   readonly surface: Surface;
   readonly measure: Measure;
   readonly movement: Movement;
+  readonly ghosts = new Ghosts();
   private readonly stage: Stage;
   private readonly up: Vector3;
   private readonly selection = new Box3Helper(new Box3(), new Color('#2f6fed'));
   private readonly approach = new ApproachMarks();
+  private readonly rooms = new RoomMarks();
+  private readonly lost = new LostCamera();
   private path: CameraPath | null = null;
   private cameras: Cameras | null = null;
   private section: Section | null = null;
@@ -59,7 +74,8 @@ export class MapView {
     this.movement = new Movement(this.stage.camera, canvas, () => this.stage.moved());
     this.selection.visible = false;
     this.stage.scene.add(this.surface.group, this.selection, this.measure.group);
-    this.stage.scene.add(this.approach.group);
+    this.stage.scene.add(this.approach.group, this.ghosts.group, this.rooms.group);
+    this.stage.scene.add(this.lost.group);
     this.uniform('light', this.up.toArray());
     this.listen(canvas, hooks);
   }
@@ -95,10 +111,41 @@ export class MapView {
 
   /** Goes near an object without changing the direction of view. */
   focus(instance: Instance): void {
+    this.focusBox(boxOfInstance(instance));
+  }
+
+  /** The same for a place in the world. */
+  focusBox(box: Box3): void {
     this.movement.moved = true;
     const from = this.stage.camera.position.clone().sub(this.movement.orbit.target);
-    const box = boxOfInstance(instance).expandByScalar(FOCUS_MARGIN_M);
-    this.movement.goTo(viewpointOf(cornersOf(box), this.stage.lens(), from, this.up), true);
+    const wider = box.clone().expandByScalar(FOCUS_MARGIN_M);
+    this.movement.goTo(viewpointOf(cornersOf(wider), this.stage.lens(), from, this.up), true);
+  }
+
+  focusRoom(room: Room): void {
+    this.focusBox(roomBox(room, this.up));
+  }
+
+  /** Draws rooms on the floor, or none. */
+  showRooms(rooms: Rooms | null): void {
+    this.rooms.show(rooms, this.up);
+    this.stage.draw();
+  }
+
+  /** Outlines a place that no object has, or nothing. */
+  outline(box: Box3 | null): void {
+    this.selection.visible = box !== null;
+    if (box) this.selection.box.copy(box);
+    this.selection.updateMatrixWorld(true);
+    this.stage.draw();
+  }
+
+  /** Draws objects where they are not any more, and leaves out some of those that are there. */
+  showPast(ghosts: ReadonlyMap<number, { faint: boolean }>, absent: ReadonlySet<number>): void {
+    this.ghosts.show(ghosts);
+    this.surface.table.leaveOut(absent);
+    this.surface.tableChanged();
+    this.stage.draw();
   }
 
   /** Where the last camera stood: a point of the world, null without cameras. */
@@ -171,6 +218,12 @@ export class MapView {
 
   get cameraCount(): number {
     return this.cameras?.frames.length ?? 0;
+  }
+
+  /** Draws in red where the camera was tracked last, and what it saw there; null: it is not lost. */
+  showLost(world_from_camera: number[] | null): void {
+    if (this.cameras) this.lost.show(this.cameras.camera, world_from_camera);
+    this.stage.draw();
   }
 
   showPath(visible: boolean, frame: number): void {

@@ -18,6 +18,8 @@ const KEYS: [string, string][] = [
   ['M', 'measure between two points'],
   ['X', 'section plane'],
   ['C', 'camera path'],
+  ['R', 'rooms and doors'],
+  ['V', 'visits and what they found changed'],
   ['Home', 'show all'],
   ['P', 'save a picture'],
   ['T', 'dark or light'],

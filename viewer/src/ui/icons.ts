@@ -13,6 +13,8 @@ const PATHS = {
   section: 'M4 20V8l8-4 8 4v12l-8-4zM4 8l8 4 8-4M12 12v4',
   stand: 'M12 3a2 2 0 1 0 0 4 2 2 0 0 0 0-4zM12 7v7M8 10h8M12 14l-3 7M12 14l3 7',
   path: 'M4 19c4 0 3-7 7-7s3 5 6 3M15 4h5v5M20 4l-6 6',
+  rooms: 'M3 4h18v16H3zM13 4v6M13 14v6M3 14h5',
+  history: 'M4 12a8 8 0 1 0 2.500-5.800M4 4v4h4M12 8v4l3 2',
   fly: 'M21 3 3 10l7 3 3 8zM10 13l5-5',
   home: 'M4 11 12 4l8 7M6 10v10h12V10',
   picture: 'M4 7h4l1.500-2h5L16 7h4v12H4zM12 10a3 3 0 1 0 0 6 3 3 0 0 0 0-6z',

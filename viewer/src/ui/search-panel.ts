@@ -1,10 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
-import type { Answer, Instance, MapInfo } from '../api/types';
+import type { Answer, HistoryEvent, Instance, MapInfo, Room } from '../api/types';
 import { Combobox } from './combobox';
 import { h } from './dom';
+import { eventRow, pastRow } from './event-row';
 import { icon } from './icons';
 import { objectRow } from './object-row';
+import { roomRow } from './room-row';
 import { suggest, vocabularyOf } from './suggestions';
 import { plural, withTitles } from './words';
 
@@ -14,6 +16,9 @@ export interface SearchHooks {
   onQuery: (text: string, not: string[]) => void;
   onClear: () => void;
   onSelect: (id: number) => void;
+  onEvent: (event: HistoryEvent) => void;
+  onRoom: (room: Room) => void;
+  eventOf: (id: number) => HistoryEvent | undefined;
 }
 
 /** The panel on the left: query, its answer, or all objects. */
@@ -96,6 +101,24 @@ export class SearchPanel {
     );
   }
 
+  showChanges(events: readonly HistoryEvent[]): void {
+    this.listTitle.textContent = events.length > 0 ? 'Changes, the latest first' : 'No changes';
+    this.fill(
+      events.map((event) =>
+        eventRow(event, this.instances.get(event.instance), this.hooks.onEvent),
+      ),
+      0,
+    );
+  }
+
+  showRooms(rooms: readonly Room[]): void {
+    this.listTitle.textContent = rooms.length > 0 ? 'Rooms' : 'No rooms were found';
+    this.fill(
+      rooms.map((room) => roomRow(room, this.hooks.onRoom)),
+      0,
+    );
+  }
+
   showAnswer(answer: Answer, selected: number): void {
     const found = answer.verdict === 'found';
     this.clear.hidden = false;
@@ -110,6 +133,8 @@ export class SearchPanel {
     this.listTitle.textContent =
       answer.matches.length === 0 ? '' : found ? 'Best matches' : 'What comes nearest';
     const rows = answer.matches.flatMap((match) => {
+      const event = match.event === null ? undefined : this.hooks.eventOf(match.event);
+      if (event) return [pastRow(event, match, this.hooks.onEvent)];
       const instance = this.instances.get(match.id);
       const evidence = withTitles(match.evidence, (id) => this.instances.get(id));
       return instance ? [objectRow(instance, match, evidence, this.hooks.onSelect)] : [];

@@ -4,7 +4,7 @@ import type { Mode } from '../scene/coloring';
 import { h } from './dom';
 import { icon, type IconName } from './icons';
 
-export type Tool = 'measure' | 'section' | 'path' | 'fly';
+export type Tool = 'measure' | 'section' | 'path' | 'rooms' | 'history' | 'fly';
 export type Command = 'home' | 'picture' | 'download' | 'log' | 'theme' | 'help';
 
 const MODES: [Mode, string, string][] = [
@@ -17,6 +17,8 @@ const TOOLS: [Tool, string, string][] = [
   ['measure', 'Measure between two points', 'M'],
   ['section', 'Section plane', 'X'],
   ['path', 'Camera path', 'C'],
+  ['rooms', 'Rooms', 'R'],
+  ['history', 'Visits and changes', 'V'],
   ['fly', 'Fly instead of orbit', 'G'],
 ];
 const COMMANDS: [Command, string, string][] = [

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
-import type { Approach, Instance } from '../api/types';
+import type { Approach, HistoryEvent, Instance, Visit } from '../api/types';
 
 /** The word that the evidence for an object is clear about; empty: none. */
 function clearWord(instance: Instance): string {
@@ -38,6 +38,38 @@ export function approachText(approach: Approach): string {
   if (!best) return `It cannot be reached: ${approach.reason}`;
   const seen = `${(best.seen * 100).toFixed(0)} % of it is seen from ${best.distance_m.toFixed(2)} m`;
   return best.way_in_world.length > 1 ? `${seen}, ${best.way_m.toFixed(1)} m to go` : seen;
+}
+
+/** "14 Mar 2026, 09:30"; empty where nobody knows. */
+export function dateOf(time_s: number | null): string {
+  if (time_s === null) return '';
+  return new Date(time_s * 1000).toLocaleString('en-GB', {
+    dateStyle: 'medium',
+    timeStyle: 'short',
+  });
+}
+
+/** "visit 2 of 3, 14 Mar 2026, 09:30". */
+export function visitText(visits: readonly Visit[], visit: number): string {
+  const date = dateOf(visits[visit - 1]?.begin_s ?? null);
+  return `visit ${visit} of ${visits.length}${date && `, ${date}`}`;
+}
+
+/** What an object that may be gone is called. */
+export function eventTitle(event: HistoryEvent): string {
+  const word = event.label === 'object' ? '' : event.label;
+  return event.name || word || `Object ${event.instance}`;
+}
+
+/** "moved 1.20 m", "gone", "new". */
+export function eventText(event: HistoryEvent): string {
+  if (event.event === 'gone') return 'gone';
+  if (event.event === 'appeared')
+    return event.may_be === null ? 'new' : `new, may be Object ${event.may_be}`;
+  const middle = (box: typeof event.before, axis: number): number =>
+    ((box?.min[axis] ?? 0) + (box?.max[axis] ?? 0)) / 2;
+  const shift = [0, 1, 2].map((axis) => middle(event.after, axis) - middle(event.before, axis));
+  return `moved ${Math.hypot(...shift).toFixed(2)} m`;
 }
 
 export function plural(count: number, one: string, many = `${one}s`): string {

@@ -85,7 +85,8 @@ Json history_value(const MapHistory& history) {
   for (const MapVisit& visit : history.visits)
     visits.push_back({{"source", visit.source},
                       {"first_frame", visit.first_frame},
-                      {"first_index", visit.first_index}});
+                      {"first_index", visit.first_index},
+                      {"recorded_s", visit.recorded_s ? Json(*visit.recorded_s) : Json(nullptr)}});
   for (const ObjectEvent& event : history.events)
     events.push_back({{"object", event.instance},
                       {"event", event_name(event.kind)},

@@ -190,7 +190,7 @@ TEST_F(MapEditing, ALockIsOneAgainstPeopleToo) {
 
 TEST_F(MapEditing, OldMapsCanBeCorrected) {
   for (const char* name : {"schema1.ovimap", "schema2.ovimap", "schema3.ovimap", "schema4.ovimap",
-                           "schema4_embed.ovimap", "schema5.ovimap"}) {
+                           "schema4_embed.ovimap", "schema5.ovimap", "schema6.ovimap"}) {
     fs::copy_file(fs::path(OVIMAP_SOURCE_DIR) / "tests/maps" / name, path_,
                   fs::copy_options::overwrite_existing);
     fs::permissions(path_, fs::perms::owner_all);

@@ -249,6 +249,7 @@ MapMeta read_found(SQLite::Database& database, int schema, LabelForest& forest, 
   record.edits = read_edits(database);
   record.registry.last_id = last_instance(record);
   record.history = read_history(database, schema, meta.frames, record.registry.last_id);
+  read_past_objects(database, forest, record.history);
   return meta;
 }
 

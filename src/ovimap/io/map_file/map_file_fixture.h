@@ -162,10 +162,13 @@ inline MapDocument random_document(int block_count, std::uint32_t seed) {
   }
   const Eigen::AlignedBox3f here(Eigen::Vector3f(0.1f, 0.2f, 0.3f), Eigen::Vector3f(1, 2, 3)),
       there(Eigen::Vector3f(-1, 0, 0.25f), Eigen::Vector3f(-0.5f, 1, 0.5f));
-  document.history.visits = {{"/data/evening", 0, 0}, {"/data/morning", 2, 6}};
+  document.history.visits = {{"/data/evening", 0, 0}, {"/data/morning", 2, 6, 1.7e9}};
   document.history.events = {{1, ObjectEventKind::kMoved, 2, 2, here, there, 0},
                              {2, ObjectEventKind::kGone, 2, 2, here, {}, 0},
                              {3, ObjectEventKind::kAppeared, 2, 2, {}, there, 2}};
+  PastObject was{{0.5f, 1.f / 3, -2}, 70, 5, {1, 4}, {here.min(), here.max()}, {{9, 0, 255}, {}}};
+  for (Label& label : was.super_points) label = document.map.labels().root(label);
+  document.history.events[1].was = std::make_shared<const PastObject>(was);
   return document;
 }
 
@@ -260,7 +263,14 @@ inline bool same_box(const Eigen::AlignedBox3f& a, const Eigen::AlignedBox3f& b)
   return a.isEmpty() ? b.isEmpty() : a.min() == b.min() && a.max() == b.max();
 }
 
+inline bool same_past(const PastObject& a, const PastObject& b) {
+  return a.centroid == b.centroid && a.points == b.points && a.views == b.views &&
+         a.super_points == b.super_points && a.surface == b.surface && a.colors == b.colors;
+}
+
 inline bool same_event(const ObjectEvent& a, const ObjectEvent& b) {
+  if ((a.was == nullptr) != (b.was == nullptr)) return false;
+  if (a.was && !same_past(*a.was, *b.was)) return false;
   return a.instance == b.instance && a.kind == b.kind && a.visit == b.visit &&
          a.frame == b.frame && a.may_be == b.may_be && same_box(a.before, b.before) &&
          same_box(a.after, b.after);

@@ -101,6 +101,20 @@ TEST_F(MapFile, InfoTellsTheSameAsTheMap) {
   EXPECT_EQ(info.config_text, saved.config_text);
 }
 
+TEST_F(MapFile, MapsThatKeptNothingOfThePastStillTellTheirHistory) {
+  const fs::path old = fs::path(OVIMAP_SOURCE_DIR) / "tests/maps/schema6.ovimap";
+  MapDocument document = load_map(old);
+  EXPECT_EQ(read_map_info(old).schema, 6);
+  ASSERT_EQ(document.history.visits.size(), 2u);
+  EXPECT_FALSE(document.history.visits[1].recorded_s);
+  ASSERT_GE(document.history.events.size(), 2u);
+  for (const ObjectEvent& event : document.history.events) EXPECT_EQ(event.was, nullptr);
+  document.history.visits[1].recorded_s = 1.7e9;
+  save_map(root_ / "new.ovimap", document);
+  EXPECT_EQ(difference(document, load_map(root_ / "new.ovimap")), "");
+  EXPECT_EQ(read_map_info(root_ / "new.ovimap").schema, kMapSchema);
+}
+
 TEST_F(MapFile, SavingReplacesTheOldMapAndItsLogs) {
   save_map(root_ / "a.ovimap", random_document(10, 6));
   std::ofstream(root_ / "a.ovimap-wal") << "log of the old map";

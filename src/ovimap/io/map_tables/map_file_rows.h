@@ -136,11 +136,21 @@ inline constexpr MapTable kVisits{
     "visits", "visit, source, first_frame, first_index",
     "visit INTEGER PRIMARY KEY, source TEXT NOT NULL, first_frame INTEGER NOT NULL, first_index "
     "INTEGER NOT NULL"};
+/// When recordings were made, as people said; not in maps of which nobody did.
+inline constexpr MapTable kVisitTimes{"visit_times", "visit, recorded_s",
+                                      "visit INTEGER PRIMARY KEY, recorded_s REAL"};
 inline constexpr MapTable kObjectEvents{
     "object_events", "id, instance, kind, visit, frame, before, after, may_be",
     "id INTEGER PRIMARY KEY, instance INTEGER NOT NULL, kind TEXT NOT NULL, visit INTEGER NOT "
     "NULL, frame INTEGER NOT NULL, before BLOB NOT NULL, after BLOB NOT NULL, may_be INTEGER NOT "
     "NULL"};
+/// Objects as they were before such an event; not in maps in which nothing left its place.
+inline constexpr MapTable kPastObjects{
+    "past_objects",
+    "event, centroid_x, centroid_y, centroid_z, points, views, super_points, surface, colors",
+    "event INTEGER PRIMARY KEY, centroid_x REAL, centroid_y REAL, centroid_z REAL, points INTEGER "
+    "NOT NULL, views INTEGER NOT NULL, super_points BLOB NOT NULL, surface BLOB NOT NULL, colors "
+    "BLOB NOT NULL"};
 /// The log of corrections, and what it makes of the tables above.
 inline constexpr MapTable kEdits{"edits", "id, time_s, action, arguments, undone_by",
                                  "id INTEGER PRIMARY KEY, time_s REAL, action TEXT NOT NULL, "
@@ -168,7 +178,7 @@ inline constexpr const MapTable* kAll[] = {
     &kMeta, &kInstances, &kInstanceSuperPoints, &kInstanceNames, &kInstanceAliases, &kSuperPoints,
     &kSuperPointFrames, &kVotes, &kLabelPairs, &kEntitySightings, &kLabelForest, &kFrames,
     &kSuperPointLooks, &kSuperPointViews, &kWriting, &kThings, &kRecognized, &kEmbeddings, &kSurfaces, &kBlocks, &kKeptFrames,
-    &kInstanceRecords, &kAppearances, &kViews, &kVisits, &kObjectEvents, &kEdits, &kCorrectedInstances,
+    &kInstanceRecords, &kAppearances, &kViews, &kVisits, &kVisitTimes, &kObjectEvents, &kPastObjects, &kEdits, &kCorrectedInstances,
     &kCorrectedSuperPoints, &kCorrectedNames, &kCorrectedSurfaces, &kCorrectedEmbeddings,
     &kCorrectedFlags, &kChecks};
 }  // namespace map_tables

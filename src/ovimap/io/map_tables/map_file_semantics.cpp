@@ -93,7 +93,8 @@ void write_things(SQLite::Database& database, const SemanticRecord& semantics) {
 constexpr float kSteps = 65535.f;
 constexpr std::size_t kPointBytes = 6;
 
-/// The box's corners as six floats, then three 16-bit numbers a point.
+}  // namespace
+
 Bytes surface_bytes(const std::vector<Eigen::Vector3f>& points) {
   Eigen::AlignedBox3f box;
   for (const Eigen::Vector3f& point : points) box.extend(point);
@@ -122,8 +123,6 @@ std::vector<Eigen::Vector3f> take_surface(RowReader& rows) {
   }
   return points;
 }
-
-}  // namespace
 
 void write_surfaces(SQLite::Database& database, const InstanceSurfaces& surfaces,
                     const MapTable& table) {

@@ -43,7 +43,11 @@ std::map<InstanceId, Eigen::VectorXf> read_embeddings(SQLite::Database& database
 /// Of each instance of the record the views' embeddings, fused.
 void write_embeddings(SQLite::Database& database, const MapRecord& record, const MapTable& table);
 
-/// Points of the objects' surfaces, in steps of 1/65535 of their boxes.
+/// Points of a surface, at least one: their box, then each in steps of 1/65535 of it.
+Bytes surface_bytes(const std::vector<Eigen::Vector3f>& points);
+std::vector<Eigen::Vector3f> take_surface(RowReader& rows);
+
+/// Points of the objects' surfaces.
 void write_surfaces(SQLite::Database& database, const InstanceSurfaces& surfaces,
                     const MapTable& table);
 InstanceSurfaces read_surfaces(SQLite::Database& database, const MapTable& table);

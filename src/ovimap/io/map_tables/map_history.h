@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,8 +20,19 @@ struct MapVisit {
   std::string source;            ///< where its frames came from
   std::int64_t first_frame = 0;  ///< its first in MapRecord::frames, by place
   std::int64_t first_index = 0;  ///< FrameLogEntry::index of position 0 of the recording
+  std::optional<double> recorded_s = {};  ///< when it was made, seconds since 1970 (UTC), as people said
 
   bool operator==(const MapVisit&) const = default;
+};
+
+/// An object as it was before a visit found it gone or moved. World frame, metres.
+struct PastObject {
+  Eigen::Vector3f centroid = Eigen::Vector3f::Zero();
+  std::size_t points = 0;                           ///< surface voxels
+  int views = 0;                                    ///< frames in which it was seen
+  std::vector<Label> super_points;                  ///< whose looks are its own
+  std::vector<Eigen::Vector3f> surface;             ///< thinned
+  std::vector<std::array<std::uint8_t, 3>> colors;  ///< sRGB of each point; all 0: unknown
 };
 
 enum class ObjectEventKind {
@@ -36,6 +50,7 @@ struct ObjectEvent {
                            ///< of the visit's last frame where there is none (kGone)
   Eigen::AlignedBox3f before, after;  ///< where it was and is; empty: nowhere
   InstanceId may_be = 0;  ///< kAppeared: the gone object that it resembles, without certainty; 0: none
+  std::shared_ptr<const PastObject> was = {};  ///< what it was at `before`; null: nobody kept it
 };
 
 /// The visits of a map, in order, and what they changed, visit by visit and by instance.

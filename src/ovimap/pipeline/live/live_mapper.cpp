@@ -187,9 +187,10 @@ void LiveMapper::count_encoder_failures() {
 bool LiveMapper::locate(PreparedFrame& prepared) {
   begin("track");
   auto frame = std::make_shared<Frame>(*prepared.frame);
-  const bool found = finder_->locate(*frame, *mapper_);
+  const TrackedFrame& tracked = finder_->locate(*frame, *mapper_);
   prepared.frame = std::move(frame);
-  if (found) return true;
+  if (after_tracking) after_tracking(tracked);
+  if (tracked.tracked) return true;
   const std::lock_guard lock(mutex_);
   ++statistics_.frames_lost;
   return false;

@@ -103,6 +103,8 @@ class LiveMapper {
   /// Called after every frame and every change of labels, on the fusing thread, with all frames so
   /// far. For checkpoints; set before the first push. What it throws ends the run.
   std::function<void(Mapper&, const std::vector<FrameLogEntry>&, const PinholeCamera&)> after_frame;
+  /// Called with what the tracker made of each frame, on the fusing thread; set before the first push.
+  std::function<void(const TrackedFrame&)> after_tracking;
 
  private:
   using Clock = std::chrono::steady_clock;

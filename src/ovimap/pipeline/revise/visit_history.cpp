@@ -7,6 +7,7 @@
 #include <set>
 
 #include "ovimap/base/error.h"
+#include "ovimap/map/rays/surface_lookup.h"
 #include "ovimap/pipeline/revise/thing_look.h"
 
 namespace ovimap {
@@ -39,6 +40,30 @@ Eigen::AlignedBox3f box_of(const MapRecord& record, InstanceId id) {
     high[axis] = values[values.size() - 1 - values.size() / kLeftOut];
   }
   return {low, high};
+}
+
+/// The colour of the voxel at a point, sRGB; all 0 where it has none.
+std::array<std::uint8_t, 3> color_at(VoxelFinder& finder, const Eigen::Vector3f& point) {
+  std::array<std::uint8_t, 3> color{};
+  if (!finder.seek(point)) return color;
+  const auto v = static_cast<std::size_t>(finder.voxel());
+  for (std::size_t channel = 0; channel < color.size(); ++channel)
+    color[channel] = static_cast<std::uint8_t>(finder.block().color[channel][v] >> 8);
+  return color;
+}
+
+/// What will be known of an object when it is not there any more; null where it has no surface.
+std::shared_ptr<const PastObject> past_of(const MapDocument& map, InstanceId id) {
+  const InstanceSummary* instance = find_instance(map, id);
+  const auto surface = map.surfaces.find(id);
+  if (instance == nullptr || surface == map.surfaces.end() || surface->second.empty())
+    return nullptr;
+  auto was = std::make_shared<PastObject>(PastObject{instance->centroid, instance->points,
+                                                     instance->views, instance->super_points,
+                                                     surface->second, {}});
+  VoxelFinder finder(map.map);
+  for (const Eigen::Vector3f& point : was->surface) was->colors.push_back(color_at(finder, point));
+  return was;
 }
 
 /// A gone object and a found one that may be it.
@@ -158,7 +183,8 @@ class VisitTeller {
 
   void add(ObjectEventKind kind, InstanceId id, const Eigen::AlignedBox3f& from,
            const Eigen::AlignedBox3f& to, std::int64_t frame) {
-    events_.push_back({id, kind, static_cast<int>(after_.history.visits.size()), frame, from, to, 0});
+    events_.push_back({id, kind, static_cast<int>(after_.history.visits.size()), frame, from, to, 0,
+                       from.isEmpty() ? nullptr : past_of(before_, id)});
   }
 
   std::int64_t last_frame() const { return static_cast<std::int64_t>(after_.frames.size()) - 1; }
@@ -243,6 +269,16 @@ void swap_instances(MapRecord& record, InstanceId a, InstanceId b) {
   for (auto& [id, points] : record.surfaces) surfaces.emplace(now(id), std::move(points));
   record.surfaces = std::move(surfaces);
   record.registry.aliases = aliases;
+}
+
+void begin_visit(const MapRecord& begun, MapHeader& header) {
+  MapHistory history = begun.history;
+  if (history.visits.empty()) history.visits.push_back({begun.source, 0, 0});
+  const std::int64_t next = begun.frames.empty() ? 0 : begun.frames.back().index + 1;
+  history.visits.push_back({header.source, static_cast<std::int64_t>(begun.frames.size()), next});
+  if (!header.history.visits.empty())
+    history.visits.back().recorded_s = header.history.visits.front().recorded_s;
+  header.history = std::move(history);
 }
 
 void tell_visit(const MapDocument& before, MapDocument& after, const VisitHistoryConfig& config) {

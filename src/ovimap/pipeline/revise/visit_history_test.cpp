@@ -81,6 +81,26 @@ TEST(VisitHistory, TellsWhatMovedWentAndCameAndKeepsIds) {
   EXPECT_EQ(at(after, kChest), at(before, kChest));
 }
 
+TEST(VisitHistory, WhatLeftItsPlaceIsKeptAsItWas) {
+  const FurnishedRoom evening = room_with({kChest, kRedBox, kBlueBox}),
+                      morning = room_with({kChest, kRedBoxAway, kGreenBox});
+  const MapDocument before = map_of(evening), after = continued(evening, morning);
+  for (const auto& [thing, shown] : {std::pair(kRedBox, 0), std::pair(kBlueBox, 2)}) {
+    const ObjectEvent* event = event_of(after, at(before, thing));
+    ASSERT_NE(event, nullptr);
+    ASSERT_NE(event->was, nullptr);
+    EXPECT_LT((event->was->centroid - thing.box.center()).head<2>().norm(), 0.06f);
+    ASSERT_GT(event->was->surface.size(), 50u);
+    std::size_t colored = 0;
+    for (const auto& color : event->was->colors)
+      colored += color[static_cast<std::size_t>(shown)] > 150;
+    EXPECT_GT(colored, event->was->colors.size() / 2) << "in its own colour";
+    const Appearance look = appearance_of(after.semantics.looks, event->was->super_points);
+    EXPECT_FALSE(look.views.empty()) << "its looks stay in the map";
+  }
+  EXPECT_EQ(event_of(after, at(after, kGreenBox))->was, nullptr) << "it was not there";
+}
+
 TEST(VisitHistory, WhatLeftLeavesNoSurface) {
   const FurnishedRoom evening = room_with({kChest, kRedBox, kBlueBox}),
                       morning = room_with({kChest, kRedBoxAway, kGreenBox});
@@ -126,6 +146,19 @@ TEST(VisitHistory, OfTwoAlikeNeitherIsTakenForTheOther) {
         << event.may_be;
   }
   EXPECT_GE(doubtful, 1);
+}
+
+TEST(VisitHistory, AVisitBeginsAfterTheFramesThatAreThere) {
+  MapRecord begun;
+  begun.source = "evening";
+  begun.frames.resize(3);
+  begun.frames.back().index = 7;
+  MapHeader header;
+  header.source = "morning";
+  header.history.visits = {{"morning", 0, 0, 1.7e9}};
+  begin_visit(begun, header);
+  EXPECT_EQ(header.history.visits,
+            (std::vector<MapVisit>{{"evening", 0, 0}, {"morning", 3, 8, 1.7e9}}));
 }
 
 TEST(VisitHistory, InstancesTradeIdsEverywhere) {

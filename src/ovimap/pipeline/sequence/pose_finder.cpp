@@ -6,12 +6,12 @@
 
 namespace ovimap {
 
-bool PoseFinder::locate(Frame& frame, Mapper& mapper) {
+const TrackedFrame& PoseFinder::locate(Frame& frame, Mapper& mapper) {
   auto t = mapper.timers().measure("track");
   const TrackedFrame& tracked = tracker_.track(frame, mapper.map());
   frame.world_from_camera = tracked.world_from_camera;
   frame.posed = true;
-  return tracked.tracked;
+  return tracked;
 }
 
 bool PoseFinder::close_loops(Mapper& mapper, std::vector<FrameLogEntry>& frames,

@@ -23,8 +23,8 @@ class PoseFinder {
   PoseFinder(Tracker tracker, const LoopConfig& loops)
       : tracker_(std::move(tracker)), config_(loops), graph_(tracker_.config(), loops) {}
 
-  /// The frame with its pose; false: the camera is lost, and the pose means nothing.
-  bool locate(Frame& frame, Mapper& mapper);
+  /// Gives the frame its pose; where the camera is lost (TrackedFrame::tracked) it means nothing.
+  const TrackedFrame& locate(Frame& frame, Mapper& mapper);
 
   /// Call after a frame that was located is fused. True when `frames`, all that are in the map, and
   /// the map got other poses (Mapper::fuse_again). Leaves to the end (close_map_loops) what is

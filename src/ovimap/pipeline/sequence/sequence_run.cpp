@@ -71,7 +71,7 @@ SequenceResult run_sequence(const FrameSource& source, const std::vector<std::in
     }();
     if (i + 1 < positions.size()) next = read(positions[i + 1]);
     FrameReport report;
-    if (current.frame && finder && !finder->locate(*current.frame, mapper))
+    if (current.frame && finder && !finder->locate(*current.frame, mapper).tracked)
       current.fault = concat(current.frame->name, ": the camera is lost");
     if (current.frame && current.fault.empty())
       current.fault = fuse(*current.frame, mapper, !result.frames.empty(), report);

@@ -64,7 +64,7 @@ QueryAnswer QueryEngine::find(const Query& query) const {
   if (config_.grammar) {
     const QueryPhrase phrase = parse_query(text, scene_.colors != nullptr);
     if (!phrase.free_text()) {
-      QueryAnswer result = find_phrase(phrase, negatives, query.relevance);
+      QueryAnswer result = find_phrase(phrase, negatives, query);
       result.query = text;
       return result;
     }
@@ -73,7 +73,10 @@ QueryAnswer QueryEngine::find(const Query& query) const {
   if (terms.empty())
     throw Error(concat("the query '", text, "' names nothing; say what to look for"));
   const auto model = encoder().calibration();
-  const MatchScores scores = matcher_->match(terms, negatives);
+  MatchScores scores = matcher_->match(terms, negatives);
+  if (!query.among.empty())
+    for (std::size_t i = 0; i < index_.size(); ++i)
+      if (!query.among[i]) scores.excluded[i] = true;
   const PValue p_value = [&](float score) { return matcher_->p_value(scores, score); };
   const Probability probability = [&](std::size_t position) {
     return model ? model_probability(*model, scores.cosines[static_cast<Eigen::Index>(position)])
@@ -86,8 +89,8 @@ QueryAnswer QueryEngine::find(const Query& query) const {
 
 QueryAnswer QueryEngine::find_phrase(const QueryPhrase& phrase,
                                      const std::vector<std::string>& negatives,
-                                     bool relevance) const {
-  const PhraseSearch search(index_, matcher(), scene_, config_);
+                                     const Query& query) const {
+  const PhraseSearch search(index_, matcher(), scene_, config_, query.among);
   const PhraseMatch found = search.match(phrase, negatives);
   QueryAnswer result;
   result.reading = describe(phrase);
@@ -115,7 +118,7 @@ QueryAnswer QueryEngine::find_phrase(const QueryPhrase& phrase,
   if (found.missing.empty() && !any_holds) result.reason = "for nothing in the map is this true";
   if (found.missing.empty() && any_holds && !enough)
     result.reason = concat("only ", result.count->found, " of ", phrase.count);
-  if (relevance) result.relevance = found.scores;
+  if (query.relevance) result.relevance = found.scores;
   return result;
 }
 

@@ -17,6 +17,8 @@ struct Query {
   std::string text;  ///< free text, terms separated by commas, or a phrase of query_grammar.h
   std::vector<std::string> not_texts;  ///< what it must not be
   bool relevance = false;              ///< whether the answer shall rate every object
+  std::vector<bool> among = {};  ///< [objects] which may be the answer; empty: all. What they stand on or
+                                 ///< near may be any
 };
 
 struct QueryMatch {
@@ -77,7 +79,7 @@ class QueryEngine {
   using Probability = std::function<double(std::size_t position)>;  // empty: by p-value
 
   QueryAnswer find_phrase(const QueryPhrase& phrase, const std::vector<std::string>& negatives,
-                          bool relevance) const;
+                          const Query& query) const;
   QueryMatch phrase_match(const PhraseMatch& found, std::size_t position) const;
   QueryAnswer answer(const MatchScores& scores, const PValue& p_value,
                      const Probability& probability, bool relevance) const;

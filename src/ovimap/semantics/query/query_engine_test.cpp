@@ -52,6 +52,29 @@ TEST_F(QueryEngineTest, FindsWhatIsThereAndSaysWhatIsNot) {
   }
 }
 
+TEST_F(QueryEngineTest, OnlySomeMayBeTheAnswer) {
+  const QueryEngine engine(index_, &encoder_);
+  Query query{"red chair", {}};
+  query.among.assign(kThings.size(), true);
+  query.among[1] = false;
+  const QueryAnswer other = engine.find(query);
+  for (const InstanceId id : ids(other)) EXPECT_NE(id, 2u) << "it may not be";
+  query.among.assign(kThings.size(), false);
+  query.among[1] = query.among[3] = true;
+  EXPECT_EQ(engine.find(query).verdict, Verdict::kFound);
+  EXPECT_EQ(engine.find(query).matches.size(), 2u);
+  query.text = "highest thing";
+  EXPECT_EQ(engine.find(query).matches.front().id, 2u) << "of those that may be";
+  query.text = "object near the sofa";  // which may be any
+  for (const QueryMatch& match : engine.find(query).matches) EXPECT_TRUE(query.among[match.position]);
+  query.among.assign(kThings.size(), false);
+  for (const char* text : {"mug", "largest mug", "lowest thing"}) {
+    query.text = text;
+    EXPECT_EQ(engine.find(query).verdict, Verdict::kNotInMap) << text;
+    EXPECT_TRUE(engine.find(query).matches.empty()) << text;
+  }
+}
+
 TEST_F(QueryEngineTest, NeedsAsManyWordsAsTheVerdictDoes) {
   QueryConfig config;
   config.verdict.min_references = 100000;

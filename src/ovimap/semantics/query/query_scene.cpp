@@ -116,9 +116,11 @@ GroundViewpoint mean_viewpoint(const Eigen::Matrix3f& ground_from_world,
 }
 
 PhraseSearch::PhraseSearch(const SearchIndex& index, const TextMatcher* matcher,
-                           const QueryScene& scene, const QueryConfig& config)
-    : index_(index), matcher_(matcher), scene_(scene), config_(config) {
+                           const QueryScene& scene, const QueryConfig& config,
+                           std::vector<bool> among)
+    : index_(index), matcher_(matcher), scene_(scene), config_(config), among_(std::move(among)) {
   OVIMAP_ASSERT(scene.shapes.size() == index.size());
+  OVIMAP_ASSERT(among_.empty() || among_.size() == index.size());
 }
 
 PhraseMatch PhraseSearch::match(const QueryPhrase& phrase,
@@ -161,12 +163,16 @@ PhraseMatch PhraseSearch::match_things(const QueryPhrase& phrase,
   result.evidence.resize(index_.size());
   const std::vector<std::string> terms = split_terms(phrase.things);
   if (phrase.anything) {
+    for (std::size_t i = 0; i < index_.size(); ++i)
+      if (!may_be(i, role)) at(result.scores, i) = 0.f, result.holds[i] = false;
     if (!negatives.empty()) leave_out(negatives, result);
     return result;
   }
   if (terms.empty())
     throw Error(concat("the query names nothing in '", phrase.things, "'; say what to look for"));
   result.things = needed_matcher(phrase.things).match(terms, negatives);
+  for (std::size_t i = 0; i < index_.size(); ++i)
+    if (!may_be(i, role)) result.things.excluded[i] = true;
   rate_by_text(phrase, role, result);
   return result;
 }

@@ -47,9 +47,10 @@ struct PhraseMatch {
 /// references must outlive it. Thread-safe.
 class PhraseSearch {
  public:
-  /// `matcher` may be null: then only "anything" can be asked for.
+  /// `matcher` may be null: then only "anything" can be asked for. `among`: [objects] which may be
+  /// the thing that is looked for; empty: all.
   PhraseSearch(const SearchIndex& index, const TextMatcher* matcher, const QueryScene& scene,
-               const QueryConfig& config);
+               const QueryConfig& config, std::vector<bool> among = {});
 
   /// `negatives`: what the things looked for must not be. Throws Error when a text needs a matcher.
   PhraseMatch match(const QueryPhrase& phrase, const std::vector<std::string>& negatives) const;
@@ -64,6 +65,9 @@ class PhraseSearch {
                            Role role) const;
   /// Lowers what has not the colour, the size or the writing that was asked for.
   void apply_attributes(const QueryPhrase& phrase, PhraseMatch& result) const;
+  bool may_be(std::size_t position, Role role) const {
+    return role == Role::kAnchor || among_.empty() || among_[position];
+  }
   /// Takes away whatever one of the negatives is found to be.
   void leave_out(const std::vector<std::string>& negatives, PhraseMatch& result) const;
   const TextMatcher& needed_matcher(const std::string& what) const;
@@ -85,6 +89,7 @@ class PhraseSearch {
   const TextMatcher* matcher_;
   const QueryScene& scene_;
   const QueryConfig& config_;
+  const std::vector<bool> among_;
 };
 
 }  // namespace ovimap

@@ -14,6 +14,7 @@
 #include "ovimap/server/api/approach_api.h"
 #include "ovimap/server/api/correction_json.h"
 #include "ovimap/server/api/event_stream.h"
+#include "ovimap/server/api/history_api.h"
 #include "ovimap/server/api/map_json.h"
 #include "ovimap/server/http/request_body.h"
 #include "ovimap/server/surface/chunk_encoding.h"
@@ -71,19 +72,30 @@ HttpReply show_crop(const ServedMap& map, const HttpRequest& request) {
   return reply;
 }
 
+/// Empty where it is not given.
+std::string time_field(const json& body, const char* name) {
+  const auto text = field<std::string>(body, name);
+  if (text && text->empty()) throw BadRequest(400, concat("'", name, "' is empty; give a time"));
+  return text.value_or("");
+}
+
 HttpReply answer_query(const ServedMap& map, const HttpRequest& request) {
   const json body = body_of(request);
-  check_keys(body, {"text", "not", "like", "heat"});
+  check_keys(body, {"text", "not", "like", "heat", "at", "since"});
   MapQuestion question;
   const auto text = field<std::string>(body, "text");
   question.like = field<InstanceId>(body, "like");
   question.query.not_texts = texts_field(body, "not");
   question.query.relevance = field<bool>(body, "heat").value_or(false);
-  if (text.has_value() == question.like.has_value())
+  const std::string at = time_field(body, "at"), since = time_field(body, "since");
+  const bool timed = !at.empty() || !since.empty();
+  if (text && text->empty()) throw BadRequest(400, "'text' is empty; say what to look for");
+  if (question.like ? text.has_value() : !text.has_value() && !timed)
     throw BadRequest(400, "give either 'text' or 'like'");
-  if (question.like && !question.query.not_texts.empty())
-    throw BadRequest(400, "'not' goes with 'text' alone");
+  if (question.like && (timed || !question.query.not_texts.empty()))
+    throw BadRequest(400, "'not', 'at' and 'since' go with 'text' alone");
   question.query.text = text.value_or("");
+  if (!question.like) question.past = map.past_of(question.query.text, at, since);
   if (!question.like) return json_reply(answer_json(map.ask(question)));
   if (!map.snapshot()->index().find(*question.like))
     return fault(404, concat("the map has no object ", *question.like));
@@ -107,6 +119,7 @@ HttpReply answer_queries(const ServedMap& map, const HttpRequest& request) {
     MapQuestion question;
     question.query.text = text;
     try {
+      question.past = map.past_of(text, "", "");
       json answer = answer_json(map.ask(question));
       if (answer["verdict"] != verdict_name(Verdict::kFound)) answer["matches"] = json::array();
       answers.push_back(std::move(answer));
@@ -210,6 +223,8 @@ HttpHandler guarded(HttpHandler handler) {
       return fault(409, concat("this map cannot be searched: ", why.what()));
     } catch (const BadRequest& bad) {
       return fault(bad.status, bad.what());
+    } catch (const MomentUnknown& unknown) {  // the request is sound, but of another map
+      return fault(409, unknown.what());
     } catch (const Error& error) {
       return fault(400, error.what());
     }
@@ -247,6 +262,10 @@ Router map_api(ServedMap& map, FrameApi& frames) {
       [&map](Request) { return json_reply(relations_json(map)); });
   add("GET", "/api/rooms", BodyType::kNone, RouteCost::kWork,
       [&map](Request) { return show_rooms(map); });
+  add("GET", "/api/history", BodyType::kNone, RouteCost::kWork,
+      [&map](Request) { return show_history(map); });
+  get_large("/api/history/{event}/surface", [&map](Request r) { return show_past_surface(map, r); });
+  get_large("/api/history/{event}/crop", [&map](Request r) { return show_past_crop(map, r); });
   get("/api/mesh", [&map](Request r) { return list_chunks(map, r); });
   get_large("/api/mesh/{level}/{x}/{y}/{z}", [&map](Request r) { return show_chunk(map, r); });
   get("/api/cameras", [&map](Request) { return json_reply(cameras_json(map)); });

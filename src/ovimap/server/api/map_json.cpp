@@ -136,9 +136,14 @@ std::size_t position_of(const MapSnapshot& now, InstanceId id) {
   throw Error(concat("the map has no object ", id, "; GET /api/instances lists those it has"));
 }
 
-json match_json(const MapSnapshot& now, const QueryMatch& match) {
+json match_json(const MapAnswer& answered, const QueryMatch& match) {
+  const SearchObject& object = answered.index().object(match.position);
+  const std::size_t event = answered.past ? answered.past->events[match.position] : 0;
   return {{"id", match.id},
-          {"name", now.name_of(match.id)},
+          {"name", answered.map->name_of(match.id)},
+          {"box", box(object.box)},
+          {"centroid", point(object.centroid)},
+          {"event", event == 0 ? json() : json(event)},
           {"score", match.score},
           {"standard_score", match.standard_score},
           {"p_value", optional_number(match.p_value)},
@@ -161,6 +166,7 @@ json map_json(const ServedMap& map) {
           {"version", now->version},
           {"mesh_version", map.mesh().version()},
           {"live", now->live},
+          {"tracking", json::parse(tracking_json(map.tracking()))},
           {"frames", info.frames},
           {"mask_frames", info.mask_frames},
           {"instances", now->record->instances.size()},
@@ -217,9 +223,9 @@ json instance_detail_json(const ServedMap& map, InstanceId id) {
 }
 
 json answer_json(const MapAnswer& answered) {
-  const auto& [answer, now] = answered;
+  const QueryAnswer& answer = answered.answer;
   json matches = json::array();
-  for (const QueryMatch& match : answer.matches) matches.push_back(match_json(*now, match));
+  for (const QueryMatch& match : answer.matches) matches.push_back(match_json(answered, match));
   json result = {{"query", answer.query},
                  {"verdict", verdict_name(answer.verdict)},
                  {"reading", answer.reading},
@@ -227,9 +233,9 @@ json answer_json(const MapAnswer& answered) {
                  {"matches", matches}};
   if (answer.relevance.size() > 0) {
     result["heat"] = json::array();
-    for (std::size_t i = 0; i < now->index().size(); ++i)
+    for (std::size_t i = 0; i < answered.index().size(); ++i)
       result["heat"].push_back(
-          {now->index().object(i).id, number(answer.relevance[static_cast<Eigen::Index>(i)])});
+          {answered.index().object(i).id, number(answer.relevance[static_cast<Eigen::Index>(i)])});
   }
   return result;
 }

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "ovimap/pipeline/rooms/room_outline.h"
 #include "ovimap/semantics/query/query_grammar.h"
 
 namespace ovimap {
@@ -29,6 +30,16 @@ Json on_floor(const SceneGraph& graph, const Eigen::Vector2f& place) {
                Eigen::Vector3f(place.x(), place.y(), graph.floor_m));
 }
 
+Json outline_json(const SceneGraph& graph, int room) {
+  Json outline = Json::array();
+  for (const Polygon& polygon : room_outline(graph.plan, room)) {
+    Json corners = Json::array();
+    for (const Eigen::Vector2f& corner : polygon) corners.push_back(on_floor(graph, corner));
+    outline.push_back(std::move(corners));
+  }
+  return outline;
+}
+
 Json room_json(const SceneGraph& graph, const Room& room, const SearchIndex& index) {
   const RoomFit& fit = graph.fits[static_cast<std::size_t>(room.id - 1)];
   Json kinds = Json::object(), known_by = Json::array(), objects = Json::array();
@@ -44,6 +55,7 @@ Json room_json(const SceneGraph& graph, const Room& room, const SearchIndex& ind
           {"known_by", known_by},
           {"area_m2", number(room.area_m2)},
           {"center", on_floor(graph, room.center_m)},
+          {"outline", outline_json(graph, room.id)},
           {"objects", objects}};
 }
 

@@ -77,6 +77,57 @@ TEST_F(HttpServerTest, SendsCropsAndChunks) {
   EXPECT_EQ(get("/api/mesh?since=1")["chunks"].size(), 0u);
 }
 
+TEST_F(HttpServerTest, TellsTheHistory) {
+  serve();
+  const json history = get("/api/history");
+  ASSERT_EQ(history["visits"].size(), 2u);
+  EXPECT_EQ(history["visits"][0]["source"], "/data/evening");
+  EXPECT_EQ(history["visits"][0]["frames"], 2);
+  EXPECT_TRUE(history["visits"][0]["begin_s"].is_null());
+  EXPECT_EQ(history["visits"][1]["begin_s"], 1.7e9);
+  ASSERT_EQ(history["events"].size(), 3u);
+  const json& gone = history["events"][1];
+  EXPECT_EQ(gone["instance"], 2);
+  EXPECT_EQ(gone["event"], "gone");
+  EXPECT_EQ(gone["surface"], true);
+  EXPECT_TRUE(gone["after"].is_null());
+  EXPECT_EQ(history["events"][0]["surface"], false);
+  EXPECT_EQ(history["events"][2]["may_be"], 2);
+  const json surface = get("/api/history/2/surface");
+  EXPECT_EQ(surface["points"].size(), 6u);
+  EXPECT_EQ(surface["colors"], json({9, 0, 255, 0, 0, 0}));
+  const auto crop = running_->client().get("/api/history/2/crop");
+  EXPECT_TRUE(crop && crop->body == std::string("\x01\x02"));
+  for (const char* path : {"/api/history/1/surface", "/api/history/1/crop", "/api/history/0/crop",
+                           "/api/history/4/surface", "/api/history/x/crop"})
+    EXPECT_FALSE(get(path, 404)["error"].get<std::string>().empty()) << path;
+}
+
+TEST_F(HttpServerTest, AnswersWhatChangedWithoutAnEncoder) {
+  serve();
+  const auto changed = [&](const json& question) {
+    std::vector<int> ids;
+    const json answer = post("/api/query", question.dump(), 200);
+    for (const json& match : answer["matches"]) ids.push_back(match["id"]);
+    return ids;
+  };
+  EXPECT_EQ(changed({{"text", "what changed"}, {"heat", true}}), (std::vector<int>{1, 2, 3}));
+  EXPECT_EQ(changed({{"text", "what is gone"}}), (std::vector<int>{2}));
+  EXPECT_EQ(changed({{"since", "visit 1"}}), (std::vector<int>{1, 2, 3}));
+  EXPECT_EQ(changed({{"since", "visit 2"}}), (std::vector<int>{}));
+  const json gone = post("/api/query", "{\"text\":\"what is gone?\"}", 200)["matches"][0];
+  EXPECT_EQ(gone["event"], 2);
+  EXPECT_EQ(gone["box"]["min"], json({0.1, 0.2, 0.3}));
+  EXPECT_EQ(changed({{"at", "visit 1"}}), (std::vector<int>{1, 2}));
+  post("/api/query", "{\"at\":\"visit 9\"}", 409);
+  post("/api/query", "{\"at\":\"some day\"}", 400);
+  post("/api/query", "{\"text\":\"mug\",\"since\":\"\"}", 400);
+  post("/api/query", "{\"text\":\"\",\"since\":\"visit 1\"}", 400);
+  post("/api/query", "{\"at\":\"visit 1\",\"since\":\"visit 1\"}", 400);
+  post("/api/query", "{\"like\":1,\"at\":\"visit 1\"}", 400);
+  post("/api/query", "{\"text\":\"mug\",\"at\":\"visit 1\"}", 409);  // which needs an encoder
+}
+
 TEST_F(HttpServerTest, RefusesWhatDoesNotExist) {
   serve();
   for (const char* path :

@@ -100,6 +100,24 @@ void LiveFeed::send_pose(const std::vector<FrameLogEntry>& frames) {
   map_.events().publish("frame", pose_json(frames.back(), frames.size()));
 }
 
+void LiveFeed::after_tracking(const TrackedFrame& frame) {
+  const auto now = Clock::now();
+  const bool was_lost = tracking_.state == CameraState::kLost;
+  if (frame.tracked) {
+    tracking_.world_from_camera = frame.world_from_camera;
+    const bool news = was_lost || tracking_.state == CameraState::kGiven;
+    tracking_.state = CameraState::kTracked;
+    tracking_.frames_lost = 0;
+    if (news) map_.show(tracking_);
+    return;
+  }
+  ++tracking_.frames_lost;
+  if (was_lost && now < next_lost_) return;
+  next_lost_ = now + config_.lost_interval;
+  tracking_.state = CameraState::kLost;
+  map_.show(tracking_);
+}
+
 /// As many of the slots that wait as the allowance is good for.
 std::vector<std::uint32_t> LiveFeed::next_slots() {
   const auto now = Clock::now();

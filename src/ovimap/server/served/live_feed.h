@@ -13,6 +13,7 @@
 #include "ovimap/map/surface/incremental_mesh.h"
 #include "ovimap/pipeline/mapping/mapper.h"
 #include "ovimap/server/served/served_map.h"
+#include "ovimap/track/tracker.h"
 
 namespace ovimap {
 
@@ -24,6 +25,7 @@ struct LiveFeedConfig {
   std::chrono::milliseconds mesh_interval{200};
   std::chrono::milliseconds objects_interval{1000};
   std::chrono::milliseconds pose_interval{100};
+  std::chrono::milliseconds lost_interval{1000};  ///< between saying again that the camera is lost
 };
 
 /// Shows clients a map while it is made. What happens on the fusing thread is copying, bounded by a
@@ -38,6 +40,9 @@ class LiveFeed {
   /// Call after every frame and every change of labels, on the fusing thread.
   void after_frame(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
                    const PinholeCamera& depth_camera);
+  /// Call with what the tracker made of each frame, on the fusing thread: clients hear when the camera is
+  /// lost and from where it can be found again, and when it is found.
+  void after_tracking(const TrackedFrame& frame);
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -64,7 +69,8 @@ class LiveFeed {
   std::vector<bool> shown_;          ///< by slot: whether clients know surface of it
   double allowance_ = 0;             ///< vertices that may be sent
   double vertices_per_slot_ = 50;
-  Clock::time_point allowed_until_, next_mesh_, next_pose_;
+  Clock::time_point allowed_until_, next_mesh_, next_pose_, next_lost_;
+  CameraTracking tracking_;  ///< what clients know
 
   std::mutex mutex_;  ///< guards what follows; held for a moment only
   std::condition_variable changed_;

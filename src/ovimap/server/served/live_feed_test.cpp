@@ -74,6 +74,32 @@ class LiveFeedTest : public MapFolder {
   std::unique_ptr<LiveFeed> feed_;
 };
 
+TEST_F(LiveFeedTest, SaysWhenTheCameraIsLostAndWhereItCanBeFound) {
+  const std::uint64_t before = map_->events().last();
+  TrackedFrame frame;
+  frame.tracked = true;
+  frame.world_from_camera.translation() = Eigen::Vector3d(1, 2, 3);
+  feed_->after_tracking(frame);
+  feed_->after_tracking(frame);
+  EXPECT_EQ(map_->tracking().state, CameraState::kTracked);
+  frame.tracked = false;
+  frame.world_from_camera.translation().setZero();  // which means nothing
+  for (int i = 0; i < 3; ++i) feed_->after_tracking(frame);
+  EXPECT_EQ(map_->tracking().state, CameraState::kLost);
+  EXPECT_EQ(map_->tracking().world_from_camera.translation(), Eigen::Vector3d(1, 2, 3));
+  frame.tracked = true;
+  feed_->after_tracking(frame);
+  EXPECT_EQ(map_->tracking().state, CameraState::kTracked);
+  std::vector<std::string> said;
+  std::uint64_t last = before;
+  while (const auto event = map_->events().next(last)) {
+    last = event->number;
+    if (event->type == "tracking")
+      said.push_back(event->data.substr(10, event->data.find('"', 10) - 10));
+  }
+  EXPECT_EQ(said, (std::vector<std::string>{"tracked", "lost", "tracked"})) << "each once";
+}
+
 TEST_F(LiveFeedTest, ShowsSurfaceObjectsAndCamera) {
   EXPECT_EQ(objects(), 0u);
   map_frames(0, scene_.size());

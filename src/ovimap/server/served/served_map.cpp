@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/server/served/served_map.h"
 
+#include <array>
+
 #include "ovimap/base/thread_priority.h"
 #include "ovimap/io/corrections/map_corrections.h"
 #include "ovimap/io/corrections/map_edit_desk.h"
@@ -33,6 +35,21 @@ VoxelSource no_voxels(std::optional<VoxelMap>& place) {
 
 }  // namespace
 
+const char* camera_state_name(CameraState state) {
+  constexpr std::array kNames = {"given", "tracked", "lost"};
+  return kNames[static_cast<std::size_t>(state)];
+}
+
+std::string tracking_json(const CameraTracking& tracking) {
+  std::string pose;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 4; ++column)
+      pose += concat(pose.empty() ? "" : ",", tracking.world_from_camera.matrix()(row, column));
+  return concat("{\"state\":\"", camera_state_name(tracking.state),
+                "\",\"frames_lost\":", tracking.frames_lost, ",\"loops\":", tracking.loops,
+                ",\"world_from_camera\":[", pose, "]}");
+}
+
 ServedMap::ServedMap(const std::filesystem::path& map, const ServedMapConfig& config)
     : path_(map), config_(config) {
   MapDocument document = load_map(map);
@@ -59,6 +76,11 @@ ServedMap::~ServedMap() {
 std::shared_ptr<const MapSnapshot> ServedMap::snapshot() const {
   const std::lock_guard lock(mutex_);
   return snapshot_;
+}
+
+CameraTracking ServedMap::tracking() const {
+  const std::lock_guard lock(mutex_);
+  return tracking_;
 }
 
 // ------------------------------------------------------------------------------------ new states
@@ -189,11 +211,54 @@ MapAnswer ServedMap::ask(const MapQuestion& question) const {
     prepared_.wait(lock, [&] { return snapshot_->search != SearchState::kPreparing; });
     now = snapshot_;
   }
+  if (question.past) return ask_past(std::move(now), question);
   if (!now->engine) throw SearchUnavailable(now->why_no_search);
   const bool relevance = question.query.relevance;
   return {question.like ? now->engine->find_like(*question.like, relevance)
                         : now->engine->find(question.query),
           now};
+}
+
+std::optional<HistoryPhrase> ServedMap::past_of(const std::string& text, const std::string& at,
+                                                const std::string& since) const {
+  const bool timed = !at.empty() || !since.empty();
+  if (!text.empty() || !timed) checked_query_text(text, config_.query.max_text_chars);
+  if (!config_.query.grammar && !timed) return std::nullopt;
+  return history_of_question(text, at, since, seconds_now());
+}
+
+/// What changed can be told of any map; what a text means needs its encoder.
+MapAnswer ServedMap::ask_past(std::shared_ptr<const MapSnapshot> now,
+                              const MapQuestion& question) const {
+  const auto past = std::make_shared<const HistorySearch>(
+      search_history(*now->record, now->objects->info, *question.past, config_.query.shapes));
+  const bool listing = past->for_anything() && question.query.not_texts.empty();
+  if (!now->engine && !listing) throw SearchUnavailable(now->why_no_search);
+  std::optional<QueryEngine> engine;
+  if (!listing)
+    engine.emplace(past->search.index, encoder_.get(), config_.query, Embeddings{},
+                   past->search.scene);
+  QueryAnswer answer = ask_history(*past, engine ? &*engine : nullptr, question.query);
+  answer.query = question.query.text;
+  return {std::move(answer), std::move(now), past};
+}
+
+NamedHistory ServedMap::with_gone_objects(const MapSnapshot& now) const {
+  OVIMAP_ASSERT(now.engine);
+  const std::lock_guard lock(gone_mutex_);
+  if (gone_.history && gone_version_ == now.version) return gone_;
+  HistoryPhrase all;
+  all.text = "anything";
+  all.change = AskedChange::kAny;
+  gone_.history = std::make_shared<const HistorySearch>(
+      search_history(*now.record, now.objects->info, all, config_.query.shapes));
+  const MapSearch& search = gone_.history->search;
+  const QueryEngine engine(search.index, encoder_.get(), config_.query, Embeddings{}, search.scene);
+  gone_.names.clear();
+  if (const TextEvidence* evidence = engine.matcher()->evidence())
+    gone_.names = name_objects(*evidence);
+  gone_version_ = now.version;
+  return gone_;
 }
 
 std::shared_ptr<const StandingSpace> ServedMap::standing_space() const {
@@ -241,6 +306,21 @@ void ServedMap::show(FoundMap found) {
 void ServedMap::show(std::vector<SurfacePatch> patches) {
   mesh_->update(std::move(patches));
   events_.publish("mesh", concat("{\"version\":", mesh_->version(), "}"));
+}
+
+void ServedMap::show(const CameraTracking& tracking) {
+  {
+    const std::lock_guard lock(mutex_);
+    tracking_ = tracking;
+  }
+  events_.publish("tracking", tracking_json(tracking));
+}
+
+void ServedMap::loops_closed(std::size_t count) {
+  CameraTracking now = tracking();
+  now.state = CameraState::kTracked;
+  now.loops = count;
+  show(now);
 }
 
 MapEdits ServedMap::close_log() {

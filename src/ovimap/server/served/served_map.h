@@ -11,8 +11,10 @@
 #include <vector>
 
 #include "ovimap/base/error.h"
+#include "ovimap/geometry/pose.h"
 #include "ovimap/io/map_file/map_edits.h"
 #include "ovimap/pipeline/approach/standing_space.h"
+#include "ovimap/pipeline/search/history_search.h"
 #include "ovimap/server/served/event_hub.h"
 #include "ovimap/server/served/map_snapshot.h"
 #include "ovimap/server/surface/mesh_store.h"
@@ -38,13 +40,41 @@ class SearchUnavailable : public Error {
 struct MapQuestion {
   Query query;                     ///< what to look for in words
   std::optional<InstanceId> like;  ///< instead: what looks like this object
+  std::optional<HistoryPhrase> past = {};  ///< instead of the query's text: what is asked of the past
 };
 
 /// An answer, and the state of the map that it speaks of.
 struct MapAnswer {
   QueryAnswer answer;
   std::shared_ptr<const MapSnapshot> map;
+  std::shared_ptr<const HistorySearch> past = {};  ///< whose objects it speaks of; null: those of `map`
+
+  const SearchIndex& index() const { return past ? past->search.index : map->index(); }
 };
+
+/// The objects of a map and those that are gone, and what each clearly is.
+struct NamedHistory {
+  std::shared_ptr<const HistorySearch> history;
+  std::vector<ObjectName> names;  ///< by position; empty: not known
+};
+
+enum class CameraState {
+  kGiven,    ///< its poses come from elsewhere
+  kTracked,  ///< where it is, the map tells
+  kLost,     ///< nobody knows where it is
+};
+const char* camera_state_name(CameraState state);  ///< "given", "tracked", "lost"
+
+/// How the camera of a map that is being made is followed.
+struct CameraTracking {
+  CameraState state = CameraState::kGiven;
+  Pose world_from_camera = Pose::Identity();  ///< where it was tracked last
+  std::int64_t frames_lost = 0;               ///< since then
+  std::size_t loops = 0;                      ///< that were closed when the map was completed
+};
+
+/// The same as JSON: "state", "frames_lost", "loops", "world_from_camera" (12 numbers, row by row).
+std::string tracking_json(const CameraTracking& tracking);
 
 /// One map as clients see it: its surface, its objects, answers to queries, corrections. Whoever
 /// serves it over a network only reads it. A saved map, or one that is still being made, of which
@@ -66,10 +96,19 @@ class ServedMap {
   const RelationConfig& relations() const { return config_.query.relations; }
   EventHub& events() const { return events_; }
   std::shared_ptr<const MapSnapshot> snapshot() const;
+  CameraTracking tracking() const;
+
+  /// What a text asks of the past, or it and times that history_of_question takes; nothing: it asks of
+  /// the present. Throws Error for what is no query and no time.
+  std::optional<HistoryPhrase> past_of(const std::string& text, const std::string& at,
+                                       const std::string& since) const;
 
   /// Waits until search is ready. Throws Error for what the asker can mend, SearchUnavailable where
-  /// this map cannot be searched.
+  /// this map cannot be searched, MomentUnknown for times that it knows nothing of.
   MapAnswer ask(const MapQuestion& question) const;
+
+  /// All that the map ever had, kept until it changes. `now`: of which search is ready.
+  NamedHistory with_gone_objects(const MapSnapshot& now) const;
 
   /// What is asked where to stand. Read from the map file the first time and after a correction,
   /// which takes seconds. Throws Error for a map that is still being made or cannot be read.
@@ -86,6 +125,10 @@ class ServedMap {
   void show(FoundMap found);
   /// Takes changed pieces of the surface.
   void show(std::vector<SurfacePatch> patches);
+  /// How its camera is followed by now.
+  void show(const CameraTracking& tracking);
+  /// So many loops of the camera's way were closed when the map was completed.
+  void loops_closed(std::size_t count);
   /// The log as it goes into the file. From now on corrections are refused, until the map is saved.
   MapEdits close_log();
   /// The map is saved: from now on it is one like any other.
@@ -98,6 +141,7 @@ class ServedMap {
   void take_document(MapDocument&& document);
   MapRecord corrected() const;
   void set_search(MapSnapshot& next) const;
+  MapAnswer ask_past(std::shared_ptr<const MapSnapshot> now, const MapQuestion& question) const;
 
   const std::filesystem::path path_;
   const ServedMapConfig config_;
@@ -115,10 +159,15 @@ class ServedMap {
   mutable std::mutex mutex_;  ///< held for a moment only
   mutable std::condition_variable prepared_;
   std::shared_ptr<const MapSnapshot> snapshot_;
+  CameraTracking tracking_;
 
   mutable std::mutex standing_mutex_;  ///< guards what follows; held while it is read
   mutable std::shared_ptr<const StandingSpace> standing_;
   mutable std::size_t standing_edits_ = 0;  ///< how many corrections it has
+
+  mutable std::mutex gone_mutex_;  ///< guards what follows; held while it is found
+  mutable NamedHistory gone_;
+  mutable std::uint64_t gone_version_ = 0;  ///< of the snapshot that it speaks of
   std::thread preparation_;
 };
 
