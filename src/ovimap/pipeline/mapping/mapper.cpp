@@ -85,6 +85,7 @@ std::vector<MaskPrompt> Mapper::known_objects(const PreparedFrame& prepared) {
 
 FrameReport Mapper::fuse(const PreparedFrame& prepared, const FrameSegments* cut) {
   builder_->rethrow_failure();  // before anything changes
+  settled_ = false;
   const std::vector<SegmentAssociation> associations = find_labels(prepared, cut);
   const std::vector<Label> labels = labels_of(associations);
   const Observation observation = observation_of(prepared, cut, labels);
@@ -112,6 +113,7 @@ std::vector<std::uint32_t> Mapper::clear_free_space(const Observation& observati
 }
 
 FrameReport Mapper::label(const PreparedFrame& prepared, const FrameSegments& cut) {
+  settled_ = false;
   const std::vector<SegmentAssociation> associations = find_labels(prepared, &cut);
   const std::vector<Label> labels = labels_of(associations);
   {
@@ -125,6 +127,7 @@ FrameReport Mapper::label(const PreparedFrame& prepared, const FrameSegments& cu
 void Mapper::fuse_again(const std::vector<Pose>& poses, const PinholeCamera& depth_camera) {
   OVIMAP_ASSERT(poses.size() == static_cast<std::size_t>(frames_) && !map_.has_store());
   auto t = timers_.measure("fuse_again");
+  settled_ = false;
   map_.empty_blocks();
   KeptFusion fusion(config_, depth_camera);
   for (const auto& [position, kept] : frame_store_.frames())
@@ -218,14 +221,18 @@ void Mapper::await_encoder() {
   builder_->catch_up(map_.labels());
 }
 
+void Mapper::settle() {
+  if (settled_) return;
+  auto t = timers_.measure("objects");
+  if (config_.instance.instances == InstanceReading::kConsensus && config_.instance.judged)
+    registry_.settle(measure_super_points(map_));
+  else
+    registry_.settle();
+  settled_ = true;
+}
+
 void Mapper::finish() {
-  {
-    auto t = timers_.measure("objects");
-    if (config_.instance.instances == InstanceReading::kConsensus && config_.instance.judged)
-      registry_.settle(measure_super_points(map_));
-    else
-      registry_.settle();
-  }
+  settle();
   {
     auto t = timers_.measure("await_encoder");
     builder_->finish(map_.labels());

@@ -131,6 +131,7 @@ class Mapper {
   int mask_frames() const { return mask_frames_; }
 
  private:
+  void settle();
   std::vector<std::uint32_t> clear_free_space(const Observation& observation);
   std::vector<SegmentAssociation> find_labels(const PreparedFrame& prepared,
                                               const FrameSegments* cut);
@@ -148,6 +149,7 @@ class Mapper {
   StageTimers timers_;
   FrameStore frame_store_;
   SeparateLooks looks_;
+  bool settled_ = false;  ///< the objects are those of all that is in the map
   std::vector<std::uint32_t> touched_blocks_;
   int frames_ = 0, mask_frames_ = 0;
   std::int64_t first_number_ = 0;
