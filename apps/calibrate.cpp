@@ -34,6 +34,7 @@ constexpr float kDistances_m[] = {1, 2, 3, 4};
 
 nlohmann::ordered_json json_of(const ColorCalibration& result, const fs::path& written) {
   const PinholeCamera& camera = result.found.camera;
+  const Lens& lens = result.found.lens;
   const Eigen::AngleAxisd turn(result.found.color_from_depth.linear());
   const Eigen::Vector3d rotation = turn.angle() * turn.axis();
   const Eigen::Vector3d& offset = result.found.color_from_depth.translation();
@@ -57,7 +58,8 @@ nlohmann::ordered_json json_of(const ColorCalibration& result, const fs::path& w
             {"fx", camera.fx},
             {"fy", camera.fy},
             {"cx", camera.cx},
-            {"cy", camera.cy}}},
+            {"cy", camera.cy},
+            {"radial", {lens.coefficients[0], lens.coefficients[1]}}}},
           {"color_from_depth",
            {{"rotation_vector", {rotation.x(), rotation.y(), rotation.z()}},
             {"translation", {offset.x(), offset.y(), offset.z()}}}},

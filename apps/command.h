@@ -18,8 +18,13 @@
 #include "ovimap/io/map_tables/map_document.h"
 #include "ovimap/pipeline/live/live_mapper.h"
 #include "ovimap/pipeline/mapping/checkpointer.h"
+#include "ovimap/pipeline/people/people_config.h"
 #include "ovimap/pipeline/sequence/visit_fit.h"
 #include "ovimap/track/graph/loop_closure.h"
+
+namespace ovimap {
+class PeopleFilter;
+}
 
 namespace ovimap::apps {
 
@@ -90,6 +95,7 @@ struct ProgramConfig {
   TrackConfig track;
   LoopConfig loops;
   VisitFitConfig visit;
+  PeopleConfig people;
   MaskSourceConfig masks;
   RuntimeConfig encoder;
   LiveConfig live;
@@ -112,6 +118,11 @@ std::shared_ptr<ImageTextEncoder> make_encoder(const MappingOptions& options,
 /// What --recognizer names; "auto" is every installed one where there is an encoder. Null: none.
 std::shared_ptr<const ThingRecognizer> make_recognizer(const MappingOptions& options,
                                                        const ProgramConfig& config, bool encoder);
+
+/// What takes people out of frames; null: nothing does. Throws Error when no detector is there that
+/// knows people.
+std::shared_ptr<const PeopleFilter> make_people_filter(const MappingOptions& options,
+                                                       const ProgramConfig& config);
 
 /// Threads of a network run: what the config says, else what --threads says.
 int network_threads(const ProgramConfig& config, const MappingOptions& options);

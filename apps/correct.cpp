@@ -44,6 +44,8 @@ int correct_map(const CorrectOptions& options) {
                 {"frames", document.frames.size()},
                 {"frames_moved", done.moved},
                 {"frames_refused", done.refused},
+                {"blocks_refused", done.blocks},
+                {"blocks", document.map.block_count()},
                 {"furthest_m", done.furthest_m},
                 {"widest_deg", widest_deg},
                 {"instances_before", objects_before},
@@ -51,9 +53,9 @@ int correct_map(const CorrectOptions& options) {
   else
     std::printf(
         "%s: %zu of %zu frames moved, by up to %.3f m and %.2f degrees; %zu kept frames are fused "
-        "again, %zu objects (%zu before)\n",
+        "again into %zu of %zu blocks, %zu objects (%zu before)\n",
         out.c_str(), done.moved, document.frames.size(), done.furthest_m, widest_deg, done.refused,
-        document.instances.size(), objects_before);
+        done.blocks, document.map.block_count(), document.instances.size(), objects_before);
   return kDone;
 }
 

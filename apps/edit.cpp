@@ -5,8 +5,11 @@
 #include <ctime>
 
 #include "command.h"
+#include "ovimap/io/corrections/taught_file.h"
 #include "ovimap/io/map_file/map_edits.h"
 #include "ovimap/io/map_file/map_file.h"
+#include "ovimap/pipeline/search/teaching.h"
+#include "teach_option.h"
 
 namespace ovimap::apps {
 
@@ -17,6 +20,7 @@ struct EditOptions {
   MapEdit edit;
   InstanceId object = 0;
   std::vector<InstanceId> others;
+  TeachOption teach;
   bool log = false;
   bool json = false;
 };
@@ -63,13 +67,20 @@ int edit_or_log(const EditOptions& options) {
   MapEdit edit = options.edit;
   if (options.object != 0) edit.instances.push_back(options.object);
   edit.instances.insert(edit.instances.end(), options.others.begin(), options.others.end());
+  const std::filesystem::path taught = options.teach.file();
+  if (!taught.empty()) (void)read_taught_file(taught);  // rather refuse than half do it
   edit = edit_map(options.map, edit);
+  const std::size_t examples =
+      taught.empty() ? 0 : teach(taught, options.map, open_map_search(options.map));
   if (!options.json) {
     print_edit(edit);
+    if (!taught.empty())
+      std::printf("%zu named objects of this map teach others (%s)\n", examples, taught.c_str());
     return kDone;
   }
   print_json({{"map", options.map.string()},
               {"edit", edit_json(edit)},
+              {"taught", taught.empty() ? nlohmann::json() : nlohmann::json(examples)},
               {"instances", read_map_info(options.map).instances.size()}});
   return kDone;
 }
@@ -91,6 +102,8 @@ CLI::App& add_action(CLI::App& command, EditOptions& options, EditAction action,
 Action add_edit(CLI::App& command) {
   auto options = std::make_shared<EditOptions>();
   command.add_option("MAP", options->map, "map file")->required();
+  add_teach_option(command, options->teach,
+                   "whether the named objects of this map teach others");
   command.add_flag("--json", options->json, "print one JSON object");
   command.require_subcommand(1);
   add_action(command, *options, EditAction::kRename, "give an object a name; \"\" takes it away")

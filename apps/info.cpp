@@ -18,7 +18,7 @@ namespace {
 struct InfoOptions {
   std::filesystem::path map;
   bool check = false;
-  bool history = false, rooms = false;
+  bool history = false, rooms = false, parts = false;
   bool recover = false;
   bool json = false;
 };
@@ -93,6 +93,16 @@ void add_dates(const HistoryDates& dates, nlohmann::json& history) {
     history["events"][i]["time_s"] = known(dates.date_of(i));
 }
 
+void print_parts(std::span<const ObjectPart* const> parts) {
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const Eigen::Vector3f center = parts[i]->centroid, size = parts[i]->box.sizes();
+    std::printf("%6s  %-24s %8.2f%8.2f%8.2f %8.2f%8.2f%8.2f %8zu %6d\n", "",
+                concat("  part ", i + 1).c_str(), double{center.x()}, double{center.y()},
+                double{center.z()}, double{size.x()}, double{size.y()}, double{size.z()},
+                parts[i]->points, parts[i]->views);
+  }
+}
+
 int info(const InfoOptions& options) {
   if (options.recover && !recover_map(options.map))
     std::fprintf(stderr, "%s: nothing to recover\n", options.map.c_str());
@@ -129,6 +139,7 @@ int info(const InfoOptions& options) {
                 tiles.loaded);
   std::printf("%6s  %-24s %24s %24s %8s %6s\n", "id", "name", "centroid (m)", "size (m)", "points",
               "views");
+  const auto parts = parts_by_object(map.parts, map.instances);
   for (const InstanceSummary& instance : map.instances) {
     const Eigen::Vector3f center = instance.centroid, size = instance.box.sizes();
     const auto name = map.names.find(instance.id);
@@ -136,6 +147,8 @@ int info(const InfoOptions& options) {
                 name == map.names.end() ? "" : name->second.c_str(), double{center.x()},
                 double{center.y()}, double{center.z()}, double{size.x()}, double{size.y()},
                 double{size.z()}, instance.points, instance.views);
+    if (const auto of_it = parts.find(instance.id); options.parts && of_it != parts.end())
+      print_parts(of_it->second);
   }
   return kDone;
 }
@@ -152,6 +165,8 @@ Action add_info(CLI::App& command) {
                    "which recordings went into the map, and what each found moved, gone or new");
   command.add_flag("--rooms", options->rooms,
                    "which rooms the map has, what is in each, and the doors between them");
+  command.add_flag("--parts", options->parts,
+                   "list below each object the parts that masks tell in it: drawers, cushions");
   command.add_flag("--recover", options->recover,
                    "make a map whole beside which a change that was cut short left its log: the "
                    "change is taken back, or in where it was finished; then examine it");

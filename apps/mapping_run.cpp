@@ -9,6 +9,7 @@
 #include "ovimap/base/thread_priority.h"
 #include "ovimap/inference/masks/id_mask_sources.h"
 #include "ovimap/io/map_file/map_file.h"
+#include "ovimap/pipeline/people/peopleless_source.h"
 #include "ovimap/pipeline/revise/visit_history.h"
 #include "ovimap/pipeline/sequence/visit_fit.h"
 
@@ -41,6 +42,8 @@ struct MappingInputs {
                                                        : PoseNeed::kAll;
       source = open_frame_source(options.source, config.source);
     }
+    people = make_people_filter(options, config);
+    if (people && source) source = std::make_unique<PeoplelessSource>(std::move(source), people);
     tracking = options.poses == "track" || options.poses == "refine" ||
                (source && !source->posed());
     keeps_for_loops = tracking && config.mapper.frame_store.max_mb == 0;
@@ -59,6 +62,7 @@ struct MappingInputs {
 
   ProgramConfig config;
   std::unique_ptr<FrameSource> source;  ///< null where frames are pushed
+  std::shared_ptr<const PeopleFilter> people;  ///< null: they stay in the frames
   bool tracking = false;                ///< poses are to be found
   bool keeps_for_loops = false;         ///< frames are kept for that alone
   std::vector<std::int64_t> range;
@@ -192,6 +196,7 @@ SequenceResult resume(BegunRun& begun, MapHeader& header, MappingInputs& inputs,
   if (begun.new_visit) {
     require_same_map(*begun.document, mapper.config().map, inputs.encoder);
     require_fit(*begun.document, inputs);
+    begun.document->seen_free.clear();  // between two visits anything may have come
     begin_visit(*begun.document, header);
   } else {
     require_same_settings(begun.document->config_text, header.config_text, "--resume");
@@ -210,10 +215,17 @@ SequenceResult resume(BegunRun& begun, MapHeader& header, MappingInputs& inputs,
   return sequence;
 }
 
+/// Null where there are none. Loops that are closed meanwhile let its tiles leave.
 std::unique_ptr<Checkpointer> make_checkpointer(const BegunRun& begun, const MappingInputs& inputs,
                                                 const MapHeader& header, std::size_t frames_done) {
   if (!begun.tiles) return nullptr;
-  return std::make_unique<Checkpointer>(begun.tiles, inputs.config.checkpoint, header, frames_done);
+  auto checkpoints = std::make_unique<Checkpointer>(begun.tiles, inputs.config.checkpoint, header,
+                                                    frames_done);
+  if (inputs.finder)
+    inputs.finder->before_correction = [to = checkpoints.get()](Mapper& map) {
+      to->let_tiles_leave(map);
+    };
+  return checkpoints;
 }
 
 MapHeader make_header(const MappingInputs& inputs, const MappingOptions& options,
@@ -232,24 +244,23 @@ std::shared_ptr<PoseFinder> make_finder(const MappingInputs& inputs, const Begun
     if (begun.document->kept_frames.empty())
       throw Error("the map to go on with keeps no frames to find the camera's place by; map it with "
                   "--set frame_store.max_mb=1000");
-    tracker.begin_in(keyframes_of(*begun.document, inputs.config.track.keyframes));
+    tracker.begin_in(keyframes_of(begun.document->frames, begun.document->kept_frames,
+                                  begun.document->depth_camera, inputs.config.track.keyframes));
   }
   return std::make_shared<PoseFinder>(std::move(tracker), inputs.config.loops);
 }
 
-/// What tracking did, and, where the camera came by a place again, the map with its loops closed.
-/// Frames that were kept for that alone are not saved.
-TrackingRun finish_tracking(const PoseFinder& finder, const ProgramConfig& config, bool keep_frames,
-                            MapDocument& map) {
-  TrackingRun tracking{summarise(finder.tracker().log()), finder.corrections(), {},
-                       sensor_doubt(finder.tracker().sensor(), config.track)};
-  if (!map.kept_frames.empty()) {
-    Progress progress("closing loops");
-    tracking.loops = close_map_loops(
-        map, config.mapper, config.track, config.loops,
-        [&](std::size_t done, std::size_t total) { progress.show(done, total); });
-  }
-  if (!keep_frames) map.kept_frames.clear();
+/// What tracking did; where the camera came by a place again, the map's loops are closed.
+TrackingRun finish_tracking(const PoseFinder& finder, const ProgramConfig& config, Mapper& mapper,
+                            SequenceResult& sequence) {
+  const auto& log = finder.tracker().log();
+  TrackingRun tracking{summarise(log), finder.corrections(), {},
+                       unknown_places(log, config.track.part_frames), sensor_doubts(finder.tracker())};
+  if (config.track.part_frames == 0) tracking.unknown.clear();
+  Progress progress("closing loops");
+  tracking.loops = close_last_loops(
+      mapper, sequence.frames, sequence.depth_camera, config.track, config.loops,
+      [&](std::size_t done, std::size_t total) { progress.show(done, total); });
   return tracking;
 }
 
@@ -258,16 +269,18 @@ MappingRun finished_run(MappingInputs&& inputs, MapHeader header, Mapper&& mappe
   MappingRun run;
   if (checkpoints && inputs.tracking)  // who kills the closing of loops leaves all frames mapped
     checkpoints->store(mapper, sequence.frames, sequence.depth_camera);
+  if (checkpoints) checkpoints->let_tiles_leave(mapper);
+  if (inputs.finder)
+    run.tracking = finish_tracking(*inputs.finder, inputs.config, mapper, sequence);
   run.source = std::move(inputs.source);
   run.masks_wanted = inputs.masks != nullptr;
+  if (inputs.people) run.people_frames = inputs.people->frames_with_people();
   run.sequence = std::move(sequence);
   mapper.finish();
-  if (checkpoints) {
-    checkpoints->end_frames(mapper);
-    checkpoints->report(mapper.timers());
-  }
+  if (checkpoints) checkpoints->report(mapper.timers());
   run.timers = mapper.timers();
   run.document = make_document(std::move(mapper), run.sequence, std::move(header));
+  if (inputs.keeps_for_loops) run.document.kept_frames.clear();
   run.checkpoints = std::move(checkpoints);
   return run;
 }
@@ -329,18 +342,16 @@ MappingRun map_recording(const MappingOptions& options, const std::string& title
         },
         std::move(sequence), checkpoints.get(), finder.get());
   }
-  const ProgramConfig config = inputs.config;
-  const bool keep_frames = !inputs.keeps_for_loops;
+  const bool bounded = inputs.config.memory.max_mb > 0;
   MappingRun run = finished_run(std::move(inputs), std::move(header), std::move(mapper),
                                 std::move(sequence), std::move(checkpoints));
-  if (finder) run.tracking = finish_tracking(*finder, config, keep_frames, run.document);
-  if (!target.continued.empty() && config.memory.max_mb == 0)  // which takes both maps in memory
+  if (!target.continued.empty() && !bounded)  // which takes both maps in memory
     tell_visit(load_map(target.continued), run.document);
   return run;
 }
 
 MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& target,
-                    LiveAudience* audience, FrameIntake* intake) {
+                    LiveAudience* audience, FrameIntake* intake, CameraFeed* camera) {
   MappingInputs inputs(options, intake == nullptr);
   BegunRun begun = find_begun(target, inputs.config.memory);
   // The networks' threads inherit the priority of the one that opens them.
@@ -371,6 +382,7 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
                     inputs.encoder ? inputs.encoder->identity() : EncoderIdentity{}, header.names,
                     header.edits);
   watch_for_interrupt();
+  if (camera) camera->start();
   LiveRunResult live;
   {
     Progress progress("mapping live");
@@ -378,16 +390,16 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
       progress.show(count, total);
       return !interrupted();
     };
-    live = intake ? run_pushed(*intake, mapper, look)
+    FrameFilter filter;
+    if (inputs.people)
+      filter = [&](Frame frame) { return inputs.people->without_people(std::move(frame)); };
+    live = intake ? run_pushed(*intake, mapper, look, filter)
                   : run_live(*inputs.source, inputs.range, mapper, fps, look);
   }
   if (audience) header.edits = audience->end();
   if (live.sequence.depth_camera.width == 0) live.sequence.depth_camera = done.depth_camera;
-  const ProgramConfig config = inputs.config;
-  const bool keep_frames = !inputs.keeps_for_loops;
   MappingRun run = finished_run(std::move(inputs), std::move(header), mapper.take(), live.sequence,
                                 std::move(checkpoints));
-  if (finder) run.tracking = finish_tracking(*finder, config, keep_frames, run.document);
   run.live = std::move(live);
   return run;
 }

@@ -3,8 +3,10 @@
 #pragma once
 
 #include "command.h"
+#include "ovimap/pipeline/live/camera_feed.h"
 #include "ovimap/pipeline/live/live_run.h"
-#include "ovimap/pipeline/revise/map_loops.h"
+#include "ovimap/pipeline/sequence/last_loops.h"
+#include "ovimap/track/sensor_doubts.h"
 
 namespace ovimap::apps {
 
@@ -13,7 +15,16 @@ struct TrackingRun {
   TrackSummary summary;
   LoopCorrections corrections;  ///< while frames came
   LoopReport loops;             ///< after the last one
-  std::string sensor_doubt;     ///< empty: the camera is as it is described
+  std::vector<std::pair<std::int64_t, std::int64_t>> unknown;  ///< unknown_places
+  std::vector<std::string> sensor_doubts;  ///< none: camera and times are as described
+};
+
+/// Frames of a run that were mapped by themselves, since nothing says where they lie.
+struct MapPart {
+  std::filesystem::path map;
+  std::int64_t first = 0, last = 0;  ///< of the recording's frames
+  std::size_t frames = 0;            ///< in the map
+  std::size_t objects = 0;
 };
 
 /// A recording, mapped.
@@ -22,7 +33,9 @@ struct MappingRun {
   bool masks_wanted = false;            ///< there was a source of 2D masks
   SequenceResult sequence;
   std::optional<LiveRunResult> live;  ///< of map_live
+  std::optional<std::size_t> people_frames;  ///< that showed people, who were left out
   std::optional<TrackingRun> tracking;  ///< where poses were not given
+  std::vector<MapPart> parts;           ///< mapped by themselves
   StageTimers timers;
   MapDocument document;
   std::unique_ptr<Checkpointer> checkpoints;  ///< remove them when the map is saved
@@ -65,8 +78,10 @@ class LiveAudience {
 };
 
 /// The same as a camera of `fps` frames a second would have it. Networks let the mapping go first.
-/// `intake`: frames come from there instead, at their own pace, until it ends.
+/// `intake`: frames come from there instead, at their own pace, until it ends. `camera`: feeds it,
+/// and is started when the mapping is.
 MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& target = {},
-                    LiveAudience* audience = nullptr, FrameIntake* intake = nullptr);
+                    LiveAudience* audience = nullptr, FrameIntake* intake = nullptr,
+                    CameraFeed* camera = nullptr);
 
 }  // namespace ovimap::apps

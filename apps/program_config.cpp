@@ -3,6 +3,7 @@
 #include "command.h"
 #include "ovimap/io/mesh/map_mesh.h"
 #include "ovimap/io/settings/config_file.h"
+#include "ovimap/pipeline/people/people_filter.h"
 
 namespace ovimap::apps {
 
@@ -46,6 +47,20 @@ void add_mapping_settings(CLI::App& command, MappingOptions& options) {
           options.settings.push_back(concat(networks, ".runtime.execution_provider=", device));
       },
       "what runs the networks: cpu, or cuda and others where ONNX Runtime was built with them");
+  command
+      .add_option_function<std::string>(
+          "--dynamic",
+          [&options](const std::string& mode) { options.settings.push_back("motion.mode=" + mode); },
+          "things that move while they are seen: drop (leave them out), track (and follow them), or "
+          "off (fuse them as everything else); without, as motion.mode says")
+      ->check(CLI::IsMember({"off", "drop", "track"}));
+  command
+      .add_option_function<std::string>(
+          "--people",
+          [&options](const std::string& mode) { options.settings.push_back("people.mode=" + mode); },
+          "people in the frames: keep, or drop (no surface, crop or picture shows them, seated ones "
+          "neither, as far as a detector finds them; docs/changes.md); without, as people.mode says")
+      ->check(CLI::IsMember({"keep", "drop"}));
   add_model_dirs(command, options.model_dirs);
   add_frame_range(command, options.frames);
   command.add_option("--threads", options.threads, "threads to use; 0: all cores")
@@ -80,6 +95,7 @@ void list_fields(ProgramConfig& config, ConfigFields& fields) {
   fields.group("track", [&](ConfigFields& f) { list_fields(config.track, f); });
   fields.group("loops", [&](ConfigFields& f) { list_fields(config.loops, f); });
   fields.group("visit", [&](ConfigFields& f) { list_fields(config.visit, f); });
+  fields.group("people", [&](ConfigFields& f) { list_fields(config.people, f); });
   fields.group("masks", [&](ConfigFields& f) { list_fields(config.masks, f); });
   fields.group("encoder.runtime", [&](ConfigFields& f) { list_fields(config.encoder, f); });
   fields.group("live", [&](ConfigFields& f) { list_fields(config.live, f); });
@@ -146,6 +162,18 @@ std::shared_ptr<const ThingRecognizer> make_recognizer(const MappingOptions& opt
   if (runtime.threads == 0) runtime.threads = options.threads;
   const std::string spec = options.recognizer == "auto" && !encoder ? "none" : options.recognizer;
   return make_thing_recognizer(spec, runtime, options.model_dirs);
+}
+
+std::shared_ptr<const PeopleFilter> make_people_filter(const MappingOptions& options,
+                                                       const ProgramConfig& config) {
+  if (config.people.mode == PeopleMode::kKeep) return nullptr;
+  RuntimeConfig runtime = config.masks.runtime;
+  runtime.threads = network_threads(config, options);
+  std::shared_ptr<const SamNetwork> outlines;
+  if (config.people.mask_network)
+    outlines = make_box_network(options.masks, runtime, options.model_dirs);
+  return std::make_shared<PeopleFilter>(config.people, make_person_finder(config.people.detector, runtime, options.model_dirs),
+                                        std::move(outlines));
 }
 
 int embedding_queries(const SemanticRecord& semantics) {

@@ -11,6 +11,7 @@
 #include "ovimap/io/mesh/ply.h"
 #include "ovimap/io/pictures/pictures.h"
 #include "ovimap/server/api/approach_json.h"
+#include "kept_memory.h"
 #include "query_asking.h"
 
 namespace ovimap::apps {
@@ -39,6 +40,13 @@ nlohmann::json point_json(const Eigen::Vector3f& point) {
   return {point.x(), point.y(), point.z()};
 }
 
+nlohmann::json part_json(const QueryMatch& match) {
+  if (match.part == 0) return nullptr;
+  return {{"number", match.part},
+          {"box",
+           {{"min", point_json(match.part_box.min())}, {"max", point_json(match.part_box.max())}}}};
+}
+
 nlohmann::json match_json(const QueryMatch& match, const SearchObject& object,
                           const std::string& title) {
   const auto number = [](const std::optional<double>& value) {
@@ -52,6 +60,7 @@ nlohmann::json match_json(const QueryMatch& match, const SearchObject& object,
           {"p_value", number(match.p_value)},
           {"probability", number(match.probability)},
           {"evidence", match.evidence},
+          {"part", part_json(match)},
           {"box", {{"min", point_json(object.box.min())}, {"max", point_json(object.box.max())}}},
           {"centroid", point_json(object.centroid)}};
 }
@@ -92,10 +101,11 @@ void print_answer(const Answered& answered, const Approaches& approaches) {
   std::printf(nearest ? "; what comes nearest:\n" : "\n");
   for (const QueryMatch& match : answer.matches) {
     const SearchObject& object = answered.object(match);
+    const Eigen::Vector3f place = match.part == 0 ? object.centroid : match.part_box.center();
     std::printf("  #%-5u %6.3f", match.id, double{match.score});
     if (match.probability) std::printf("  %3.0f %%", 100.0 * *match.probability);
-    std::printf("  at %6.2f %6.2f %6.2f", double{object.centroid.x()}, double{object.centroid.y()},
-                double{object.centroid.z()});
+    std::printf("  at %6.2f %6.2f %6.2f", double{place.x()}, double{place.y()},
+                double{place.z()});
     if (const std::string& title = answered.title(match); !title.empty())
       std::printf("  %s", title.c_str());
     if (!match.evidence.empty()) std::printf("  %s", match.evidence.c_str());
@@ -177,6 +187,7 @@ void check_options(const QueryOptions& options) {
 }
 
 int query(QueryOptions& options) {
+  keep_freed_memory();
   const ThreadLimit limit(options.threads);
   check_options(options);
   const QueryConfig config = query_config(options);
@@ -231,6 +242,8 @@ Action add_query(CLI::App& command) {
                   "default, a model, or auto: the one that the map was made with")
       ->capture_default_str();
   add_model_dirs(command, options->model_dirs);
+  add_teach_option(command, options->teach,
+                   "whether what people named in other maps speaks too");
   command.add_option("--set", options->settings, "one setting, query.a=b or approach.a=b; may be repeated")
       ->type_size(1)
       ->allow_extra_args(false);

@@ -3,8 +3,10 @@
 #include "query_asking.h"
 
 #include <algorithm>
+#include <future>
 
 #include "ovimap/image/codec.h"
+#include "ovimap/pipeline/search/teaching.h"
 #include "ovimap/semantics/classes/object_names.h"
 #include "ovimap/semantics/query/query_grammar.h"
 #include "ovimap/semantics/query/query_text.h"
@@ -50,11 +52,8 @@ std::vector<AskedText> asked_texts(const QueryOptions& options, const QueryConfi
   return asked;
 }
 
-QueryAsker::QueryAsker(const QueryOptions& options, const QueryConfig& config)
-    : options_(options), config_(config), search_(open_map_search(options.map, config.shapes)) {}
-
 std::vector<Answered> QueryAsker::ask(const std::vector<AskedText>& texts) {
-  open_encoder(texts);
+  open(texts);
   std::vector<Answered> answers;
   for (const AskedText& asked : texts) {
     if (asked.past)
@@ -71,23 +70,40 @@ std::vector<Answered> QueryAsker::ask(const std::vector<AskedText>& texts) {
   return answers;
 }
 
-/// Of a map without embeddings one can ask what changed, and nothing else.
-void QueryAsker::open_encoder(const std::vector<AskedText>& texts) {
+MapSearch QueryAsker::open_map() const {
+  MapSearch search = open_map_search(options_.map, config_.shapes);
+  search.scene.taught =
+      taught_elsewhere(options_.teach.file(), options_.map, search.info.encoder);
+  return search;
+}
+
+/// The map and its encoder take about as long, so both are opened at once. Of a map without embeddings
+/// one can ask what changed, and nothing else.
+void QueryAsker::open(const std::vector<AskedText>& texts) {
   const auto is_listing = [&](const AskedText& asked) {
     return asked.past && asked.past->text == "anything" && options_.negatives.empty();
   };
   const bool listing =
       !texts.empty() && std::all_of(texts.begin(), texts.end(), is_listing);
-  if (!listing) require_embeddings(search_.index);
-  if (texts.empty() && options_.images.empty()) return;
-  if (listing && search_.index.embedded() == 0) return;
+  const bool in_words = !(texts.empty() && options_.images.empty());
+  auto opening = std::async(std::launch::async, [this] { return open_map(); });
+  std::exception_ptr fault;
+  try {
+    if (in_words) open_encoder();
+  } catch (const std::exception&) {
+    fault = std::current_exception();
+  }
+  search_ = opening.get();  // what is wrong with the map comes first
+  if (listing) return;      // things are told without guessed names, if need be
+  require_embeddings(search_.index);
+  if (fault) std::rethrow_exception(fault);
+}
+
+void QueryAsker::open_encoder() {
+  const EncoderIdentity of_map = read_map_identity(options_.map).encoder;
   RuntimeConfig runtime;
   runtime.threads = options_.threads;
-  try {
-    encoder_ = encoder_of_map(search_.info.encoder, options_.encoder, runtime, options_.model_dirs);
-  } catch (const Error&) {
-    if (!listing) throw;  // else things are told without guessed names
-  }
+  encoder_ = encoder_of_map(of_map, options_.encoder, runtime, options_.model_dirs);
 }
 
 const QueryEngine& QueryAsker::present() {
@@ -107,6 +123,7 @@ Answered QueryAsker::ask_past(const AskedText& asked) {
   if (!record_) record_ = read_corrected_record(options_.map);
   const auto past = std::make_shared<HistorySearch>(
       search_history(*record_, search_.info, *asked.past, config_.shapes));
+  past->search.scene.taught = search_.scene.taught;
   const SearchIndex& index = past->search.index;
   std::unique_ptr<QueryEngine> engine;
   if (index.embedded() > 0)

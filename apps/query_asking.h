@@ -3,6 +3,7 @@
 #pragma once
 
 #include "command.h"
+#include "teach_option.h"
 #include "ovimap/pipeline/search/history_search.h"
 #include "query_approach.h"
 
@@ -11,6 +12,7 @@ namespace ovimap::apps {
 /// What `ovimap query` was told to ask.
 struct QueryOptions {
   std::filesystem::path map, heat_map;
+  TeachOption teach;
   std::vector<std::string> texts, negatives, settings;
   std::string near, encoder = "auto";
   std::string at, since;
@@ -46,24 +48,26 @@ struct Answered {
 /// Asks one map about its present and its past. The references must outlive it.
 class QueryAsker {
  public:
-  /// Throws Error for a map that cannot be read.
-  QueryAsker(const QueryOptions& options, const QueryConfig& config);
+  QueryAsker(const QueryOptions& options, const QueryConfig& config)
+      : options_(options), config_(config) {}
 
-  /// One answer for each text, then for each picture, then for each object. They refer to this asker.
-  /// Throws Error for what cannot be asked of this map.
+  /// One answer for each text, then for each picture, then for each object. They refer to this asker,
+  /// which is asked once. Throws Error for a map that cannot be read, and for what cannot be asked of it.
   std::vector<Answered> ask(const std::vector<AskedText>& texts);
   const Eigen::Vector3f& up() const { return search_.info.up; }
 
  private:
   bool relevance() const { return !options_.heat_map.empty(); }
-  void open_encoder(const std::vector<AskedText>& texts);
+  void open(const std::vector<AskedText>& texts);
+  MapSearch open_map() const;
+  void open_encoder();
   const QueryEngine& present();
   Answered in_present(QueryAnswer answer) const;
   Answered ask_past(const AskedText& asked);
 
   const QueryOptions& options_;
   const QueryConfig& config_;
-  const MapSearch search_;
+  MapSearch search_;
   std::unique_ptr<ImageTextEncoder> encoder_;
   std::unique_ptr<QueryEngine> engine_;
   std::shared_ptr<const std::vector<std::string>> titles_;

@@ -1,11 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
+#include "camera_run.h"
 #include "mapping_run.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/io/map_file/map_file.h"
 #include "ovimap/pipeline/report/map_pictures.h"
 #include "ovimap/pipeline/sequence/trajectory_file.h"
 #include "ovimap/semantics/past/time_words.h"
+#include "run_parts.h"
 #include "run_report.h"
 
 namespace ovimap::apps {
@@ -31,6 +33,25 @@ double recorded_s(const std::string& text) {
   throw Error(concat("--recorded '", text, "' is no date; give one such as 2026-03-14T09:30"));
 }
 
+/// Throws Error for what only a recording has.
+void check_for_camera(const RunOptions& options) {
+  const auto refuse = [](bool given, const char* option) {
+    if (given)
+      throw Error(concat(option, " is for recordings; leave it away where a camera sends the frames"));
+  };
+  refuse(options.twice, "--second-pass");
+  refuse(!options.continued.empty(), "--continue");
+  refuse(!options.pictures.empty(), "--pictures");
+}
+
+MappingRun map_source(const RunOptions& options, const RunTarget& target,
+                      std::optional<CameraRun>& camera) {
+  if (camera)
+    return map_live(options.mapping, 0, target, nullptr, &camera->intake(), &camera->feed());
+  if (options.live) return map_live(options.mapping, options.fps, target);
+  return map_recording(options.mapping, "mapping", {}, target);
+}
+
 int run(RunOptions options) {
   if (options.map.empty()) options.map = options.continued;
   if (options.map.empty())
@@ -40,21 +61,24 @@ int run(RunOptions options) {
   check_map_target(options.map);
   if (!options.pictures.empty()) make_folder(options.pictures);
   const RunTarget target{options.map, options.resume, options.twice, options.continued};
-  const MappingRun mapped = options.live ? map_live(options.mapping, options.fps, target)
-                                         : map_recording(options.mapping, "mapping", {}, target);
+  std::optional<CameraRun> camera;
+  if (names_camera(options.mapping.source)) check_for_camera(options), camera.emplace(options.mapping);
+  MappingRun mapped = map_source(options, target, camera);
+  const double fps = camera ? sent_fps(*mapped.live) : options.fps;
   report_faults(mapped);
   save_map(options.map, mapped.document);
   mapped.checkpoints->remove();
+  if (!mapped.live) mapped.parts = map_parts(options.mapping, options.map, mapped);
   if (!options.trajectory.empty()) write_trajectory(options.trajectory, mapped.document.frames);
   if (!options.pictures.empty())
     write_map_pictures(options.pictures, mapped.document, *mapped.source);
   if (options.json)
-    print_json(run_json(options.map, mapped, options.fps));
+    print_json(run_json(options.map, mapped, fps));
   else
-    print_run(options.map, mapped, options.fps);
+    print_run(options.map, mapped, fps);
   advise_on_objects(mapped);
   advise_on_encoder(mapped, options.mapping.model_dirs);
-  return kDone;
+  return camera && !camera->report_loss() ? kAnswerIsNo : kDone;
 }
 
 }  // namespace
@@ -62,6 +86,9 @@ int run(RunOptions options) {
 Action add_run(CLI::App& command) {
   auto options = std::make_shared<RunOptions>();
   add_mapping_options(command, options->mapping);
+  command.get_option("SOURCE")->description(
+      "recording: a folder of a known layout (see docs/sources.md); or openni: for a camera that is "
+      "plugged in (docs/cameras.md)");
   command.add_option("-o,--output", options->map,
                      "map file to write; with --continue the map itself where it is not given");
   command.add_option("--pictures", options->pictures, "folder for a top view and a contact sheet");

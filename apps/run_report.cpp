@@ -35,6 +35,21 @@ void report_encoder(const LiveStatistics& done) {
         static_cast<long long>(done.views_failed), done.encoder_fault.c_str());
 }
 
+nlohmann::json movers_json(const MapRecord& map) {
+  nlohmann::json movers = nlohmann::json::array();
+  for (const Mover& mover : map.movers) {
+    double way_m = 0;
+    for (std::size_t i = 1; i < mover.path.size(); ++i)
+      way_m += static_cast<double>((mover.path[i].place - mover.path[i - 1].place).norm());
+    movers.push_back({{"id", mover.id},
+                      {"frames", mover.path.size()},
+                      {"first_frame", mover.path.front().frame},
+                      {"last_frame", mover.path.back().frame},
+                      {"way_m", way_m}});
+  }
+  return movers;
+}
+
 nlohmann::json lag_json(const StageSummary& lag) {
   return {{"p50_ms", lag.p50_ms}, {"p95_ms", lag.p95_ms}, {"p99_ms", lag.p99_ms}};
 }
@@ -84,7 +99,7 @@ nlohmann::json tracking_json(const TrackingRun& tracking) {
   nlohmann::json lost = nlohmann::json::array();
   for (const auto& [first, last] : done.lost) lost.push_back({first, last});
   return {{"frames", done.frames},
-          {"camera_doubt", tracking.sensor_doubt},
+          {"doubts", tracking.sensor_doubts},
           {"frames_tracked", done.tracked},
           {"lost", lost},
           {"found_times", done.found_times},
@@ -94,7 +109,27 @@ nlohmann::json tracking_json(const TrackingRun& tracking) {
           {"loop_candidates", tracking.loops.candidates},
           {"loops_closed", tracking.loops.closed},
           {"loops_dropped", tracking.loops.dropped},
-          {"loop_moved_m", tracking.loops.furthest_m}};
+          {"loop_moved_m", tracking.loops.furthest_m},
+          {"loop_fused_share", tracking.loops.fused_share}};
+}
+
+nlohmann::json parts_json(const std::vector<MapPart>& parts) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const MapPart& part : parts)
+    list.push_back({{"map", part.map.string()},
+                    {"first", part.first},
+                    {"last", part.last},
+                    {"frames", part.frames},
+                    {"instances", part.objects}});
+  return list;
+}
+
+void print_parts(const MappingRun& run) {
+  for (const MapPart& part : run.parts)
+    std::printf("nothing in frames %lld to %lld says where they lie: %s is a map of them alone, %zu "
+                "objects from %zu frames; `ovimap merge --align` joins maps that share a place\n",
+                static_cast<long long>(part.first), static_cast<long long>(part.last),
+                part.map.c_str(), part.objects, part.frames);
 }
 
 void print_tracking(const TrackingRun& tracking) {
@@ -108,10 +143,10 @@ void print_tracking(const TrackingRun& tracking) {
                 corrected.times, corrected.times == 1 ? "time" : "times",
                 100 * corrected.furthest_m);
   if (tracking.loops.closed > 0)
-    std::printf("%zu places were seen again%s; poses moved by up to %.1f cm\n",
-                tracking.loops.closed,
-                tracking.loops.correction ? ", and the map was fused anew" : "",
-                100 * tracking.loops.furthest_m);
+    std::printf("%zu places were seen again; poses moved by up to %.1f cm, and %.0f %% of the map "
+                "was fused anew\n",
+                tracking.loops.closed, 100 * tracking.loops.furthest_m,
+                100 * tracking.loops.fused_share);
 }
 
 bool masks_all_absent(const MappingRun& run) {
@@ -126,8 +161,9 @@ double frames_per_second(const MappingRun& run) {
 
 void report_faults(const MappingRun& run) {
   report_skipped(run.sequence);
-  if (run.tracking && !run.tracking->sensor_doubt.empty())
-    std::fprintf(stderr, "ovimap: %s\n", run.tracking->sensor_doubt.c_str());
+  if (run.tracking)
+    for (const std::string& doubt : run.tracking->sensor_doubts)
+      std::fprintf(stderr, "ovimap: %s\n", doubt.c_str());
   if (masks_all_absent(run))
     std::fprintf(stderr,
                  "ovimap: none of the %zu frames had masks, so the map tells no objects apart; "
@@ -154,7 +190,10 @@ nlohmann::json run_json(const std::filesystem::path& map, const MappingRun& run,
                            {"instances", run.document.instances.size()},
                            {"cpu_seconds", cpu_seconds()},
                            {"peak_rss_mb", peak_rss_mb()}};
+  report["movers"] = movers_json(run.document);
+  if (run.people_frames) report["people_frames"] = *run.people_frames;
   if (run.tracking) report["tracking"] = tracking_json(*run.tracking);
+  if (run.tracking) report["tracking"]["parts"] = parts_json(run.parts);
   if (run.live) report["live"] = live_json(*run.live, fps);
   return report;
 }
@@ -167,8 +206,18 @@ void print_run(const std::filesystem::path& map, const MappingRun& run, double f
   if (tiles.evicted > 0)
     std::printf("%zu tiles left memory on the way, %zu came back; peak memory %.0f MB\n",
                 tiles.evicted, tiles.loaded, peak_rss_mb());
+  if (!run.document.movers.empty())
+    std::printf("%zu things moved while they were seen\n", run.document.movers.size());
+  if (run.people_frames)
+    std::printf("left out people in %zu frames\n", *run.people_frames);
   if (run.tracking) print_tracking(*run.tracking);
+  print_parts(run);
   if (run.live) print_live(*run.live, fps);
+}
+
+double sent_fps(const LiveRunResult& run) {
+  const auto frames = run.statistics.frames_pushed + run.statistics.frames_dropped;
+  return run.camera_seconds > 0 ? static_cast<double>(frames) / run.camera_seconds : 0;
 }
 
 void advise_on_objects(const MappingRun& run) {

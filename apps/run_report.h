@@ -13,6 +13,9 @@ void report_faults(const MappingRun& run);
 nlohmann::json run_json(const std::filesystem::path& map, const MappingRun& run, double fps);
 void print_run(const std::filesystem::path& map, const MappingRun& run, double fps);
 
+/// Frames a second that a camera or clients sent, also those left out.
+double sent_fps(const LiveRunResult& run);
+
 /// On stderr, where the map has no object: why.
 void advise_on_objects(const MappingRun& run);
 

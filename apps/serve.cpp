@@ -6,10 +6,13 @@
 #include <thread>
 
 #include "ovimap/base/parallel.h"
+#include "ovimap/io/corrections/taught_file.h"
 #include "ovimap/server/api/viewer_files.h"
 #include "ovimap/server/http/access.h"
+#include "camera_run.h"
 #include "run_report.h"
 #include "serve_live.h"
+#include "teach_option.h"
 
 namespace ovimap::apps {
 
@@ -23,11 +26,14 @@ struct ServeOptions {
   ServedMapConfig served;
   std::string viewer = "auto";
   std::filesystem::path token_file;
+  TeachOption teach;
   double fps = 30;
   bool live = false, resume = false, no_limits = false, json = false;
 
   /// Clients send the frames.
   bool pushed() const { return live && subject == "http"; }
+  /// A camera sends them.
+  bool plugged() const { return live && names_camera(subject); }
   std::filesystem::path map() const { return live ? output : std::filesystem::path(subject); }
 };
 
@@ -73,13 +79,9 @@ void announce(const ServeOptions& options, const HttpServer& server) {
   std::fflush(stdout);
 }
 
-/// Frames a second that came, also those left out.
-double pushed_fps(const LiveRunResult& run) {
-  const auto frames = run.statistics.frames_pushed + run.statistics.frames_dropped;
-  return run.camera_seconds > 0 ? static_cast<double>(frames) / run.camera_seconds : 0;
-}
-
-void serve_live(const ServeOptions& options) {
+int serve_live(ServeOptions options) {
+  std::optional<CameraRun> camera;
+  if (options.plugged()) camera.emplace(options.mapping);
   const ProgramConfig config = read_program_config(options.mapping);
   FrameIntake intake(static_cast<std::size_t>(config.live.queue));
   LiveService service{options.mapping,
@@ -94,9 +96,10 @@ void serve_live(const ServeOptions& options) {
                                 options.mapping.poses != "track" &&
                                 options.mapping.poses != "refine";
   if (options.pushed()) service.intake = &intake;
+  if (camera) service.intake = &camera->intake(), service.camera = &camera->feed();
   service.run([&](const HttpServer& server) { announce(options, server); },
               [&](const MappingRun& run) {
-                const double fps = options.pushed() ? pushed_fps(*run.live) : options.fps;
+                const double fps = service.intake ? sent_fps(*run.live) : options.fps;
                 report_faults(run);
                 if (options.json)
                   print_line({{"saved", run_json(options.output, run, fps)}});
@@ -105,6 +108,7 @@ void serve_live(const ServeOptions& options) {
                 advise_on_objects(run);
                 std::fflush(stdout);
               });
+  return camera && !camera->report_loss() ? kAnswerIsNo : kDone;
 }
 
 void serve_map(const ServeOptions& options) {
@@ -139,13 +143,13 @@ int serve(ServeOptions options) {
   options.served.encoder = options.mapping.encoder;
   options.served.model_dirs = options.mapping.model_dirs;
   options.served.threads = options.mapping.threads;
+  options.served.taught = options.teach.file();
+  (void)read_taught_file(options.served.taught);  // says now what is wrong with it
   if (options.pushed() && options.mapping.frames != ":")
     throw Error("--frames chooses frames of a recording; leave it away where clients send them");
   watch_for_interrupt();
-  if (options.live)
-    serve_live(options);
-  else
-    serve_map(options);
+  if (options.live) return serve_live(std::move(options));
+  serve_map(options);
   return kDone;
 }
 
@@ -190,7 +194,8 @@ void add_live_options(CLI::App& command, ServeOptions& options) {
   add_mapping_settings(command, options.mapping);
   add_poses(command, options.mapping);
   for (const char* name :
-       {"--masks", "--recognizer", "--preset", "--views", "--config", "--set", "--frames", "--poses"})
+       {"--masks", "--recognizer", "--preset", "--views", "--config", "--set", "--frames", "--poses",
+        "--people"})
     command.get_option(name)->needs(live);
 }
 
@@ -201,7 +206,8 @@ Action add_serve(CLI::App& command) {
   command
       .add_option(
           "MAP", options->subject,
-          "map file; with --live a recording, or http: frames that clients send (docs/live.md)")
+          "map file; with --live a recording, openni: for a camera, or http: frames that clients send "
+          "(docs/live.md)")
       ->required();
   command.add_option("--port", options->server.port, "port to listen at; 0: any free one")
       ->check(CLI::Range(0, 65535))
@@ -218,6 +224,8 @@ Action add_serve(CLI::App& command) {
                   "names to guess from: replica51, scannet200, scannet20 or a text file with one a "
                   "line")
       ->capture_default_str();
+  add_teach_option(command, options->teach,
+                   "whether what people name here teaches other maps, and they this one");
   add_live_options(command, *options);
   command.add_flag("--no-limits", options->no_limits,
                    "answer as often as one asks: for tests, and where everybody is trusted");

@@ -27,7 +27,8 @@ class Service : public LiveAudience {
     begun.record.semantics.encoder = encoder;
     begun.info.voxel_size_m = config.map.voxel_size_m;
     map_ = std::make_unique<ServedMap>(options_.target.map, std::move(begun), options_.served);
-    server_ = std::make_unique<ServerThread>(*map_, options_.server, options_.intake);
+    server_ = std::make_unique<ServerThread>(*map_, options_.server,
+                                             options_.camera ? nullptr : options_.intake);
     feed_ = std::make_unique<LiveFeed>(*map_);
     announce_(server_->server());
   }
@@ -78,7 +79,7 @@ void LiveService::run(const Announce& announce,
                       const std::function<void(const MappingRun&)>& saved) const {
   check_map_target(target.map);
   Service service(*this, announce);
-  MappingRun mapped = map_live(mapping, fps, target, &service, intake);
+  MappingRun mapped = map_live(mapping, fps, target, &service, intake, camera);
   save_map(target.map, mapped.document);
   saved(mapped);
   const bool go_on = !interrupted();

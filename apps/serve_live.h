@@ -27,7 +27,7 @@ class ServerThread {
   std::future<void> running_;
 };
 
-/// Maps a recording at a camera's pace, or what clients push, and serves the map meanwhile; then
+/// Maps a recording at a camera's pace, a camera, or what clients push, and serves the map meanwhile; then
 /// saves it and goes on serving until Ctrl-C. Ctrl-C before that saves what was mapped and ends it.
 /// Returns what was mapped, its document given to the served map.
 struct LiveService {
@@ -36,7 +36,8 @@ struct LiveService {
   double fps = 30;
   ServerConfig server;
   ServedMapConfig served;
-  FrameIntake* intake = nullptr;  ///< frames that clients push, instead of a recording's
+  FrameIntake* intake = nullptr;  ///< frames from there, instead of a recording's
+  CameraFeed* camera = nullptr;   ///< feeds the intake; null: clients push into it
 
   /// `saved`: called when the map is in its file.
   void run(const Announce& announce, const std::function<void(const MappingRun&)>& saved) const;

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
+#include <numbers>
 
 #include "command.h"
 #include "ovimap/base/error.h"
@@ -15,6 +16,7 @@ namespace ovimap::apps {
 
 namespace {
 
+constexpr float kGyroscope_hz = 200;  // of depth cameras: 200 or 400
 constexpr int kLeastSide_px = 16, kMostSide_px = 8192;
 
 struct SynthOptions {
@@ -22,6 +24,8 @@ struct SynthOptions {
   RoomOptions room;
   bool walk = false, exact = false;
   VideoConfig video;
+  double whip_deg_s = 0;
+  bool gyroscope = false;
   std::vector<CLI::Option*> of_videos;
   std::string size;
   std::vector<std::string> settings;
@@ -31,6 +35,7 @@ struct SynthOptions {
   }
 
   int visits = 0;  ///< 0: one recording
+  bool figure = false;
   bool catalog = false;
   int views = PortraitConfig{}.views;
   int threads = 0;
@@ -51,11 +56,17 @@ RoomOptions chosen_room(const SynthOptions& options, const std::string& room) {
   RoomOptions chosen = options.room;
   chosen.room = room;
   if (options.is_video()) chosen.frames_as.noise = !options.exact;
+  chosen.frames_as.figure.enabled = options.figure;
   if (!options.size.empty()) set_size(options.size, chosen);
   ConfigFields fields;
   list_fields(chosen.frames_as, fields);
   apply_settings(options.settings, fields);
-  if (options.is_video()) chosen.video = options.video;
+  if (options.is_video()) {
+    chosen.video = options.video;
+    chosen.video->walk.whip_rad_s =
+        static_cast<float>(options.whip_deg_s * std::numbers::pi / 180);
+    if (options.gyroscope) chosen.video->gyroscope.rate_hz = kGyroscope_hz;
+  }
   return chosen;
 }
 
@@ -116,7 +127,7 @@ int synth(const SynthOptions& options) {
   else
     rooms.push_back(render(options, options.room.room, options.walk ? options.room.room : "room"));
   nlohmann::ordered_json scenes = nlohmann::ordered_json::array();
-  for (const auto& [scene, frames, objects] : rooms) {
+  for (const auto& [scene, frames, objects, moving] : rooms) {
     scenes.push_back({{"scene", scene}, {"frames", frames}, {"instances", objects}});
     if (!options.json)
       std::printf("%s: %lld frames, %zu objects\n", scene.c_str(), static_cast<long long>(frames),
@@ -164,6 +175,14 @@ void add_walk_options(CLI::App& command, SynthOptions& options, CLI::Option* noi
       command.add_option("--speed", video.speed_mps, "of a walk: metres a second")
           ->check(CLI::Range(0.05, 3.0))
           ->capture_default_str(),
+      command
+          .add_option("--whip", options.whip_deg_s,
+                      "of a walk: every few seconds a pan aside and back, up to so many degrees a "
+                      "second")
+          ->check(CLI::Range(0.0, 1000.0)),
+      command.add_flag("--gyroscope", options.gyroscope,
+                       "of a walk: beside the frames what the camera's gyroscope measures, with its "
+                       "noise and offset, as gyroscope.txt"),
       command.add_flag("--exact", options.exact, "of a walk: exact frames, as of no real sensor")};
 }
 
@@ -196,6 +215,8 @@ Action add_synth(CLI::App& command) {
                   "so many visits to the room, OUT/visit1, OUT/visit2, ...: things move, go and come "
                   "in between; OUT/changes.json tells which")
       ->check(CLI::Range(1, 1000));
+  command.add_flag("--figure", options->figure,
+                   "somebody walks through with a carton in the hands, in every visit");
   command.add_option("--size", options->size, "WIDTHxHEIGHT of the frames; else as the room says");
   auto* catalog = command.add_flag(
       "--catalog", options->catalog,

@@ -57,7 +57,9 @@ WrittenRoom write_sequence(
   for (const TruthInstance& instance : sequence.instances())
     pack.instances.push_back({instance.id, instance.class_id, instance.class_name, instance.room});
   write_replica_pack(out, pack, {}, progress);
-  return {(out / scene).string(), sequence.size(), pack.instances.size()};
+  if (const std::vector<TurnRate> rates = sequence.turn_rates(); !rates.empty())
+    write_text(out / scene / kGyroscopeFile, gyroscope_text(rates));
+  return {(out / scene).string(), sequence.size(), pack.instances.size(), sequence.moving()};
 }
 
 nlohmann::ordered_json box_json(const Eigen::AlignedBox3f& box) {
@@ -112,6 +114,8 @@ std::vector<WrittenRoom> write_visits(
                          const auto before = static_cast<std::int64_t>(number - 1) * frames;
                          if (progress) progress(before + done, visits * frames);
                        }));
+    for (const std::uint32_t id : written.back().moving)
+      truth["moving"].push_back({{"visit", number}, {"object", id}});
   }
   write_text(out / "changes.json", truth.dump(1) + "\n");
   return written;

@@ -31,6 +31,7 @@ struct WrittenRoom {
   std::string scene;  ///< the folder
   std::int64_t frames = 0;
   std::size_t objects = 0;
+  std::vector<std::uint32_t> moving = {};  ///< instance ids of what moves while it is filmed
 };
 
 /// Renders a room into the recording `out`/`scene`. Throws Error for an unknown room and what

@@ -17,6 +17,7 @@ import anyio
 from mcp.client.client import Client
 from mcp.client.stdio import StdioServerParameters, get_default_environment, stdio_client
 from ovimap.agents import open_map
+from ovimap.watching import watch_map
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 KINDS = ("old", "new", "small", "large")
@@ -50,11 +51,17 @@ async def time_finds(given):
 
 
 def time_standing(given):
+    """A server is asked as `ovimap-watch` does: it tells the first when all were asked."""
     backend = open_map(given)
     print(f"{backend.summary().objects} objects, {STANDING} standing queries")
-    for title in ("first look, texts encoded", "second look", "third look"):
+    queries = [*words()[1:], "largest object"]
+    served = "://" in given
+    for title in ("first look, texts encoded", "another client" if served else "second look"):
         cpu, wall = time.process_time(), time.perf_counter()
-        backend.verdicts(words())
+        if served:
+            watch_map(backend, queries, lambda event: False)
+        else:
+            backend.verdicts(queries)
         print(f"{title}: {time.perf_counter() - wall:.2f} s, of which {time.process_time() - cpu:.2f} s of this process")
 
 

@@ -37,6 +37,12 @@ set_target_properties(onnxruntime_imported PROPERTIES
   IMPORTED_LOCATION "${ONNXRUNTIME_LIBRARY}"
   INTERFACE_INCLUDE_DIRECTORIES "${ONNXRUNTIME_INCLUDE_DIR}")
 
+# OpenNI's headers are enough: the library is loaded when a camera is asked for.
+find_path(OPENNI2_INCLUDE_DIR OniCAPI.h PATH_SUFFIXES openni2 ni2)
+if(NOT OPENNI2_INCLUDE_DIR)
+  message(STATUS "OpenNI 2 was not found (libopenni2-dev): `ovimap run openni:` will say so")
+endif()
+
 if(OVIMAP_SYNTH)
   find_package(embree 4 QUIET)  # of Debian 13
   if(NOT embree_FOUND)

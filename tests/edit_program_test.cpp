@@ -84,5 +84,36 @@ TEST_F(EditProgramTest, TellsWhatWasDone) {
   expect_complaint("edit missing.ovimap log", {"missing.ovimap"});
 }
 
+/// What a person named answers to it, and teaches other maps when that is asked for.
+TEST_F(EditProgramTest, NamesTeach) {
+  map_with(golden_model("minilm"));
+  const std::string id = std::to_string(ids()[1]);
+  const auto best = [&](const std::string& options) {
+    const std::string query = " zaphod --top 1 --json --encoder " + golden_model("minilm");
+    return nlohmann::json::parse(run("query room.ovimap" + options + query).out)["results"][0]["instances"][0];
+  };
+  edit("rename " + id + " zaphod");
+  EXPECT_EQ(best("")["id"], ids()[1]);
+  EXPECT_LT(best(" --set query.evidence.taught_weight=0")["standard_score"].get<float>() + 5.f,
+            best("")["standard_score"].get<float>());
+  EXPECT_FALSE(std::filesystem::exists(path("taught.json"))) << "it is off unless it is asked for";
+  const auto done = run_json("edit room.ovimap --teach taught.json --json rename " + id + " zaphod");
+  EXPECT_EQ(done["taught"], 1);
+  EXPECT_NE(slurp(path("taught.json")).find("zaphod"), std::string::npos);
+  EXPECT_EQ(best(" --teach taught.json")["id"], ids()[1]);
+  for (int i = 0; i < 2; ++i) run_json("edit room.ovimap --teach taught.json --json undo");
+  EXPECT_EQ(slurp(path("taught.json")).find("zaphod"), std::string::npos);
+}
+
+TEST_F(EditProgramTest, SaysWhatIsWrongWithWhatWasTaught) {
+  map_with("none");
+  std::ofstream(path("taught.json")) << "{}";
+  for (const char* command : {"query room.ovimap zaphod --teach taught.json --encoder none",
+                              "serve room.ovimap --port 0 --teach taught.json",
+                              "edit room.ovimap --teach taught.json rename 1 cup"})
+    expect_complaint(command, {"taught.json", "--teach FILE"});
+  EXPECT_TRUE(run_json("edit room.ovimap log --json")["edits"].empty()) << "rather none than half";
+}
+
 }  // namespace
 }  // namespace ovimap

@@ -55,7 +55,7 @@ def main(program, source):
         # Where to stand and rooms are read anew after every correction, so they are asked apart.
         space = ("/api/approach", "/api/rooms")
         code = fuzz_server([program, "serve", str(copy)], 0, [f"--include-path={path}" for path in space], warm="api/rooms")
-        code = code or fuzz_server([program, "serve", str(copy)], 0, [f"--exclude-path={path}" for path in ("/api/events", *space)])
+        code = code or fuzz_server([program, "serve", str(copy)], 0, [f"--exclude-path={path}" for path in ("/api/events", "/api/watch", *space)])
         # A server that takes frames. No schema can say what a rigid pose is, or an image of the camera's size: sound
         # frames are not invented, and in the end there is no map.
         taking = [program, "serve", "http", "--live", "-o", str(pathlib.Path(folder) / "pushed.ovimap")]

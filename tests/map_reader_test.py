@@ -52,6 +52,8 @@ COLUMNS = {
     "visit_times": "visit, recorded_s",
     "object_events": "id, instance, kind, visit, frame, before, after, may_be",
     "past_objects": "event, centroid_x, centroid_y, centroid_z, points, views, super_points, surface, colors",
+    "seen_free": "region, cells",
+    "movers": "id, size_x, size_y, size_z, path",
     "edits": "id, time_s, action, arguments, undone_by",
     "corrected_flags": "id, hidden, locked",
 }

@@ -117,7 +117,7 @@ TEST_F(ProgramTest, ReferencePresetChoosesItsOwnViews) {
     EXPECT_EQ(run("run replica/scene --preset reference -o room.ovimap " + options).code, 0);
     const std::string config = run_json("info room.ovimap --json")["config"];
     EXPECT_NE(config.find("views.strategy: " + strategy + "\n"), std::string::npos) << config;
-    EXPECT_NE(config.find("network_mask_interval: 1\n"), std::string::npos) << config;
+    EXPECT_NE(config.find("mask_motion: 0\n"), std::string::npos) << config;
   };
   expect_views("", "combine");
   expect_views("--views viewcov", "coverage");

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "ovimap/frames/calibration/color_calibration.h"
@@ -31,13 +33,34 @@ class TwoCameraRoom final : public FrameSource {
     frame.world_from_camera = pose;
     frame.depth_camera = frame.color_camera = spec_.camera;
     frame.depth = noisy_depth(renderer_.render(spec_.camera, pose, false), {}, seed);
-    frame.color = noisy_color(
-        renderer_.render(truth_.camera, pose * truth_.color_from_depth.inverse()).color, {}, seed);
+    frame.color = noisy_color(seen_through_lens(pose * truth_.color_from_depth.inverse()), {}, seed);
     return {std::move(frame), {}};
   }
   const PinholeCamera& camera() const { return spec_.camera; }
 
  private:
+  /// A straight picture with a border of half its size around, looked up where the lens shows it.
+  RgbImage seen_through_lens(const Pose& pose) const {
+    if (truth_.lens == Lens{}) return renderer_.render(truth_.camera, pose).color;
+    PinholeCamera wide = truth_.camera;
+    wide.width *= 2, wide.height *= 2;
+    wide.cx += static_cast<float>(truth_.camera.width / 2);
+    wide.cy += static_cast<float>(truth_.camera.height / 2);
+    const RgbImage straight = renderer_.render(wide, pose).color;
+    RgbImage bent(truth_.camera.width, truth_.camera.height);
+    for (int y = 0; y < bent.height(); ++y)
+      for (int x = 0; x < bent.width(); ++x) {
+        const Eigen::Vector2d at = truth_.camera.unproject(static_cast<float>(x), static_cast<float>(y), 1)
+                                       .head<2>().cast<double>();
+        Eigen::Vector2d ray = at;
+        for (int i = 0; i < 20; ++i) ray += at - truth_.lens.bend(ray);
+        const Eigen::Vector2f pixel = wide.project(ray.homogeneous().cast<float>());
+        bent.at(x, y) = straight.at(std::clamp(static_cast<int>(pixel.x() + 0.5f), 0, wide.width - 1),
+                                    std::clamp(static_cast<int>(pixel.y() + 0.5f), 0, wide.height - 1));
+      }
+    return bent;
+  }
+
   static RoomSpec small(RoomSpec spec) {
     spec.camera = spec.camera.scaled_to(320, 240);
     return spec;
@@ -81,6 +104,12 @@ TEST(RoomCalibration, ShorterFocalLengthInTheTinyRoom) {
 TEST(RoomCalibration, LongerFocalLengthInTheTinyRoom) {
   expect_found_within_a_pixel("tiny", view({320, 240, 268.8f, 268.8f, 162.5f, 124},
                                            {0.012, -0.015, -0.006}, {0.05, 0, -0.005}));
+}
+
+TEST(RoomCalibration, ALensThatNobodyTold) {
+  ColorView truth = view({320, 240, 232, 232, 161, 118}, {0.006, -0.004, 0.003}, {0.03, 0.002, 0});
+  truth.lens = {Lens::Model::kBrownConrady, {-0.28, 0.09}};
+  expect_found_within_a_pixel("bedroom", truth);
 }
 
 TEST(RoomCalibration, FarBesideInTheBedroom) {

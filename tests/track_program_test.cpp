@@ -1,5 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+#include "ovimap/track/room_camera_fixture.h"
 #include "program_fixture.h"
 
 namespace ovimap {
@@ -22,6 +30,24 @@ class TrackProgramTest : public ProgramTest {
   void cover(int frame) const {
     const Image<std::uint16_t> dark(320, 240, 20);  // 2 cm
     write_file(path("unposed") / "depth" / concat(frame, ".png"), encode_png(dark));
+  }
+  /// Writes a frame of the recording that shows the room from somewhere else, by a sensor that reads
+  /// so much too far.
+  void show(int frame, const Pose& pose, float too_far = 1) const {
+    fixture::RoomCamera camera;
+    camera.camera = sequence_.depth_camera;
+    const Frame taken = camera.take(pose);
+    Image<std::uint16_t> depth(320, 240);
+    std::transform(taken.depth.begin(), taken.depth.end(), depth.begin(), [&](float metres) {
+      return static_cast<std::uint16_t>(std::lround(1000 * too_far * metres));
+    });
+    write_file(path("unposed") / "depth" / concat(frame, ".png"), encode_png(depth));
+    write_file(path("unposed") / "color" / concat(frame, ".png"), encode_png(taken.color));
+  }
+  static Pose behind(int frame) {
+    Pose pose = fixture::room_pose(frame);
+    pose.rotate(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitY()));
+    return pose;
   }
   static constexpr const char* kRun =
       "run unposed --set map.voxel_size_m=0.02 --trajectory poses.txt -o map.ovimap ";
@@ -61,6 +87,88 @@ TEST_F(TrackProgramTest, ACoveredLensIsToldAndMapsNothing) {
   const auto report = run_json(std::string(kRun) + "--json");
   EXPECT_EQ(report["frames"], 17);
   EXPECT_EQ(report["tracking"]["frames_tracked"], 17);
+}
+
+/// Two recordings in one: the second has a map of its own, and nothing of it is in the first.
+TEST_F(TrackProgramTest, WhatIsNowhereIsMappedByItself) {
+  const std::string run_to = std::string(kRun) + "--set track.part_frames=8 --json";
+  for (int frame = 8; frame < 20; ++frame) show(frame, behind(frame));
+  const auto report = run_json(run_to);
+  EXPECT_EQ(report["frames"], 8);
+  const auto& parts = report["tracking"]["parts"];
+  ASSERT_EQ(parts.size(), 1u);
+  EXPECT_EQ(parts[0]["first"], 8);
+  EXPECT_EQ(parts[0]["last"], 19);
+  EXPECT_EQ(parts[0]["frames"], 12);
+  EXPECT_EQ(run_json("info map.part2.ovimap --json")["frames"], 12);
+  ASSERT_EQ(run(std::string(kRun) + "--frames :8").code, 0);
+  const auto alone = run_json("info map.ovimap --json");
+  ASSERT_EQ(run(run_to).code, 0);
+  EXPECT_EQ(run_json("info map.ovimap --json")["content_hash"], alone["content_hash"]);
+  EXPECT_FALSE(std::filesystem::exists(path("map.part2.ovimap.partial")));
+}
+
+TEST_F(TrackProgramTest, AFewLostFramesAreNoPart) {
+  for (int frame : {9, 10, 11}) show(frame, behind(frame));
+  const auto report = run_json(std::string(kRun) + "--set track.part_frames=8 --json");
+  EXPECT_EQ(report["frames"], 17);
+  EXPECT_TRUE(report["tracking"]["parts"].empty());
+  EXPECT_FALSE(std::filesystem::exists(path("map.part2.ovimap")));
+}
+
+/// A recording that goes to and fro with a sensor that warms up, so that the camera drifts, and is killed
+/// while its loops are closed.
+class KilledClosureTest : public TrackProgramTest {
+ protected:
+  KilledClosureTest() {
+    for (int frame = 0; frame < 20; ++frame)
+      show(frame, fixture::room_pose(std::min(frame, 19 - frame)), 1 + 0.001f * static_cast<float>(frame));
+  }
+  /// The one checkpoint is made before the last loops are closed. Poses that shake make them move.
+  static constexpr const char* kClose =
+      "run unposed --poses track --masks none --encoder none --set map.voxel_size_m=0.012 --set "
+      "loops.online=false --set loops.min_path_m=0.1 --set checkpoint.seconds=100000 --set "
+      "loops.step_sigma_m=0.1 --set track.keyframe_step_m=0.04 --resume -o map.ovimap";
+
+  /// Kills the program so long after it has begun to write its checkpoint.
+  void run_and_kill(std::chrono::milliseconds delay) const {
+    const pid_t child = ::fork();
+    if (child == 0) execute();
+    const auto log = path("map.ovimap.partial-wal");
+    int status = 0;
+    while (!std::filesystem::exists(log) && ::waitpid(child, &status, WNOHANG) == 0)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    std::this_thread::sleep_for(delay);
+    ::kill(child, SIGKILL);
+    ::waitpid(child, &status, 0);
+  }
+  [[noreturn]] void execute() const {
+    const int out = ::open(path("killed.txt").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    if (::chdir(folder_.path().c_str()) != 0 || ::dup2(out, 1) < 0 || ::dup2(out, 2) < 0)
+      ::_exit(90);
+    const std::string command = concat("exec '", OVIMAP_PROGRAM, "' ", kClose);
+    ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
+    ::_exit(91);
+  }
+};
+
+TEST_F(KilledClosureTest, ResumesToTheSameMap) {
+  const auto whole = run_json(std::string(kClose) + " --json");
+  EXPECT_GT(whole["tracking"]["loops_closed"], 0);
+  EXPECT_GT(whole["tracking"]["loop_moved_m"], 0.006) << "the map was not fused anew";
+  const auto expected = run_json("info map.ovimap --json")["content_hash"];
+  int closing = 0;
+  for (const int delay : {0, 5, 10, 20, 40, 80, 120, 200, 300, 400}) {
+    std::filesystem::remove(path("map.ovimap"));
+    run_and_kill(std::chrono::milliseconds(delay));
+    const ProgramResult partial = run("info map.ovimap.partial --json");
+    const bool unfinished = !std::filesystem::exists(path("map.ovimap"));
+    closing += unfinished && partial.code == 0 &&
+               nlohmann::json::parse(partial.out)["frames"] == sequence_.frames;
+    ASSERT_EQ(run(kClose).code, 0) << delay;
+    EXPECT_EQ(run_json("info map.ovimap --json")["content_hash"], expected) << delay;
+  }
+  EXPECT_GT(closing, 0) << "no kill came between the last frame and the map";
 }
 
 TEST_F(TrackProgramTest, WhatNeedsPosesSaysSo) {

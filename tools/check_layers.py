@@ -11,10 +11,10 @@ ROOM = re.compile(r"^\| (\w+)/(\w+) \| [^|]* \|$")
 MOST_SOURCES = 24  # in one folder, tests and fixtures aside: what a newcomer can still look over
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]')
 TYPE = re.compile(r"^(?:struct|class|enum class) (\w+)[^;]*\{", re.MULTILINE)
-HEADERS = {"unzip": "minizip", "sentencepiece_processor": "sentencepiece"}  # where it is not the library's name
+HEADERS = {"unzip": "minizip", "sentencepiece_processor": "sentencepiece", "OniCAPI": "openni2"}  # where it is not the library's name
 TEST_LIBRARIES = {"gtest"}
 FLAT = {"apps", "python"}  # one file per subcommand or binding
-SYSTEM = {"unistd.h", "dlfcn.h", "spawn.h", "sys", "fcntl.h", "dirent.h", "arpa", "netinet"}  # POSIX
+SYSTEM = {"unistd.h", "dlfcn.h", "spawn.h", "sys", "fcntl.h", "dirent.h", "arpa", "netinet", "malloc.h"}  # POSIX, glibc
 
 
 def read_table(text):

@@ -99,10 +99,24 @@ def kitchen_section(program, kitchen, work):
             encoders.append((f"{name} alone", map_file, ["--encoder", folder]))
     encoders.append(("both, picture alone", made, dict(search_evidence.PIECES)["picture alone"]))
     encoders.append(("both (default)", made, []))
+    how = ["    ovimap run KITCHEN --masks sam -o kitchen.ovimap", "",
+           f"{summary['instances']} objects, {summary['embedding_queries']} embedding queries "
+           f"({summary['embedding_queries'] / summary['instances']:.1f} an object), {summary['seconds']:.0f} s."]
+    return (kitchen_phrases(program, encoders, how) + [""] + kitchen_views(program, kitchen, made, work)
+            + relation_section(program, made))
+
+
+def known_kitchen_section(program, map_file):
+    """Of a map of the kitchen that was made before, by the default encoder alone."""
+    count = len(run_json(program, "info", map_file)["instances"])
+    how = ["    ovimap run KITCHEN --masks sam --set crops.scales=1 -o kitchen.ovimap", "", f"{count} objects."]
+    return kitchen_phrases(program, [("both (default)", map_file, [])], how) + [""] + relation_section(program, map_file)
+
+
+def kitchen_phrases(program, encoders, how):
+    """Ranks and verdicts of the phrases and words for encoders (name, map, options of the query)."""
     columns = {name: list(kitchen_ranks(program, map_file, *options)) for name, map_file, options in encoders}
-    text = [KITCHEN_HEAD, "", measured_at(), "", "    ovimap run KITCHEN --masks sam -o kitchen.ovimap", "",
-            f"{summary['instances']} objects, {summary['embedding_queries']} embedding queries "
-            f"({summary['embedding_queries'] / summary['instances']:.1f} an object), {summary['seconds']:.0f} s. "
+    text = [KITCHEN_HEAD, "", measured_at(), "", *how, "",
             "Rank of the first right object among all; a dash: the map has no such object of its own.", "",
             "| phrase | " + " | ".join(f"{name}: rank | verdict" for name in columns) + " |",
             "| --- |" + " --- | --- |" * len(columns)]
@@ -119,7 +133,7 @@ def kitchen_section(program, kitchen, work):
         wrong = verdict_rates(program, map_file, *options)
         text.append(f"| {name} | {len(wrong['absent']) / 50:.0%} ({', '.join(wrong['absent']) or 'none'}) "
                     f"| {len(wrong['present']) / 50:.0%} ({', '.join(wrong['present'])}) |")
-    return text + [""] + kitchen_views(program, kitchen, made, work) + relation_section(program, made)
+    return text
 
 
 def kitchen_views(program, kitchen, made, work):
@@ -195,7 +209,7 @@ def encoders_section(program, rooms, work):
     return text + [f"| both (default) | {default_figures(program, rooms, work)} |"]
 
 
-def evidence_section(program, rooms, work):
+def evidence_section(program, rooms, work, unseen=()):
     def map_of(room):
         map_file = work / f"{'-'.join(room.parts[-2:])}.ovimap"
         if not map_file.exists():
@@ -209,8 +223,10 @@ def evidence_section(program, rooms, work):
     def ask(map_file, texts, *options):
         return query(program, map_file, texts, "--set", "query.grammar=false", *options)
 
-    text = search_evidence.evidence_section(ask, rooms, map_of, ranks_of)
-    return text[:1] + ["", measured_at()] + text[1:]
+    text = [search_evidence.HEAD, "", measured_at(), "", *search_evidence.evidence_section(ask, rooms, map_of, ranks_of, unseen)]
+    if unseen:
+        text += ["", "Places that nothing was chosen by:", "", *search_evidence.evidence_section(ask, unseen, map_of, ranks_of, rooms)]
+    return text
 
 
 def kitchen_evidence(program, map_file):
@@ -225,15 +241,18 @@ def kitchen_evidence(program, map_file):
 
 
 def write_evidence(options):
-    rooms = tuple(sorted(file.parent for file in options.rooms.glob("**/traj.txt")))
+    rooms, unseen = (tuple(sorted(file.parent for file in folder.glob("**/traj.txt"))) if folder else () for folder in (options.rooms, options.unseen))
     with tempfile.TemporaryDirectory() as folder:
-        text = evidence_section(options.program, rooms, pathlib.Path(folder))
+        text = evidence_section(options.program, rooms, options.maps or pathlib.Path(folder), unseen)
     if options.kitchen_map:
         text += kitchen_evidence(options.program, options.kitchen_map)
     page = options.out.read_text()
     begin = page.find(search_evidence.HEAD)
     begin = page.index(VIEWS_HEAD) if begin < 0 else begin
-    options.out.write_text(page[:begin] + "\n".join(text) + "\n\n" + page[page.index(VIEWS_HEAD):])
+    rest = page[page.index(VIEWS_HEAD):]
+    if options.kitchen_map:
+        rest = rest.split(KITCHEN_HEAD)[0] + "\n".join(known_kitchen_section(options.program, options.kitchen_map)) + "\n"
+    options.out.write_text(page[:begin] + "\n".join(text) + "\n\n" + rest)
 
 
 def views_section(program, rooms, work):
@@ -268,6 +287,8 @@ def main():
     parser.add_argument("--keep-rooms", action="store_true")
     parser.add_argument("--only-evidence", action="store_true")
     parser.add_argument("--kitchen-map", type=pathlib.Path)
+    parser.add_argument("--unseen", type=pathlib.Path, help="with --only-evidence: further rooms, of a table of their own")
+    parser.add_argument("--maps", type=pathlib.Path, help="with --only-evidence: folder whose maps of rooms are used again")
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("docs/search-benchmarks.md"))
     options = parser.parse_args()
     if options.only_evidence:

@@ -10,12 +10,14 @@ HEAD = "## What each piece of evidence adds"
 UNCLEAR = "object"
 WIDE = 3  # household words below a word that is called wide ("seat")
 NO_SIZE, NO_RIVALS, NO_THINGS = (["--set", f"query.evidence.{weight}=0"] for weight in ("size_weight", "competition", "thing_weight"))
+PLAIN_STRUCTURE = ["--set", "query.evidence.structure_weight=0.5", "--set", "query.evidence.most_structure_ratio=3"]  # as other things
 PIECES = [
     ("picture alone", NO_SIZE + NO_RIVALS + NO_THINGS),
     ("with size and place", NO_RIVALS + NO_THINGS),
     ("with rival words", NO_SIZE + NO_THINGS),
     ("with named things", NO_SIZE + NO_RIVALS),
     ("all but named things", NO_THINGS),
+    ("all, structure as any thing", PLAIN_STRUCTURE),
     ("all (default)", []),
 ]
 
@@ -90,13 +92,12 @@ def room_names(room):
     return json.loads((room / "labels.json").read_text())["instances"]
 
 
-def evidence_section(query, rooms, map_of, ranks_of):
+def evidence_section(query, rooms, map_of, ranks_of, words_of=()):
     """`query(map, texts, *options)` answers texts, `map_of(room)` is a room's map, `ranks_of(answers, names)` ranks of the
-    first right objects."""
-    everywhere = sorted({name for room in rooms for name in room_names(room).values()})
-    text = [HEAD, "",
-            "rooms-v1 with sensor noise, true instances; mean over the rooms. Words: the classes in the room, floor, walls and ceiling "
-            "too. Found: of these words, those answered \"found\" with a right object first; of all answered \"found\" among them and "
+    first right objects. `words_of`: other rooms whose words are asked as well."""
+    everywhere = sorted({name for room in [*rooms, *words_of] for name in room_names(room).values()})
+    text = [f"{', '.join(sorted('-'.join(room.parts[-2:]) for room in rooms))}: true instances; mean over the rooms. Words: the classes "
+            "in the room, floor, walls and ceiling too. Found: of these words, those answered \"found\" with a right object first; of all answered \"found\" among them and "
             "as many absent ones (classes of the other rooms, scaled), those that are right; absent ones answered \"found\".", "",
             "| evidence | MRR | first | found and right | right of found | absent, found |", "| --- | --- | --- | --- | --- | --- |"]
     totals = {}

@@ -6,7 +6,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "ovimap/instance/entity_consensus.h"
+#include "ovimap/instance/consensus/entity_consensus.h"
 
 namespace ovimap::bench {
 namespace {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "ovimap/eval/scores/standard_scores.h"
-#include "ovimap/instance/judged_contraction.h"
+#include "ovimap/instance/consensus/judged_contraction.h"
 #include "ovimap/io/map_file/map_file.h"
 #include "ovimap/io/truth/truth.h"
 #include "ovimap/map/surface/mesh_extraction.h"

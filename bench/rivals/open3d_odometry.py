@@ -105,6 +105,7 @@ def main():
     parser.add_argument("-o", "--output", type=pathlib.Path, required=True)
     parser.add_argument("--json", action="store_true")
     arguments = parser.parse_args()
+    open3d.utility.set_verbosity_level(open3d.utility.VerbosityLevel.Error)  # warnings go to stdout, where the result goes
     tracker, lines, times, failed = (Odometry if arguments.method == "odometry" else Slam)(), [], [], 0
     with tempfile.TemporaryDirectory() as folder:
         ours = Ours(arguments.program, arguments.recording, pathlib.Path(folder))

@@ -15,6 +15,7 @@ void bind_images(nb::module_& module);
 void bind_sources(nb::module_& module);
 void bind_check(nb::module_& module);
 void bind_calibrate(nb::module_& module);
+void bind_cameras(nb::module_& module);
 void bind_masks(nb::module_& module);
 void bind_encoders(nb::module_& module);
 void bind_mapper(nb::module_& module);

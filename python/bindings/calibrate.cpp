@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 
 #include "arrays.h"
@@ -67,6 +68,13 @@ void bind_calibrate(nb::module_& module) {
       .def_prop_ro(
           "sharpness", [](const Calibrated& self) { return self.result.sharpness; },
           "by what share edges meet worse when colour moves by 1% of its width")
+      .def_prop_ro(
+          "radial",
+          [](const Calibrated& self) {
+            const auto& k = self.result.found.lens.coefficients;
+            return std::pair(k[0], k[1]);
+          },
+          "k1 and k2 of colour's lens; 0 where none was found, or one is given")
       .def_prop_ro("color_camera", [](const Calibrated& self) { return self.result.found.camera; })
       .def_prop_ro(
           "color_from_depth",

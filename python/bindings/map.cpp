@@ -19,6 +19,7 @@
 #include "ovimap/io/map_tables/map_file_record.h"
 #include "ovimap/io/mesh/map_mesh.h"
 #include "ovimap/io/mesh/ply.h"
+#include "ovimap/pipeline/search/teaching.h"
 #include "saved_map.h"
 #include "settings.h"
 #include "without_gil.h"
@@ -201,7 +202,8 @@ std::map<std::string, std::int64_t> skipped_by_reason(const SavedMap& map) {
 }
 
 std::shared_ptr<SavedMap> open_map(const nb::object& path, const nb::object& encoder,
-                                   const Settings& settings, const nb::object& model_dirs) {
+                                   const Settings& settings, const nb::object& model_dirs,
+                                   const nb::object& teach) {
   const std::filesystem::path file = to_path(path, "path");
   const auto config = configured<QueryConfig>(settings);
   const auto folders = to_paths(model_dirs, "model_dirs");
@@ -210,8 +212,11 @@ std::shared_ptr<SavedMap> open_map(const nb::object& path, const nb::object& enc
   const std::string spec = object              ? ""
                            : encoder.is_none() ? "none"
                                                : to_path(encoder, "encoder").string();
+  const std::filesystem::path taught = nb::isinstance<nb::bool_>(teach)
+                                           ? (nb::cast<bool>(teach) ? default_taught_file() : "")
+                                           : to_path(teach, "teach");
   const WithoutGil release;
-  return std::make_shared<SavedMap>(file, config, made, spec, folders);
+  return std::make_shared<SavedMap>(file, config, made, spec, folders, taught);
 }
 
 void bind_properties(nb::class_<SavedMap>& map) {
@@ -255,13 +260,15 @@ void bind_properties(nb::class_<SavedMap>& map) {
 
 SavedMap::SavedMap(std::filesystem::path path, const QueryConfig& config,
                    std::shared_ptr<ImageTextEncoder> encoder, std::string encoder_spec,
-                   std::vector<std::filesystem::path> model_dirs)
+                   std::vector<std::filesystem::path> model_dirs, std::filesystem::path taught)
     : path_(std::move(path)),
       config_(config),
       encoder_spec_(std::move(encoder_spec)),
       model_dirs_(std::move(model_dirs)),
+      taught_(std::move(taught)),
       search_(open_map_search(path_, config.shapes)),
       encoder_(std::move(encoder)) {
+  search_.scene.taught = taught_elsewhere(taught_, path_, search_.info.encoder);
   if (encoder_) require_encoder_of_map();
 }
 
@@ -322,15 +329,17 @@ void bind_map(nb::module_& module) {
   map.def_static(
          "open", &open_map, nb::arg("path"), nb::kw_only(), nb::arg("encoder") = "auto",
          nb::arg("settings") = nb::none(), nb::arg("model_dirs") = nb::list(),
+         nb::arg("teach") = false,
          nb::sig(
              "def open(path: str | os.PathLike[str], *, encoder: typing.Any = 'auto', settings: "
              "dict[str, typing.Any] | None = None, model_dirs: typing.Sequence[str | "
-             "os.PathLike[str]] = ()) -> Map"),
+             "os.PathLike[str]] = (), teach: bool | str | os.PathLike[str] = False) -> Map"),
          "Opens a map without reading its voxels. encoder: \"auto\" (the one that the map was made "
          "with, opened at the first question in words), a name, an ImageTextEncoder or an object "
          "as "
-         "Mapper takes it. settings: as ovimap.settings(\"query\") lists them. Raises Error for "
-         "what "
+         "Mapper takes it. settings: as ovimap.settings(\"query\") lists them. teach: whether what people named "
+         "in other maps speaks too, and corrections teach them: True, or a file (docs/query.md). "
+         "Raises Error for what "
          "is no sound map.")
       .def("mesh", &SavedMap::mesh, nb::call_guard<WithoutGil>(),
            "Reads the voxels and extracts the surface, with instance ids as labels. Raises Error "

@@ -146,8 +146,8 @@ constexpr const char* kMapperText = R"(Builds a map of objects frame by frame.
 masks: None (geometry alone), the name of a model or a folder of PNGs, a MaskSource, or a callable
     (frame, prompts) -> integer ids [height, width] of frame.color's size, 0 = no entity, or None:
     there are no masks of this frame, which then adds geometry and colour alone, while an image of
-    zeros says that no entity is to be seen. It is asked on every fifth frame unless mask_interval
-    is set. What it raises ends the call that asked; FrameError leaves that frame out.
+    zeros says that no entity is to be seen. It is asked when what is in view has moved by
+    mask_motion of the picture's width, or every mask_interval frames if that is set. What it raises ends the call that asked; FrameError leaves that frame out.
 encoder: None, "default", the name of a model, an ImageTextEncoder, or an object with name,
     dimension and encode_images(list of uint8 [h, w, 3]) -> [images, dimension] (and
     encode_texts(list of str) -> [texts, dimension] for searching). It is called from another thread;

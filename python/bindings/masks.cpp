@@ -33,7 +33,7 @@ class CallableMasks : public MaskSource {
   }
 
   std::string kind() const override { return "python"; }
-  /// A user's model is taken for a network: mask_interval says on which frames it is asked.
+  /// A user's model is taken for a network: mask_motion says on which frames it is asked.
   bool is_slow() const override { return true; }
 
   std::optional<Entities> entities(const Frame& frame,

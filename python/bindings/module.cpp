@@ -62,6 +62,7 @@ NB_MODULE(_ovimap, module) {
   bind_sources(module);
   bind_check(module);
   bind_calibrate(module);
+  bind_cameras(module);
   bind_masks(module);
   bind_encoders(module);
   bind_mapper(module);

@@ -11,6 +11,7 @@
 #include "ovimap/io/map_file/map_edits.h"
 #include "ovimap/io/map_tables/map_document.h"
 #include "ovimap/io/pictures/place_picture.h"
+#include "ovimap/pipeline/search/teaching.h"
 #include "ovimap/semantics/query/query_grammar.h"
 #include "ovimap/semantics/relations/scene_relations.h"
 #include "ovimap/semantics/words/main_colors.h"
@@ -22,6 +23,7 @@ namespace ovimap::python {
 namespace {
 
 using Named = std::vector<std::pair<std::string, float>>;
+using PartBox = std::pair<std::array<float, 3>, std::array<float, 3>>;
 
 /// What a map knows of one object beside what Instances has.
 struct ObjectFacts {
@@ -29,6 +31,7 @@ struct ObjectFacts {
   std::string name, label;
   float label_share = 0, height_m = 0, footprint_m2 = 0;
   Named colors;
+  std::vector<PartBox> parts;
 };
 
 ObjectFacts describe(SavedMap& map, InstanceId id) {
@@ -46,6 +49,11 @@ ObjectFacts describe(SavedMap& map, InstanceId id) {
   if (map.scene().colors)
     for (const auto& [color, share] : main_colors(map.scene().colors->shares()[position]))
       facts.colors.emplace_back(color_name(color), share);
+  for (const std::size_t p : map.scene().parts_of(position)) {
+    const Eigen::AlignedBox3f& box = map.scene().parts->index.object(p).box;
+    const Eigen::Vector3f center = box.center(), size = box.sizes();
+    facts.parts.push_back({{center.x(), center.y(), center.z()}, {size.x(), size.y(), size.z()}});
+  }
   return facts;
 }
 
@@ -80,30 +88,26 @@ nb::bytes place(SavedMap& map, InstanceId id) {
   return nb::bytes(file.data(), file.size());
 }
 
-std::int64_t correct(const SavedMap& map, MapEdit edit) {
-  return edit_map(map.path(), std::move(edit)).id;
-}
-
 std::int64_t rename(const SavedMap& map, InstanceId id, const std::string& name) {
   MapEdit edit;
   edit.action = EditAction::kRename;
   edit.instances = {id};
   edit.name = name;
-  return correct(map, std::move(edit));
+  return map.correct(std::move(edit));
 }
 
 std::int64_t merge(const SavedMap& map, InstanceId id, InstanceId into) {
   MapEdit edit;
   edit.action = EditAction::kMerge;
   edit.instances = {into, id};
-  return correct(map, std::move(edit));
+  return map.correct(std::move(edit));
 }
 
 std::int64_t undo(const SavedMap& map, std::int64_t edit_number) {
   MapEdit edit;
   edit.action = EditAction::kUndo;
   edit.undoes = edit_number;
-  return correct(map, std::move(edit));
+  return map.correct(std::move(edit));
 }
 
 void bind_values(nb::module_& module) {
@@ -117,6 +121,8 @@ void bind_values(nb::module_& module) {
       .def_ro("colors", &ObjectFacts::colors,
               "names of its main colours and their shares of its surface, largest first")
       .def_ro("height_m", &ObjectFacts::height_m)
+      .def_ro("parts", &ObjectFacts::parts,
+              "centre and size of the box around each of its recognised parts, by their numbers")
       .def_ro("footprint_m2", &ObjectFacts::footprint_m2, "seen from above, convex")
       .def("__repr__", [](const ObjectFacts& facts) {
         return concat("ObjectFacts(id=", facts.id, ", name='", facts.name, "', label='",
@@ -150,8 +156,15 @@ void bind_corrections(nb::class_<SavedMap>& map) {
 
 }  // namespace
 
+std::int64_t SavedMap::correct(MapEdit edit) const {
+  const std::int64_t line = edit_map(path_, std::move(edit)).id;
+  if (!taught_.empty()) teach(taught_, path_, open_map_search(path_, config_.shapes));
+  return line;
+}
+
 std::shared_ptr<SavedMap> SavedMap::reopened() {
-  auto fresh = std::make_shared<SavedMap>(path_, config_, nullptr, encoder_spec_, model_dirs_);
+  auto fresh =
+      std::make_shared<SavedMap>(path_, config_, nullptr, encoder_spec_, model_dirs_, taught_);
   const std::lock_guard lock(mutex_);
   const bool given = encoder_spec_.empty();
   if (encoder_ && (given || encoder_->identity() == fresh->info().encoder)) {

@@ -51,6 +51,8 @@ void bind_answers(nb::module_& module) {
               "chance that an absent thing's best object scores as high")
       .def_ro("probability", &QueryMatch::probability, "that it is what was asked for")
       .def_ro("evidence", &QueryMatch::evidence, "why a relation holds")
+      .def_ro("part", &QueryMatch::part,
+              "number of the object's part, where one was asked for; 0: all of it")
       .def("__repr__", [](const QueryMatch& match) {
         return concat("QueryMatch(id=", match.id, ", score=", match.score, ")");
       });

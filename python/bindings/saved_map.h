@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "ovimap/frames/frame/frame_source.h"
+#include "ovimap/io/map_tables/map_edit.h"
 #include "ovimap/pipeline/approach/standing_space.h"
 #include "ovimap/pipeline/search/history_search.h"
 #include "ovimap/semantics/classes/object_names.h"
@@ -24,10 +25,11 @@ namespace nb = nanobind;
 /// A map file, open for questions. The encoder is opened at the first one that needs it.
 class SavedMap {
  public:
-  /// `encoder`: null where `encoder_spec` names it.
+  /// `encoder`: null where `encoder_spec` names it. `taught`: file of what corrections teach; empty:
+  /// nothing.
   SavedMap(std::filesystem::path path, const QueryConfig& config,
            std::shared_ptr<ImageTextEncoder> encoder, std::string encoder_spec,
-           std::vector<std::filesystem::path> model_dirs);
+           std::vector<std::filesystem::path> model_dirs, std::filesystem::path taught = {});
 
   const std::filesystem::path& path() const { return path_; }
   const MapInfo& info() const { return search_.info; }
@@ -48,6 +50,9 @@ class SavedMap {
   std::optional<HistoryPhrase> past_of(const std::string& text, const std::string& at,
                                        const std::string& since) const;
   static constexpr std::size_t kGone = ~std::size_t{0};
+
+  /// Keeps a correction, and what it teaches. Returns its number in the log.
+  std::int64_t correct(MapEdit edit) const;
 
   /// The map as its file is by now. An encoder that is open already stays open for it.
   std::shared_ptr<SavedMap> reopened();
@@ -84,6 +89,7 @@ class SavedMap {
   QueryConfig config_;
   std::string encoder_spec_;
   std::vector<std::filesystem::path> model_dirs_;
+  std::filesystem::path taught_;
   MapSearch search_;
 
   std::mutex mutex_;  ///< guards what follows

@@ -13,7 +13,7 @@ import time
 from collections.abc import Callable, Iterator
 
 from ._ovimap import Error
-from .cameras import MAKERS, Camera, CameraLost, Feed, Image, Relay, Wanted, open_camera
+from .cameras import MAKERS, Camera, CameraLost, Feed, Image, Relay, TurnRate, Wanted, open_camera
 from .cameras.folder import FolderWriter
 from .command_line import DONE, NO, run_command
 from .sender import FrameSender, SendError
@@ -65,7 +65,7 @@ class Session:
         feed = Feed(waits=self._camera.recorded)
         try:
             self._camera.start(feed)
-            self._relay.take(self._in_time(feed.images(self._quiet_s)))
+            self._relay.take(self._in_time(feed.entries(self._quiet_s)))
         except CameraLost as lost:
             return str(lost)
         finally:
@@ -74,8 +74,8 @@ class Session:
             self.dropped += feed.dropped
         return None
 
-    def _in_time(self, images: Iterator[Image]) -> Iterator[Image]:
-        return itertools.takewhile(lambda _: self._end is None or time.monotonic() < self._end, images)
+    def _in_time(self, entries: Iterator[Image | TurnRate]) -> Iterator[Image | TurnRate]:
+        return itertools.takewhile(lambda _: self._end is None or time.monotonic() < self._end, entries)
 
     def _found_again(self) -> Camera | None:
         end = time.monotonic() + self._wait_s
@@ -92,10 +92,11 @@ def _command(options: argparse.Namespace) -> int:
     wanted = Wanted(options.serial, options.file, width, height, options.fps)
     camera = open_camera(options.maker, wanted)
     sink = _sink(options, camera)
-    relay = Relay(sink, _tell, waits=camera.recorded)
+    relay = Relay(sink, _tell, waits=camera.recorded, keep_rate=sink.keep_rate if isinstance(sink, FolderWriter) else None)
     again = Wanted(camera.serial, None, width, height, options.fps)
     session = Session(camera, lambda: open_camera(options.maker, again), relay, _tell, wait_s=options.wait_s, seconds=options.seconds)
-    _tell(f"{camera.name}: sending to {options.folder or options.url}; Ctrl-C ends")
+    turns = " and how its gyroscope turns" if camera.gyroscope else ""
+    _tell(f"{camera.name}: sending images{turns} to {options.folder or options.url}; Ctrl-C ends")
     try:
         whole = session.run()
     except KeyboardInterrupt:
@@ -149,7 +150,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--cafile", help="certificate to trust, for a server with one of its own")
     parser.add_argument("--folder", type=pathlib.Path, help="write a recording for `ovimap run` there, instead of sending")
     parser.add_argument("--file", type=pathlib.Path, help="read a recording of the maker's own tools, instead of a camera")
-    parser.add_argument("--serial", default="", help="serial number, where several cameras are plugged in")
+    parser.add_argument("--serial", default="", help="serial number (of an OpenNI camera its URI), where several cameras are plugged in")
     parser.add_argument("--size", type=_size, default=(640, 480), help="of colour and depth (640x480)")
     parser.add_argument("--fps", type=int, default=30, help="frames a second (30)")
     parser.add_argument("--seconds", type=float, help="end after so long")

@@ -75,7 +75,7 @@ class FrameSender:
         self._post_json("/api/camera", rig)
 
     def send(self, color: npt.NDArray[np.uint8] | bytes, depth: npt.NDArray[Any] | bytes, pose: npt.ArrayLike | None, timestamp: float = 0.0, *,
-             name: str = "", patience_s: float = 0.0) -> bool:  # fmt: skip
+             orientation: npt.ArrayLike | None = None, name: str = "", patience_s: float = 0.0) -> bool:  # fmt: skip
         """Sends one frame; False when the mapper had no room for it, also not within patience_s.
 
         color: uint8 [height, width, 3], or the bytes of a JPEG or PNG.
@@ -83,13 +83,18 @@ class FrameSender:
             or do not fit into 16 bits of the camera's units are sent as 0, which is none.
         pose: [4, 4], world_from_camera of the depth camera, unless the camera's "poses" says otherwise. None: not known, where the
             server tracks the camera (ovimap serve --live http --poses track).
+        orientation: [4], how the depth camera is turned as its gyroscope adds turns up (ovimap.gyroscope does): unit quaternion x, y, z, w of the
+            rotation into the world where it began, which may drift. Helps a server that tracks the camera.
 
-        Raises TypeError and ValueError for another type or shape and for a pose that is not finite, of which nothing is sent.
+        Raises TypeError and ValueError for another type or shape, for a pose that is not finite and an orientation that is no
+        rotation, of which nothing is sent.
         Raises SendError when the frame is wrong or the map is finished, and when the answer was lost: the frame may have been
         taken, and is not sent twice."""
         about: dict[str, Any] = {"timestamp_s": _time(timestamp)}
         if pose is not None:
             about["pose"] = _pose(pose)
+        if orientation is not None:
+            about["orientation"] = _quaternion(orientation)
         if name:
             about["name"] = name
         body, kind = _multipart({"color": self._color(color), "depth": self._depth(depth), "frame": json.dumps(about).encode()})
@@ -255,6 +260,17 @@ def _pose(pose: npt.ArrayLike) -> list[float]:
     if not np.isfinite(matrix).all():
         raise ValueError("the pose has numbers that are not finite; leave frames out whose pose is not known")
     numbers: list[float] = matrix.reshape(16).tolist()
+    return numbers
+
+
+def _quaternion(orientation: npt.ArrayLike) -> list[float]:
+    xyzw = np.asarray(orientation, np.float64)
+    if xyzw.shape != (4,):
+        raise ValueError(f"orientation must be [4], a quaternion x, y, z, w; its shape is {list(xyzw.shape)}")
+    length = float(np.linalg.norm(xyzw))
+    if not abs(length - 1) < 1e-3:
+        raise ValueError(f"orientation must be a unit quaternion; its length is {length:g}")
+    numbers: list[float] = (xyzw / length).tolist()
     return numbers
 
 

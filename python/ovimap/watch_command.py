@@ -20,7 +20,7 @@ from ._ovimap import Error
 from .agents import MapFault
 from .command_line import DONE, run_command
 from .mcp_command import opened_maps
-from .watching import HOLD_S, Watch, WatchEvent
+from .watching import HOLD_S, WatchEvent, watch_map
 
 MOST_WAITING = 1000  # events for the webhook
 TRIES = 5
@@ -113,7 +113,7 @@ def _watch(options: argparse.Namespace) -> int:
 
     [backend] = opened_maps([options.map], options.map_token_file)
     try:
-        Watch(backend, _queries(options), tell, hold_s=options.hold).run()
+        watch_map(backend, _queries(options), tell, hold_s=options.hold)
     except MapFault as fault:
         raise Error(str(fault)) from None
     except (KeyboardInterrupt, BrokenPipeError):  # the latter: who read the lines has gone

@@ -11,8 +11,10 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from ._ovimap import Error
-from .agents.backend import MapBackend, MapFault, Verdict, checked_text, open_map
+from .agents.backend import MapBackend, MapFault, NoAnswer, RequestRefused, Verdict, checked_text, open_map
 from .agents.facts import MapObject
+from .agents.file_backend import FileBackend
+from .agents.http_backend import NOT_UNDERSTOOD, HttpBackend
 
 HOLD_S = 3.0  # a map that is being made has a new state every second or so: three agree
 WORK_SHARE = 0.05  # of the time is spent on asking at most, however many the queries,
@@ -59,110 +61,154 @@ def watch(
     as the server wants them. Raises Error for queries that cannot be asked, and a path that is no map."""
     try:
         backend = open_map(map, token=token, cafile=cafile)
-        if "://" not in os.fspath(map):  # a server may come later, a path that is no map becomes none
+        if isinstance(backend, FileBackend):  # a server may come later, a path that is no map becomes none
             backend.summary()
-        Watch(backend, queries, callback, hold_s=hold_s).run()
+        watch_map(backend, queries, callback, hold_s=hold_s)
     except MapFault as fault:
         raise Error(str(fault)) from None
 
 
-@dataclass
-class _Standing:
-    """A query, what was told of it, and what the map says by now."""
+def watch_map(backend: MapBackend, queries: Sequence[str], callback: Callable[[WatchEvent], Any], *, hold_s: float = HOLD_S) -> None:
+    """Likewise of an opened map, which is closed at the end. Raises MapFault."""
+    try:
+        if isinstance(backend, HttpBackend):
+            ServerWatch(backend, queries, callback, hold_s=hold_s).run()
+        elif isinstance(backend, FileBackend):
+            FileWatch(backend, queries, callback).run()
+    finally:
+        backend.close()
 
-    told: bool = False
-    verdict: Verdict = Verdict(False, None)
-    since_s: float = 0.0
-    last: Verdict = Verdict(False, None)  # the latest that was found
-    fault: str = ""
+
+class _Teller:
+    """What was told, of a map that may stop to answer."""
+
+    def __init__(self, name: str, queries: Sequence[str], callback: Callable[[WatchEvent], Any]) -> None:
+        if not queries:
+            raise MapFault("there is nothing to watch for; give words, as \"fire extinguisher\"")
+        self._queries = list(dict.fromkeys(checked_text(query) for query in queries))
+        self._name, self._callback = name, callback
+        self._last: dict[str, MapObject | None] = {}  # the latest that was found
+        self._fault = ""  # what stands between us and the map; empty: nothing
+        self._ended = False
+
+    def _note(self, fault: str, reason: str = "") -> None:
+        """Tells once of a map that does not answer, and once when it does not for another reason. reason: where the same one has
+        several sentences."""
+        reason = reason or fault
+        if fault and reason != self._fault:
+            self._send("fault", "", fault=fault)
+        self._fault = reason
+
+    def _send(self, event: str, query: str, *, probability: float | None = None, fault: str = "") -> None:
+        found = self._last.get(query) if event != "fault" else None
+        said = WatchEvent(event, self._name, query, time.time(), found, probability, fault)
+        if not self._ended and self._callback(said) is False:
+            self._ended = True
 
 
-class Watch:
-    """Standing queries on one map. The map is asked only when its objects changed.
+class FileWatch(_Teller):
+    """Standing queries on a map file. It is asked only when its objects changed.
 
     A query is found or not: a second mug tells nothing new, and an object that merges into another, or is given another id, is
     the same thing as long as the query finds it."""
 
-    def __init__(self, backend: MapBackend, queries: Sequence[str], callback: Callable[[WatchEvent], Any], *, hold_s: float = HOLD_S) -> None:
-        if not queries:
-            raise MapFault("there is nothing to watch for; give words, as \"fire extinguisher\"")
-        self._standing = {checked_text(query): _Standing() for query in queries}
-        self._backend, self._callback, self._hold_s = backend, callback, hold_s
+    def __init__(self, backend: FileBackend, queries: Sequence[str], callback: Callable[[WatchEvent], Any]) -> None:
+        super().__init__(backend.name, queries, callback)
+        self._backend = backend
+        self._told: set[str] = set()
+        self._faults: dict[str, str] = {}
         self._state = ""
-        self._live = self._due = False
         self._rest_until_s = 0.0
-        self._fault = ""
-        self._ended = False
 
     def run(self) -> None:
         """Goes on until callback returns False."""
-        changed = True
-        try:
-            while not self._ended:
-                self.step(time.monotonic(), changed)
-                changed = not self._ended and self._pause()
-        finally:
-            self._backend.close()
+        while not self._ended:
+            self.step(time.monotonic())
+            if not self._ended:
+                time.sleep(RETRY_S if self._fault else TICK_S)
 
-    def step(self, now_s: float, changed: bool = True) -> None:
-        """Looks at the map where it may have changed, and tells what has stood long enough."""
-        self._due = self._due or changed
-        try:
-            if self._due and now_s >= self._rest_until_s:
-                state, self._live = self._backend.state()
-                if state != self._state:
-                    self._look(state, now_s)
-                self._due = False
-        except MapFault as fault:
-            self._state = ""  # what answers next may be another map, whose states have the same names
-            self._note(str(fault))
+    def step(self, now_s: float) -> None:
+        """Looks at the map where it changed, and tells what it finds."""
+        if now_s < self._rest_until_s:
             return
-        self._note("")
-        self._tell_all(now_s)
-
-    def _pause(self) -> bool:
-        """Whether the map may have changed meanwhile."""
-        if self._fault:
-            time.sleep(RETRY_S)
-            return True
-        return self._backend.wait(TICK_S)
+        try:
+            state = self._backend.state()
+            if state != self._state:
+                self._look(state, now_s)
+        except MapFault as fault:
+            self._note(str(fault))
+        else:
+            self._note("")
 
     def _look(self, state: str, now_s: float) -> None:
         began_s = time.monotonic()
-        verdicts = self._backend.verdicts(list(self._standing))
+        verdicts = self._backend.verdicts(self._queries)
         spent_s = time.monotonic() - began_s
-        seen_s = now_s + spent_s
-        self._state, self._rest_until_s = state, seen_s + min(spent_s / WORK_SHARE, MOST_REST_S)
-        for (query, standing), verdict in zip(self._standing.items(), verdicts, strict=True):
-            if verdict.fault:
-                if verdict.fault != standing.fault:
-                    self._send("fault", query, standing, verdict.fault)
-                standing.fault = verdict.fault
-                continue  # what was told stays
-            standing.fault = ""
-            if verdict.found != standing.verdict.found:
-                standing.since_s = seen_s
-            standing.verdict = verdict
-            if verdict.found:
-                standing.last = verdict
+        self._state, self._rest_until_s = state, now_s + spent_s + min(spent_s / WORK_SHARE, MOST_REST_S)
+        for query, verdict in zip(self._queries, verdicts, strict=True):
+            self._tell(query, verdict)
 
-    def _tell_all(self, now_s: float) -> None:
-        if self._live and self._due:  # there are states that were not looked at yet
-            return
-        for query, standing in self._standing.items():
-            stands = not self._live or now_s - standing.since_s >= self._hold_s
-            if stands and standing.verdict.found != standing.told:
-                standing.told = standing.verdict.found
-                self._send("found" if standing.told else "gone", query, standing)
+    def _tell(self, query: str, verdict: Verdict) -> None:
+        if verdict.fault:
+            if verdict.fault != self._faults.get(query):
+                self._send("fault", query, fault=verdict.fault)
+            self._faults[query] = verdict.fault
+            return  # what was told stays
+        self._faults.pop(query, None)
+        if verdict.found:
+            self._last[query] = verdict.object
+        if verdict.found and query not in self._told:
+            self._told.add(query)
+            self._send("found", query, probability=verdict.probability)
+        elif not verdict.found and query in self._told:
+            self._told.remove(query)
+            self._send("gone", query)
 
-    def _note(self, fault: str) -> None:
-        """Tells once of a map that does not answer, and once when it does not for another reason."""
-        if fault and fault != self._fault:
-            self._send("fault", "", _Standing(), fault)
-        self._fault = fault
 
-    def _send(self, event: str, query: str, standing: _Standing, fault: str = "") -> None:
-        last = Verdict(False, None) if event == "fault" else standing.last
-        said = WatchEvent(event, self._backend.name, query, time.time(), last.object, last.probability if event == "found" else None, fault)
-        if not self._ended and self._callback(said) is False:
-            self._ended = True
+class ServerWatch(_Teller):
+    """Standing queries that a server asks its map, finished or being made (docs/http-api.md, "Standing queries"). A server that
+    goes away is asked again, and goes on where it was."""
+
+    def __init__(self, backend: HttpBackend, queries: Sequence[str], callback: Callable[[WatchEvent], Any], *, hold_s: float = HOLD_S) -> None:
+        super().__init__(backend.name, queries, callback)
+        self._backend, self._hold_s = backend, hold_s
+        self._mark = ""
+
+    def run(self) -> None:
+        """Goes on until callback returns False. Raises MapFault for queries that the server does not take."""
+        while not self._ended:
+            try:
+                for event in self._backend.watch(self._queries, self._hold_s, self._mark):
+                    self._take(event.kind, event.said)
+                    self._mark = event.mark
+                    if self._ended:
+                        return
+            except RequestRefused:
+                raise
+            except NoAnswer as fault:  # its socket says it in another way each time
+                self._note(str(fault), reason="no answer")
+            except MapFault as fault:
+                self._note(str(fault))
+            if not self._ended:
+                time.sleep(RETRY_S)
+
+    def _take(self, kind: str, said: dict[str, Any]) -> None:
+        query, fault = str(said.get("query", "")), str(said.get("fault", ""))
+        if kind == "hello":
+            self._note("")
+        elif kind == "fault" and not query:
+            self._note(fault)
+        elif kind == "fault":
+            self._send("fault", query, fault=fault)
+        elif kind in ("found", "gone"):
+            if "object" in said:
+                self._last[query] = _object(said["object"])
+            self._send(kind, query, probability=said.get("probability"))
+
+
+def _object(said: Any) -> MapObject:
+    try:
+        center, size = (tuple(said[name]) if said[name] else None for name in ("center", "size"))
+        return MapObject(said["id"], said["title"], said["named"], center, size)
+    except (KeyError, TypeError):
+        raise MapFault(NOT_UNDERSTOOD) from None

@@ -27,10 +27,17 @@ def turned():
     return offset
 
 
-class SoftwareCamera:
-    """A depth and a colour sensor whose images the test draws."""
+def stood_on_its_side():
+    """Gyroscope to depth: x there is y here, and y there -x here."""
+    offset = rs.extrinsics()
+    offset.rotation, offset.translation = [0, 1, 0, -1, 0, 0, 0, 0, 1], [0, 0, 0]
+    return offset
 
-    def __init__(self, serial="000111", color_lens=None, color_format=rs.format.rgb8, kinds=("depth", "color"), size=SIZE):
+
+class SoftwareCamera:
+    """A depth and a colour sensor whose images the test draws, and where `gyroscope_hz` says so a gyroscope."""
+
+    def __init__(self, serial="000111", color_lens=None, color_format=rs.format.rgb8, kinds=("depth", "color"), size=SIZE, gyroscope_hz=0):
         self.size, self.device = size, rs.software_device()
         self.device.register_info(rs.camera_info.name, "Drawn camera")
         self.device.register_info(rs.camera_info.serial_number, serial)
@@ -46,7 +53,27 @@ class SoftwareCamera:
         self.sensors["depth"].add_read_only_option(rs.option.depth_units, UNIT_M)
         if "color" in kinds:
             self.profiles["depth"].register_extrinsics_to(self.profiles["color"], turned())
+        if gyroscope_hz:
+            self._add_gyroscope(gyroscope_hz)
         self.number = 0
+
+    def _add_gyroscope(self, rate_hz):
+        self.sensors["gyroscope"] = self.device.add_sensor("Motion Module")
+        for uid, fps in ((8, rate_hz), (9, rate_hz // 2)):
+            stream = rs.motion_stream()
+            stream.type, stream.index, stream.uid, stream.fps, stream.fmt = rs.stream.gyro, 0, uid, fps, rs.format.motion_xyz32f
+            profile = self.sensors["gyroscope"].add_motion_stream(stream)
+            profile.register_extrinsics_to(self.profiles["depth"], stood_on_its_side())
+            self.profiles.setdefault("gyroscope", profile)
+
+    def turn(self, rate, time_ms):
+        frame = rs.software_motion_frame()
+        measured = rs.vector()
+        measured.x, measured.y, measured.z = rate
+        frame.data, frame.timestamp, frame.domain = measured, time_ms, rs.timestamp_domain.hardware_clock
+        frame.frame_number = self.number = self.number + 1
+        frame.profile = self.profiles["gyroscope"].as_motion_stream_profile()
+        self.sensors["gyroscope"].on_motion_frame(frame)
 
     def show(self, kind, pixels, time_ms):
         frame = rs.software_video_frame()
@@ -59,22 +86,25 @@ class SoftwareCamera:
             frame.depth_units = UNIT_M
         self.sensors[kind].on_video_frame(frame)
 
-    def show_all(self, frames):
-        """frames: (colour, depth, ms)."""
+    def show_all(self, frames, rates=()):
+        """frames: (colour, depth, ms). rates: (radians a second about x, y and z of the gyroscope, ms)."""
+        rates = list(rates)
         for color, depth, time_ms in frames:
+            while rates and rates[0][1] <= time_ms:
+                self.turn(*rates.pop(0))
             for kind, pixels in (("depth", depth), ("color", color)):
                 if kind in self.sensors:
                     self.show(kind, pixels, time_ms)
             time.sleep(0.002)  # the recorder writes on a thread of its own
 
-    def record(self, file, frames):
+    def record(self, file, frames, rates=()):
         """As the maker's tools do."""
         recorder = rs.recorder(str(file), self.device)
         recorded = recorder.query_sensors()
         for sensor, profile in zip(recorded, self.profiles.values()):
             sensor.open(profile)
-            sensor.start(rs.frame_queue(len(frames)))
-        self.show_all(frames)
+            sensor.start(rs.frame_queue(len(frames) + len(rates)))
+        self.show_all(frames, rates)
         for sensor in recorded:
             sensor.stop()
             sensor.close()

@@ -14,13 +14,13 @@ import PIL.Image
 import pytest
 import yaml
 from ovimap.camera_command import Session, main
-from ovimap.cameras import Relay, Wanted
+from ovimap.cameras import Feed, Relay, TurnRate, Wanted
 from test_camera_relay import Sent
 from test_sender import PROGRAM, Serving, needs_program
 
 rs = pytest.importorskip("pyrealsense2", reason="pyrealsense2 is not installed; run tools/setup.sh --tests")
 from ovimap.cameras.realsense import open_realsense  # noqa: E402
-from realsense_fixture import BROWN, Sockets, SoftwareCamera, film, lens, picture, turned  # noqa: E402
+from realsense_fixture import BROWN, Sockets, SoftwareCamera, film, lens, picture, stood_on_its_side, turned  # noqa: E402
 
 FRAMES = 12
 TRACKED = (96, 72)  # smaller images are not tracked
@@ -50,6 +50,40 @@ def test_a_recording_gives_every_image_as_it_was_with_its_time(recording):
     for (color, depth, pose, time_s), (drawn_color, drawn_depth, time_ms) in zip(sent, film(FRAMES, size=TRACKED)):
         assert np.array_equal(color, drawn_color) and np.array_equal(depth, drawn_depth) and pose is None
         assert time_s == pytest.approx(time_ms / 1000, abs=1e-6)
+
+
+TURN = 0.5  # radians a second about x
+RATES = [((TURN, 0.0, 0.0), 1000.0 + 5 * i) for i in range(100)]
+
+
+def turned_to(orientations):
+    return [2 * np.arctan2(x, w) for x, _, _, w in orientations]
+
+
+def test_a_recording_tells_how_the_camera_turned(tmp_path):
+    """Not how its gyroscope stood to depth, which the library does not record."""
+    SoftwareCamera(gyroscope_hz=200).record(tmp_path / "a.db3", film(FRAMES), RATES)
+    camera = open_realsense(Wanted(file=tmp_path / "a.db3"))
+    sent, relay = read(camera)
+    assert camera.gyroscope and len(sent) == FRAMES and relay.pairing.left_out == 0
+    assert turned_to(sent.orientations) == pytest.approx([TURN * (time_s - 1) for *_, time_s in sent], abs=1e-3)
+
+
+def test_a_cameras_gyroscope_is_read_at_its_fastest_and_turned_to_depth():
+    drawn = SoftwareCamera(gyroscope_hz=400)
+    camera, feed = open_realsense(Wanted(width=64, height=48), Sockets(drawn)), Feed(waits=False)
+    assert camera.gyroscope and camera._gyroscope[1].fps() == 400
+    camera.start(feed)
+    drawn.turn((0.1, 0.2, 0.3), 1234.5)
+    drawn.show_all(film(1))
+    end = time.monotonic() + 30
+    entries = feed.entries(30)
+    while not isinstance(rate := next(entries), TurnRate):
+        assert time.monotonic() < end
+    camera.close()
+    there = rs.rs2_transform_point_to_point(stood_on_its_side(), [0.1, 0.2, 0.3])
+    assert rate.time_s == pytest.approx(1.2345) and list(rate.rad_per_s) == pytest.approx(there) and there == pytest.approx([-0.2, 0.1, 0.3])
+    assert not open_realsense(Wanted(width=64, height=48), Sockets(SoftwareCamera())).gyroscope
 
 
 def test_a_bag_of_an_older_library_is_read():
@@ -126,6 +160,15 @@ def test_a_recording_becomes_a_folder_that_the_program_reads(recording, tmp_path
     assert done.returncode == 0 and ovimap.Map.open(tmp_path / "a.ovimap").frames > 0, done.stderr
     assert main(["realsense", "--file", str(recording), "--folder", str(folder)]) == 2
     assert "is not empty; name a new folder" in capsys.readouterr().err
+
+
+def test_a_folder_keeps_what_the_gyroscope_measured(tmp_path, capsys):
+    SoftwareCamera(size=TRACKED, gyroscope_hz=200).record(tmp_path / "a.db3", film(FRAMES, size=TRACKED), RATES)
+    assert main(["realsense", "--file", str(tmp_path / "a.db3"), "--folder", str(tmp_path / "a")]) == 0
+    assert "sending images and how its gyroscope turns to" in capsys.readouterr().err
+    lines = [[float(number) for number in line.split()] for line in (tmp_path / "a/gyroscope.txt").read_text().splitlines()]
+    assert [line[0] for line in lines] == pytest.approx([1 + 0.005 * i for i in range(len(lines))], abs=1e-6)
+    assert len(lines) > 65 and np.allclose([line[1:] for line in lines], [TURN, 0, 0], atol=1e-6)
 
 
 @pytest.mark.parametrize("model, name", [(rs.distortion.kannala_brandt4, "kannala_brandt"), (rs.distortion.inverse_brown_conrady, "brown_conrady")])

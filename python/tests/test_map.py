@@ -130,6 +130,26 @@ def test_corrections_are_kept_in_the_map(saved_map, tmp_path):
             wrong()
 
 
+def test_names_teach_other_maps(saved_map, tmp_path):
+    path, taught = shutil.copy(saved_map, tmp_path / "a.ovimap"), tmp_path / "taught.json"
+    opened = ovimap.Map.open(path, teach=taught)
+    chair = opened.query("chair").matches[0].id
+    opened.rename(chair, "throne of Anna")
+    other = ovimap.Map.open(saved_map, teach=taught)
+    answer = other.query("throne of Anna")
+    assert answer.matches[0].id == chair and other.describe(chair).name == ""
+    untaught = {match.id: match.p_value for match in ovimap.Map.open(saved_map).query("throne of Anna").matches}
+    assert answer.matches[0].p_value < 0.05 < untaught[chair]
+    assert other.describe(chair).label == "throne of Anna" and ovimap.Map.open(saved_map).describe(chair).label != "throne of Anna"
+    opened.undo()
+    forgotten = ovimap.Map.open(saved_map, teach=taught).query("throne of Anna")
+    assert [m.score for m in forgotten.matches] == [m.score for m in ovimap.Map.open(saved_map).query("throne of Anna").matches]
+    assert forgotten.matches[0].standard_score < answer.matches[0].standard_score
+    taught.write_text("{}")
+    with pytest.raises(ovimap.Error, match="taught.json"):
+        ovimap.Map.open(saved_map, teach=taught)
+
+
 def test_a_map_without_encoder_names_nothing(saved_map):
     opened = ovimap.Map.open(saved_map, encoder="none")
     assert opened.guess_names() == [] and opened.describe(int(opened.instances.ids[0])).label == ""

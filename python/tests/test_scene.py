@@ -97,20 +97,76 @@ def test_it_runs_in_mujoco(scene, tmp_path):
     for thing in scene.objects:
         if thing.key not in left_out:
             assert np.allclose(data.body(thing.key).xpos, thing.center, atol=1e-3)
+    assert_still(mujoco, model, data)
+
+
+def assert_still(mujoco, model, data):
+    """A second goes by, and what stands on something stays there."""
     before = data.qpos.copy()
-    for _ in range(500):  # a second
+    for _ in range(500):
         mujoco.mj_step(model, data)
     assert np.isfinite(data.qpos).all() and data.warning.number.sum() == 0
     moved = np.linalg.norm((data.qpos - before).reshape(-1, 7)[:, :3], axis=1)
-    assert np.median(moved) < 0.2, "what stands on something stays there"
+    assert np.median(moved) < 0.2
+
+
+def test_convex_parts_are_closer_than_the_hull(scene):
+    pytest.importorskip("vhacdx")
+    from ovimap.scene.parts import convex_parts
+
+    def is_closer(thing):
+        """Points of the hull's box that lie in the shape: far fewer in the parts, while the surface lies in them all the same."""
+        parts = convex_parts(thing, 32)
+        assert 1 < len(parts) <= 32 and all(4 <= len(part) <= 256 for part in parts)
+        box = np.random.default_rng(1).uniform(thing.hull.min(axis=0), thing.hull.max(axis=0), (4000, 3)).astype(np.float32)
+        in_parts, in_hull = held(parts, box), held([thing.hull], box)
+        seen = held(parts, thing.vertices[:: len(thing.vertices) // 500])
+        return seen.mean() > 0.95 and in_parts.sum() < in_hull.sum() / 2
+
+    solid = [thing for thing in scene.objects if not thing.is_shell and 0.5 < thing.size.max() < 1.7 and thing.size.min() > 0.3]
+    assert len(solid) >= 3
+    assert sum(is_closer(thing) for thing in solid) > len(solid) / 2
+
+
+def held(parts, points):
+    return np.any([inside_hull(part, points) for part in parts], axis=0)
+
+
+def test_convex_parts_run_in_mujoco(scene, tmp_path):
+    mujoco = pytest.importorskip("mujoco")
+    pytest.importorskip("vhacdx")
+    from ovimap.scene.mjcf import write_mjcf
+
+    assert write_mjcf(scene, tmp_path / "room.xml", parts=8) == []
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "room.xml"))
+    data = mujoco.MjData(model)
+    assert model.nbody - 1 == len(scene.objects) and 2 * len(scene.objects) < model.ngeom <= 8 * len(scene.objects) + 1
+    assert_still(mujoco, model, data)
+
+
+def test_usd_has_simulators_cut(scene, tmp_path):
+    pytest.importorskip("pxr")
+    from ovimap.scene.usd import write_usd
+    from pxr import Usd, UsdGeom, UsdPhysics
+
+    write_usd(scene, tmp_path / "room.usda", parts=8)
+    stage = Usd.Stage.Open(str(tmp_path / "room.usda"))
+    said = {UsdPhysics.MeshCollisionAPI(prim).GetApproximationAttr().Get() for prim in stage.Traverse() if prim.IsA(UsdGeom.Mesh)}
+    assert said == {"convexDecomposition"}
 
 
 def test_the_command_writes_what_the_name_says(saved_map, tmp_path):
-    def command(out):
-        return subprocess.run([sys.executable, "-m", "ovimap.scene_command", saved_map, out], capture_output=True, text=True, check=False)
+    pytest.importorskip("vhacdx")
+
+    def command(out, *options):
+        return subprocess.run([sys.executable, "-m", "ovimap.scene_command", saved_map, out, *options], capture_output=True, text=True, check=False)
 
     said = command(tmp_path / "room.xml")
     assert said.returncode == 0 and "rooms: " in said.stdout, said
+    said = command(tmp_path / "cut.xml", "--parts", "4")
+    assert said.returncode == 0 and "_part_1" in (tmp_path / "cut.xml").read_text(), said
+    said = command(tmp_path / "cut.xml", "--parts", "0")
+    assert said.returncode == 2 and "from 1 to 256" in said.stderr
     said = command(tmp_path / "room.obj")
     assert said.returncode == 2 and ".usda" in said.stderr and said.stderr.count("\n") == 1
 

@@ -17,6 +17,7 @@ import threading
 import numpy as np
 import ovimap
 import pytest
+from ovimap.gyroscope import Gyroscope
 from ovimap.sender import FrameSender, SendError
 from PIL import Image
 
@@ -95,6 +96,18 @@ def test_sent_frames_give_the_recordings_map(shots, hash_of_the_recording, tmp_p
         with pytest.raises(SendError, match="finished"):
             sender.send(*shots.files[0], shots.poses[0])
     assert hash_of(tmp_path / "sent.ovimap") == hash_of_the_recording
+
+
+@needs_program
+def test_a_server_that_tracks_takes_orientations(shots, tmp_path):
+    gyroscope = Gyroscope()
+    with Serving(tmp_path / "tracked.ovimap", "--poses", "track", "--masks", "none", "--encoder", "none") as server:
+        sender = FrameSender(server.address, shots.camera)
+        for i in range(4):
+            gyroscope.add(i / 30, (0.0, 0.0, 0.0))
+            assert sender.send(*shots.files[0], None, i / 30, orientation=gyroscope.at(i / 30), patience_s=60)
+        sender.finish()
+        assert server.saved()["frames"] == 4
 
 
 @needs_program
@@ -282,6 +295,16 @@ def test_a_pose_that_says_nothing_is_not_sent(sender):
             sender.send(b"color", b"depth", pose)
     with pytest.raises(ValueError, match="timestamp must be seconds; it is nan"):
         sender.send(b"color", b"depth", np.eye(4), float("nan"))
+    assert (sender.taken, sender.skipped) == (0, 0)
+
+
+def test_an_orientation_that_is_no_rotation_is_not_sent(sender):
+    for orientation in (np.eye(3), [0, 0, 1], 1.0):
+        with pytest.raises(ValueError, match=r"orientation must be \[4\], a quaternion x, y, z, w; its shape is \["):
+            sender.send(b"color", b"depth", None, orientation=orientation)
+    for orientation in ([0, 0, 0, 0], [1, 1, 0, 0], [0, 0, 0, np.nan]):
+        with pytest.raises(ValueError, match="orientation must be a unit quaternion; its length is"):
+            sender.send(b"color", b"depth", None, orientation=orientation)
     assert (sender.taken, sender.skipped) == (0, 0)
 
 

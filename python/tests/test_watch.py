@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Standing queries: told once when a thing is found, once when it is gone, and nothing in between."""
 import contextlib
+import http.client
 import http.server
 import itertools
 import json
@@ -16,9 +17,9 @@ import threading
 import ovimap
 import pytest
 from ovimap import watch_command
-from ovimap.agents.backend import MapFault, Verdict, open_map
+from ovimap.agents.backend import MapFault, NoAnswer, RequestRefused, Verdict, open_map
 from ovimap.agents.facts import MapObject
-from ovimap.watching import MOST_REST_S, WORK_SHARE, Watch
+from ovimap.watching import MOST_REST_S, WORK_SHARE, FileWatch, ServerWatch
 
 PROGRAM = os.environ.get("OVIMAP_PROGRAM")
 needs_program = pytest.mark.skipif(not PROGRAM, reason="the program was not built; set OVIMAP_PROGRAM")
@@ -30,14 +31,14 @@ class Scripted:
 
     name = "room"
 
-    def __init__(self, live):
-        self.live, self.version, self.fault, self.asked = live, 1, "", []
+    def __init__(self):
+        self.version, self.fault, self.asked = 1, "", []
         self.found = {}  # query -> id of its object, or a sentence why it cannot be asked
 
     def state(self):
         if self.fault:
             raise MapFault(self.fault)
-        return str(self.version), self.live
+        return str(self.version)
 
     def verdicts(self, texts):
         self.asked.append(list(texts))
@@ -48,16 +49,13 @@ class Scripted:
             return Verdict(False, None, fault=said)
         return Verdict(True, MapObject(said, "mug", False, (0, 0, 0), (1, 1, 1)), 0.9) if said else Verdict(False, None)
 
-    def close(self):
-        pass
-
 
 class Watching:
     """A watch on a scripted map, and what it told."""
 
-    def __init__(self, *queries, live=True):
-        self.map, self.told, self.now = Scripted(live), [], 1000.0
-        self.watch = Watch(self.map, queries, lambda event: self.told.append(event), hold_s=3)
+    def __init__(self, *queries):
+        self.map, self.told, self.now = Scripted(), [], 1000.0
+        self.watch = FileWatch(self.map, queries, lambda event: self.told.append(event))
 
     def after(self, seconds, **found):
         """The map changes, then time goes by; what was told meanwhile, in short."""
@@ -82,19 +80,6 @@ def test_it_is_told_once_when_it_is_found_and_once_when_it_is_gone():
     assert watching.after(9, fire_extinguisher=7, mug=3) == [("found", "mug"), ("found", "fire extinguisher")]
 
 
-def test_what_does_not_last_is_not_told():
-    watching = Watching("mug")
-    for _ in range(5):
-        assert watching.after(1, mug=7) == watching.after(1) == []
-    assert watching.after(9, mug=7) == [("found", "mug")]
-    for _ in range(5):
-        assert watching.after(1) == watching.after(1, mug=7) == []
-
-
-def test_on_a_finished_map_nothing_is_waited_for():
-    assert Watching("mug", live=False).after(0, mug=7) == [("found", "mug")]
-
-
 def test_an_object_that_merges_into_another_is_the_same():
     watching = Watching("mug")
     assert watching.after(9, mug=12) == [("found", "mug")]
@@ -110,26 +95,14 @@ def test_the_map_is_asked_only_when_it_changed():
 
 
 def test_a_change_while_it_rests_is_seen_afterwards(monkeypatch):
-    watching = Watching("mug", live=False)
+    watching = Watching("mug")
     monkeypatch.setattr("ovimap.watching.time.monotonic", lambda clock=itertools.count(): next(clock))  # rounds of a second
     watching.watch.step(watching.now)
     watching.map.version, watching.map.found = 5, {"mug": 7}
-    watching.watch.step(watching.now + 1, changed=True)
+    watching.watch.step(watching.now + 1)
     assert watching.told == []
-    watching.watch.step(watching.now + 1 + MOST_REST_S, changed=False)
+    watching.watch.step(watching.now + 1 + MOST_REST_S)
     assert [event.event for event in watching.told] == ["found"]
-
-
-def test_a_verdict_must_outlast_a_second_look(monkeypatch):
-    watching = Watching("mug")
-    monkeypatch.setattr("ovimap.watching.time.monotonic", lambda clock=itertools.count(): next(clock))  # rounds of a second
-    for found, told in ((None, []), (7, []), (None, []), (7, []), (7, ["found"])):
-        watching.map.version, watching.map.found = watching.map.version + 1, {"mug": found}
-        watching.now += 1 + MOST_REST_S
-        watching.watch.step(watching.now)
-        watching.map.version += 1  # it goes on to change while the watch rests
-        watching.watch.step(watching.now + MOST_REST_S / 2)
-        assert [event.event for event in watching.told] == told
 
 
 def test_asking_takes_a_small_share_of_the_time(monkeypatch):
@@ -146,12 +119,12 @@ def test_asking_takes_a_small_share_of_the_time(monkeypatch):
 def test_a_map_that_does_not_answer_is_told_of_once():
     watching = Watching("mug")
     watching.after(9, mug=7)
-    watching.map.fault = "the server went away"
+    watching.map.fault = "the file went away"
     assert watching.after(9, mug=7) == [("fault", "")]
-    assert watching.told[-1].fault == "the server went away"
+    assert watching.told[-1].fault == "the file went away"
     watching.map.fault = ""
     assert watching.after(9, mug=7) == []  # it is there as before
-    watching.map.fault = "the server went away"
+    watching.map.fault = "the file went away"
     assert watching.after(9) == [("fault", "")]
     watching.map.fault = ""
     assert watching.after(9) == [("gone", "mug")]
@@ -159,7 +132,7 @@ def test_a_map_that_does_not_answer_is_told_of_once():
 
 def test_a_query_that_cannot_be_asked_leaves_the_others_alone():
     watching = Watching("mug", ",")
-    assert watching.after(9, mug=7, **{",": "the query ',' names nothing"}) == [("fault", ","), ("found", "mug")]
+    assert watching.after(9, mug=7, **{",": "the query ',' names nothing"}) == [("found", "mug"), ("fault", ",")]
     assert watching.after(9, mug=7, **{",": "the query ',' names nothing"}) == []
 
 
@@ -194,19 +167,12 @@ def states_of(backend, change):
     return before != backend.state()
 
 
-@needs_program
 def test_names_alone_are_no_reason_to_ask_again(saved_map, tmp_path):
-    pytest.importorskip("mcp")  # of which the fixture has more
-    from agent_fixture import serving
-
     copy = shutil.copy(saved_map, tmp_path / "room.ovimap")
     first, second = (match.id for match in ovimap.Map.open(copy).query("chair").matches[:2])
-    with serving(copy) as server:
-        for backend in (open_map(server.address), open_map(copy)):
-            assert backend.find("chair").found  # the server is ready
-            assert not states_of(backend, lambda backend: backend.rename(first, "throne"))
-            assert states_of(backend, lambda backend: backend.merge(second, first))
-            backend.undo(0)
+    backend = open_map(copy)
+    assert not states_of(backend, lambda backend: backend.rename(first, "throne"))
+    assert states_of(backend, lambda backend: backend.merge(second, first))
 
 
 class Hook:
@@ -353,8 +319,150 @@ def test_a_map_that_is_being_made_and_a_server_that_goes_away(room, tmp_path):
             server.wait(timeout=60)
             port = server.address.split(":")[2].strip("/")
             with serving(out, port=port):  # the finished map at the same place: the chair is there as before
-                asked = open_map(server.address)
-                while (answer := asked.find("chair")).found:
-                    asked._correct({"kind": "hide", "instance": answer.matches[0].id})
+                hide_served(open_map(server.address), "chair")
                 gone = line()
+                while gone["event"] == "fault":  # while it ends, it may refuse with a reason of its own
+                    gone = line()
                 assert (gone["event"], gone["query"]) == ("gone", "chair")
+
+
+def test_a_server_that_goes_away_is_told_once_however_its_socket_says_it(monkeypatch):
+    monkeypatch.setattr("ovimap.watching.RETRY_S", 0)
+    faults = [NoAnswer("ended"), NoAnswer("refused"), MapFault("shutting down"), NoAnswer("refused"), RequestRefused("enough")]
+
+    class Server:
+        name = "home"
+
+        def watch(self, *_):
+            raise faults.pop(0)
+
+    told = []
+    with pytest.raises(RequestRefused):
+        ServerWatch(Server(), ["mug"], told.append).run()
+    assert [event.fault for event in told] == ["ended", "shutting down", "refused"]
+
+
+@pytest.mark.parametrize(
+    ("kind", "body", "words"),
+    [
+        ("text/html", b"<html>", "not understood"),
+        ("text/event-stream", b"", "does not answer"),
+        ("text/event-stream", b"event: found\ndata: nonsense\n\n", "no JSON object"),
+        ("text/event-stream", b'event: found\ndata: {"query": "mug", "object": 3}\n\n', "not understood"),
+        ("text/event-stream", b'id: 8\nevent: found\ndata: {"query": "mug", "object": {"id": 1}}\n\n', "not understood"),
+    ],
+)
+def test_another_program_at_that_port_is_a_fault(kind, body, words):
+    class Handler(http.server.BaseHTTPRequestHandler):
+        def do_POST(self):
+            self.rfile.read(int(self.headers["Content-Length"]))
+            self.send_response(200)
+            self.send_header("Content-Type", kind)
+            self.end_headers()
+            self.wfile.write(body)
+
+        def log_message(self, *_):
+            pass
+
+    with http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        told = []
+        ovimap.watch(f"http://127.0.0.1:{server.server_address[1]}/", ["mug"], lambda event: told.append(event) or False)
+        server.shutdown()
+    assert (told[0].event, told[0].query) == ("fault", "") and words in told[0].fault and "\n" not in told[0].fault
+
+
+class Stream:
+    """Server-sent events, read with nothing but HTTP."""
+
+    def __init__(self, server, target, body=None, **headers):
+        self._connection = http.client.HTTPConnection("127.0.0.1", int(server.address.split(":")[2].strip("/")), timeout=PATIENCE_S)
+        given = {"Content-Type": "application/json", **{name.replace("_", "-"): value for name, value in headers.items()}}
+        self._connection.request("POST" if body else "GET", target, json.dumps(body).encode() if body else None, given)
+        self._reply = self._connection.getresponse()
+        assert self._reply.status == 200, self._reply.read()
+        assert self._reply.headers["Content-Type"] == "text/event-stream"
+        self.mark = ""
+        assert self.next()["queries"] > 0
+
+    def next(self):
+        """What the next event says; signs of life are none."""
+        said = None
+        while line := self._reply.readline().decode().strip():
+            name, _, value = line.partition(": ")
+            self.mark = value if name == "id" else self.mark
+            said = json.loads(value) if name == "data" else said
+        return said if said is not None else self.next()
+
+    def close(self):
+        self._reply.close()
+        self._connection.close()
+
+
+@pytest.fixture
+def server(saved_map, tmp_path):
+    """One that serves a copy of the map, which the test may change."""
+    pytest.importorskip("mcp")  # of which the fixture has more
+    from agent_fixture import serving
+
+    with serving(shutil.copy(saved_map, tmp_path / "room.ovimap")) as running:
+        yield running
+
+
+def short(said):
+    return said["event"], said["query"]
+
+
+@needs_program
+def test_a_server_says_what_is_found_and_gone_to_all_who_listen(server):
+    listeners = [contextlib.closing(Stream(server, "/api/watch?query=elephant&query=chair")) for _ in range(8)]
+    with contextlib.ExitStack() as stack:
+        streams = [stack.enter_context(listener) for listener in listeners]
+        told = [stream.next() for stream in streams]
+        assert {short(said) for said in told} == {("found", "chair")}
+        assert told[0]["map"] == "room" and told[0]["object"]["title"] == "chair" and 0.5 < told[0]["probability"] <= 1
+        assert set(told[0]) == {"event", "map", "query", "time_s", "object", "probability"} and streams[0].mark == "4"
+        backend = open_map(server.address)
+        hidden = hide_served(backend, "chair")
+        assert {short(stream.next()) for stream in streams} == {("gone", "chair")} and streams[0].mark == "0"
+        backend.undo(hidden[0])
+        again = [stream.next() for stream in streams]
+        assert {short(said) for said in again} == {("found", "chair")} and all("object" in said for said in again)
+
+
+@needs_program
+def test_a_listener_that_comes_back_goes_on_where_it_was(server):
+    first = Stream(server, "/api/watch?query=chair&query=table")
+    told = {short(first.next()), short(first.next())}
+    assert told == {("found", "chair"), ("found", "table")}
+    first.close()
+    hide_served(open_map(server.address), "chair")
+    with contextlib.closing(Stream(server, "/api/watch?query=chair&query=table", Last_Event_ID=first.mark)) as back:
+        said = back.next()
+        assert short(said) == ("gone", "chair") and "object" not in said  # this stream never knew which
+
+
+@needs_program
+def test_a_query_that_cannot_be_asked_is_one_fault(server):
+    with contextlib.closing(Stream(server, "/api/watch", {"queries": [",", "chair"]})) as stream:
+        told = [stream.next(), stream.next()]
+        assert sorted(short(said) for said in told) == [("fault", ","), ("found", "chair")]
+        assert all("names nothing" in said["fault"] or "," in said["fault"] for said in told if said["event"] == "fault")
+
+
+@needs_program
+def test_a_thousand_queries_of_a_server(server):
+    words = ["chair", *(f"thing number {i}" for i in range(999))]
+    told = []
+    ovimap.watch(server.address, words, lambda event: told.append(event) or event.query != "chair")
+    assert (told[-1].event, told[-1].query) == ("found", "chair") and not any(event.fault for event in told)
+    with pytest.raises(ovimap.Error, match="1000"):
+        ovimap.watch(server.address, [*words, "one more"], print)
+
+
+def hide_served(backend, text):
+    """All that the text finds; the numbers of the corrections, latest first."""
+    numbers = []
+    while (answer := backend.find(text)).found:
+        numbers.insert(0, backend._correct({"kind": "hide", "instance": answer.matches[0].id}))
+    return numbers

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
-"""Trains the judge that says which super-points are one thing and writes src/ovimap/instance/pair_judge_weights.h: renders rooms and desks
+"""Trains the judge that says which super-points are one thing and writes src/ovimap/instance/consensus/pair_judge_weights.h: renders rooms and desks
 of the tuned halves of the benchmarks, of seeds that no benchmark and no other network uses, maps them with MobileSAM's masks and with
 true ones, and learns from all pairs of clusters that a grouping meets (bench/quality/pair_samples.cpp).
 
@@ -17,13 +17,13 @@ import subprocess
 
 import numpy as np
 
-HEADER = pathlib.Path(__file__).parents[2] / "src/ovimap/instance/pair_judge_weights.h"
-INPUTS, HIDDEN, NETWORKS = 21, 24, 4  # PairFeature::kCount; several networks that differ in their chance err less together
+HEADER = pathlib.Path(__file__).parents[2] / "src/ovimap/instance/consensus/pair_judge_weights.h"
+INPUTS, HIDDEN, NETWORKS = 24, 24, 8  # PairFeature::kCount; several networks that differ in their chance err less together
 STEPS, BATCH, RATE, DECAY = 5000, 1024, 3e-3, 1e-3
 WALK, STILL = ["--fps", "1"], ["--noise", "--frames", "40"]
 DESKS, ROOMS = ["writing-desk", "breakfast-table", "book-shelf"], ["living-room", "bedroom", "kitchen"]
-# Kind, seed, options, every how many frames masks are asked for.
-SCENES = [(kind, seed, WALK if kind in DESKS else STILL, 2) for seed in (201, 202) for kind in DESKS + ROOMS] + [("courtyard", 201, WALK, 3)]
+# Kind, seed, options, every how many frames masks are asked for: often and seldom, since recordings differ in how far their frames are apart.
+SCENES = [(kind, seed, WALK if kind in DESKS else STILL, (1, 2, 4)) for seed in (201, 202, 203) for kind in DESKS + ROOMS] + [("courtyard", 201, WALK, (3, 6))]
 TRUE_MASKS = {(kind, 201) for kind in DESKS + ROOMS} | {("writing-desk", 202)}
 
 
@@ -31,15 +31,19 @@ def run(*command):
     subprocess.run([str(word) for word in command], check=True, stdout=subprocess.DEVNULL)
 
 
+def asked_for(programs, work, scene, name, interval):
+    """A folder of the network's masks, which is asked once."""
+    folder = work / "masks" / name
+    if not (folder / "done").exists():
+        run(programs / "ovimap", "masks", scene, "--frames", f"::{interval}", "-o", folder)
+        (folder / "done").touch()
+    return folder
+
+
 def mapped(programs, work, scene, name, masks, interval):
-    """The map of a recording; masks of the network are asked for once and kept."""
     file = work / "maps" / f"{name}.ovimap"
     if not file.exists():
-        if masks == "sam":
-            masks = work / "masks" / name
-            run(programs / "ovimap", "masks", scene, "--frames", f"::{interval}", "-o", masks)
-        run(programs / "ovimap", "run", scene, "--masks", masks, "--encoder", "none",
-            *(["--set", f"mask_interval={interval}"] if masks == "gt" else []), "-o", file)  # fmt: skip
+        run(programs / "ovimap", "run", scene, "--masks", masks, "--encoder", "none", "--set", f"mask_interval={interval}", "-o", file)
     return file
 
 
@@ -47,14 +51,15 @@ def samples(programs, work):
     """Features and verdicts of each map's pairs."""
     for folder in ("maps", "pairs"):
         (work / folder).mkdir(parents=True, exist_ok=True)
-    for kind, seed, options, interval in SCENES:
+    for kind, seed, options, intervals in SCENES:
         rendered = work / "scenes" / f"{kind}-{seed}"
         if not (rendered / "done").exists():
             run(programs / "ovimap", "synth", rendered, "--room", kind, "--seed", seed, *options)
             (rendered / "done").touch()
         scene = next(path.parent for path in rendered.glob("*/results"))
-        for masks in ["sam"] + ["gt"] * ((kind, seed) in TRUE_MASKS):
-            name = f"{kind}-{seed}-{masks}"
+        network = asked_for(programs, work, scene, f"{kind}-{seed}", intervals[0])
+        for masks, interval in [(network, n) for n in intervals] + [("gt", 2)] * ((kind, seed) in TRUE_MASKS):
+            name = f"{kind}-{seed}-{'gt' if masks == 'gt' else 'sam'}-{interval}"
             file = work / "pairs" / name
             run(programs / "ovimap_pair_samples", mapped(programs, work, scene, name, masks, interval), scene, file)
             values = np.fromfile(file, np.float32).reshape(-1, INPUTS + 1)

@@ -2,16 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 import { api } from './api/client';
 import { listen } from './api/events';
-import type { FrameEvent, Instance, Labels, MapInfo, MeshListing, Question } from './api/types';
+import type { Box, FrameEvent, Instance, Labels, MapInfo, MeshListing, Question } from './api/types';
 import { CameraState } from './camera-state';
 import { Commands } from './commands';
 import { Corrections } from './corrections';
+import { GapsView } from './gaps-view';
 import { listenToKeys } from './keyboard';
 import { MapState } from './map-state';
 import { Past } from './past';
 import { RoomsView } from './rooms-view';
 import { Rounds } from './rounds';
 import type { Mode } from './scene/coloring';
+import { boxOf } from './scene/ghosts';
 import { MapView } from './scene/map-view';
 import { SurfaceLoader } from './surface-loader';
 import { Tools } from './tools';
@@ -51,9 +53,13 @@ export class App {
   private readonly search = new SearchPanel({
     onQuery: (text, not) => void this.ask({ text, not }, text),
     onClear: () => this.clearQuery(),
-    onSelect: (id) => this.select(id, true),
+    onSelect: (id, part) => {
+      this.select(id, part === null);
+      if (part) this.showPart(part);
+    },
     onEvent: (event) => void this.past.choose(event),
     onRoom: (room) => this.rooms.choose(room),
+    onGap: (gap) => this.gaps.choose(gap),
     eventOf: (id) => this.past.event(id),
   });
   private readonly corrections = new Corrections(this.state, this.status, {
@@ -72,6 +78,7 @@ export class App {
     onLock: (id) => void this.corrections.toggleLock(id),
     onDelete: (id) => void this.corrections.remove(id),
     onSelect: (id) => this.select(id, true),
+    onPart: (box) => this.showPart(box),
     onClose: () => this.select(0, false),
   });
   private readonly toolbar = new Toolbar({
@@ -86,7 +93,14 @@ export class App {
   private readonly rooms = new RoomsView(this.status, {
     list: (rooms) => this.showInstead(rooms && (() => this.search.showRooms(rooms))),
   });
-  private readonly tools = new Tools(this.canvas, this.toolbar, this.status, this.past, this.rooms);
+  private readonly gaps = new GapsView(this.status, {
+    list: (gaps) => this.showInstead(gaps && (() => this.search.showGaps(gaps))),
+  });
+  private readonly tools = new Tools(this.canvas, this.toolbar, this.status, {
+    history: this.past,
+    rooms: this.rooms,
+    gaps: this.gaps,
+  });
   private readonly refreshes = new Rounds(
     () => this.loadAgain(),
     () => (this.state.info?.live ? LIVE_PAUSE_MS : 0),
@@ -165,7 +179,7 @@ export class App {
     this.view?.setLabels(labels);
     this.showList();
     this.repaint();
-    await Promise.all([this.past.changed(), this.rooms.changed()]);
+    await Promise.all([this.past.changed(), this.rooms.changed(), this.gaps.changed()]);
     const editing = this.card.element.querySelector('form') !== null;
     const { selected } = this.state;
     if (selected !== 0 && !instances.some(({ id }) => id === selected)) this.select(0, false);
@@ -184,7 +198,8 @@ export class App {
       this.canvas.hidden = true;
       return this.status.setBanner(faultText(error));
     }
-    this.tools.view = this.commands.view = this.past.view = this.rooms.view = this.view;
+    this.tools.view = this.commands.view = this.past.view = this.view;
+    this.rooms.view = this.gaps.view = this.view;
     this.camera.view = this.view;
     this.canvas.after(this.view.measure.label);
     const observer = new ResizeObserver(() => this.coverView());
@@ -260,6 +275,12 @@ export class App {
     if (!instance) return this.card.close();
     this.showCard(id);
     if (fly) this.view?.focus(instance);
+  }
+
+  /** Outlines a part of the selected object. */
+  private showPart(part: Box): void {
+    this.view?.outline(boxOf(part));
+    this.view?.focusBox(boxOf(part));
   }
 
   private focus(id: number): void {
@@ -375,6 +396,7 @@ export class App {
       '2': () => this.setMode('instances'),
       '3': () => this.setMode('classes'),
       '4': () => this.setMode('heat'),
+      '5': () => this.setMode('evidence'),
       f: selected((id) => this.focus(id)),
       h: selected((id) => void this.corrections.hide(id)),
       u: () => void this.corrections.undo(),
@@ -384,6 +406,7 @@ export class App {
       c: () => this.tools.toggle('path'),
       r: () => this.tools.toggle('rooms'),
       v: () => this.tools.toggle('history'),
+      l: () => this.tools.toggle('gaps'),
       g: () => this.tools.toggle('fly'),
       p: () => this.commands.run('picture'),
       t: () => this.commands.run('theme'),

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
-import type { Past } from './past';
-import type { RoomsView } from './rooms-view';
 import type { MapView } from './scene/map-view';
 import { metres } from './scene/measure';
 import type { Pick } from './scene/picking';
@@ -10,7 +8,12 @@ import { SectionPanel } from './ui/section-panel';
 import type { Status } from './ui/status';
 import type { Tool, Toolbar } from './ui/toolbar';
 
-/** The tools of the view, each on or off: measuring, section plane, camera path, rooms, history, flying. */
+/** A tool that fills the list. */
+export interface ListTool {
+  toggle: (on: boolean) => Promise<void>;
+}
+
+/** The tools of the view, each on or off: measuring, section plane, camera path, lists, flying. */
 export class Tools {
   readonly sectionPanel = new SectionPanel((section) => this.view?.setSection(section));
   readonly pathPanel = new PathPanel({
@@ -24,8 +27,7 @@ export class Tools {
     private readonly canvas: HTMLElement,
     private readonly toolbar: Toolbar,
     private readonly status: Status,
-    private readonly past: Past,
-    private readonly rooms: RoomsView,
+    private readonly lists: Record<'history' | 'rooms' | 'gaps', ListTool>,
   ) {}
 
   toggle(tool: Tool): void {
@@ -37,8 +39,7 @@ export class Tools {
     if (tool === 'measure') this.setMeasuring(on);
     if (tool === 'section') this.setSection(on);
     if (tool === 'path') this.setPath(on);
-    if (tool === 'rooms') void this.rooms.toggle(on);
-    if (tool === 'history') void this.past.toggle(on);
+    if (tool === 'history' || tool === 'rooms' || tool === 'gaps') void this.lists[tool].toggle(on);
   }
 
   isOn(tool: Tool): boolean {

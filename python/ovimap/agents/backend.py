@@ -20,6 +20,14 @@ class MapFault(RuntimeError):
     """One line that says what is wrong with a request, a map or a server, and what to do."""
 
 
+class RequestRefused(MapFault):
+    """A request that a server will not take, however often it is sent."""
+
+
+class NoAnswer(MapFault):
+    """A server that is not there, or went away in the middle of its answer."""
+
+
 @dataclass(frozen=True)
 class Robot:
     """A round robot with a camera above its middle."""
@@ -90,20 +98,6 @@ class MapBackend(abc.ABC):
 
     @abc.abstractmethod
     def undo(self, correction: int) -> int: ...
-
-    # What standing queries need.
-
-    @abc.abstractmethod
-    def state(self) -> tuple[str, bool]:
-        """What changes whenever an object does, apart from its name, and whether the map is being made."""
-
-    @abc.abstractmethod
-    def verdicts(self, texts: Sequence[str]) -> list[Verdict]:
-        """Of each text, by the map as it is now."""
-
-    @abc.abstractmethod
-    def wait(self, timeout_s: float) -> bool:
-        """Until something may have changed, or so long; whether it may."""
 
     def close(self) -> None:
         """Lets go of what is open."""

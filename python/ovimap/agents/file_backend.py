@@ -9,7 +9,6 @@ import hashlib
 import json
 import os
 import threading
-import time
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
@@ -17,7 +16,6 @@ from .._ovimap import Error, Map
 from .backend import MapBackend, MapFault, Robot, Verdict, checked_text, closest_first, extent, largest_first, point, room_list, rounded, share, spread
 from .facts import Answer, ColorShare, Description, MapObject, MapSummary, Match, Relation, RoomList, StandingPlace, StandingPlaces
 
-POLL_S = 0.5  # between looks at whether the file changed
 Stamp = tuple[int, int, int]
 
 
@@ -136,19 +134,18 @@ class FileBackend(MapBackend):
         with self._faults():
             return self._now().map.undo(correction)
 
-    def state(self) -> tuple[str, bool]:
+    # What standing queries need.
+
+    def state(self) -> str:
+        """What changes whenever an object does, apart from its name."""
         with self._faults():
-            return self._now().digest, False
+            return self._now().digest
 
     def verdicts(self, texts: Sequence[str]) -> list[Verdict]:
+        """Of each text, by the map as it is now."""
         with self._faults():
             opened = self._now()
         return [self._verdict(opened, text) for text in texts]
-
-    def wait(self, timeout_s: float) -> bool:
-        """Files tell nobody that they change, so who waits looks."""
-        time.sleep(min(timeout_s, POLL_S))
-        return True
 
     def _verdict(self, opened: _Opened, text: str) -> Verdict:
         try:

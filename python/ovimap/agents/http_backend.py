@@ -5,28 +5,26 @@
 from __future__ import annotations
 
 import functools
-import hashlib
 import http.client
 import json
 import ssl
 import threading
 import time
 import urllib.parse
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any, NamedTuple, ParamSpec, TypeVar
 
 from ..sender import _address
-from .backend import MapBackend, MapFault, Robot, Verdict, checked_text, closest_first, extent, largest_first, point, room_list, rounded, share, spread
+from .backend import MapBackend, MapFault, NoAnswer, RequestRefused, Robot, checked_text, closest_first, extent, largest_first, point, room_list, rounded, share, spread
 from .facts import Answer, ColorShare, Description, MapObject, MapSummary, Match, Relation, RoomList, StandingPlace, StandingPlaces
 
 TIMEOUT_S = 20.0
 QUIET_S = 15.0  # the server says something on the event stream every 5 seconds
-BACK_OFF_S = 1.0  # before a server that went away is asked for events again
-MOST_TEXTS = 100  # in one request
+NOT_UNDERSTOOD = "the server's answer is not understood; is it `ovimap serve` of this version?"
+NEVER = (400, 413)  # the request itself is wrong
 BUSY = (429, 503)  # the request was not looked at
 TRIES = 4
 MOST_PAUSE_S = 2
-NOTHING_YET = "no object has an embedding yet"  # how the server begins why a map that was just begun cannot be searched
 Given = ParamSpec("Given")
 Result = TypeVar("Result")
 
@@ -34,7 +32,14 @@ Result = TypeVar("Result")
 class _Listed(NamedTuple):
     etag: str
     objects: dict[int, MapObject]
-    digest: str  # of what queries depend on
+
+
+class StandingEvent(NamedTuple):
+    """What a server says to standing queries."""
+
+    mark: str  # where the client is then
+    kind: str  # "hello", "found", "gone", "fault"
+    said: dict[str, Any]
 
 
 def _understood(method: Callable[Given, Result]) -> Callable[Given, Result]:
@@ -45,7 +50,7 @@ def _understood(method: Callable[Given, Result]) -> Callable[Given, Result]:
         try:
             return method(*arguments, **options)
         except (KeyError, IndexError, TypeError, AttributeError):
-            raise MapFault("the server's answer is not understood; is it `ovimap serve` of this version?") from None
+            raise MapFault(NOT_UNDERSTOOD) from None
 
     return asked
 
@@ -63,7 +68,6 @@ class HttpBackend(MapBackend):
         self._trust = ssl.create_default_context(cafile=cafile) if self._parts.scheme == "https" else None
         self._lock = threading.Lock()  # guards what follows
         self._listed: _Listed | None = None
-        self._events: _Events | None = None
 
     @_understood
     def summary(self) -> MapSummary:
@@ -144,40 +148,26 @@ class HttpBackend(MapBackend):
     def undo(self, correction: int) -> int:
         return self._correct({"kind": "undo", "edit": correction})
 
-    @_understood
-    def state(self) -> tuple[str, bool]:
-        about = self._get("/api/map")
-        self._objects()
-        with self._lock:
-            digest = self._listed.digest if self._listed else ""
-        return f"{digest} {about['search']['state']}", about["live"]
-
-    @_understood
-    def verdicts(self, texts: Sequence[str]) -> list[Verdict]:
-        about = self._get("/api/map")
-        if about["live"] and (about["search"]["state"] == "preparing" or about["search"]["reason"].startswith(NOTHING_YET)):
-            return [Verdict(False, None) for _ in texts]
-        objects, verdicts = self._objects(), []
-        for first in range(0, len(texts), MOST_TEXTS):
-            said = self._post("/api/queries", {"texts": list(texts[first : first + MOST_TEXTS])})
-            verdicts += [_verdict(answer, objects) for answer in said["answers"]]
-        return verdicts
-
-    def wait(self, timeout_s: float) -> bool:
-        with self._lock:
-            if self._events is None or not self._events.is_alive():
-                self._events = _Events(self._connection(QUIET_S), self._headers)
-                self._events.start()
-            events = self._events
-        changed = events.changed.wait(timeout_s)
-        events.changed.clear()  # what comes from now on is seen next time
-        return changed
-
-    def close(self) -> None:
-        with self._lock:
-            if self._events is not None:
-                self._events.end()
-                self._events = None
+    def watch(self, queries: Sequence[str], hold_s: float, mark: str = "") -> Iterator[StandingEvent]:
+        """What becomes of standing queries, until the connection ends, which raises NoAnswer. mark: of the last event that came, so
+        that it goes on from there. Raises RequestRefused for what the server will never take."""
+        body = json.dumps({"queries": list(queries), "hold_s": hold_s}).encode()
+        headers = {"Content-Type": "application/json", **({"Last-Event-ID": mark} if mark else {}), **self._headers}
+        connection = self._connection(QUIET_S)
+        try:
+            connection.request("POST", "/api/watch", body, headers)
+            reply = connection.getresponse()
+            if reply.status != 200:
+                kind = RequestRefused if reply.status in NEVER else MapFault
+                raise kind(_refusal(reply.status, reply.read()))
+            if not reply.headers.get("Content-Type", "").startswith("text/event-stream"):
+                raise MapFault(NOT_UNDERSTOOD)
+            yield from _events_of(reply)
+        except (OSError, http.client.HTTPException) as fault:
+            raise self._silence(fault) from None
+        finally:
+            connection.close()
+        raise self._silence("the connection ended")
 
     @_understood
     def _objects(self) -> dict[int, MapObject]:
@@ -188,7 +178,7 @@ class HttpBackend(MapBackend):
         if known and not body:
             return known.objects
         entries = _parsed(body)["instances"]
-        listed = _Listed(etag, {entry["id"]: _object(entry) for entry in entries}, _digest(entries))
+        listed = _Listed(etag, {entry["id"]: _object(entry) for entry in entries})
         with self._lock:
             self._listed = listed
         return listed.objects
@@ -223,6 +213,9 @@ class HttpBackend(MapBackend):
             raise MapFault(_refusal(status, text))
         return head.get("ETag", ""), text
 
+    def _silence(self, fault: Exception | str) -> NoAnswer:
+        return NoAnswer(f"the server {self._parts.netloc} does not answer ({fault or type(fault).__name__}); is `ovimap serve` running there?")
+
     def _once(self, method: str, path: str, body: bytes | None, headers: dict[str, str] | None) -> tuple[int, http.client.HTTPMessage, bytes]:
         connection = self._connection(TIMEOUT_S)
         try:
@@ -230,45 +223,22 @@ class HttpBackend(MapBackend):
             reply = connection.getresponse()
             text = reply.read()
         except (OSError, http.client.HTTPException) as fault:
-            said = f"the server {self._parts.netloc} does not answer ({fault or type(fault).__name__}); is `ovimap serve` running there?"
-            raise MapFault(said) from None
+            raise self._silence(fault) from None
         finally:
             connection.close()
         return reply.status, reply.headers, text
 
 
-class _Events(threading.Thread):
-    """Listens to the server's events until the connection ends."""
-
-    def __init__(self, connection: http.client.HTTPConnection, headers: dict[str, str]) -> None:
-        super().__init__(name="ovimap-events", daemon=True)
-        self.changed = threading.Event()
-        self._connection, self._headers, self._ended = connection, headers, False
-
-    def run(self) -> None:
-        try:
-            self._connection.request("GET", "/api/events", headers=self._headers)
-            reply = self._connection.getresponse()
-            while reply.status == 200 and (line := reply.readline()):
-                if line.strip() in (b"event: hello", b"event: map", b"event: reset"):
-                    self.changed.set()
-        except (OSError, http.client.HTTPException, ValueError, AttributeError):  # the latter: closed by end()
-            pass
-        finally:
-            self._connection.close()
-        if not self._ended:
-            time.sleep(BACK_OFF_S)  # then wait() listens anew
-        self.changed.set()
-
-    def end(self) -> None:
-        self._ended = True
-        self._connection.close()
-
-
-def _digest(entries: list[dict[str, Any]]) -> str:
-    """Changes when an object comes, goes, moves or is seen anew, and not with names."""
-    seen = [[entry[key] for key in ("id", "box", "centroid", "points", "views", "crops")] for entry in entries]
-    return hashlib.blake2b(json.dumps(seen).encode(), digest_size=16).hexdigest()
+def _events_of(reply: http.client.HTTPResponse) -> Iterator[StandingEvent]:
+    """Server-sent events (WHATWG HTML, section 9.2), as this server writes them."""
+    fields: dict[str, str] = {}
+    while line := reply.readline():
+        name, colon, value = line.decode(errors="replace").rstrip("\n").partition(": ")
+        if colon and name:
+            fields[name] = value
+        elif not name and not colon and "event" in fields:
+            yield StandingEvent(fields.get("id", ""), fields["event"], _parsed(fields.get("data", "").encode()))
+            fields = {}
 
 
 def _object(said: dict[str, Any]) -> MapObject:
@@ -278,15 +248,6 @@ def _object(said: dict[str, Any]) -> MapObject:
     size = point(b - a for a, b in zip(low, high)) if known else None
     guess = (said["label"] or {}).get("name", "")
     return MapObject(said["id"], said["name"] or guess or "object", bool(said["name"]), center, size)
-
-
-def _verdict(answer: dict[str, Any], objects: dict[int, MapObject]) -> Verdict:
-    if "error" in answer:
-        return Verdict(False, None, fault=answer["error"])
-    if answer["verdict"] != "found" or not answer["matches"]:
-        return Verdict(False, None)
-    best = answer["matches"][0]
-    return Verdict(True, objects.get(best["id"]), share(best["probability"]))
 
 
 def _parsed(text: bytes) -> dict[str, Any]:

@@ -4,12 +4,12 @@
 
 from __future__ import annotations
 
-from .camera import Camera, CameraLost, Feed, Image, Wanted
+from .camera import Camera, CameraLost, Feed, Image, TurnRate, Wanted
 from .relay import Relay
 
-__all__ = ["Camera", "CameraLost", "Feed", "Image", "Relay", "Wanted", "open_camera"]
+__all__ = ["Camera", "CameraLost", "Feed", "Image", "Relay", "TurnRate", "Wanted", "open_camera"]
 
-MAKERS = ("realsense", "oak", "orbbec")
+MAKERS = ("realsense", "oak", "orbbec", "openni")
 
 
 def open_camera(maker: str, wanted: Wanted) -> Camera:
@@ -24,6 +24,10 @@ def open_camera(maker: str, wanted: Wanted) -> Camera:
         from .oak import open_oak
 
         return open_oak(wanted)
+    if maker == "openni":
+        from .openni import open_openni
+
+        return open_openni(wanted)
     from .orbbec import open_orbbec
 
     return open_orbbec(wanted)

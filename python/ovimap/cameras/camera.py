@@ -16,8 +16,10 @@ import numpy as np
 import numpy.typing as npt
 
 from .._ovimap import Error
+from ..gyroscope import Rate
 from ..transforms import Matrix, rotation_vector_of
 
+WAITING_RATES = 4000  # of a gyroscope: ten seconds of 400 a second
 WAITING_IMAGES = 8  # half a dozen frames' delay is worse than a frame left out
 
 
@@ -41,6 +43,14 @@ class Image:
     pixels: npt.NDArray[Any]
 
 
+@dataclass(frozen=True)
+class TurnRate:
+    """A sample of the camera's gyroscope."""
+
+    time_s: float  # by the camera's clock
+    rad_per_s: Rate  # about the axes of the depth camera
+
+
 class CameraLost(Exception):
     """It sends no more; the text is a sentence's end, as "was unplugged"."""
 
@@ -52,6 +62,7 @@ class Camera(Protocol):
     serial: str
     rig: dict[str, Any]  # as FrameSender takes it
     recorded: bool  # it waits for whoever takes its images
+    gyroscope: bool  # it tells how it turns
 
     def start(self, feed: Feed) -> None:
         """Puts images into the feed from now on, and ends it when there are no more."""
@@ -60,27 +71,37 @@ class Camera(Protocol):
 
 
 class Feed:
-    """Images between threads.
+    """Images between threads, and what a gyroscope measured between them.
 
-    waits: where the images of a recording find no room its thread waits; a camera goes on, and its oldest image is dropped."""
+    waits: where the images of a recording find no room its thread waits; a camera goes on, and its oldest image is dropped. Samples of a gyroscope
+    are small and always find room."""
 
     def __init__(self, *, waits: bool) -> None:
         self.dropped = 0
         self._waits = waits
-        self._images: collections.deque[Image] = collections.deque()
+        self._entries: collections.deque[Image | TurnRate] = collections.deque()
+        self._images = 0  # among them
         self._changed = threading.Condition()
         self._ended = self._closed = False
         self._fault = ""
 
     def put(self, image: Image) -> None:
         with self._changed:
-            while self._waits and len(self._images) >= WAITING_IMAGES and not self._closed:
+            while self._waits and self._images >= WAITING_IMAGES and not self._closed:
                 self._changed.wait()
-            if len(self._images) >= WAITING_IMAGES:
-                self._images.popleft()
+            if self._images >= WAITING_IMAGES:
+                del self._entries[next(i for i, entry in enumerate(self._entries) if isinstance(entry, Image))]
+                self._images -= 1
                 self.dropped += 1
-            self._images.append(image)
+            self._entries.append(image)
+            self._images += 1
             self._changed.notify_all()
+
+    def turn(self, rate: TurnRate) -> None:
+        with self._changed:
+            self._entries.append(rate)
+            if len(self._entries) > self._images + WAITING_RATES:  # nobody takes any
+                del self._entries[next(i for i, entry in enumerate(self._entries) if isinstance(entry, TurnRate))]
 
     def end(self, fault: str = "") -> None:
         """No more come; `fault`: as CameraLost has it, where that was not meant."""
@@ -94,8 +115,9 @@ class Feed:
             self._closed = True
             self._changed.notify_all()
 
-    def images(self, patience_s: float) -> Iterator[Image]:
-        """Until the feed ends. Raises CameraLost when that was not meant, and when no image comes within patience_s."""
+    def entries(self, patience_s: float) -> Iterator[Image | TurnRate]:
+        """In the order in which they came, until the feed ends. Raises CameraLost when that was not meant, and when no image comes within
+        patience_s."""
         while True:
             with self._changed:
                 end = time.monotonic() + patience_s
@@ -105,9 +127,16 @@ class Feed:
                     if self._ended and not self._fault:
                         return
                     raise CameraLost(self._fault or f"has sent no image for {patience_s:g} s")
-                image = self._images.popleft()
+                taken = self._up_to_an_image()
                 self._changed.notify_all()
-            yield image
+            yield from taken
+
+    def _up_to_an_image(self) -> list[Image | TurnRate]:
+        taken = [self._entries.popleft()]
+        while not isinstance(taken[-1], Image):
+            taken.append(self._entries.popleft())
+        self._images -= 1
+        return taken
 
 
 def chosen_serial(maker: str, serials: list[str], wanted: str, hint: str) -> str:

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._ovimap import Error, encode_png
+from ..gyroscope import Quaternion, Rate
 
 
 class FolderWriter:
@@ -27,8 +28,9 @@ class FolderWriter:
         (folder / "camera.yaml").write_text("".join(f"{key}: {json.dumps(value)}\n" for key, value in rig.items()))  # JSON is YAML
         self._lists = {kind: (folder / f"{kind}.txt").open("w") for kind in ("rgb", "depth")}
 
-    def send(self, color: npt.NDArray[np.uint8], depth: npt.NDArray[Any], pose: None, timestamp: float, *, patience_s: float = 0.0) -> bool:
-        """As FrameSender's."""
+    def send(self, color: npt.NDArray[np.uint8], depth: npt.NDArray[Any], pose: None, timestamp: float, *,
+             orientation: Quaternion | None = None, patience_s: float = 0.0) -> bool:  # fmt: skip
+        """As FrameSender's; what a gyroscope measures is kept as it is."""
         name = f"{timestamp:.6f}"
         if name in self._names:
             self.skipped += 1
@@ -39,6 +41,12 @@ class FolderWriter:
             self._lists[kind].write(f"{name} {kind}/{name}.png\n")
         self.taken += 1
         return True
+
+    def keep_rate(self, time_s: float, rate: Rate) -> None:
+        """A sample of the gyroscope, about the axes of the depth camera."""
+        if "gyroscope" not in self._lists:
+            self._lists["gyroscope"] = (self._folder / "gyroscope.txt").open("w")
+        self._lists["gyroscope"].write(f"{time_s:.6f} " + " ".join(f"{value:.9g}" for value in rate) + "\n")
 
     def finish(self) -> None:
         self.close()

@@ -38,6 +38,7 @@ class Oak:
     """A device of depthai, which runs from here on: its images tell its calibration."""
 
     recorded = False
+    gyroscope = False  # not read
 
     def __init__(self, dai: Any, info: Any, serial: str, wanted: Wanted) -> None:
         self.serial, self.name = serial, f"OAK {serial}"

@@ -39,6 +39,7 @@ class Orbbec:
     """A device of pyorbbecsdk, which runs from here on: its images tell its depth scale."""
 
     recorded = False
+    gyroscope = False  # not read
 
     def __init__(self, ob: Any, device: Any, serial: str, wanted: Wanted) -> None:
         self.serial, self.name = serial, f"{device.get_device_info().get_name()} {serial}"

@@ -24,6 +24,7 @@ class Pair:
     color: npt.NDArray[np.uint8]
     depth: npt.NDArray[np.uint16]
     time_s: float  # of depth; grows from pair to pair
+    clock_s: float  # of depth, by the camera's clock
 
 
 class Pairing:
@@ -87,7 +88,7 @@ class Pairing:
         if era != self._sent_era:
             self._sent_era, self._shift_s = era, self._sent_s + STEP_S - depth.time_s
         self._sent_s = depth.time_s + self._shift_s
-        return Pair(color.pixels, depth.pixels, self._sent_s)
+        return Pair(color.pixels, depth.pixels, self._sent_s, depth.time_s)
 
     def _leave_out(self, depth: Image, color: Image | None) -> None:
         self.left_out += 1

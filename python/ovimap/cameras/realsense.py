@@ -16,7 +16,7 @@ import numpy as np
 from .._ovimap import Error
 from ..distortion import distortion_of, fitted_brown_conrady
 from ..transforms import Matrix
-from .camera import Feed, Image, Wanted, chosen_serial, rig_of, units_per_m
+from .camera import Feed, Image, TurnRate, Wanted, chosen_serial, rig_of, units_per_m
 
 HINT = "plug it in (docs/cameras.md, 'When no camera is found'), or read a recording with --file"
 DEFAULT_UNIT_M = 0.001  # of devices that do not say
@@ -48,6 +48,8 @@ class RealSense:
         self.name = f"{_about(rs, device, 'name')} {self.serial}".strip()
         choose = _only if self.recorded else _of_size
         self._chosen = {kind: choose(self.name, kind, _of_kind(rs, device, kind), wanted) for kind in ("depth", "color")}
+        self._gyroscope = _gyroscope_of(rs, device, self._chosen["depth"][1])
+        self.gyroscope = self._gyroscope is not None
         self._running: list[Any] = []
         self.rig = self._rig()
 
@@ -81,6 +83,11 @@ class RealSense:
             self._running.append(sensor)
         for sensor in list(self._running):
             sensor.start(take)
+        if self._gyroscope is not None:
+            sensor, profile, depth_from_gyroscope = self._gyroscope
+            sensor.open(profile)
+            self._running.append(sensor)
+            sensor.start(_turn_taker(depth_from_gyroscope, feed))
         if self.recorded:
             self._device.resume()
 
@@ -89,7 +96,7 @@ class RealSense:
         unit_m = sensor.as_depth_sensor().get_depth_scale() if sensor.is_depth_sensor() else DEFAULT_UNIT_M
         extrinsics = depth.get_extrinsics_to(color)
         offset: Matrix = np.eye(4)
-        offset[:3, :3] = np.reshape(extrinsics.rotation, (3, 3)).T  # column by column
+        offset[:3, :3] = _rotation(extrinsics)
         offset[:3, 3] = extrinsics.translation
         return rig_of({**_camera(self._rs, depth), "depth_scale": units_per_m(unit_m)}, _camera(self._rs, color), offset)
 
@@ -119,6 +126,24 @@ def _of_kind(rs: Any, device: Any, kind: str) -> list[tuple[Any, Any]]:
     formats = [rs.format.z16] if kind == "depth" else [getattr(rs.format, name) for name in CHANNELS]
     found = [(s, p) for s, p in _profiles(rs, device) if p.stream_type() == getattr(rs.stream, kind) and p.format() in formats]
     return sorted(found, key=lambda entry: formats.index(entry[1].format()))
+
+
+def _gyroscope_of(rs: Any, device: Any, depth: Any) -> tuple[Any, Any, Matrix] | None:
+    """(sensor, its profile of most samples, depth_from_gyroscope [3, 3]); None where the device has none. Recordings do not hold how it stands to
+    depth; these devices give turns about axes like depth's, and the mapper leaves out a gyroscope that the images contradict."""
+    found = [(sensor, profile) for sensor in device.query_sensors() for profile in sensor.get_stream_profiles()]
+    fitting = [(s, p) for s, p in found if p.stream_type() == rs.stream.gyro and p.format() == rs.format.motion_xyz32f]
+    if not fitting:
+        return None
+    sensor, profile = max(fitting, key=lambda entry: entry[1].fps())
+    try:
+        return sensor, profile, _rotation(profile.get_extrinsics_to(depth))
+    except RuntimeError:
+        return sensor, profile, np.eye(3)
+
+
+def _rotation(extrinsics: Any) -> Matrix:
+    return np.reshape(np.asarray(extrinsics.rotation, np.float64), (3, 3)).T  # column by column
 
 
 def _only(name: str, kind: str, profiles: list[tuple[Any, Any]], wanted: Wanted) -> tuple[Any, Any]:
@@ -154,6 +179,16 @@ def _taker(rs: Any, feed: Feed) -> Callable[[Any], None]:
             if kind == "color":
                 pixels = pixels[..., 2::-1] if single.profile.format() in (rs.format.bgr8, rs.format.bgra8) else pixels[..., :3]
             feed.put(Image(kind, single.timestamp / 1000, np.array(pixels)))
+
+    return take
+
+
+def _turn_taker(depth_from_gyroscope: Matrix, feed: Feed) -> Callable[[Any], None]:
+    def take(frame: Any) -> None:
+        for single in _singles(frame):
+            measured = single.as_motion_frame().get_motion_data()  # radians a second
+            x, y, z = (depth_from_gyroscope @ [measured.x, measured.y, measured.z]).tolist()
+            feed.turn(TurnRate(single.timestamp / 1000, (x, y, z)))
 
     return take
 

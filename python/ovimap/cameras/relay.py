@@ -13,9 +13,11 @@ import numpy as np
 import numpy.typing as npt
 
 from .._ovimap import Error
+from ..gyroscope import Quaternion, Rate
 from ..sender import SendError
-from .camera import CameraLost, Image
+from .camera import CameraLost, Image, TurnRate
 from .pairing import Pair, Pairing
+from .turns import Turns
 
 PATIENCE_S = 60.0  # for a mapper that is busy, while a recording is read
 MOST_REFUSED = 30  # frames, before the first is taken: then none will be
@@ -30,26 +32,32 @@ class Sink(Protocol):
     taken: int
     skipped: int
 
-    def send(self, color: npt.NDArray[np.uint8], depth: npt.NDArray[Any], pose: None, timestamp: float, *, patience_s: float) -> bool: ...
+    def send(self, color: npt.NDArray[np.uint8], depth: npt.NDArray[Any], pose: None, timestamp: float, *,
+             orientation: Quaternion | None, patience_s: float) -> bool: ...  # fmt: skip
 
 
 class Relay:
     """Pairs images and hands them to a sink; goes on for as long as that makes sense.
 
-    tell: takes a line that a person should know. waits: for a mapper that is busy, instead of skipping frames."""
+    tell: takes a line that a person should know. waits: for a mapper that is busy, instead of skipping frames. keep_rate: takes the samples of a
+    gyroscope, by the times of frames."""
 
-    def __init__(self, sink: Sink, tell: Callable[[str], None], *, waits: bool) -> None:
+    def __init__(self, sink: Sink, tell: Callable[[str], None], *, waits: bool, keep_rate: Callable[[float, Rate], None] | None = None) -> None:
         self.sink = sink
         self.refused = 0
         self.pairing = Pairing(tell)
+        self._turns = Turns(tell, keep_rate)
         self._tell, self._waits = tell, waits
         self._flicker = Flicker(tell)
 
-    def take(self, images: Iterable[Image]) -> None:
-        """Raises Error when the server is gone, takes no more, or took none of many frames; CameraLost when `images` does."""
+    def take(self, entries: Iterable[Image | TurnRate]) -> None:
+        """Raises Error when the server is gone, takes no more, or took none of many frames; CameraLost when `entries` does."""
         try:
-            for image in images:
-                self._send_all(self.pairing.add(image))
+            for entry in entries:
+                if isinstance(entry, TurnRate):
+                    self._turns.add(entry)
+                else:
+                    self._send_all(self.pairing.add(entry))
         except CameraLost:
             self._send_all(self.pairing.rest())
             raise
@@ -62,7 +70,8 @@ class Relay:
     def _send(self, pair: Pair) -> None:
         self._flicker.see(pair.color)
         try:
-            self.sink.send(pair.color, pair.depth, None, pair.time_s, patience_s=PATIENCE_S if self._waits else 0.0)
+            self.sink.send(pair.color, pair.depth, None, pair.time_s, orientation=self._turns.orientation_of(pair),
+                           patience_s=PATIENCE_S if self._waits else 0.0)  # fmt: skip
         except SendError as fault:
             self._refuse(fault)
         except (OSError, http.client.HTTPException) as fault:

@@ -32,6 +32,8 @@ DEFINITIONS = {
     f"{APPROACH}_Request": "string text\ngeometry_msgs/Point[<=1] start",
     f"{APPROACH}_Response": "bool found\nstring message\nvision_msgs/Detection3DArray matches\ngeometry_msgs/PoseArray poses\nnav_msgs/Path way",
 }
+# ROS' generator takes "char" for a uint8, by whose hash others know the type; rosbags does not.
+CORRECTED = {"rmw_dds_common/msg/Gid": "uint8[16] data"}
 # rmw_cyclonedds puts this before the body of every request and reply: who asked, and which question it was.
 SERVICE_HEADER = [("client", idl.uint64), ("sequence_number", idl.int64)]
 SERVICE_HEADER_BYTES = 16
@@ -42,7 +44,9 @@ ENCAPSULATION_BYTES = 4  # of CDR: its kind and options
 def store() -> Typestore:
     """The definitions of ROS 2 Jazzy and those above."""
     made = get_typestore(Stores.ROS2_JAZZY)
-    for name, text in DEFINITIONS.items():
+    for name in CORRECTED:
+        del made.fielddefs[name]
+    for name, text in (CORRECTED | DEFINITIONS).items():
         made.register({name: _parsed(name, text)})
     return made
 
@@ -63,7 +67,7 @@ def make(name: str, /, **fields: Any) -> Any:
 
 
 def type_hash(name: str) -> str:
-    """As ROS 2 computes it (REP 2016): "RIHS01_" and 64 hexadecimal digits."""
+    """As ROS 2 computes it (RIHS01, REP 2011 and 2016): "RIHS01_" and 64 hexadecimal digits."""
     return store().hash_rihs01(name)
 
 

@@ -34,6 +34,7 @@ class SceneObject:
     colors: npt.NDArray[np.uint8]  # [vertices, 3], or none
     hull: Points  # [at most 256, 3] corners of its convex hull
     is_shell: bool  # its hull holds other things: a wall, a floor, a ceiling
+    parts: list[tuple[Points, Points]]  # centre and size [3] of the boxes around its recognised parts
 
     @property
     def key(self) -> str:
@@ -66,18 +67,18 @@ def read_scene(path: str | os.PathLike[str]) -> Scene:
     labels, triangles = np.asarray(mesh.labels), np.asarray(mesh.triangles)
     # A triangle belongs to the object that its first corner is of: borders are closed, each once.
     owner = labels[triangles[:, 0]] if len(triangles) else np.empty(0, np.uint32)
-    parts = {said["id"]: _part(vertices, np.asarray(mesh.colors), triangles[owner == said["id"]]) for said in graph["objects"]}
-    hulls = {id: hull_corners(part[0]) for id, part in parts.items() if len(part[0])}
-    middles = np.array([parts[id][0].mean(axis=0) for id in hulls])
+    surfaces = {said["id"]: _surface(vertices, np.asarray(mesh.colors), triangles[owner == said["id"]]) for said in graph["objects"]}
+    hulls = {id: hull_corners(surface[0]) for id, surface in surfaces.items() if len(surface[0])}
+    middles = np.array([surfaces[id][0].mean(axis=0) for id in hulls])
     objects = []
     for said in graph["objects"]:
         if said["id"] not in hulls:
             continue
-        points, faces, colors = parts[said["id"]]
+        points, faces, colors = surfaces[said["id"]]
         low, high = points.min(axis=0), points.max(axis=0)
         hull = hulls[said["id"]]
         holds = int(inside_hull(hull, middles).sum()) - 1  # itself
-        objects.append(SceneObject(said["id"], said["title"], said["room"], (low + high) / 2, high - low, points, faces, colors, hull, holds >= SHELL_HOLDS))
+        objects.append(SceneObject(said["id"], said["title"], said["room"], (low + high) / 2, high - low, points, faces, colors, hull, holds >= SHELL_HOLDS, _part_boxes(said["parts"], up_from_world)))
     return Scene(graph, objects, up_from_world)
 
 
@@ -96,6 +97,18 @@ def inside_hull(hull: Points, points: Points) -> npt.NDArray[np.bool_]:
     return np.asarray((points @ _directions().T <= reach + 1e-6).all(axis=1))
 
 
+def _part_boxes(parts: list[dict[str, Any]], up_from_world: npt.NDArray[np.float64]) -> list[tuple[Points, Points]]:
+    """The boxes of the map's axes, boxed anew where those of the scene are others."""
+    boxes = []
+    for part in parts:
+        ends = np.array([part["box"]["min"], part["box"]["max"]])
+        corners = np.array([[x, y, z] for x in ends[:, 0] for y in ends[:, 1] for z in ends[:, 2]])
+        turned = corners @ up_from_world[:3, :3].T + up_from_world[:3, 3]
+        low, high = turned.min(axis=0).astype(np.float32), turned.max(axis=0).astype(np.float32)
+        boxes.append(((low + high) / 2, high - low))
+    return boxes
+
+
 def _directions() -> npt.NDArray[np.float32]:
     """[256, 3] unit vectors, spread by the golden angle."""
     z = 1 - (2 * np.arange(DIRECTIONS) + 1) / DIRECTIONS
@@ -104,7 +117,7 @@ def _directions() -> npt.NDArray[np.float32]:
     return np.stack([level * np.cos(turn), level * np.sin(turn), z], axis=1).astype(np.float32)
 
 
-def _part(vertices: Points, colors: npt.NDArray[np.uint8], triangles: npt.NDArray[np.uint32]) -> tuple[Points, npt.NDArray[np.uint32], npt.NDArray[np.uint8]]:
+def _surface(vertices: Points, colors: npt.NDArray[np.uint8], triangles: npt.NDArray[np.uint32]) -> tuple[Points, npt.NDArray[np.uint32], npt.NDArray[np.uint8]]:
     """The triangles with the vertices that they use alone."""
     used, faces = np.unique(triangles, return_inverse=True)
     return vertices[used], faces.reshape(-1, 3).astype(np.uint32), colors[used] if len(colors) else colors

@@ -40,8 +40,8 @@ def spark_graph(scene: Scene) -> Any:
     return graph
 
 
-def write_spark(scene: Scene, path: str | os.PathLike[str]) -> list[str]:
-    """Writes the graph as spark-dsg does, .json or .sparkdsg. Nothing is left out."""
+def write_spark(scene: Scene, path: str | os.PathLike[str], parts: int = 0) -> list[str]:
+    """Writes the graph as spark-dsg does, .json or .sparkdsg, of boxes, so that parts say nothing. Nothing is left out."""
     spark_graph(scene).save(os.fspath(path), include_mesh=False)
     return []
 

@@ -12,9 +12,11 @@ from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, Vt
 from .scene import Scene, SceneObject
 
 
-def write_usd(scene: Scene, path: str | os.PathLike[str]) -> list[str]:
+def write_usd(scene: Scene, path: str | os.PathLike[str], parts: int = 0) -> list[str]:
     """Writes .usda, .usdc or .usd: metres, z up, floor at z = 0. /Map/ROOM/OBJECT, and /Map/no_room for what is in none. Objects
-    collide by their convex hulls and do not move by themselves (kinematic); walls and floors are to be seen alone. Nothing is left out."""
+    collide by their convex hulls and do not move by themselves (kinematic); walls and floors are to be seen alone. Nothing is left out. Recognised parts of an
+    object are frames below it, at the middle of their boxes (ovimap:size).
+    parts: other than 0, all are to be cut into convex parts, which simulators do themselves ("convexDecomposition")."""
     stage = Usd.Stage.CreateInMemory()
     UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.z)
     UsdGeom.SetStageMetersPerUnit(stage, 1.0)
@@ -26,12 +28,12 @@ def write_usd(scene: Scene, path: str | os.PathLike[str]) -> list[str]:
         prim = UsdGeom.Xform.Define(stage, f"/Map/{name}").GetPrim()
         prim.CreateAttribute("ovimap:room", Sdf.ValueTypeNames.Int).Set(id)
     for thing in scene.objects:
-        _add(stage, f"/Map/{names[thing.room]}/{thing.key}", thing)
+        _add(stage, f"/Map/{names[thing.room]}/{thing.key}", thing, cut=parts > 0)
     stage.Export(os.fspath(path))
     return []
 
 
-def _add(stage: Usd.Stage, path: str, thing: SceneObject) -> None:
+def _add(stage: Usd.Stage, path: str, thing: SceneObject, cut: bool) -> None:
     mesh = UsdGeom.Mesh.Define(stage, path)
     mesh.AddTranslateOp().Set(Gf.Vec3d(*map(float, thing.center)))
     points = np.ascontiguousarray(thing.vertices - thing.center, dtype=np.float32)
@@ -46,10 +48,14 @@ def _add(stage: Usd.Stage, path: str, thing: SceneObject) -> None:
     prim = mesh.GetPrim()
     prim.CreateAttribute("ovimap:id", Sdf.ValueTypeNames.UInt).Set(thing.id)
     prim.CreateAttribute("ovimap:title", Sdf.ValueTypeNames.String).Set(thing.title)
-    if not thing.is_shell:
+    for number, (center, size) in enumerate(thing.parts, 1):
+        part = UsdGeom.Xform.Define(stage, f"{path}/part_{number}")
+        part.AddTranslateOp().Set(Gf.Vec3d(*map(float, center - thing.center)))
+        part.GetPrim().CreateAttribute("ovimap:size", Sdf.ValueTypeNames.Float3).Set(Gf.Vec3f(*map(float, size)))
+    if cut or not thing.is_shell:
         UsdPhysics.RigidBodyAPI.Apply(prim).CreateKinematicEnabledAttr(True)
         UsdPhysics.CollisionAPI.Apply(prim)
-        UsdPhysics.MeshCollisionAPI.Apply(prim).CreateApproximationAttr(UsdPhysics.Tokens.convexHull)
+        UsdPhysics.MeshCollisionAPI.Apply(prim).CreateApproximationAttr(UsdPhysics.Tokens.convexDecomposition if cut else UsdPhysics.Tokens.convexHull)
 
 
 def _identifier(name: str) -> str:

@@ -57,11 +57,13 @@ MESSAGES = [
          "color": {"r": 1.0, "g": 0.5, "b": 0.25, "a": 0.75}, "text": ""},
         {"header": HEADER, "ns": "names", "id": 12, "type": 9, "action": 0, "pose": POSE, "scale": {"x": 0.0, "y": 0.0, "z": 0.125},
          "color": {"r": 1.0, "g": 1.0, "b": 1.0, "a": 1.0}, "text": "mug 12"}]}),
+    ("geometry_msgs/msg/PoseArray", {"header": HEADER, "poses": [POSE, POSE]}),
+    ("nav_msgs/msg/Path", {"header": HEADER, "poses": [{"header": HEADER, "pose": POSE}, {"header": HEADER, "pose": POSE}]}),
     ("std_srvs/srv/SetBool_Request", {"data": True}),
     ("std_srvs/srv/SetBool_Response", {"success": True, "message": "done"}),
 ]  # fmt: skip
 
-# Types that the core of ROS 2 does not hold, by which its generator makes hashes: vision_msgs 4, tf2_msgs, and our service.
+# Types that the core of ROS 2 does not hold, by which its generator makes hashes: vision_msgs 4, tf2_msgs, and our services.
 PACKAGES = {
     "tf2_msgs": {"msg/TFMessage.msg": "geometry_msgs/TransformStamped[] transforms"},
     "vision_msgs": {
@@ -71,9 +73,14 @@ PACKAGES = {
         "msg/Detection3D.msg": "std_msgs/Header header\nObjectHypothesisWithPose[] results\nBoundingBox3D bbox\nstring id",
         "msg/Detection3DArray.msg": "std_msgs/Header header\nDetection3D[] detections",
     },
-    "ovimap_msgs": {"srv/Query.srv": "string text\n---\nbool found\nstring message\nvision_msgs/Detection3DArray matches"},
+    "ovimap_msgs": {
+        "srv/Query.srv": "string text\n---\nbool found\nstring message\nvision_msgs/Detection3DArray matches",
+        "srv/Approach.srv": "string text\ngeometry_msgs/Point[<=1] start\n---\nbool found\nstring message\nvision_msgs/Detection3DArray matches\n"
+                            "geometry_msgs/PoseArray poses\nnav_msgs/Path way",
+    },
 }
-CORE = ("builtin_interfaces", "geometry_msgs", "nav_msgs", "rosgraph_msgs", "sensor_msgs", "service_msgs", "std_msgs", "std_srvs", "visualization_msgs")
+GRAPH = "rmw_dds_common/msg/ParticipantEntitiesInfo"  # by which nodes tell each other what they have
+CORE = ("builtin_interfaces", "geometry_msgs", "nav_msgs", "rmw_dds_common", "rosgraph_msgs", "sensor_msgs", "service_msgs", "std_msgs", "std_srvs", "visualization_msgs")
 
 
 def made(name, fields):
@@ -99,12 +106,18 @@ def fill(message, fields):
 
 
 def core_hashes(share):
+    """Of the messages above and of GRAPH, and of all that they consist of."""
+    wanted = {GRAPH, *(name.partition("_Re")[0] for name, _ in MESSAGES)}
     found = {}
     for package in CORE:
         for file in [*(share / package).glob("msg/*.json"), *(share / package).glob("srv/*.json")]:
-            for entry in json.loads(file.read_text())["type_hashes"]:
-                found[entry["type_name"]] = entry["hash_string"]
+            if f"{package}/{file.parent.name}/{file.stem}" in wanted:
+                found |= hashes_in(file)
     return found
+
+
+def hashes_in(file):
+    return {entry["type_name"]: entry["hash_string"] for entry in json.loads(pathlib.Path(file).read_text())["type_hashes"]}
 
 
 def other_hashes(share):
@@ -125,8 +138,7 @@ def other_hashes(share):
             arguments = base / f"{package}.json"
             arguments.write_text(json.dumps({"package_name": package, "output_dir": str(out), "idl_tuples": tuples, "include_paths": includes}))
             for described in generate_type_hash(str(arguments)):
-                for entry in json.loads(pathlib.Path(described).read_text())["type_hashes"]:
-                    found[entry["type_name"]] = entry["hash_string"]
+                found |= hashes_in(described)
             includes.append(f"{package}:{out}")
     return found
 
@@ -140,10 +152,9 @@ def json_value(value):
 def main():
     share = pathlib.Path(sys.prefix, "share")
     hashes = core_hashes(share) | other_hashes(share)
-    wanted = {name for name, _ in MESSAGES} | {name for name in hashes if name.split("/")[0] in PACKAGES}
     written = [{"type": name, "fields": fields, "cdr": bytes(serialize_message(made(name, fields))).hex()} for name, fields in MESSAGES]
     versions = {name: importlib.metadata.version(name) for name in ("ros-rclpy", "ros-rmw-fastrtps-cpp", "ros-sensor-msgs")}
-    text = json.dumps({"written by": versions, "hashes": {name: hashes[name] for name in sorted(wanted)}, "messages": written}, indent=0, default=json_value)
+    text = json.dumps({"written by": versions, "hashes": dict(sorted(hashes.items())), "messages": written}, indent=0, default=json_value)
     pathlib.Path(sys.argv[1]).write_text(text + "\n")
 
 

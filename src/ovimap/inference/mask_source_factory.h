@@ -15,6 +15,7 @@
 namespace ovimap {
 
 class FrameSource;
+class SamNetwork;
 
 /// Settings of every kind of mask source; each reads its own.
 struct MaskSourceConfig {
@@ -32,6 +33,12 @@ struct MaskSourceContext {
   const FrameSource* frames = nullptr;  ///< for "gt" and for checking a folder's file names
   std::vector<std::filesystem::path> model_dirs;  ///< searched before the usual places
 };
+
+/// The network of that mask source that answers boxes with masks; null where it has none. Throws as
+/// make_mask_source.
+std::shared_ptr<const SamNetwork> make_box_network(
+    const std::string& spec, const RuntimeConfig& runtime,
+    const std::vector<std::filesystem::path>& model_dirs = {});
 
 /// The mask source that `spec` names: "none" (nullptr), "sam" (the default promptable model), "gt"
 /// (the frames' truth), a model folder, a folder of PNGs, or the name of a model on the search

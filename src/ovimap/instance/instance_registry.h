@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "ovimap/instance/association.h"
-#include "ovimap/instance/entity_consensus.h"
+#include "ovimap/instance/consensus/entity_consensus.h"
 #include "ovimap/instance/frame_runs.h"
 #include "ovimap/instance/super_point_merging.h"
 

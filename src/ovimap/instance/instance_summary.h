@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -14,10 +15,12 @@
 namespace ovimap {
 
 struct InstanceSummaryConfig {
-  int min_instance_voxels = 50;  ///< instances with fewer surface voxels are left out
+  int min_instance_voxels = 20;  ///< instances with fewer surface voxels are left out
   float surface_spacing_m =
       0.02f;  ///< between the points of an instance that a map keeps apart from its voxels
   int min_instance_views = 2;  ///< instances seen in fewer frames are left out
+  int min_part_views = 3;      ///< parts of objects told by fewer frames are left out
+  float max_part_share = 0.8f;  ///< so are those that are more of their object
 };
 void list_fields(InstanceSummaryConfig& config, ConfigFields& fields);
 
@@ -31,12 +34,29 @@ struct InstanceSummary {
   std::vector<Label> super_points;  ///< roots, ascending
 };
 
+/// Surface voxels of one super-point.
+struct SurfaceExtent {
+  std::size_t points = 0;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();  ///< of their centres, world, metres
+  Eigen::AlignedBox3f box;
+};
+using SurfaceExtents = std::map<Label, SurfaceExtent>;  ///< by root
+
+/// Measures the whole map, tile after tile.
+SurfaceExtents surface_extents(const VoxelMap& map);
+
 /// Gathers every instance's geometry by one pass over the map. Ordered by id.
 std::vector<InstanceSummary> summarize_instances(const VoxelMap& map,
+                                                 const InstanceRegistry& registry,
+                                                 const InstanceSummaryConfig& config);
+/// The same of a map that is measured already. `forest`: the map's.
+std::vector<InstanceSummary> summarize_instances(const SurfaceExtents& extents,
+                                                 const LabelForest& forest,
                                                  const InstanceRegistry& registry,
                                                  const InstanceSummaryConfig& config);
 
 /// Fills box, centroid and points of instances that name their super-points (roots).
 void measure_instances(const VoxelMap& map, std::vector<InstanceSummary>& instances);
+void measure_instances(const SurfaceExtents& extents, std::vector<InstanceSummary>& instances);
 
 }  // namespace ovimap

@@ -6,6 +6,7 @@
 
 #include "ovimap/base/parallel.h"
 #include "ovimap/track/room_camera_fixture.h"
+#include "ovimap/track/sensor_doubts.h"
 
 namespace ovimap {
 namespace {
@@ -204,6 +205,95 @@ TEST_F(TrackerTest, GoesOnInAMapThatWasCorrected) {
   EXPECT_LT(off_m(tracked, fixture::room_pose(10)), 0.015);
 }
 
+/// A camera that turns on one spot and has a gyroscope, whose world is not the map's.
+class GyroscopeTest : public TrackerTest {
+ protected:
+  static Pose turned(double degrees) {
+    Pose pose = fixture::room_pose(0);
+    pose.rotate(about_y(degrees));
+    return pose;
+  }
+  static Eigen::AngleAxisd about_y(double degrees) {
+    return {degrees * M_PI / 180, Eigen::Vector3d::UnitY()};
+  }
+  /// `says`: the degrees that the gyroscope gives.
+  Frame frame(double degrees, double says) {
+    Frame frame = camera_.take(turned(degrees), next_);
+    frame.orientation = Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5) * about_y(says);
+    return frame;
+  }
+  const TrackedFrame& turn_to(double degrees) { return see(frame(degrees, degrees)); }
+  void forget() { tracker_ = Tracker(TrackConfig{}), map_ = fixture::coarse_map(), next_ = 0; }
+};
+
+/// So fast that the images alone do not tell how far: the reach of a shift of images is 20 degrees.
+TEST_F(GyroscopeTest, FollowsTurnsThatImagesCannotTell) {
+  for (int i = 0; i < 8; ++i) {
+    const TrackedFrame& tracked = turn_to(28 * i);
+    ASSERT_TRUE(tracked.tracked) << i;
+    EXPECT_LT(off_m(tracked, turned(28 * i)), 0.01) << i;
+  }
+  forget();
+  for (int i = 0; i < 8; ++i) see(turned(28 * i));
+  EXPECT_EQ(summarise(tracker_.log()).tracked, 1u);
+}
+
+TEST_F(GyroscopeTest, FollowsTurnsBeforeBareWalls) {
+  camera_.textured = false;
+  for (int i = 0; i < 8; ++i) {
+    const TrackedFrame& tracked = turn_to(16 * i);
+    ASSERT_TRUE(tracked.tracked) << i;
+    EXPECT_LT(off_m(tracked, turned(16 * i)), 0.02) << i;
+  }
+  forget();
+  for (int i = 0; i < 8; ++i) see(turned(16 * i));
+  EXPECT_EQ(summarise(tracker_.log()).tracked, 1u);
+}
+
+/// The lens is covered while the camera turns back to where it looked before.
+TEST_F(GyroscopeTest, IsFoundAtOnceWhereItTurnedWhileTheLensWasCovered) {
+  camera_.textured = false;
+  for (const bool gyroscope : {true, false}) {
+    forget();
+    for (int i = 0; i < 20; ++i) turn_to(4 * i);
+    for (int i = 0; i < 10; ++i) EXPECT_FALSE(see(dark()).tracked);
+    const TrackedFrame& found = gyroscope ? turn_to(23) : see(turned(23));
+    EXPECT_EQ(found.tracked, gyroscope);
+    EXPECT_TRUE(!gyroscope || off_m(found, turned(23)) < 0.01);
+  }
+}
+
+/// It says how the camera turned, not that it is where it was.
+TEST_F(GyroscopeTest, AnotherPlaceIsLostWhateverTheGyroscopeSays) {
+  for (int i = 0; i < 10; ++i) turn_to(2 * i);
+  for (int i = 0; i < 5; ++i) EXPECT_FALSE(see(frame(180 + 2 * i, 20 + 2 * i)).tracked) << i;
+  EXPECT_TRUE(turn_to(18).tracked);
+}
+
+/// Mounted the other way round: the images are believed, and what is wrong is told.
+TEST_F(GyroscopeTest, AMistakenGyroscopeCostsNoFrame) {
+  for (int i = 0; i < 60; ++i) {
+    const double degrees = 25 * std::sin(0.1 * i);
+    const TrackedFrame& tracked = see(frame(degrees, -degrees));
+    ASSERT_TRUE(tracked.tracked) << i;
+    EXPECT_LT(off_m(tracked, turned(degrees)), 0.01) << i;
+  }
+  EXPECT_TRUE(tracker_.gyroscope().is_contradicted());
+  const auto doubts = sensor_doubts(tracker_);
+  ASSERT_EQ(doubts.size(), 1u);
+  EXPECT_NE(doubts[0].find("the gyroscope says otherwise than the images"), std::string::npos);
+}
+
+TEST_F(GyroscopeTest, OneThatDriftsIsNotDoubted) {
+  for (int i = 0; i < 60; ++i) {
+    const double degrees = 25 * std::sin(0.1 * i);
+    ASSERT_TRUE(see(frame(degrees, degrees + 0.1 * i)).tracked) << i;  // 3 degrees a second
+  }
+  EXPECT_GT(tracker_.gyroscope().compared(), 30);
+  EXPECT_FALSE(tracker_.gyroscope().is_contradicted());
+  EXPECT_TRUE(sensor_doubts(tracker_).empty());
+}
+
 TEST_F(TrackerTest, FirstFrameWithDepthIsTheWorld) {
   EXPECT_FALSE(see(dark()).tracked);
   const TrackedFrame& first = see(fixture::room_pose(0));
@@ -222,41 +312,6 @@ TEST_F(TrackerTest, BeginsInAMapThatIsThere) {
   const TrackedFrame& found = see(fixture::room_pose(11));
   ASSERT_TRUE(found.tracked);
   EXPECT_LT(fixture::distance_m(found.world_from_camera, fixture::room_pose(11)), 0.02);
-}
-
-class SensorTest : public TrackerTest {
- protected:
-  /// A camera that turns to and fro while it goes; `change` makes what is wrong.
-  template <class Change>
-  void walk(const Change& change) {
-    camera_.camera = {320, 240, 280.f, 280.f, 159.5f, 119.5f};
-    for (int i = 0; i < 60; ++i) {
-      Frame frame = camera_.take(pose(i), next_);
-      change(frame);
-      see(frame);
-    }
-  }
-  static Pose pose(int i) {
-    Pose pose = fixture::room_pose(i / 3);
-    pose.rotate(Eigen::AngleAxisd(0.1 * std::sin(0.1 * i), Eigen::Vector3d::UnitY()));
-    return pose;
-  }
-  std::string doubt() const { return sensor_doubt(tracker_.sensor(), tracker_.config()); }
-};
-
-TEST_F(SensorTest, NothingIsSaidOfASoundCamera) {
-  walk([](Frame&) {});
-  EXPECT_EQ(doubt(), "");
-  ASSERT_TRUE(tracker_.sensor().log_focal_ratio());
-  EXPECT_LT(std::fabs(tracker_.sensor().log_focal_ratio()->value), 0.02);
-}
-
-TEST_F(SensorTest, AWrongFocalLengthIsTold) {
-  walk([](Frame& frame) {
-    frame.depth_camera.fx *= 0.88f, frame.depth_camera.fy *= 0.88f;
-    frame.color_camera = frame.depth_camera;
-  });
-  EXPECT_NE(doubt().find("larger than given; check fx and fy"), std::string::npos) << doubt();
 }
 
 TEST(Tracker, IsTheSameForAnyNumberOfThreads) {

@@ -6,6 +6,7 @@ import type {
   Cameras,
   ChunkListing,
   Correction,
+  Gaps,
   History,
   Instance,
   InstanceDetail,
@@ -75,6 +76,7 @@ export const api = {
     (await request(`/api/mesh/${level}/${at.x}/${at.y}/${at.z}?since=${since}`)).arrayBuffer(),
   labels: () => get<Labels>('/api/labels'),
   cameras: () => get<Cameras>('/api/cameras'),
+  gaps: () => get<Gaps>('/api/gaps'),
   rooms: () => get<Rooms>('/api/rooms'),
   history: () => get<History>('/api/history'),
   /** What the object of an event was before it. */

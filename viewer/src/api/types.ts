@@ -85,6 +85,15 @@ export interface InstanceDetail extends Instance {
   footprint_m2: number;
   super_points: number[];
   neighbors: Neighbor[];
+  parts: Part[];
+}
+
+/** A piece of an object that masks show by itself. */
+export interface Part {
+  number: number;
+  box: Box;
+  centroid: Point;
+  points: number;
 }
 
 export interface ChunkListing {
@@ -145,6 +154,20 @@ export interface Room {
 export interface Rooms {
   rooms: Room[];
   doors: { rooms: [number, number]; place: Point; width_m: number }[];
+}
+
+/** Where somebody who scans should look next. */
+export interface Gap {
+  kind: 'unseen' | 'thin';
+  middle: Point;
+  box: Box;
+  area_m2: number;
+}
+
+export interface Gaps {
+  gaps: Gap[];
+  /** False: nobody asked which space was seen. */
+  space_known: boolean;
 }
 
 export interface Question {
@@ -210,6 +233,8 @@ export interface Match {
   p_value: number | null;
   probability: number | null;
   evidence: string;
+  /** Of the object, where a part was asked for; null: all of it. */
+  part: { number: number; box: Box } | null;
 }
 
 export interface Answer {

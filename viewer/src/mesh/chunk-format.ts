@@ -19,7 +19,7 @@ export interface Chunk {
   patches: Patch[];
   /** Four numbers a vertex: x, y, z in steps of edge_m / 65535 from the origin, packed normal. */
   positions: Uint16Array;
-  /** Four bytes a vertex: red, green, blue, 0. */
+  /** Four bytes a vertex: red, green, blue, how well the place is known. */
   colors: Uint8Array;
   /** The map's label of each vertex, by which /api/labels tells its object; 0: none. */
   labels: Uint32Array;

@@ -3,7 +3,7 @@
 import type { Color, Instance } from '../api/types';
 import { type LabelTable, NO_INSTANCE } from './label-table';
 
-export type Mode = 'color' | 'instances' | 'classes' | 'heat';
+export type Mode = 'color' | 'instances' | 'classes' | 'heat' | 'evidence';
 
 /** The colour at `share` in [0, 1] of a ramp. */
 export function rampColor(ramp: readonly Color[], share: number): Color {
@@ -14,6 +14,16 @@ export function rampColor(ramp: readonly Color[], share: number): Color {
     Math.round(ramp[below]![c] * (1 - weight) + ramp[below + 1]![c] * weight);
   return [mix(0), mix(1), mix(2)];
 }
+
+/** From surface that is known to a millimetre or two to such as is hardly known. */
+export const EVIDENCE_RAMP: readonly Color[] = [
+  [38, 120, 90],
+  [140, 190, 90],
+  [245, 200, 80],
+  [225, 90, 60],
+];
+/** Metres of standard error at the ends of the ramp. */
+export const EVIDENCE_M: readonly [number, number] = [0.001, 0.01];
 
 export interface ColoringInput {
   mode: Mode;

@@ -5,6 +5,7 @@ import type {
   Approach,
   Cameras,
   FrameEvent,
+  Gap,
   Instance,
   Labels,
   MapInfo,
@@ -17,6 +18,7 @@ import { ApproachMarks } from './approach-marks';
 import { CameraPath, LostCamera, meanDirection, viewpointOfFrame } from './camera-path';
 import { type ColoringInput, paint } from './coloring';
 import { cornersOf, overviewDirection, viewpointOf } from './framing';
+import { GapMarks } from './gap-marks';
 import { Ghosts } from './ghosts';
 import { Measure } from './measure';
 import { Movement } from './movement';
@@ -55,6 +57,7 @@ export class MapView {
   private readonly selection = new Box3Helper(new Box3(), new Color('#2f6fed'));
   private readonly approach = new ApproachMarks();
   private readonly rooms = new RoomMarks();
+  private readonly gaps = new GapMarks();
   private readonly lost = new LostCamera();
   private path: CameraPath | null = null;
   private cameras: Cameras | null = null;
@@ -75,7 +78,7 @@ export class MapView {
     this.selection.visible = false;
     this.stage.scene.add(this.surface.group, this.selection, this.measure.group);
     this.stage.scene.add(this.approach.group, this.ghosts.group, this.rooms.group);
-    this.stage.scene.add(this.lost.group);
+    this.stage.scene.add(this.lost.group, this.gaps.group);
     this.uniform('light', this.up.toArray());
     this.listen(canvas, hooks);
   }
@@ -120,6 +123,12 @@ export class MapView {
     const from = this.stage.camera.position.clone().sub(this.movement.orbit.target);
     const wider = box.clone().expandByScalar(FOCUS_MARGIN_M);
     this.movement.goTo(viewpointOf(cornersOf(wider), this.stage.lens(), from, this.up), true);
+  }
+
+  /** Marks where to look next. */
+  showGaps(gaps: readonly Gap[]): void {
+    this.gaps.show(gaps);
+    this.stage.draw();
   }
 
   focusRoom(room: Room): void {
@@ -174,6 +183,7 @@ export class MapView {
     paint(this.surface.table, input);
     this.surface.tableChanged();
     this.uniform('ownColors', input.mode === 'color');
+    this.uniform('showEvidence', input.mode === 'evidence');
     this.stage.moved(); // quickly first, in detail soon after
   }
 

@@ -4,7 +4,7 @@ import { h } from './dom';
 
 const KEYS: [string, string][] = [
   ['/', 'write a query'],
-  ['1 2 3 4', 'colour, objects, classes, heat'],
+  ['1 2 3 4 5', 'colour, objects, classes, heat, how well places are known'],
   ['drag, wheel', 'turn and zoom (two fingers on a touch screen)'],
   ['right drag', 'shift'],
   ['arrows', 'turn, when the 3D view has the focus'],
@@ -20,6 +20,7 @@ const KEYS: [string, string][] = [
   ['C', 'camera path'],
   ['R', 'rooms and doors'],
   ['V', 'visits and what they found changed'],
+  ['L', 'where to look next, for who scans'],
   ['Home', 'show all'],
   ['P', 'save a picture'],
   ['T', 'dark or light'],

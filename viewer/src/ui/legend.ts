@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 import type { Color, Instance } from '../api/types';
-import type { Mode } from '../scene/coloring';
+import { EVIDENCE_M, EVIDENCE_RAMP, type Mode } from '../scene/coloring';
 import { cssColor, h, swatch } from './dom';
 
 const MOST_CLASSES = 12;
@@ -41,6 +41,17 @@ function heatLegend(ramp: readonly Color[], query: string): HTMLElement[] {
   return [h('p', {}, what), bar, ends];
 }
 
+function evidenceLegend(): HTMLElement[] {
+  const bar = h('span', { class: 'ramp', 'aria-hidden': 'true' });
+  bar.style.background = `linear-gradient(to right, ${EVIDENCE_RAMP.map(cssColor).join(', ')})`;
+  const ends = EVIDENCE_M.map((metres) => h('span', {}, `${1000 * metres} mm`));
+  return [
+    h('p', {}, 'How well places are known: the standard error of the surface'),
+    bar,
+    h('span', { class: 'ramp-ends' }, ...ends),
+  ];
+}
+
 /** What the colours mean; hidden where they speak for themselves. */
 export class Legend {
   readonly element = h('section', { class: 'panel legend', 'aria-label': 'Legend' });
@@ -48,6 +59,7 @@ export class Legend {
   show(mode: Mode, instances: readonly Instance[], ramp: readonly Color[], query: string): void {
     this.element.hidden = mode === 'color' || mode === 'instances';
     if (mode === 'classes') this.element.replaceChildren(...classLegend(instances));
+    if (mode === 'evidence') this.element.replaceChildren(...evidenceLegend());
     if (mode === 'heat') this.element.replaceChildren(...heatLegend(ramp, query));
   }
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 import { api } from '../api/client';
-import type { Instance, InstanceDetail, Neighbor } from '../api/types';
+import type { Box, Instance, InstanceDetail, Neighbor, Part } from '../api/types';
 import { h, swatch } from './dom';
 import { icon, type IconName } from './icons';
 import { isGuess, placeOf, plural, sizeOf, titleOf } from './words';
@@ -17,6 +17,7 @@ export interface CardHooks {
   onLock: (id: number) => void;
   onDelete: (id: number) => void;
   onSelect: (id: number) => void;
+  onPart: (box: Box) => void;
   onClose: () => void;
 }
 
@@ -44,6 +45,7 @@ export class ObjectCard {
       this.actions(instance),
       facts(instance, null),
       guesses(instance),
+      h('div', { class: 'parts' }),
       h('div', { class: 'neighbors' }),
     );
   }
@@ -56,6 +58,7 @@ export class ObjectCard {
   /** The parts that come with a second reply. */
   showDetail(detail: InstanceDetail, context: CardContext): void {
     this.element.querySelector('.facts-table')?.replaceWith(facts(detail, detail));
+    this.element.querySelector('.parts')?.replaceWith(this.parts(detail.parts));
     this.element
       .querySelector('.neighbors')
       ?.replaceWith(this.neighbors(detail.neighbors, context));
@@ -148,6 +151,24 @@ export class ObjectCard {
     this.element.querySelector('.actions')?.after(form);
     field.focus();
     field.select();
+  }
+
+  private parts(parts: readonly Part[]): HTMLElement {
+    const rows = parts.map((part) => {
+      const button = h(
+        'button',
+        { class: 'neighbor', type: 'button', onclick: () => this.hooks.onPart(part.box) },
+        `Part ${part.number}`,
+        h('small', {}, sizeOf(part)),
+      );
+      return h('li', {}, button);
+    });
+    return h(
+      'div',
+      { class: 'neighbors parts' },
+      rows.length > 0 && h('h3', {}, 'Parts'),
+      h('ul', {}, ...rows),
+    );
   }
 
   private neighbors(neighbors: readonly Neighbor[], context: CardContext): HTMLElement {

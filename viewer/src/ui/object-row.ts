@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 import { api } from '../api/client';
-import type { Instance, Match } from '../api/types';
+import type { Box, Instance, Match } from '../api/types';
 import { h, swatch } from './dom';
 import { isGuess, percent, plural, titleOf } from './words';
 
@@ -44,14 +44,19 @@ export function objectRow(
   instance: Instance,
   match: Match | null,
   evidence: string,
-  onSelect: (id: number) => void,
+  onSelect: (id: number, part: Box | null) => void,
 ): HTMLElement {
   const details = match
     ? certainty(match)
     : h('span', { class: 'detail' }, `seen in ${plural(instance.views, 'frame')}`);
   const button = h(
     'button',
-    { class: 'row', type: 'button', 'data-id': instance.id, onclick: () => onSelect(instance.id) },
+    {
+      class: 'row',
+      type: 'button',
+      'data-id': instance.id,
+      onclick: () => onSelect(instance.id, match?.part?.box ?? null),
+    },
     thumbnail(instance),
     h(
       'span',

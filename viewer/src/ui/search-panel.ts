@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
-import type { Answer, HistoryEvent, Instance, MapInfo, Room } from '../api/types';
+import type { Answer, Box, Gap, HistoryEvent, Instance, MapInfo, Room } from '../api/types';
 import { Combobox } from './combobox';
 import { h } from './dom';
 import { eventRow, pastRow } from './event-row';
+import { gapRow } from './gap-row';
 import { icon } from './icons';
 import { objectRow } from './object-row';
 import { roomRow } from './room-row';
@@ -15,9 +16,10 @@ const MOST_RECENT = 5;
 export interface SearchHooks {
   onQuery: (text: string, not: string[]) => void;
   onClear: () => void;
-  onSelect: (id: number) => void;
+  onSelect: (id: number, part: Box | null) => void;
   onEvent: (event: HistoryEvent) => void;
   onRoom: (room: Room) => void;
+  onGap: (gap: Gap) => void;
   eventOf: (id: number) => HistoryEvent | undefined;
 }
 
@@ -115,6 +117,15 @@ export class SearchPanel {
     this.listTitle.textContent = rooms.length > 0 ? 'Rooms' : 'No rooms were found';
     this.fill(
       rooms.map((room) => roomRow(room, this.hooks.onRoom)),
+      0,
+    );
+  }
+
+  showGaps(gaps: readonly Gap[]): void {
+    this.listTitle.textContent =
+      gaps.length > 0 ? 'Where to look next' : 'Nothing is left to look at';
+    this.fill(
+      gaps.map((gap, i) => gapRow(gap, i + 1, this.hooks.onGap)),
       0,
     );
   }

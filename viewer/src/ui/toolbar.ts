@@ -4,7 +4,7 @@ import type { Mode } from '../scene/coloring';
 import { h } from './dom';
 import { icon, type IconName } from './icons';
 
-export type Tool = 'measure' | 'section' | 'path' | 'rooms' | 'history' | 'fly';
+export type Tool = 'measure' | 'section' | 'path' | 'rooms' | 'history' | 'gaps' | 'fly';
 export type Command = 'home' | 'picture' | 'download' | 'log' | 'theme' | 'help';
 
 const MODES: [Mode, string, string][] = [
@@ -12,6 +12,7 @@ const MODES: [Mode, string, string][] = [
   ['instances', 'Objects', '2'],
   ['classes', 'Classes', '3'],
   ['heat', 'Heat', '4'],
+  ['evidence', 'Known', '5'],
 ];
 const TOOLS: [Tool, string, string][] = [
   ['measure', 'Measure between two points', 'M'],
@@ -19,6 +20,7 @@ const TOOLS: [Tool, string, string][] = [
   ['path', 'Camera path', 'C'],
   ['rooms', 'Rooms', 'R'],
   ['history', 'Visits and changes', 'V'],
+  ['gaps', 'Where to look next', 'L'],
   ['fly', 'Fly instead of orbit', 'G'],
 ];
 const COMMANDS: [Command, string, string][] = [
@@ -53,6 +55,7 @@ export class Toolbar {
         {
           class: 'mode',
           type: 'button',
+          'aria-label': label,
           'aria-pressed': 'false',
           title: hint(label, key),
           onclick: () => hooks.onMode(mode),

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
-import type { Approach, HistoryEvent, Instance, Visit } from '../api/types';
+import type { Approach, Box, HistoryEvent, Instance, Visit } from '../api/types';
 
 /** The word that the evidence for an object is clear about; empty: none. */
 function clearWord(instance: Instance): string {
@@ -22,7 +22,7 @@ export function percent(share: number | null): string {
   return share === null ? '' : `${Math.round(share * 100)} %`;
 }
 
-export function sizeOf({ box }: Instance): string {
+export function sizeOf({ box }: { box: Box }): string {
   const sides = [0, 1, 2].map((axis) => box.max[axis]! - box.min[axis]!);
   if (box.min[0] === null) return '–';
   return `${sides.map((side) => side.toFixed(2)).join(' × ')} m`;

@@ -16,23 +16,26 @@ namespace ovimap {
 
 namespace {
 
-constexpr int kUnknowns = 11;
+constexpr int kUnknowns = 13;
 /// Deviations from the given view: log of the focal length, log of fx / fy, principal point,
-/// rotation vector, translation, outset; each in its standard deviations.
+/// rotation vector, translation, outset, k1 and k2 of the lens; each in its standard deviations.
 using Deviation = Eigen::Matrix<double, kUnknowns, 1>;
 using Hessian = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 
-Deviation sigmas(const ColorView& given, const CalibrationFitConfig& config) {
+/// With `bends` the lens may differ as well.
+Deviation sigmas(const ColorView& given, const CalibrationFitConfig& config, bool bends) {
   const double center_px = config.center_sigma * static_cast<float>(given.camera.width);
   const double turn = config.rotation_sigma_rad, move = config.translation_sigma_m;
+  const double radial = bends ? config.radial_sigma : 0.f;
   Deviation sigma;
   sigma << config.focal_sigma, config.aspect_sigma, center_px, center_px, turn, turn, turn, move,
-      move, move, config.outset_sigma_px;
+      move, move, config.outset_sigma_px, radial, radial;
   return sigma;
 }
 
-FittedView moved(const ColorView& given, const Deviation& sigma, const Deviation& deviation) {
+FittedView moved(const FittedView& origin, const Deviation& sigma, const Deviation& deviation) {
   const Deviation d = deviation.cwiseProduct(sigma);
+  const ColorView& given = origin.view;
   ColorView view = given;
   view.camera.fx = static_cast<float>(given.camera.fx * std::exp(d[0] + d[1] / 2));
   view.camera.fy = static_cast<float>(given.camera.fy * std::exp(d[0] - d[1] / 2));
@@ -44,7 +47,12 @@ FittedView moved(const ColorView& given, const Deviation& sigma, const Deviation
         Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix() *
         given.color_from_depth.linear();
   view.color_from_depth.translation() += d.segment<3>(7);
-  return {view, static_cast<float>(d[10])};
+  if (sigma[11] > 0) {
+    view.lens.model = Lens::Model::kBrownConrady;
+    view.lens.coefficients[0] += d[11];
+    view.lens.coefficients[1] += d[12];
+  }
+  return {view, origin.outset_px + static_cast<float>(d[10])};
 }
 
 /// A field of distances between pixels, with its slope.
@@ -91,6 +99,8 @@ class Projection {
  public:
   explicit Projection(const FittedView& fitted)
       : camera_(fitted.view.camera),
+        k1_(static_cast<float>(fitted.view.lens.coefficients[0])),
+        k2_(static_cast<float>(fitted.view.lens.coefficients[1])),
         rotation_(fitted.view.color_from_depth.linear().cast<float>()),
         translation_(fitted.view.color_from_depth.translation().cast<float>()),
         outset_px_(fitted.outset_px) {}
@@ -103,8 +113,25 @@ class Projection {
   const Eigen::Vector3f& translation() const { return translation_; }
   const PinholeCamera& camera() const { return camera_; }
 
+  /// Pixel of a point before the colour camera.
+  Eigen::Vector2f pixel(const Eigen::Vector3f& x) const {
+    const Eigen::Vector2f bent = scale(x) * x.head<2>() / x.z();
+    return {camera_.fx * bent.x() + camera_.cx, camera_.fy * bent.y() + camera_.cy};
+  }
+  /// What a slope over the bent ray, focal length 1, is over the straight one.
+  Eigen::Vector2f unbent(const Eigen::Vector2f& slope, const Eigen::Vector2f& ray) const {
+    return scale_at(ray.squaredNorm()) * slope +
+           2 * (k1_ + 2 * k2_ * ray.squaredNorm()) * slope.dot(ray) * ray;
+  }
+
  private:
+  float scale_at(float r2) const { return 1 + r2 * (k1_ + r2 * k2_); }
+  float scale(const Eigen::Vector3f& x) const {
+    return scale_at(x.head<2>().squaredNorm() / (x.z() * x.z()));
+  }
+
   PinholeCamera camera_;
+  float k1_, k2_;
   Eigen::Matrix3f rotation_;
   Eigen::Vector3f translation_;
   float outset_px_;
@@ -114,11 +141,11 @@ class Projection {
 /// ones do not.
 class Refinement {
  public:
-  Refinement(const EdgeFrames& frames, const ColorView& given, const CalibrationFitConfig& config,
-             float reach_px, std::size_t stride)
+  Refinement(const EdgeFrames& frames, const FittedView& origin, const Deviation& sigma,
+             const CalibrationFitConfig& config, float reach_px, std::size_t stride)
       : frames_(frames),
-        given_(given),
-        sigma_(sigmas(given, config)),
+        origin_(origin),
+        sigma_(sigma),
         prior_(config.prior_weight),
         square_reach_(reach_px * reach_px),
         stride_(stride) {}
@@ -149,7 +176,7 @@ class Refinement {
 
  private:
   Normal normal(const Deviation& deviation) const {
-    const Projection projection(moved(given_, sigma_, deviation));
+    const Projection projection(moved(origin_, sigma_, deviation));
     std::vector<Normal> parts(frames_.size());
     parallel_for(frames_.size(), 1,
                  [&](std::size_t i) { parts[i] = of_frame(*frames_[i], i, projection); });
@@ -171,7 +198,7 @@ class Refinement {
       const DepthEdge& edge = frame.depth[i];
       const Eigen::Vector3f arm = projection.turned(edge);
       const Eigen::Vector3f x = arm + projection.translation();
-      const Eigen::Vector2f pixel = projection.camera().project(x);
+      const Eigen::Vector2f pixel = projection.pixel(x);
       const Image<std::uint8_t>& field = field_of(frame, edge);
       if (!(x.z() > 0) || !in_field(field, pixel)) continue;
       const Sampled at = sample(field, pixel);
@@ -194,17 +221,21 @@ class Refinement {
     const float z = arm.z() + projection.translation().z();
     const float right = at.slope_x * (pixel.x() - camera.cx);
     const float down = at.slope_y * (pixel.y() - camera.cy);
-    const Eigen::Vector3f by_point(at.slope_x * camera.fx / z, at.slope_y * camera.fy / z,
-                                   -(right + down) / z);
+    const Eigen::Vector2f ray = (arm + projection.translation()).head<2>() / z;
+    const Eigen::Vector2f by_bent(at.slope_x * camera.fx, at.slope_y * camera.fy);
+    const Eigen::Vector2f by_ray = projection.unbent(by_bent, ray);
+    const Eigen::Vector3f by_point(by_ray.x() / z, by_ray.y() / z, -by_ray.dot(ray) / z);
     const Eigen::Vector3f by_turn = arm.cross(by_point);
+    const float by_k1 = by_bent.dot(ray) * ray.squaredNorm();
     Deviation slope;
     slope << right + down, (right - down) / 2, at.slope_x, at.slope_y, by_turn.cast<double>(),
-        by_point.cast<double>(), by_point.dot(projection.outwards(edge));
+        by_point.cast<double>(), by_point.dot(projection.outwards(edge)), by_k1,
+        by_k1 * ray.squaredNorm();
     return slope.cwiseProduct(sigma_);
   }
 
   const EdgeFrames& frames_;
-  const ColorView& given_;
+  const FittedView& origin_;
   Deviation sigma_;
   double prior_;
   float square_reach_;
@@ -228,7 +259,8 @@ std::vector<Start> search(const EdgeFrames& frames, const ColorView& given,
                           const CalibrationFitConfig& config) {
   constexpr int kScales = 4, kShifts = 6;  // to either side
   constexpr int kSide = 2 * kShifts + 1;
-  const Deviation sigma = sigmas(given, config);
+  const Deviation sigma = sigmas(given, config, false);
+  const FittedView origin{given, 0};
   const double shift_px = config.max_shift * static_cast<float>(given.camera.width) / kShifts;
   const float reach_px = 2 * config.truncation * static_cast<float>(given.camera.width);
   const std::size_t stride = stride_for(frames, config.search_points);
@@ -239,7 +271,7 @@ std::vector<Start> search(const EdgeFrames& frames, const ColorView& given,
     d[0] = std::log(config.max_scale) * (cell / (kSide * kSide) - kScales) / kScales / sigma[0];
     d[2] = shift_px * (cell % kSide - kShifts) / sigma[2];
     d[3] = shift_px * (cell / kSide % kSide - kShifts) / sigma[3];
-    starts[i] = {d, edge_score(frames, moved(given, sigma, d), reach_px, stride).mean_px};
+    starts[i] = {d, edge_score(frames, moved(origin, sigma, d), reach_px, stride).mean_px};
   });
   return starts;
 }
@@ -247,7 +279,8 @@ std::vector<Start> search(const EdgeFrames& frames, const ColorView& given,
 /// The given view and the best of the search that are not near a better one.
 std::vector<Deviation> find_starts(const EdgeFrames& frames, const ColorView& given,
                                    const CalibrationFitConfig& config) {
-  const Deviation sigma = sigmas(given, config);
+  if (config.starts == 1) return {Deviation::Zero()};
+  const Deviation sigma = sigmas(given, config, false);
   std::vector<Start> starts = search(frames, given, config);
   std::stable_sort(starts.begin(), starts.end(),
                    [](const Start& a, const Start& b) { return a.score < b.score; });
@@ -275,6 +308,8 @@ void list_fields(CalibrationFitConfig& config, ConfigFields& fields) {
              "likewise of the rotation, radians");
   fields.add("translation_sigma_m", config.translation_sigma_m, 0.0001f, 10.f,
              "likewise of the translation, metres");
+  fields.add("radial_sigma", config.radial_sigma, 0.0001f, 10.f,
+             "likewise of either radial coefficient of a lens");
   fields.add("prior_weight", config.prior_weight, 0.f, 100.f, "how firmly the given view holds");
   fields.add("outset_sigma_px", config.outset_sigma_px, 0.0001f, 10.f,
              "how far edges of depth may lie inside the true ones, pixels");
@@ -299,7 +334,9 @@ Eigen::Vector2f ColorView::project(const Eigen::Vector3f& x_in_depth) const {
   const Eigen::Vector3f x_in_color = (color_from_depth * x_in_depth.cast<double>()).cast<float>();
   if (x_in_color.z() <= 0)
     return Eigen::Vector2f::Constant(std::numeric_limits<float>::quiet_NaN());
-  return camera.project(x_in_color);
+  const Eigen::Vector2d bent = lens.bend(x_in_color.head<2>().cast<double>() / x_in_color.z());
+  return {camera.fx * static_cast<float>(bent.x()) + camera.cx,
+          camera.fy * static_cast<float>(bent.y()) + camera.cy};
 }
 
 EdgeScore edge_score(const EdgeFrames& frames, const FittedView& fitted, float truncation_px,
@@ -311,7 +348,7 @@ EdgeScore edge_score(const EdgeFrames& frames, const FittedView& fitted, float t
     for (std::size_t i = k % stride; i < frames[k]->depth.size(); i += stride) {
       const DepthEdge& edge = frames[k]->depth[i];
       const Eigen::Vector3f x = projection.turned(edge) + projection.translation();
-      const Eigen::Vector2f pixel = projection.camera().project(x);
+      const Eigen::Vector2f pixel = projection.pixel(x);
       const Image<std::uint8_t>& field = field_of(*frames[k], edge);
       if (!(x.z() > 0) || !in_field(field, pixel)) continue;
       sum += std::min(truncation_px, sample(field, pixel).px);
@@ -323,10 +360,11 @@ EdgeScore edge_score(const EdgeFrames& frames, const FittedView& fitted, float t
 
 FittedView fit_color_view(const EdgeFrames& frames, const ColorView& given,
                           const CalibrationFitConfig& config) {
-  const Deviation sigma = sigmas(given, config);
+  const Deviation sigma = sigmas(given, config, false);
+  const FittedView origin{given, 0};
   const float width_px = static_cast<float>(given.camera.width);
   const auto refined = [&](const Deviation& from, float reach, std::size_t stride) {
-    return Refinement(frames, given, config, reach * width_px, stride)
+    return Refinement(frames, origin, sigma, config, reach * width_px, stride)
         .refine(from, config.iterations);
   };
   const std::size_t stride = stride_for(frames, config.start_points);
@@ -336,13 +374,27 @@ FittedView fit_color_view(const EdgeFrames& frames, const ColorView& given,
     const Deviation found =
         refined(refined(start, 8 * config.finest, stride), 4 * config.finest, stride);
     const double px =
-        edge_score(frames, moved(given, sigma, found), config.truncation * width_px, stride)
+        edge_score(frames, moved(origin, sigma, found), config.truncation * width_px, stride)
             .mean_px;
     if (px < best_px) best_px = px, best = found;
   }
   for (const float reach : {2 * config.finest, config.finest})
     best = refined(best, reach, stride_for(frames, config.final_points));
-  return moved(given, sigma, best);
+  return moved(origin, sigma, best);
+}
+
+FittedView fit_lens(const EdgeFrames& frames, const FittedView& straight,
+                    const CalibrationFitConfig& config) {
+  const Deviation sigma = sigmas(straight.view, config, true);
+  const float width_px = static_cast<float>(straight.view.camera.width);
+  Deviation found = Deviation::Zero();
+  for (const float widening : {8.f, 4.f, 2.f, 1.f}) {
+    const int points = widening > 2 ? config.start_points : config.final_points;
+    found = Refinement(frames, straight, sigma, config, widening * config.finest * width_px,
+                       stride_for(frames, points))
+                .refine(found, config.iterations);
+  }
+  return moved(straight, sigma, found);
 }
 
 }  // namespace ovimap

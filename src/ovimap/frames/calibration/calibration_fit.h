@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ovimap/frames/calibration/calibration_edges.h"
+#include "ovimap/frames/frame/lens.h"
 
 namespace ovimap {
 
@@ -13,6 +14,7 @@ namespace ovimap {
 struct ColorView {
   PinholeCamera camera;
   Pose color_from_depth = Pose::Identity();
+  Lens lens = {};  ///< that bends colour as it is read; of Brown and Conrady, radial alone
 
   /// Pixel of a point in the depth camera's frame; not finite behind the colour camera.
   Eigen::Vector2f project(const Eigen::Vector3f& x_in_depth) const;
@@ -25,9 +27,10 @@ struct CalibrationFitConfig {
   float center_sigma = 0.03f;   ///< of the principal point, share of the width
   float rotation_sigma_rad = 0.03f;
   float translation_sigma_m = 0.04f;
+  float radial_sigma = 0.3f;  ///< of either radial coefficient of a lens, where one is looked for
   float outset_sigma_px = 1.f;  ///< of how far depth's edges lie inside the true ones
   float prior_weight = 0.002f;  ///< of one deviation squared, against the mean of the edges' losses
-  int starts = 6;               ///< views that are refined
+  int starts = 6;               ///< views that are refined; 1: the given one, without a search
   int iterations = 25;          ///< of each level of each start
   int search_points = 2000;     ///< edges that the search for starts looks at,
   int final_points = 80000;     ///< and the last refinement,
@@ -58,9 +61,14 @@ EdgeScore edge_score(const EdgeFrames& frames, const FittedView& fitted, float t
                      std::size_t stride = 1);
 
 /// The view in which the frames' edges meet best: a search over focal lengths and shifts finds
-/// starts, each is refined by damped least squares from coarse to fine, and the best one wins.
-/// Deterministic for any number of threads.
+/// starts, each is refined by damped least squares from coarse to fine, and the best one wins. The
+/// lens stays as given. Deterministic for any number of threads.
 FittedView fit_color_view(const EdgeFrames& frames, const ColorView& given,
                           const CalibrationFitConfig& config);
+
+/// Goes on from a view that was fitted without a lens, with k1 and k2 of Brown and Conrady's (1966)
+/// as further unknowns.
+FittedView fit_lens(const EdgeFrames& frames, const FittedView& straight,
+                    const CalibrationFitConfig& config);
 
 }  // namespace ovimap

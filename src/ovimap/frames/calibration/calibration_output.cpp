@@ -44,6 +44,16 @@ YAML::Node vector_node(const Eigen::Vector3d& vector) {
   return node;
 }
 
+YAML::Node lens_node(const Lens& lens) {
+  YAML::Node coefficients(YAML::NodeType::Sequence);
+  coefficients.SetStyle(YAML::EmitterStyle::Flow);
+  for (std::size_t i = 0; i < 5; ++i) coefficients.push_back(number(lens.coefficients[i], 5));
+  YAML::Node node = flow_map();
+  node["model"] = "brown_conrady";
+  node["coefficients"] = coefficients;
+  return node;
+}
+
 YAML::Node present_keys(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file)) return YAML::Node(YAML::NodeType::Map);
   const YAML::Node root = read_yaml(file, kSmallDocument);
@@ -99,6 +109,8 @@ std::string calibrated_text(const std::filesystem::path& present,
   root["color_camera"] = flow_map();
   set_camera(root["color_camera"], calibration.found.camera);
   if (lens.IsMap()) root["color_camera"]["distortion"] = lens;
+  if (calibration.found.lens != Lens{})
+    root["color_camera"]["distortion"] = lens_node(calibration.found.lens);
   const Pose& offset = calibration.found.color_from_depth;
   const Eigen::AngleAxisd rotation(offset.linear());
   root["color_from_depth"] = flow_map();

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <sstream>
 
 #include "ovimap/base/config.h"
@@ -126,6 +127,28 @@ std::array<float, kCompared.size()> edge_depths_m(const std::vector<CalibrationE
   return chosen;
 }
 
+/// Views fitted to all frames, and to either half of them.
+struct Fits {
+  FittedView all, by_one, by_other;
+};
+
+/// Each half judged in the view that the other half gave.
+double crossed_px(const Fits& fits, const EdgeFrames& one, const EdgeFrames& other,
+                  float truncation_px) {
+  return (edge_score(one, fits.by_other, truncation_px).mean_px +
+          edge_score(other, fits.by_one, truncation_px).mean_px) /
+         2;
+}
+
+/// The largest distance of two views' pixels at usual depths.
+double largest_difference_px(const PinholeCamera& depth_camera, const ColorView& a,
+                             const ColorView& b, std::span<const float> depths_m) {
+  double largest = 0;
+  for (const float depth_m : depths_m)
+    largest = std::max(largest, view_difference_px(depth_camera, a, b, depth_m));
+  return largest;
+}
+
 /// The smallest rise of the score when colour is moved by 1% of its width, as a share.
 double sharpness_of(const EdgeFrames& frames, const FittedView& fitted, float truncation_px) {
   const double here = edge_score(frames, fitted, truncation_px).mean_px;
@@ -186,6 +209,9 @@ void judge(ColorCalibration& result, double moved_px, const ColorCalibrationConf
     result.message =
         concat("colour is off by ", text_of(moved_px, 1), " px; edges meet to ",
                text_of(result.found_px, 2), " px instead of ", text_of(result.given_px, 2), " px");
+    if (result.found.lens != Lens{})
+      result.message += concat("; its lens bends: k1 ", text_of(result.found.lens.coefficients[0], 3),
+                               ", k2 ", text_of(result.found.lens.coefficients[1], 3));
   }
 }
 
@@ -255,24 +281,32 @@ ColorCalibration calibrate_color(
     advance(fit_steps);
     return fitted;
   };
-  const FittedView found = fit(all), by_one = fit(one), by_other = fit(other);
-  const float truncation_px = config.fit.truncation * static_cast<float>(result.given.camera.width);
-  const auto score = [&](const EdgeFrames& part, const FittedView& fitted) {
-    return edge_score(part, fitted, truncation_px).mean_px;
+  Fits fits = {fit(all), fit(one), fit(other)};
+  const float width_px = static_cast<float>(result.given.camera.width);
+  const float truncation_px = config.fit.truncation * width_px;
+  const auto depths_m = edge_depths_m(sample.edges);
+  const auto differ = [&](const FittedView& a, const FittedView& b) {
+    return largest_difference_px(result.depth_camera, a.view, b.view, depths_m);
   };
-  result.found = found.view;
-  result.given_px = score(all, {result.given, found.outset_px});
-  result.found_px = (score(one, by_other) + score(other, by_one)) / 2;
-  result.sharpness = sharpness_of(all, found, truncation_px);
-  double moved_px = 0;
-  for (const float depth_m : edge_depths_m(sample.edges)) {
-    const auto differ = [&](const ColorView& a, const ColorView& b) {
-      return view_difference_px(result.depth_camera, a, b, depth_m);
+  result.found_px = crossed_px(fits, one, other, truncation_px);
+  if (!source.rectified()) {
+    const auto bent = [&](const EdgeFrames& part, const FittedView& straight) {
+      return fit_lens(part, straight, config.fit);
     };
-    result.spread_px = std::max(result.spread_px, differ(by_one.view, by_other.view));
-    moved_px = std::max(moved_px, differ(result.given, found.view));
+    const Fits with_lens = {bent(all, fits.all), bent(one, fits.by_one),
+                            bent(other, fits.by_other)};
+    const double px = crossed_px(with_lens, one, other, truncation_px);
+    const double bent_px = differ(with_lens.all, fits.all);
+    if (px <= (1 - config.min_gain) * result.found_px &&
+        bent_px > std::max<double>(config.aligned * width_px,
+                                   differ(with_lens.by_one, with_lens.by_other)))
+      fits = with_lens, result.found_px = px;
   }
-  judge(result, moved_px, config);
+  result.found = fits.all.view;
+  result.given_px = edge_score(all, {result.given, fits.all.outset_px}, truncation_px).mean_px;
+  result.sharpness = sharpness_of(all, fits.all, truncation_px);
+  result.spread_px = differ(fits.by_one, fits.by_other);
+  judge(result, differ({result.given, 0}, fits.all), config);
   return result;
 }
 

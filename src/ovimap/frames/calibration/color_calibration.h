@@ -25,7 +25,7 @@ struct ColorCalibrationConfig {
                             ///< of the frames differ, is where it should be
   float max_spread = 0.005f;   ///< the halves of the frames must agree to this share of the width
   float min_sharpness = 0.1f;  ///< edges must meet so much worse when colour is off by 1%
-  float min_gain = 0.01f;      ///< and so much better than as given
+  float min_gain = 0.01f;      ///< and so much better than as given; with a lens, than without
   CalibrationEdgesConfig edges;
   CalibrationFitConfig fit;
 };
@@ -53,7 +53,9 @@ struct ColorCalibration {
 };
 
 /// Reads up to `max_frames` of the frames at `positions` and finds the colour camera and its offset
-/// from the depth camera, starting at what the frames say and from other focal lengths and shifts.
+/// from the depth camera, starting at what the frames say and from other focal lengths and shifts;
+/// and, where the source knows of no lens of the colour camera, the two radial coefficients of one,
+/// if edges of frames that did not take part in finding them meet better with it.
 /// The frames are fitted in two halves as well, apart in time: how well they agree tells how far
 /// the result can be trusted. `progress` is called after each step. The poses tell only whether
 /// the camera moved.

@@ -47,6 +47,7 @@ class BoardSource final : public FrameSource {
   PinholeCamera depth_camera{320, 240, 260, 260, 159.5f, 119.5f};
   std::vector<Board> boards = random_boards(30);
   ColorView given{depth_camera, Pose::Identity()};  ///< what the frames say
+  bool known_lens = false;                          ///< given with the frames
   bool still = false;                               ///< the camera does not move
   bool grey = false;                                ///< colour shows nothing
   int frames = 12;
@@ -55,6 +56,7 @@ class BoardSource final : public FrameSource {
 
   std::string kind() const override { return "boards"; }
   std::int64_t size() const override { return frames; }
+  bool rectified() const override { return known_lens; }
   FrameRead read(std::int64_t position) const override {
     Frame frame;
     frame.index = position;
@@ -64,10 +66,10 @@ class BoardSource final : public FrameSource {
     frame.world_from_camera = pose(still ? 0 : static_cast<int>(position));
     frame.depth = DepthImage(depth_camera.width, depth_camera.height);
     frame.color = RgbImage(truth.camera.width, truth.camera.height);
-    draw(depth_camera, frame.world_from_camera, [&](int u, int v, const Board&, double z) {
+    draw({depth_camera}, frame.world_from_camera, [&](int u, int v, const Board&, double z) {
       frame.depth.at(u, v) = static_cast<float>(z);
     });
-    draw(truth.camera, frame.world_from_camera * truth.color_from_depth.inverse(),
+    draw(truth, frame.world_from_camera * truth.color_from_depth.inverse(),
          [&](int u, int v, const Board& board, double) {
            frame.color.at(u, v) = grey ? Rgb8{128, 128, 128} : board.color;
          });
@@ -83,14 +85,22 @@ class BoardSource final : public FrameSource {
     return pose;
   }
 
+  /// The ray that the lens bends to `bent`, by iteration.
+  static Eigen::Vector3d straight(const Lens& lens, const Eigen::Vector2d& bent) {
+    Eigen::Vector2d ray = bent;
+    for (int i = 0; i < 20; ++i) ray += bent - lens.bend(ray);
+    return ray.homogeneous();
+  }
+
   template <class Paint>
-  void draw(const PinholeCamera& camera, const Pose& world_from_camera, const Paint& paint) const {
+  void draw(const ColorView& view, const Pose& world_from_camera, const Paint& paint) const {
+    const PinholeCamera& camera = view.camera;
     const Eigen::Vector3d eye = world_from_camera.translation();
     for (int v = 0; v < camera.height; ++v)
       for (int u = 0; u < camera.width; ++u) {
         const Eigen::Vector3d ray =
-            world_from_camera.linear() *
-            camera.unproject(static_cast<float>(u), static_cast<float>(v), 1).cast<double>();
+            world_from_camera.linear() * straight(view.lens, {(u - camera.cx) / camera.fx,
+                                                              (v - camera.cy) / camera.fy});
         double nearest = 1e9;
         const Board* seen = nullptr;
         for (const Board& board : boards) {
@@ -141,6 +151,49 @@ TEST(ColorCalibration, FindsAnOffsetCameraWithinAPixel) {
     EXPECT_GT(view_difference_px(source.depth_camera, result.given, source.truth, depth_m), 10);
     EXPECT_LT(view_difference_px(source.depth_camera, result.found, source.truth, depth_m), 0.5);
   }
+}
+
+Lens bent(double k1, double k2) {
+  return {Lens::Model::kBrownConrady, {k1, k2}};
+}
+
+/// Root mean square distance over the colour image between what two lenses do to it.
+double lens_difference_px(const PinholeCamera& camera, const ColorView& a, const ColorView& b) {
+  return view_difference_px(camera, {a.camera, Pose::Identity(), a.lens},
+                            {b.camera, Pose::Identity(), b.lens}, 2);
+}
+
+TEST(ColorCalibration, FindsALensThatWasLeftOut) {
+  for (const Lens& lens : {bent(-0.3, 0.1), bent(0.12, -0.05)}) {
+    BoardSource source;
+    source.truth = two_cameras();
+    source.truth.lens = lens;
+    const ColorCalibration result = calibrated(source);
+    EXPECT_EQ(result.verdict, ColorCalibration::Verdict::kFound) << result.message;
+    EXPECT_EQ(result.found.lens.model, Lens::Model::kBrownConrady);
+    EXPECT_NE(result.message.find("lens"), std::string::npos) << result.message;
+    for (const float depth_m : {1.f, 2.f, 4.f})
+      EXPECT_LT(view_difference_px(source.depth_camera, result.found, source.truth, depth_m), 0.7);
+    EXPECT_GT(lens_difference_px(source.depth_camera, result.given, source.truth), 1);
+  }
+}
+
+TEST(ColorCalibration, FindsALensWhereTheRestIsRight) {
+  BoardSource source;
+  source.truth.lens = bent(-0.2, 0.05);
+  const ColorCalibration result = calibrated(source);
+  EXPECT_EQ(result.verdict, ColorCalibration::Verdict::kFound) << result.message;
+  EXPECT_NEAR(result.found.lens.coefficients[0], -0.2, 0.08);
+  EXPECT_LT(view_difference_px(source.depth_camera, result.found, source.truth, 2), 0.7);
+}
+
+TEST(ColorCalibration, LooksForNoLensWhereOneIsKnownOrNoneIs) {
+  BoardSource source;
+  source.truth = two_cameras();
+  EXPECT_EQ(calibrated(source).found.lens, Lens{});
+  source.truth.lens = bent(-0.3, 0.1);
+  source.known_lens = true;
+  EXPECT_EQ(calibrated(source).found.lens, Lens{});
 }
 
 TEST(ColorCalibration, IsTheSameForAnyNumberOfThreads) {
@@ -240,6 +293,12 @@ TEST(ColorCalibration, TextKeepsTheOtherKeys) {
   EXPECT_EQ(kept.poses.direction, PoseConvention::Direction::kCameraFromWorld);
   EXPECT_EQ(kept.color_camera, result.found.camera);
   EXPECT_EQ(kept.color_lens, (Lens{Lens::Model::kBrownConrady, {.1}}));
+
+  result.found.lens = bent(-0.25, 0.0625);
+  write_text(file, calibrated_text(file, result));
+  CameraRig found;
+  apply_calibration(file, found);
+  EXPECT_EQ(found.color_lens, result.found.lens);
 
   write_text(file, "depth_camera: {fx: [\n");
   EXPECT_THROW(calibrated_text(file, result), Error);

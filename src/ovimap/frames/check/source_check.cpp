@@ -291,7 +291,32 @@ void check_registration(const CheckSample& sample, CheckReport& report) {
                  : "");
 }
 
+/// Colour that lies where depth says in the middle may be bent away from it towards its borders.
+void check_lens(const FrameSource& source, const CheckSample& sample,
+                const SourceCheckConfig& config, CheckReport& report) {
+  if (source.rectified() || has_fault(report, "registration") || has_fault(report, "depth_scale"))
+    return;
+  std::vector<std::int64_t> usable;
+  for (const auto& [position, frame] : sample.frames)
+    if (frame) usable.push_back(position);
+  const ColorCalibration found = calibrate_color(source, usable, config.lens);
+  if (found.verdict != ColorCalibration::Verdict::kFound || found.found.lens == Lens{}) return;
+  add(report, Severity::kWarning, "lens",
+      concat("colour is bent by a lens that the recording says nothing of (k1 ",
+             rounded(found.found.lens.coefficients[0]), ", k2 ",
+             rounded(found.found.lens.coefficients[1]), "): edges meet to ",
+             rounded(found.found_px), " px instead of ", rounded(found.given_px), " px"),
+      "give the camera's distortion in calibration.yaml, or let ovimap calibrate find it");
+}
+
 }  // namespace
+
+ColorCalibrationConfig SourceCheckConfig::quick_calibration() {
+  ColorCalibrationConfig config;
+  config.fit.starts = 1;
+  config.edges.max_points = 1000;
+  return config;
+}
 
 void list_fields(SourceCheckConfig& config, ConfigFields& fields) {
   fields.add("max_frames", config.max_frames, 2, 100000, "frames read for the check");
@@ -319,6 +344,7 @@ void list_fields(SourceCheckConfig& config, ConfigFields& fields) {
   fields.add("min_gain", config.min_gain, 0.f, 1.f,
              "by how much another reading of poses or depth must agree better to be named");
   fields.group("alignment", [&](ConfigFields& inner) { list_fields(config.alignment, inner); });
+  fields.group("lens", [&](ConfigFields& inner) { list_fields(config.lens, inner); });
 }
 
 bool CheckReport::ok() const {
@@ -335,6 +361,7 @@ CheckReport check_source(const FrameSource& source, const SourceCheckConfig& con
   check_depth(sample, config, report);
   if (report.usable > 1) check_poses(source, sample, config, report);
   check_registration(sample, report);
+  check_lens(source, sample, config, report);
   return report;
 }
 

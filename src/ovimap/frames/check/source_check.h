@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "ovimap/frames/calibration/color_calibration.h"
 #include "ovimap/frames/check/edge_alignment.h"
 #include "ovimap/frames/frame/frame_source.h"
 
@@ -27,6 +28,10 @@ struct SourceCheckConfig {
   float good_agreement = 0.7f;       ///< less depth agreement is a warning, and names no mistake
   float min_gain = 0.1f;  ///< another reading of poses or depth must agree better by this much
   EdgeAlignmentConfig alignment;  ///< of colour and depth
+  ColorCalibrationConfig lens = quick_calibration();  ///< whether colour's lens was left out
+
+  /// Of fewer edges and from the given cameras on, without a search.
+  static ColorCalibrationConfig quick_calibration();
 };
 void list_fields(SourceCheckConfig& config, ConfigFields& fields);
 
@@ -34,7 +39,7 @@ enum class Severity { kOk, kWarning, kFault };
 
 /// One result of a check. `name` is stable, for programs: "frames", "bad_frames", "depth_valid",
 /// "depth_scale", "still_poses", "pose_convention", "pose_unit", "intrinsics", "time_offset",
-/// "agreement", "registration".
+/// "agreement", "registration", "lens".
 struct Finding {
   Severity severity = Severity::kOk;
   std::string name;
@@ -60,7 +65,8 @@ struct CheckReport {
 
 /// Reads up to `max_frames` frames and says what is wrong with the recording: unusable frames,
 /// depth in another unit, poses inverted or in other axes, poses that never change or belong to
-/// other images, a wrong focal length, colour that does not lie where depth says. Depth of
+/// other images, a wrong focal length, colour that does not lie where depth says, or whose lens
+/// was left out. Depth of
 /// neighbouring frames is projected into each other; when the frames disagree, the usual mistakes
 /// are tried and the one that fits clearly better is named with its remedy.
 CheckReport check_source(const FrameSource& source, const SourceCheckConfig& config = {});

@@ -81,4 +81,9 @@ Image<std::uint8_t> decode_bytes(std::span<const std::uint8_t> bytes, int width,
   return unpacked_image<std::uint8_t>(bytes, width, height);
 }
 
+RgbImage decode_raw_color(std::span<const std::uint8_t> bytes, int width, int height) {
+  static_assert(sizeof(Rgb8) == 3);
+  return image_of<Rgb8>(bytes, width, height);
+}
+
 }  // namespace ovimap

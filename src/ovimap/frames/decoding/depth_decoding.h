@@ -22,4 +22,7 @@ DepthImage decode_float_depth(std::span<const std::uint8_t> bytes, int width, in
 /// Rows of bytes, LZFSE-compressed or plain.
 Image<std::uint8_t> decode_bytes(std::span<const std::uint8_t> bytes, int width, int height);
 
+/// Rows of pixels, a byte each of red, green and blue.
+RgbImage decode_raw_color(std::span<const std::uint8_t> bytes, int width, int height);
+
 }  // namespace ovimap

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "ovimap/geometry/camera.h"
@@ -24,6 +25,9 @@ struct Frame {
   Pose color_from_depth = Pose::Identity();   ///< x_in_color = color_from_depth * x_in_depth
   Pose world_from_camera = Pose::Identity();  ///< of the depth camera
   bool posed = true;  ///< world_from_camera is known
+  /// Of the depth camera, world_from_camera, as a gyroscope's turns add up, in a world of their own
+  /// that drifts: what two frames near each other in time differ by is how the camera turned.
+  std::optional<Eigen::Quaterniond> orientation;
 
   /// Colour and depth share camera and pose: pixel (u, v) is the same ray in both.
   bool registered() const {

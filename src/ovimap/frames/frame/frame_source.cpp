@@ -29,6 +29,7 @@ class ChosenFrames : public FrameSource {
   std::string kind() const override { return source_->kind(); }
   std::int64_t size() const override { return static_cast<std::int64_t>(positions_.size()); }
   bool posed() const override { return source_->posed(); }
+  bool rectified() const override { return source_->rectified(); }
   FrameRead read(std::int64_t position) const override { return source_->read(at(position)); }
   std::optional<IdImage> truth_ids(std::int64_t position) const override {
     return source_->truth_ids(at(position));

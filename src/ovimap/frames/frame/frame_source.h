@@ -53,12 +53,14 @@ class FrameSource {
  public:
   virtual ~FrameSource() = default;
 
-  /// The layout: "replica", "7scenes", "icl-nuim", "tum", "scannet", "sens", "redwood",
-  /// "record3d", "folder".
+  /// The layout: "replica", "7scenes", "icl-nuim", "tum", "scannet", "sens", "oni",
+  /// "redwood", "record3d", "folder".
   virtual std::string kind() const = 0;
   virtual std::int64_t size() const = 0;
   /// Whether its frames come with poses.
   virtual bool posed() const { return true; }
+  /// Whether a lens of the colour camera is known, and its images come rectified from it.
+  virtual bool rectified() const { return false; }
 
   /// The frame at `position` in [0, size()); its Frame::index is `position`.
   [[nodiscard]] virtual FrameRead read(std::int64_t position) const = 0;

@@ -1,7 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include "ovimap/base/error.h"
 #include "ovimap/frames/readers/readers.h"
+#include "ovimap/frames/recording/gyroscope.h"
 
 namespace ovimap {
 
@@ -10,12 +13,22 @@ namespace {
 /// Most particular layout first.
 const Reader* const kReaders[] = {&kReplicaReader, &kSevenScenesReader, &kIclNuimReader,
                                   &kTumReader,     &kScanNetReader,     &kSensReader,
-                                  &kRedwoodReader, &kRecord3dReader,    &kFolderReader};
+                                  &kOniReader,     &kRedwoodReader,     &kRecord3dReader,
+                                  &kFolderReader};
+/// Layouts of one file.
+const Reader* const kFileReaders[] = {&kSensReader, &kOniReader};
 
 const Reader* reader_of(const std::filesystem::path& folder) {
   for (const Reader* reader : kReaders)
     if (reader->recognises(folder)) return reader;
   return nullptr;
+}
+
+/// The reader of a file; null where it is none that is read.
+const Reader* reader_of_file(const std::filesystem::path& file) {
+  const auto found = std::find_if(std::begin(kFileReaders), std::end(kFileReaders),
+                                  [&](const Reader* reader) { return reader->recognises(file); });
+  return found == std::end(kFileReaders) ? nullptr : *found;
 }
 
 /// The first folder in this one that holds a recording, by name; empty when there is none.
@@ -56,6 +69,15 @@ void override_cameras(const std::filesystem::path& folder, Recording& recording)
   for (RecordedFrame& frame : recording.frames) frame.camera.reset();
 }
 
+/// What the gyroscope of a recording says of its frames, where it has one.
+void find_orientations(const std::filesystem::path& folder, Recording& recording) {
+  const std::filesystem::path file = folder / kGyroscopeFile;
+  if (!std::filesystem::exists(file)) return;
+  const OrientationTimeline timeline(read_gyroscope(file));
+  for (RecordedFrame& frame : recording.frames)
+    frame.orientation = timeline.at(frame.depth_time_s.value_or(frame.timestamp_s));
+}
+
 }  // namespace
 
 std::unique_ptr<FrameSource> open_frame_source(const std::filesystem::path& path,
@@ -67,17 +89,19 @@ std::unique_ptr<FrameSource> open_frame_source(const std::filesystem::path& path
   const bool is_folder = std::filesystem::is_directory(status);
   if (path.extension() == ".r3d" && !is_folder)
     throw Error(concat(path.string(), " is a zip file; unzip it, and give the folder"));
-  if (!is_folder && !kSensReader.recognises(path))
-    throw Error(concat(path.string(),
-                       " is a file; give the folder that holds the frames, or a .sens file"));
+  const Reader* file_reader = is_folder ? nullptr : reader_of_file(path);
+  if (!is_folder && !file_reader)
+    throw Error(concat(path.string(), " is a file; give the folder that holds the frames, or a .sens "
+                                      "or .oni file"));
   const std::filesystem::path folder = is_folder ? path : path.parent_path();
   if (!(config.min_depth_m < config.max_depth_m))
     throw Error(concat("min_depth_m is ", config.min_depth_m, " and max_depth_m ",
                        config.max_depth_m, "; the first must be smaller"));
   try {
-    const Reader& reader = is_folder ? find_reader(path) : kSensReader;
+    const Reader& reader = is_folder ? find_reader(path) : *file_reader;
     Recording recording = reader.list_frames(path, config);
     override_cameras(folder, recording);
+    find_orientations(folder, recording);
     return open_recording(std::move(recording), config);
   } catch (const std::filesystem::filesystem_error& fault) {
     throw Error(concat(path.string(), " cannot be listed: ", fault.code().message()));

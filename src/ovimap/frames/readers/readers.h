@@ -25,6 +25,7 @@ extern const Reader kTumReader;
 extern const Reader kIclNuimReader;
 extern const Reader kScanNetReader;
 extern const Reader kSensReader;
+extern const Reader kOniReader;
 extern const Reader kRedwoodReader;
 extern const Reader kRecord3dReader;
 extern const Reader kFolderReader;

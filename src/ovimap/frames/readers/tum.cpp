@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cmath>
-#include <tuple>
 
 #include "ovimap/base/error.h"
 #include "ovimap/frames/readers/readers.h"
 #include "ovimap/frames/recording/number_text.h"
+#include "ovimap/frames/recording/time_pairs.h"
 #include "ovimap/frames/recording/trajectory.h"
 
 namespace ovimap {
@@ -41,29 +40,11 @@ std::vector<TimedImage> read_list(const fs::path& file) {
   return images;
 }
 
-/// Pairs (colour, depth) at most `max_gap_s` apart, the closest first, each image used once; in
-/// order of time.
-std::vector<std::pair<std::size_t, std::size_t>> associate(const std::vector<TimedImage>& color,
-                                                           const std::vector<TimedImage>& depth,
-                                                           double max_gap_s) {
-  std::vector<std::tuple<double, std::size_t, std::size_t>> candidates;
-  std::size_t first = 0;
-  for (std::size_t i = 0; i < color.size(); ++i) {
-    while (first < depth.size() && depth[first].time_s < color[i].time_s - max_gap_s) ++first;
-    for (std::size_t j = first; j < depth.size() && depth[j].time_s <= color[i].time_s + max_gap_s;
-         ++j)
-      candidates.emplace_back(std::abs(depth[j].time_s - color[i].time_s), i, j);
-  }
-  std::sort(candidates.begin(), candidates.end());
-  std::vector<char> color_used(color.size()), depth_used(depth.size());
-  std::vector<std::pair<std::size_t, std::size_t>> pairs;
-  for (const auto& [gap_s, i, j] : candidates) {
-    if (color_used[i] || depth_used[j]) continue;
-    color_used[i] = depth_used[j] = 1;
-    pairs.emplace_back(i, j);
-  }
-  std::sort(pairs.begin(), pairs.end());
-  return pairs;
+std::vector<double> times_of(const std::vector<TimedImage>& images) {
+  std::vector<double> times(images.size());
+  std::transform(images.begin(), images.end(), times.begin(),
+                 [](const TimedImage& image) { return image.time_s; });
+  return times;
 }
 
 Recording list_frames(const fs::path& folder, const FrameSourceConfig& config) {
@@ -77,10 +58,12 @@ Recording list_frames(const fs::path& folder, const FrameSourceConfig& config) {
   const auto colors = read_list(folder / "rgb.txt"), depths = read_list(folder / "depth.txt");
   const Trajectory trajectory = read_trajectory_if_needed(folder / "groundtruth.txt", config.poses);
   const PoseTimeline timeline(trajectory);
-  for (const auto& [i, j] : associate(colors, depths, config.max_time_gap_s)) {
+  for (const auto& [i, j] :
+       pairs_by_time(times_of(colors), times_of(depths), config.max_time_gap_s)) {
     RecordedFrame frame;
     frame.name = colors[i].file.stem().string();
     frame.timestamp_s = colors[i].time_s;
+    frame.depth_time_s = depths[j].time_s;
     frame.color = colors[i].file;
     frame.depth = depths[j].file;
     if (const auto pose = timeline.at(depths[j].time_s, config.max_time_gap_s)) {

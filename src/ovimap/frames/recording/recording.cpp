@@ -7,6 +7,7 @@
 
 #include "ovimap/frames/decoding/depth_decoding.h"
 #include "ovimap/frames/decoding/frame_decoder.h"
+#include "ovimap/frames/decoding/oni_depth.h"
 #include "ovimap/frames/frame/rectification.h"
 #include "ovimap/frames/recording/number_text.h"
 #include "ovimap/frames/recording/rig_completion.h"
@@ -62,6 +63,12 @@ auto load(const std::string& name, const std::filesystem::path& file,
   }
 }
 
+/// Swaps left and right.
+template <class Pixel>
+void mirror(Image<Pixel>& image) {
+  for (int v = 0; v < image.height(); ++v) std::reverse(image.row(v), image.row(v) + image.width());
+}
+
 class RecordingSource : public FrameSource {
  public:
   RecordingSource(Recording recording, const FrameSourceConfig& config, bool posed)
@@ -74,6 +81,7 @@ class RecordingSource : public FrameSource {
   std::string kind() const override { return recording_.kind; }
   std::int64_t size() const override { return static_cast<std::int64_t>(recording_.frames.size()); }
   bool posed() const override { return posed_; }
+  bool rectified() const override { return recording_.rig.color_lens != Lens{}; }
 
   FrameRead read(std::int64_t position) const override {
     const RecordedFrame& record = at(position);
@@ -118,13 +126,19 @@ class RecordingSource : public FrameSource {
       frame.depth_camera =
           record.camera->scaled_to(frame.depth_camera.width, frame.depth_camera.height);
     }
+    frame.orientation = record.orientation;
     frame.posed = posed_;
     if (posed_)
       frame.world_from_camera = recording_.rig.world_from_depth_camera(stored_pose(record));
     frame.depth = load_depth(record);
     const std::string name = label(record.color, record.color_part, record);
-    frame.color = load(name, record.color, record.color_part,
-                       [&](const Bytes& bytes) { return decode_color(bytes, frame.color_camera); });
+    frame.color = load(name, record.color, record.color_part, [&](const Bytes& bytes) {
+      const PinholeCamera& camera = frame.color_camera;
+      return recording_.color_encoding == ColorEncoding::kRgb
+                 ? decode_raw_color(bytes, camera.width, camera.height)
+                 : decode_color(bytes, camera);
+    });
+    if (recording_.color_mirrored) mirror(frame.color);
     rectification_.apply(frame);
     return frame;
   }
@@ -148,18 +162,15 @@ class RecordingSource : public FrameSource {
     return *pose;
   }
 
-  Image<std::uint16_t> load_depth_units(const RecordedFrame& record,
-                                        const std::string& name) const {
+  Image<std::uint16_t> decode_depth_units(const Bytes& bytes) const {
     const PinholeCamera& camera = recording_.rig.depth_camera;
-    if (recording_.depth_encoding != DepthEncoding::kPng) {
-      const bool compressed = recording_.depth_encoding == DepthEncoding::kZlibUnits;
-      return load(name, record.depth, record.depth_part, [&](const Bytes& bytes) {
-        return compressed ? decode_zlib_depth(bytes, camera.width, camera.height)
-                          : decode_raw_depth(bytes, camera.width, camera.height);
-      });
+    switch (recording_.depth_encoding) {
+      case DepthEncoding::kZlibUnits: return decode_zlib_depth(bytes, camera.width, camera.height);
+      case DepthEncoding::kRawUnits: return decode_raw_depth(bytes, camera.width, camera.height);
+      case DepthEncoding::kOni: return decode_oni_depth(bytes, camera.width, camera.height, false);
+      case DepthEncoding::kOniTable: return decode_oni_depth(bytes, camera.width, camera.height, true);
+      default: return decode_stored_depth(bytes, camera);
     }
-    return load(name, record.depth, record.depth_part,
-                [&](const Bytes& bytes) { return decode_stored_depth(bytes, camera); });
   }
 
   DepthImage depth_of_metres(const RecordedFrame& record, const std::string& name) const {
@@ -183,7 +194,11 @@ class RecordingSource : public FrameSource {
     const std::string name = label(record.depth, record.depth_part, record);
     DepthImage depth = recording_.depth_encoding == DepthEncoding::kMetres
                            ? depth_of_metres(record, name)
-                           : units_.metres(load_depth_units(record, name));
+                           : units_.metres(load(name, record.depth, record.depth_part,
+                                                [&](const Bytes& bytes) {
+                                                  return decode_depth_units(bytes);
+                                                }));
+    if (recording_.depth_mirrored) mirror(depth);
     if (!has_depth(depth))
       fail(name,
            concat("has no depth from ", config_.min_depth_m, " to ", config_.max_depth_m, " m"));

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "ovimap/frames/frame/camera_rig.h"
 #include "ovimap/frames/frame/frame_source.h"
@@ -26,7 +27,15 @@ enum class DepthEncoding {
   kPng,        ///< 16-bit grey PNG, CameraRig::depth_units_per_m
   kZlibUnits,  ///< the same units as rows of little-endian 16-bit numbers, zlib-compressed
   kRawUnits,   ///< the same uncompressed
+  kOni,        ///< the same as OpenNI compresses it (oni_depth.h)
+  kOniTable,   ///< likewise, with a table of values
   kMetres,     ///< rows of little-endian 32-bit metres, LZFSE-compressed or plain
+};
+
+/// How a recording stores colour.
+enum class ColorEncoding {
+  kImageFile,  ///< JPEG or PNG
+  kRgb,        ///< rows of pixels, a byte each of red, green and blue
 };
 
 /// The files of one frame. A path may name a file that does not exist: that is a fault of this
@@ -34,6 +43,7 @@ enum class DepthEncoding {
 struct RecordedFrame {
   std::string name;  ///< stem of the colour image
   double timestamp_s = 0;
+  std::optional<double> depth_time_s;  ///< absent: timestamp_s
   std::filesystem::path color, depth;
   std::optional<FilePart> color_part, depth_part;  ///< absent: the whole file
   std::filesystem::path confidence;     ///< a byte per depth pixel, LZFSE or plain; empty: none
@@ -42,6 +52,7 @@ struct RecordedFrame {
   std::filesystem::path pose_file;      ///< 4x4 text read with the frame; empty: `pose` holds it
   std::optional<Eigen::Matrix4d> pose;  ///< as stored, unchecked
   std::string pose_origin;              ///< "traj.txt line 7"; names the pose in a fault
+  std::optional<Eigen::Quaterniond> orientation;  ///< as Frame has it
   std::filesystem::path truth;          ///< true instance ids, 16-bit PNG; empty: none
   std::string fault;                    ///< "FILE: PHRASE" when listing already found one
 };
@@ -55,6 +66,8 @@ struct Recording {
   std::filesystem::path folder;
   CameraRig rig;
   DepthEncoding depth_encoding = DepthEncoding::kPng;
+  ColorEncoding color_encoding = ColorEncoding::kImageFile;
+  bool color_mirrored = false, depth_mirrored = false;  ///< stored with left and right swapped
   std::vector<RecordedFrame> frames;
 };
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -21,6 +22,9 @@ namespace ovimap {
 /// of kind dual_encoder.
 class DualEncoder : public ImageTextEncoder {
  public:
+  /// The first few texts are encoded by the text network as its file has it, which opens faster. The other
+  /// form opens when more are asked for; their embeddings differ by rounding alone.
+  ///
   /// Opens what `use` needs; the rest when it is first asked for, which then throws likewise.
   /// Throws Error when the folder is of another kind, a file is missing or altered, or a network's
   /// tensors are not what model.yaml says.
@@ -41,10 +45,13 @@ class DualEncoder : public ImageTextEncoder {
     std::size_t at_once = 1;  ///< items in one run
   };
   Network& images();
-  Network& texts();
+  Network& texts(SessionUse use);
+  /// Which of the text networks shall encode the next `count` texts.
+  SessionUse use_of(std::size_t count);
 
   void run_images(std::span<const RgbImage> images, std::span<float> rows);
-  void run_texts(std::span<const std::string> texts, std::span<float> rows);
+  void run_texts(const OnnxSession& session, std::span<const std::string> texts,
+                 std::span<float> rows) const;
   void run(const OnnxSession& session, const std::string& network,
            std::span<const TensorInput> inputs, std::span<float> rows) const;
 
@@ -52,8 +59,10 @@ class DualEncoder : public ImageTextEncoder {
   DualEncoderSpec spec_;
   EncoderIdentity identity_;
   RuntimeConfig runtime_;
-  std::unique_ptr<Tokenizer> tokenizer_;  // with the text network
-  Network images_, texts_;
+  std::once_flag text_files_;             // are opened
+  std::unique_ptr<Tokenizer> tokenizer_;  // one of them
+  Network images_, texts_, few_texts_;
+  std::atomic<std::size_t> texts_asked_ = 0;
 };
 
 }  // namespace ovimap

@@ -128,6 +128,20 @@ TEST(DualEncoder, UnpaddedTextsDoNotDependOnTheirNeighbours) {
   expect_row(encoder->encode_texts(texts), 0, {2 + 4 + 3, 3, 0});  // three ids, no padding
 }
 
+/// The first few texts go another way than the many that follow.
+TEST(DualEncoder, FewTextsAndManyAreEncodedAlike) {
+  for (const char* model : {"golden_minilm", "golden_clip", "golden_siglip"}) {
+    const auto encoder = make_image_text_encoder((inference_testdata() / model).string(), {});
+    const std::vector<std::string> one = {"a red mug"}, many(20, one[0]);
+    const Embeddings few = encoder->encode_texts(one);
+    const Embeddings rows = encoder->encode_texts(many);
+    const Embeddings again = encoder->encode_texts(one);
+    for (Eigen::Index row = 0; row < rows.rows(); ++row)
+      EXPECT_LT((rows.row(row) - few.row(0)).norm(), 1e-5f) << model << row;
+    EXPECT_LT((again.row(0) - few.row(0)).norm(), 1e-5f) << model;
+  }
+}
+
 TEST(DualEncoder, TakesNetworksOfOneItem) {
   EncoderFolder folder("single");
   folder.write("image.onnx", image_network(1).file());

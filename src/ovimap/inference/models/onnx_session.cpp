@@ -3,6 +3,7 @@
 #include "ovimap/inference/models/onnx_session.h"
 
 #include <onnxruntime_cxx_api.h>
+#include <onnxruntime_session_options_config_keys.h>
 
 #include <algorithm>
 #include <string_view>
@@ -82,7 +83,7 @@ Ort::Env& runtime() {
   return env;
 }
 
-Ort::SessionOptions session_options(const RuntimeConfig& config) {
+Ort::SessionOptions session_options(const RuntimeConfig& config, SessionUse use) {
   require_available(config.execution_provider);
   const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   Ort::SessionOptions options;
@@ -91,6 +92,8 @@ Ort::SessionOptions session_options(const RuntimeConfig& config) {
   options.SetExecutionMode(ORT_SEQUENTIAL);
   options.SetGraphOptimizationLevel(ORT_ENABLE_ALL);
   options.AddConfigEntry("session.intra_op.allow_spinning", config.spin ? "1" : "0");
+  if (use == SessionUse::kFewRuns)
+    options.AddConfigEntry(kOrtSessionOptionsDisableSpecifiedOptimizers, "ConstantFolding");
   append_provider(options, config.execution_provider);
   return options;
 }
@@ -166,13 +169,14 @@ void list_fields(RuntimeConfig& config, ConfigFields& fields) {
   fields.add("spin", config.spin, "idle network threads wait actively instead of sleeping");
 }
 
-OnnxSession::OnnxSession(const std::filesystem::path& file, const RuntimeConfig& config)
+OnnxSession::OnnxSession(const std::filesystem::path& file, const RuntimeConfig& config,
+                         SessionUse use)
     : file_(file) {
   if (!std::filesystem::is_regular_file(file))
     throw Error(concat("network file ", file.string(), " does not exist; fetch the model again"));
   try {
     impl_ = std::make_unique<Impl>(
-        Impl{Ort::Session(runtime(), file.c_str(), session_options(config))});
+        Impl{Ort::Session(runtime(), file.c_str(), session_options(config, use))});
     const Ort::AllocatorWithDefaultOptions allocator;
     for (std::size_t i = 0; i < impl_->session.GetInputCount(); ++i)
       inputs_.push_back(to_info(impl_->session.GetInputNameAllocated(i, allocator).get(),

@@ -50,12 +50,17 @@ struct FloatTensor {
   std::vector<float> values;
 };
 
+/// How often a network will be run. For a few runs its weights are left as the file has them, half as many bytes
+/// for instance, and converted at each run: it opens in a third of the time.
+enum class SessionUse { kManyRuns, kFewRuns };
+
 /// One ONNX file ready to run. Running is thread-safe.
 class OnnxSession {
  public:
   /// Throws Error when the file is missing or not an ONNX network, or when the configured execution
   /// provider is not in this ONNX Runtime (the message lists those that are).
-  OnnxSession(const std::filesystem::path& file, const RuntimeConfig& config);
+  OnnxSession(const std::filesystem::path& file, const RuntimeConfig& config,
+              SessionUse use = SessionUse::kManyRuns);
   ~OnnxSession();
   OnnxSession(OnnxSession&&) noexcept;
   OnnxSession& operator=(OnnxSession&&) noexcept;

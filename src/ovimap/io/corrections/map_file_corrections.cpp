@@ -41,7 +41,7 @@ void write_corrections(SQLite::Database& database, const MapRecord& found,
   apply_edits(corrected, forest, voxels);
   write_flags(database, corrected);
   write_surfaces(database, corrected.surfaces, kCorrectedSurfaces);
-  write_embeddings(database, corrected, kCorrectedEmbeddings);
+  write_embeddings(database, corrected.instances, corrected.semantics, kCorrectedEmbeddings);
   std::vector<InstanceSummary>& all = corrected.instances;
   all.insert(all.end(), corrected.hidden.begin(), corrected.hidden.end());
   std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.id < b.id; });

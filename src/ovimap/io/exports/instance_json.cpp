@@ -60,6 +60,22 @@ Json instance_list(std::span<const InstanceSummary> instances,
   return list;
 }
 
+/// Below the instances that have some.
+void add_parts(const MapInfo& info, Json& instances) {
+  const auto parts = parts_by_object(info.parts, info.instances);
+  for (Json& instance : instances) {
+    const auto of_it = parts.find(instance["id"].get<InstanceId>());
+    if (of_it == parts.end()) continue;
+    int number = 0;
+    for (const ObjectPart* part : of_it->second) {
+      Json entry = instance_json_value(*part, {});
+      entry.erase("id");
+      entry["name"] = concat("part ", ++number);
+      instance["parts"].push_back(std::move(entry));
+    }
+  }
+}
+
 Json relation_list(std::span<const ObjectRelation> relations) {
   Json list = Json::array();
   for (const ObjectRelation& relation : relations) list.push_back(relation_json_value(relation));
@@ -105,6 +121,7 @@ Json info_value(const std::filesystem::path& path, const MapInfo& info) {
   document["frames"] = info.frames;
   document["mask_frames"] = info.mask_frames;
   document["instances"] = instance_list(info.instances, info.names);
+  add_parts(info, document["instances"]);
   document["hidden"] = Json::array();
   for (const InstanceSummary& instance : info.hidden) document["hidden"].push_back(instance.id);
   if (!info.writing_reader.empty()) document["writing"] = writing_value(info);

@@ -21,7 +21,8 @@ std::string instances_json(std::span<const InstanceSummary> instances,
 /// What a map file is, as a JSON object: {"map", "schema", "frames", "mask_frames", "instances" (as
 /// above), "hidden" and "locked" (ids, as people corrected the map), "history" ({"visits",
 /// "events"}, docs/changes.md), "voxel_size_m", "blocks", "size_bytes", "content_hash" (16 hexadecimal
-/// digits), "source", "version", "config"} and, where it was read, "writing": {"reader", "objects":
+/// digits), "source", "version", "config"}; an instance of which parts are known has "parts", a list of
+/// {"name", "box", "centroid", "points", "views", "superpoints"}. And, where it was read, "writing": {"reader", "objects":
 /// {"ID": [{"text", "confidence"}]}}. `path` is how the map is called in it.
 std::string info_json(const std::filesystem::path& path, const MapInfo& info);
 

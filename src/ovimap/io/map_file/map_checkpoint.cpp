@@ -13,6 +13,7 @@
 #include "ovimap/io/map_file/map_file_access.h"
 #include "ovimap/io/map_file/map_file_guard.h"
 #include "ovimap/io/map_tables/map_file_blocks.h"
+#include "ovimap/io/map_tables/map_file_object_parts.h"
 #include "ovimap/io/map_tables/map_file_record.h"
 #include "ovimap/io/map_tables/map_file_rows.h"
 #include "ovimap/io/map_tables/map_file_semantics.h"
@@ -119,6 +120,7 @@ void CheckpointFile::write_rest(const MapCheckpoint& checkpoint) {
                      0, true};
   write_record(*database_, checkpoint.record, meta);
   write_semantics(*database_, checkpoint.record);
+  write_object_parts(*database_, checkpoint.record);
   write_surfaces(*database_, checkpoint.record.surfaces, map_tables::kSurfaces);
   write_forest(*database_, checkpoint.labels);
   kept_frames_.update(*database_, checkpoint.record.kept_frames);

@@ -15,9 +15,11 @@
 #include "ovimap/io/map_file/map_file_access.h"
 #include "ovimap/io/map_file/map_file_parts.h"
 #include "ovimap/io/map_tables/map_file_blocks.h"
-#include "ovimap/io/map_tables/map_file_by_instance.h"
+#include "ovimap/io/map_file/map_file_by_instance.h"
 #include "ovimap/io/map_tables/map_file_frames.h"
 #include "ovimap/io/map_tables/map_file_history.h"
+#include "ovimap/io/map_tables/map_file_motion.h"
+#include "ovimap/io/map_tables/map_file_object_parts.h"
 #include "ovimap/io/map_tables/map_file_record.h"
 #include "ovimap/io/map_tables/map_file_rows.h"
 #include "ovimap/io/map_tables/map_file_semantics.h"
@@ -176,6 +178,17 @@ std::map<InstanceId, Eigen::VectorXf> things_of_instances(
   return result;
 }
 
+/// A row for each of these objects; zeros where none is known.
+Embeddings rows_of(const std::map<InstanceId, Eigen::VectorXf>& known,
+                   std::span<const InstanceSummary> objects, int dimension) {
+  Embeddings rows = Embeddings::Zero(static_cast<Eigen::Index>(objects.size()), dimension);
+  for (std::size_t i = 0; i < objects.size(); ++i)
+    if (const auto found = known.find(objects[i].id);
+        found != known.end() && found->second.size() > 0)
+      rows.row(static_cast<Eigen::Index>(i)) = found->second;
+  return rows;
+}
+
 MapInfo read_info(SQLite::Database& database, const OpenMap& file) {
   MapRecord record;
   const MapMeta meta = read_meta(database, record);
@@ -197,6 +210,7 @@ MapInfo read_info(SQLite::Database& database, const OpenMap& file) {
   info.instances = std::move(record.instances);
   info.hidden = std::move(record.hidden);
   info.locked = std::move(record.locked);
+  info.parts = read_object_parts(database);
   info.names = std::move(record.names);
   info.writing_reader = std::move(record.semantics.writing_reader);
   info.writing = writing_of_instances(database, info.instances);
@@ -242,6 +256,7 @@ MapMeta read_found(SQLite::Database& database, int schema, LabelForest& forest, 
   }
   if (schema >= kSchemaWithSemantics)
     record.surfaces = read_surfaces(database, map_tables::kSurfaces);
+  record.parts = read_object_parts(database);
   if (schema >= kSchemaWithKeptFrames)
     record.kept_frames = read_kept_frames(database, forest, record.frames.size());
   if (static_cast<std::int64_t>(record.frames.size()) != meta.frames)
@@ -250,6 +265,7 @@ MapMeta read_found(SQLite::Database& database, int schema, LabelForest& forest, 
   record.registry.last_id = last_instance(record);
   record.history = read_history(database, schema, meta.frames, record.registry.last_id);
   read_past_objects(database, forest, record.history);
+  read_motion(database, record);
   return meta;
 }
 
@@ -260,6 +276,7 @@ void save_map(const std::filesystem::path& path, const VoxelMap& map, const MapR
   pending.write([&](SQLite::Database& database) {
     write_record(database, record, meta);
     write_semantics(database, record);
+    write_object_parts(database, record);
     write_surfaces(database, record.surfaces, map_tables::kSurfaces);
     write_forest(database, map.labels());
     write_kept_frames(database, record.kept_frames);
@@ -339,7 +356,7 @@ SearchableMap read_searchable_map(const std::filesystem::path& path) {
   SearchableMap map;
   file.read([&](SQLite::Database& database) {
     map.info = read_info(database, file);
-    std::map<InstanceId, Eigen::VectorXf> embeddings;
+    std::map<InstanceId, Eigen::VectorXf> embeddings, of_parts;
     if (file.schema() >= kSchemaWithSemantics) {
       const bool corrected = has_corrections(database);
       embeddings =
@@ -347,16 +364,14 @@ SearchableMap read_searchable_map(const std::filesystem::path& path) {
                           corrected ? map_tables::kCorrectedEmbeddings : map_tables::kEmbeddings);
       map.surfaces = read_surfaces(
           database, corrected ? map_tables::kCorrectedSurfaces : map_tables::kSurfaces);
+      of_parts = read_part_embeddings(database, map.info.encoder);
     }
     MapRecord record;
     read_frames(database, record);
     map.frames = std::move(record.frames);
-    map.embeddings = Embeddings::Zero(static_cast<Eigen::Index>(map.info.instances.size()),
-                                      map.info.encoder.dimension);
-    for (std::size_t i = 0; i < map.info.instances.size(); ++i)
-      if (const auto known = embeddings.find(map.info.instances[i].id);
-          known != embeddings.end() && known->second.size() > 0)
-        map.embeddings.row(static_cast<Eigen::Index>(i)) = known->second;
+    const int dimension = map.info.encoder.dimension;
+    map.embeddings = rows_of(embeddings, map.info.instances, dimension);
+    map.part_embeddings = rows_of(of_parts, map.info.parts, dimension);
   });
   return map;
 }

@@ -21,6 +21,7 @@ struct MapInfo {
   std::vector<InstanceSummary> instances;  ///< as people corrected them
   std::vector<InstanceSummary> hidden;     ///< objects that people hid; not in `instances`
   std::set<InstanceId> locked;             ///< objects that must stay as they are
+  std::vector<ObjectPart> parts;           ///< of objects, by id; parts_by_object() says of which
   std::map<InstanceId, std::string> names;
   std::string writing_reader;              ///< what read the writing; empty: nothing did
   std::map<InstanceId, std::vector<WrittenLine>> writing;  ///< of those on which some was read
@@ -76,6 +77,7 @@ MapIdentity read_map_identity(const std::filesystem::path& path);
 struct SearchableMap {
   MapInfo info;
   Embeddings embeddings;      ///< row i belongs to info.instances[i]; zeros: it has none
+  Embeddings part_embeddings;  ///< likewise of info.parts
   InstanceSurfaces surfaces;  ///< of the instances
   std::vector<FrameLogEntry> frames;
 };

@@ -120,6 +120,11 @@ inline MapDocument random_document(int block_count, std::uint32_t seed) {
   table.id = 3;
   table.views = 800;
   document.instances = {cup, table};
+  ObjectPart handle = cup;
+  handle.id = 4;
+  handle.super_points = {4};
+  handle.views = 4;
+  document.parts = {handle};
   document.names = {{1, "Tasse \xc3\xa4 'x'\n\"y\""}, {2, ""}};
   document.semantics.encoder = {"colours", 3, std::string(64, 'a')};
   document.semantics.views.theta_novel = 0.21f;
@@ -169,6 +174,13 @@ inline MapDocument random_document(int block_count, std::uint32_t seed) {
   PastObject was{{0.5f, 1.f / 3, -2}, 70, 5, {1, 4}, {here.min(), here.max()}, {{9, 0, 255}, {}}};
   for (Label& label : was.super_points) label = document.map.labels().root(label);
   document.history.events[1].was = std::make_shared<const PastObject>(was);
+  SeenFree::Regions regions;
+  regions[pack_index({-3, 0, 2})][17] = {255, 44};
+  regions[pack_index({4, 1, -1})][511] = {3, 0};
+  document.seen_free.restore(regions);
+  document.seen_free.suspect({-20, 3, 17});
+  document.movers = {{1, {0.5f, 0.4f, 1.7f}, {{0, {0.1f, -2, 1}}, {5, {0.3f, -2, 1}}}},
+                     {2, {0.1f, 0.1f, 0.1f}, {{std::int64_t{1} << 40, {1.f / 3, 0, 0}}}}};
   return document;
 }
 
@@ -286,6 +298,7 @@ inline std::string difference(const MapDocument& a, const MapDocument& b) {
     return "configs";
   if (!same_registry(a.registry, b.registry)) return "registry";
   if (!same_instances(a.instances, b.instances)) return "instances";
+  if (!same_instances(a.parts, b.parts)) return "parts";
   if (a.names != b.names) return "names";
   if (a.up != b.up || a.surfaces != b.surfaces) return "geometry";
   if (!same_semantics(a.semantics, b.semantics)) return "semantics";
@@ -298,6 +311,7 @@ inline std::string difference(const MapDocument& a, const MapDocument& b) {
       !std::equal(a.history.events.begin(), a.history.events.end(), b.history.events.begin(),
                   b.history.events.end(), same_event))
     return "history";
+  if (a.seen_free.regions() != b.seen_free.regions() || a.movers != b.movers) return "motion";
   if (a.depth_camera != b.depth_camera) return "camera";
   if (a.config_text != b.config_text || a.timings != b.timings || a.source != b.source ||
       a.version != b.version)

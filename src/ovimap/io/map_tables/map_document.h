@@ -15,8 +15,10 @@
 #include "ovimap/instance/instance_mesh.h"
 #include "ovimap/instance/instance_registry.h"
 #include "ovimap/instance/instance_summary.h"
+#include "ovimap/instance/object_parts.h"
 #include "ovimap/io/map_tables/map_edit.h"
 #include "ovimap/io/map_tables/map_history.h"
+#include "ovimap/map/fusion/seen_free.h"
 #include "ovimap/map/voxels/voxel_map.h"
 #include "ovimap/semantics/views/view_selection.h"
 
@@ -67,6 +69,7 @@ struct MapRecord : MapHeader {
   InstanceConfig instance_config;
   InstanceRegistry::State registry;
   std::vector<InstanceSummary> instances;  ///< as summarised when the map was saved
+  std::vector<ObjectPart> parts;  ///< of objects, by id, as mapping found them
   InstanceSurfaces surfaces;  ///< of `instances`, thinned: what relations are judged by
   Eigen::Vector3f up = Eigen::Vector3f::UnitZ();  ///< in the world
   std::vector<InstanceSummary> hidden;            ///< corrected maps: objects that people hid
@@ -76,6 +79,8 @@ struct MapRecord : MapHeader {
   KeptFrames kept_frames;             ///< of those; mostly none
   PinholeCamera depth_camera;
   std::string timings;      ///< of the run, a line "stage p50_ms p95_ms count" each; may be empty
+  SeenFree seen_free;         ///< in the last visit: what may come into it moves
+  std::vector<Mover> movers;  ///< what moved while it was seen, by id; mostly none
   int mask_frames = 0;      ///< frames with 2D masks
   bool unfinished = false;  ///< a checkpoint: `instances`, `surfaces` and `up` are yet to be found
   std::string version;      ///< of the program that wrote the map

@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "ovimap/io/map_tables/map_file_history.h"
+#include "ovimap/io/map_tables/map_file_motion.h"
 #include "ovimap/io/map_tables/map_file_rows.h"
 
 namespace ovimap {
@@ -139,6 +140,7 @@ void write_record(SQLite::Database& database, const MapRecord& record, const Map
   write_frames(database, record);
   write_registry(database, record.registry);
   write_history(database, record.history);
+  write_motion(database, record);
 }
 
 void write_forest(SQLite::Database& database, const LabelForest& forest) {

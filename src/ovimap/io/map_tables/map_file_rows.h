@@ -110,6 +110,16 @@ inline constexpr MapTable kKeptFrames{
     "kept_frames", "position, depth, color, segments, labels",
     "position INTEGER PRIMARY KEY, depth BLOB NOT NULL, color BLOB NOT NULL, segments BLOB NOT "
     "NULL, labels BLOB NOT NULL"};
+/// Parts of objects, by their oldest super-point; not in maps in which no object has any.
+inline constexpr MapTable kObjectParts{
+    "object_parts",
+    "id, super_points, min_x, min_y, min_z, max_x, max_y, max_z, centroid_x, centroid_y, "
+    "centroid_z, points, views",
+    "id INTEGER PRIMARY KEY, super_points BLOB NOT NULL, min_x REAL, min_y REAL, min_z REAL, max_x "
+    "REAL, max_y REAL, max_z REAL, centroid_x REAL, centroid_y REAL, centroid_z REAL, points "
+    "INTEGER NOT NULL, views INTEGER NOT NULL"};
+inline constexpr MapTable kPartEmbeddings{"part_embeddings", "part, embedding",
+                                          "part INTEGER PRIMARY KEY, embedding BLOB NOT NULL"};
 /// What maps before schema 5 have: records and looks by instance.
 inline constexpr MapTable kInstanceRecords{
     "instance_records", "id, views, first_frame, last_frame",
@@ -151,6 +161,16 @@ inline constexpr MapTable kPastObjects{
     "event INTEGER PRIMARY KEY, centroid_x REAL, centroid_y REAL, centroid_z REAL, points INTEGER "
     "NOT NULL, views INTEGER NOT NULL, super_points BLOB NOT NULL, surface BLOB NOT NULL, colors "
     "BLOB NOT NULL"};
+/// Space that frames of the last visit looked through, by cubes of 8 x 8 x 8 blocks, and what moved
+/// while it was seen; not in maps of which nobody asked.
+inline constexpr MapTable kSeenFree{"seen_free", "region, cells",
+                                    "region INTEGER PRIMARY KEY, cells BLOB NOT NULL"};
+/// Of its blocks, those whose surface was first seen beside something that moved.
+inline constexpr MapTable kSuspectSpace{"suspect_space", "region, cells",
+                                        "region INTEGER PRIMARY KEY, cells BLOB NOT NULL"};
+inline constexpr MapTable kMovers{
+    "movers", "id, size_x, size_y, size_z, path",
+    "id INTEGER PRIMARY KEY, size_x REAL, size_y REAL, size_z REAL, path BLOB NOT NULL"};
 /// The log of corrections, and what it makes of the tables above.
 inline constexpr MapTable kEdits{"edits", "id, time_s, action, arguments, undone_by",
                                  "id INTEGER PRIMARY KEY, time_s REAL, action TEXT NOT NULL, "
@@ -177,8 +197,8 @@ inline constexpr MapTable kChecks{
 inline constexpr const MapTable* kAll[] = {
     &kMeta, &kInstances, &kInstanceSuperPoints, &kInstanceNames, &kInstanceAliases, &kSuperPoints,
     &kSuperPointFrames, &kVotes, &kLabelPairs, &kEntitySightings, &kLabelForest, &kFrames,
-    &kSuperPointLooks, &kSuperPointViews, &kWriting, &kThings, &kRecognized, &kEmbeddings, &kSurfaces, &kBlocks, &kKeptFrames,
-    &kInstanceRecords, &kAppearances, &kViews, &kVisits, &kVisitTimes, &kObjectEvents, &kPastObjects, &kEdits, &kCorrectedInstances,
+    &kSuperPointLooks, &kSuperPointViews, &kWriting, &kThings, &kRecognized, &kEmbeddings, &kSurfaces, &kObjectParts, &kPartEmbeddings, &kBlocks, &kKeptFrames,
+    &kInstanceRecords, &kAppearances, &kViews, &kVisits, &kVisitTimes, &kObjectEvents, &kPastObjects, &kSeenFree, &kSuspectSpace, &kMovers, &kEdits, &kCorrectedInstances,
     &kCorrectedSuperPoints, &kCorrectedNames, &kCorrectedSurfaces, &kCorrectedEmbeddings,
     &kCorrectedFlags, &kChecks};
 }  // namespace map_tables

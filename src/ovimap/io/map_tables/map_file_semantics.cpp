@@ -155,18 +155,18 @@ void write_semantics(SQLite::Database& database, const MapRecord& record) {
   views.finish();
   write_writing(database, record.semantics.looks);
   write_things(database, record.semantics);
-  write_embeddings(database, record, kEmbeddings);
+  write_embeddings(database, record.instances, record.semantics, kEmbeddings);
 }
 
-void write_embeddings(SQLite::Database& database, const MapRecord& record, const MapTable& table) {
-  const SemanticRecord& semantics = record.semantics;
+void write_embeddings(SQLite::Database& database, std::span<const InstanceSummary> objects,
+                      const SemanticRecord& semantics, const MapTable& table) {
   RowWriter embeddings(database, table);
-  for (const InstanceSummary& instance : record.instances) {
-    const Appearance look = appearance_of(semantics.looks, instance.super_points);
+  for (const InstanceSummary& object : objects) {
+    const Appearance look = appearance_of(semantics.looks, object.super_points);
     const Eigen::VectorXf fused = fuse_views(look.views, semantics.views.fusion);
     if (fused.size() == 0) continue;
     const Bytes bytes = float_bytes(fused);
-    embeddings.insert(instance.id, std::span<const std::uint8_t>(bytes));
+    embeddings.insert(object.id, std::span<const std::uint8_t>(bytes));
   }
   embeddings.finish();
 }

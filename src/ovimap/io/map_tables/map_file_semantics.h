@@ -40,8 +40,9 @@ BinSet take_bins(RowReader& rows, const SphereGrid& grid);
 std::map<InstanceId, Eigen::VectorXf> read_embeddings(SQLite::Database& database,
                                                       const EncoderIdentity& encoder,
                                                       const MapTable& table);
-/// Of each instance of the record the views' embeddings, fused.
-void write_embeddings(SQLite::Database& database, const MapRecord& record, const MapTable& table);
+/// Of each of these objects, or parts of objects, its views' embeddings, fused.
+void write_embeddings(SQLite::Database& database, std::span<const InstanceSummary> objects,
+                      const SemanticRecord& semantics, const MapTable& table);
 
 /// Points of a surface, at least one: their box, then each in steps of 1/65535 of it.
 Bytes surface_bytes(const std::vector<Eigen::Vector3f>& points);

@@ -53,6 +53,23 @@ struct ObjectEvent {
   std::shared_ptr<const PastObject> was = {};  ///< what it was at `before`; null: nobody kept it
 };
 
+/// Where something that moved was in one frame.
+struct MoverStep {
+  std::int64_t frame = 0;  ///< FrameLogEntry::index
+  Eigen::Vector3f place = Eigen::Vector3f::Zero();  ///< middle of what was seen of it; world, metres
+
+  bool operator==(const MoverStep&) const = default;
+};
+
+/// Something that moved while it was seen, and was left out of the map.
+struct Mover {
+  int id = 0;  ///< 1, 2, ... by the frame that saw it first; no instance id
+  Eigen::Vector3f size_m = Eigen::Vector3f::Zero();  ///< the largest box that was seen of it
+  std::vector<MoverStep> path;                       ///< never empty
+
+  bool operator==(const Mover&) const = default;
+};
+
 /// The visits of a map, in order, and what they changed, visit by visit and by instance.
 struct MapHistory {
   std::vector<MapVisit> visits;

@@ -40,6 +40,13 @@ TrueChange change_from(const nlohmann::json& json, std::size_t visits) {
   return change;
 }
 
+TrueMover mover_from(const nlohmann::json& json, std::size_t visits) {
+  const TrueMover mover{json.at("visit").get<int>(), json.at("object").get<std::int32_t>()};
+  if (mover.visit < 1 || static_cast<std::size_t>(mover.visit) > visits)
+    throw Error(concat("has something that moves in visit ", mover.visit, ", and there are ", visits));
+  return mover;
+}
+
 }  // namespace
 
 TrueChanges load_true_changes(const std::filesystem::path& folder) {
@@ -54,6 +61,9 @@ TrueChanges load_true_changes(const std::filesystem::path& folder) {
       truth.visits.push_back(folder / visit.get<std::string>());
     for (const auto& change : document.at("changes"))
       truth.changes.push_back(change_from(change, truth.visits.size()));
+    if (const auto moving = document.find("moving"); moving != document.end())
+      for (const auto& mover : *moving)
+        truth.moving.push_back(mover_from(mover, truth.visits.size()));
   } catch (const nlohmann::json::exception& fault) {
     throw Error(concat(file.string(), ": is not what `ovimap synth --visits` writes (", fault.what(),
                        ")"));

@@ -20,10 +20,17 @@ struct TrueChange {
   Eigen::AlignedBox3f to;    ///< where it is
 };
 
+/// Something that moves while a visit films it, as somebody who walks through.
+struct TrueMover {
+  int visit = 1;            ///< from 1
+  std::int32_t object = 0;  ///< instance of the truth
+};
+
 /// The visits to a place (recordings in `folder`, in order) and what changed between them.
 struct TrueChanges {
   std::vector<std::filesystem::path> visits;
   std::vector<TrueChange> changes;
+  std::vector<TrueMover> moving;  ///< mostly nothing
 };
 
 /// Reads FOLDER/changes.json, as `ovimap synth --visits` writes it (docs/changes.md). Throws Error

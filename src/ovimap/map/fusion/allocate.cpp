@@ -151,7 +151,8 @@ std::vector<std::uint32_t> allocate_blocks(VoxelMap& map, const Observation& obs
     next += create;
     const BlockIndex index = unpack_index(key);
     const std::uint32_t slot = create ? map.find_or_create(index) : map.find_slot(index);
-    if (slot != kNoBlock) slots.push_back(slot);
+    if (slot != kNoBlock && (!observation.blocks || observation.blocks->contains(slot)))
+      slots.push_back(slot);
   }
   return slots;
 }

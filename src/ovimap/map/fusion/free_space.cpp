@@ -141,6 +141,22 @@ ClearedSpace clear_free_space(VoxelMap& map, const Observation& observation,
   return result;
 }
 
+std::vector<std::uint32_t> clear_blocks(VoxelMap& map, const Observation& observation,
+                                        const Image<float>& free_m,
+                                        std::span<const std::uint32_t> slots) {
+  const FusionView view(map.config(), observation);
+  const float furthest_m = *std::max_element(free_m.begin(), free_m.end());
+  std::vector<Doubted> doubted(slots.size());
+  parallel_for(slots.size(), kBlocksPerTask, [&](std::size_t i) {
+    find_doubted(view, free_m, furthest_m, map.block(slots[i]), doubted[i]);
+    if (doubted[i].voxels > 0) doubt(doubted[i], 1, map.writable_block(slots[i]));
+  });
+  std::vector<std::uint32_t> changed;
+  for (std::size_t i = 0; i < slots.size(); ++i)
+    if (doubted[i].voxels > 0) changed.push_back(slots[i]);
+  return changed;
+}
+
 bool SeparateLooks::next(const Pose& world_from_camera, const FreeSpaceConfig& config) {
   if (last_) {
     const Pose moved = last_->inverse() * world_from_camera;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "ovimap/map/fusion/integrate.h"
@@ -53,6 +54,13 @@ Image<float> free_depth(const VoxelMapConfig& map, const Observation& observatio
 /// marched. Does nothing where the deviation of the depth is unknown.
 ClearedSpace clear_free_space(VoxelMap& map, const Observation& observation,
                               const FreeSpaceConfig& config);
+
+/// Takes back at once what lies in front of `free_m` in these blocks, as clear_free_space does after
+/// several frames. `slots`: in block-index order; returns those of blocks that changed likewise. The
+/// observation must have sigma_m.
+std::vector<std::uint32_t> clear_blocks(VoxelMap& map, const Observation& observation,
+                                        const Image<float>& free_m,
+                                        std::span<const std::uint32_t> slots);
 
 /// Which frames are looks of their own: sensors err alike from one place.
 class SeparateLooks {

@@ -8,6 +8,7 @@
 #include "ovimap/geometry/camera.h"
 #include "ovimap/geometry/pose.h"
 #include "ovimap/image/image.h"
+#include "ovimap/map/voxels/block_choice.h"
 #include "ovimap/map/voxels/voxel_map.h"
 
 namespace ovimap {
@@ -23,6 +24,7 @@ struct Observation {
                                           ///< is taken to grow with depth
   const IdImage* segment_ids = nullptr;        ///< segment of each pixel; 0 = none
   std::span<const Label> segment_labels = {};  ///< label of segment id, at [id - 1]
+  const BlockChoice* blocks = nullptr;  ///< the only ones that the frame may change; null: all
 };
 
 /// The band around a surface is as wide as so many standard deviations of its depth, where that is
@@ -58,7 +60,8 @@ std::vector<std::uint32_t> integrate(VoxelMap& map, const Observation& observati
 std::vector<std::uint32_t> vote_labels(VoxelMap& map, const Observation& observation);
 
 /// Creates the blocks within the truncation of the observed surface and returns their slots, and
-/// those of other blocks that are there within the band of an uncertain depth, in block-index order.
+/// those of other blocks that are there within the band of an uncertain depth, in block-index order;
+/// of Observation::blocks alone.
 std::vector<std::uint32_t> allocate_blocks(VoxelMap& map, const Observation& observation);
 
 }  // namespace ovimap

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "ovimap/map/fusion/free_tiles.h"
 #include "ovimap/map/rays/surface_lookup.h"
 
 namespace ovimap {
@@ -44,7 +45,8 @@ class FreeTiles {
   float furthest(const Eigen::Vector3f& center, float radius) const {
     const float near_m = center.z() - radius, far_m = center.z() + radius;
     if (far_m <= 0.f || near_m >= most_m_) return 0.f;
-    if (near_m < kNearPlane_m) return most_m_;  // around the camera
+    if (near_m < kNearPlane_m)  // around the camera, or beside it
+      return beyond_view(camera_, center, radius) ? 0.f : most_m_;
     const auto [left, right] = span(center.x(), radius, near_m, far_m, camera_.fx, camera_.cx);
     const auto [top, bottom] = span(center.y(), radius, near_m, far_m, camera_.fy, camera_.cy);
     float furthest = 0.f;
@@ -93,7 +95,7 @@ std::vector<BlockAhead> blocks_ahead(const VoxelMap& map, const Observation& obs
     const Eigen::Vector3f center = middle(region.index, region_m);
     if (region_tiles.furthest(center, radius * kRegionBlocks) <= 0.f) return;
     for (const std::uint32_t slot : region.slots) {
-      if (slot == kNoBlock) continue;
+      if (slot == kNoBlock || (observation.blocks && !observation.blocks->contains(slot))) continue;
       const float free = tiles.furthest(middle(map.block_index(slot), block_m), radius);
       if (free > 0.f) ahead.push_back({slot, free});
     }

@@ -16,11 +16,13 @@ struct BlockAhead {
 };
 
 /// The blocks of which a part may lie in front of `free_m` (free_depth), in block-index order: those
-/// between the camera and what it sees. Costs one projection per block in view.
+/// between the camera and what it sees, of Observation::blocks. Costs one projection per block in
+/// view.
 std::vector<BlockAhead> blocks_ahead(const VoxelMap& map, const Observation& observation,
                                      const Image<float>& free_m);
 
-/// How many pixels of the frame show surface where the map has surface, judged by one in 64.
+/// How many pixels of the frame show surface where the map has surface, whichever block that is in,
+/// judged by one in 64.
 double confirmed_px(const VoxelMap& map, const Observation& observation);
 
 }  // namespace ovimap

@@ -103,12 +103,20 @@ std::uint32_t VoxelMap::find_or_create(const BlockIndex& index) {
   return slot;
 }
 
-void VoxelMap::empty_blocks() {
-  for (std::uint32_t slot = 0; slot < blocks_.size(); ++slot) {
-    VoxelBlock& block = writable_block(slot);
-    block = VoxelBlock(indices_[slot]);
-    block.forest_epoch = labels_.epoch();
-  }
+void VoxelMap::empty_blocks(const BlockChoice& chosen) {
+  for_each_part(*this, [&](std::span<const Tile> tiles) {
+    for (const Tile& tile : tiles) {
+      std::vector<std::uint32_t> emptied;
+      for (const std::uint32_t slot : tile.slots) {
+        if (!chosen.contains(slot)) continue;
+        VoxelBlock& block = writable_block(slot);
+        block = VoxelBlock(indices_[slot]);
+        block.forest_epoch = labels_.epoch();
+        emptied.push_back(slot);
+      }
+      note_changes(emptied);
+    }
+  });
 }
 
 void VoxelMap::create_away(const BlockIndex& index) {

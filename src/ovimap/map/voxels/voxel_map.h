@@ -12,6 +12,7 @@
 #include <tsl/robin_map.h>
 #include <Eigen/Core>
 
+#include "ovimap/map/voxels/block_choice.h"
 #include "ovimap/map/voxels/label_forest.h"
 #include "ovimap/map/voxels/voxel_block.h"
 
@@ -65,6 +66,11 @@ struct BlockRegion {
   static std::size_t position(const BlockIndex& block) {
     return static_cast<std::size_t>((block.x() & 7) | (block.y() & 7) << 3 | (block.z() & 7) << 6);
   }
+  /// The inverse of both.
+  static BlockIndex block_at(const BlockIndex& region, std::size_t position) {
+    const auto p = static_cast<int>(position);
+    return region * kRegionBlocks + BlockIndex(p & 7, p >> 3 & 7, p >> 6);
+  }
   std::uint32_t slot(const BlockIndex& block) const { return slots[position(block)]; }
 
   BlockIndex index;  ///< covers the blocks [index * 8, index * 8 + 8) along each axis
@@ -80,6 +86,8 @@ class BlockStore {
   /// Brings a block of the map back, with VoxelMap::bring_back. Several threads may ask at the same
   /// time. Throws Error when it cannot be read.
   virtual void load(const VoxelMap& map, std::uint32_t slot) = 0;
+  /// These blocks are not any more as they were stored.
+  virtual void note_changes(const VoxelMap& map, std::span<const std::uint32_t> slots) = 0;
   /// Evicts what memory cannot hold, at a moment at which nobody refers to a block.
   virtual void trim(const VoxelMap& map) = 0;
 };
@@ -161,6 +169,12 @@ class VoxelMap {
     if (store_) store_->trim(*this);
   }
 
+  /// Tells the store, if there is one, of blocks that were written to since it was told last; before
+  /// the next `trim`.
+  void note_changes(std::span<const std::uint32_t> slots) const {
+    if (store_) store_->note_changes(*this, slots);
+  }
+
   // For the store.
   bool in_memory(std::uint32_t slot) const { return blocks_[slot].get() != nullptr; }
   /// Takes blocks out of memory that the store has as they are. Not while blocks are frozen.
@@ -186,8 +200,9 @@ class VoxelMap {
   /// can be referred to.
   std::uint32_t find_or_create(const BlockIndex& index);
 
-  /// Makes every block one that was never observed. Blocks stay, and so do labels.
-  void empty_blocks();
+  /// Makes these blocks ones that were never observed. Blocks stay, and so do labels. Tells the
+  /// store and lets it make room on the way.
+  void empty_blocks(const BlockChoice& chosen);
 
   /// Slots in the order of their block indices (z, y, x): the same for every way the map was built.
   std::vector<std::uint32_t> ordered_slots() const;

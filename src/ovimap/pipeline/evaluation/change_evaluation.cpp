@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "ovimap/base/config.h"
@@ -52,6 +53,10 @@ class LookedThrough {
   void add(const FrameSource& source) {
     for (std::int64_t i = 0; i < source.size(); ++i)
       if (const FrameRead read = source.read(i); read.frame) add(*read.frame);
+  }
+  std::size_t count(int frames) const {
+    return static_cast<std::size_t>(std::count_if(counts_.begin(), counts_.end(),
+                                                  [&](int count) { return count >= frames; }));
   }
   Points at_least(int frames) const {
     Points points;
@@ -147,13 +152,31 @@ ChangeCounts& counts_of(const std::string& kind, ChangeScores& scores) {
   return kind == "moved" ? scores.moved : kind == "removed" ? scores.removed : scores.added;
 }
 
+/// By object, how many frames of a recording show it by at least so many pixels.
+std::map<std::int32_t, int> frames_showing(const FrameSource& source, int least_px) {
+  std::map<std::int32_t, int> frames;
+  for (std::int64_t position = 0; position < source.size(); ++position) {
+    const auto ids = source.truth_ids(position);
+    if (!ids) continue;
+    std::map<std::int32_t, int> pixels;
+    for (const std::uint16_t id : *ids) ++pixels[id];
+    for (const auto& [id, count] : pixels) frames[id] += count >= least_px;
+  }
+  return frames;
+}
+
 void score_events(const MapHistory& history, const TrueChanges& truth,
                   const std::vector<Truth>& visits, const ChangeScoresConfig& config,
                   ChangeScores& scores) {
   EventMatcher matcher(history.events, config);
+  std::vector<std::map<std::int32_t, int>> frames;
+  for (const auto& visit : truth.visits)
+    frames.push_back(frames_showing(*open_frame_source(visit, {}), config.seen_px));
   for (const TrueChange& change : truth.changes) {
     const auto seen = [&](int visit) {
-      return !points_of(visits[static_cast<std::size_t>(visit - 1)], {change.object}).empty();
+      const auto position = static_cast<std::size_t>(visit - 1);
+      return frames[position][change.object] >= config.seen_frames &&
+             !points_of(visits[position], {change.object}).empty();
     };
     const bool known = (change.from.isEmpty() || seen(change.visit - 1)) &&
                        (change.to.isEmpty() || seen(change.visit));
@@ -199,6 +222,55 @@ void score_surface(const Points& surface, const TrueChanges& truth,
   scores.kept_points = count_near(unchanged, map, config.near_m);
 }
 
+/// Points of the frame's surface that belong to some instances, one in each cell.
+Points shown_points(const Frame& frame, const IdImage& ids, const std::set<std::int32_t>& objects,
+                    float cell_m) {
+  Points points;
+  std::set<std::array<int, 3>> cells;
+  const Eigen::Isometry3f world_from_camera = frame.world_from_camera.cast<float>();
+  for (int y = 0; y < frame.depth.height(); ++y)
+    for (int x = 0; x < frame.depth.width(); ++x) {
+      if (frame.depth.at(x, y) <= 0.f || !objects.contains(ids.at(x, y))) continue;
+      const Eigen::Vector3f point =
+          world_from_camera * frame.depth_camera.unproject(static_cast<float>(x),
+                                                           static_cast<float>(y),
+                                                           frame.depth.at(x, y));
+      const Eigen::Vector3i cell = (point / cell_m).array().floor().cast<int>();
+      if (cells.insert({cell.x(), cell.y(), cell.z()}).second) points.push_back(point);
+    }
+  return points;
+}
+
+/// Frame by frame: how much of what moved then is still in the map.
+void score_movers(const Points& surface, const TrueChanges& truth, const std::vector<Truth>& visits,
+                  const ChangeScoresConfig& config, ChangeScores& scores) {
+  const NearestPoints map(surface);
+  for (std::size_t i = 0; i < visits.size(); ++i) {
+    std::set<std::int32_t> moving;
+    for (const TrueMover& mover : truth.moving)
+      if (mover.visit == static_cast<int>(i) + 1) moving.insert(mover.object);
+    if (moving.empty()) continue;
+    const NearestPoints stands(visits[i].mesh.vertices), now(visits.back().mesh.vertices);
+    const auto source = open_frame_source(truth.visits[i], {});
+    Points all;
+    for (std::int64_t position = 0; position < source->size(); ++position) {
+      const FrameRead read = source->read(position);
+      const auto ids = source->truth_ids(position);
+      if (!read.frame || !ids || !ids->same_size(read.frame->depth)) continue;
+      const Points shown = keep_those_apart(
+          keep_those_apart(shown_points(*read.frame, *ids, moving, config.mover_cell_m), stands,
+                           config.apart_m),
+          now, config.apart_m);
+      all.insert(all.end(), shown.begin(), shown.end());
+    }
+    LookedThrough looked(all, config.through_m);
+    looked.add(*source);
+    scores.knowable_points += looked.count(config.frames);
+    scores.mover_points += all.size();
+    scores.mover_left += count_near(all, map, config.near_m);
+  }
+}
+
 }  // namespace
 
 void list_fields(ChangeScoresConfig& config, ConfigFields& fields) {
@@ -208,6 +280,11 @@ void list_fields(ChangeScoresConfig& config, ConfigFields& fields) {
              "places that were left count where nothing stands this near now, metres");
   fields.add("frames", config.frames, 1, 1000, "and where so many frames looked through");
   fields.add("through_m", config.through_m, 0.f, 1.f, "by this much, metres");
+  fields.add("mover_cell_m", config.mover_cell_m, 0.001f, 1.f,
+             "of what moves one point in each such cube counts, metres");
+  fields.add("seen_frames", config.seen_frames, 1, 100000,
+             "things count as changed that so many frames of each visit show");
+  fields.add("seen_px", config.seen_px, 1, 1000000, "by at least so many pixels");
   fields.add("same_place", config.same_place, 0.f, 1.f,
              "intersection over union of boxes that are of one thing");
 }
@@ -222,7 +299,9 @@ ChangeScores score_changes(const MapDocument& map, const std::filesystem::path& 
   std::vector<Truth> truths;
   for (const auto& visit : truth.visits) truths.push_back(load_truth(visit));
   ChangeScores scores;
-  score_surface(extract_mesh(map.map).vertices, truth, truths, config, scores);
+  const Points surface = extract_mesh(map.map).vertices;
+  score_surface(surface, truth, truths, config, scores);
+  score_movers(surface, truth, truths, config, scores);
   score_events(map.history, truth, truths, config, scores);
   return scores;
 }

@@ -17,6 +17,9 @@ struct ChangeScoresConfig {
   float apart_m = 0.05f;       ///< points of things that left count where nothing stands this near now
   int frames = 5;              ///< and where so many frames looked through
   float through_m = 0.05f;     ///< by this much
+  float mover_cell_m = 0.02f;  ///< of what moves one point in each such cube counts, in every frame
+  int seen_frames = 5;         ///< things count as changed that so many frames show, in each visit
+  int seen_px = 100;           ///< in which they are, by at least so many pixels
   float same_place = 0.25f;    ///< intersection over union of boxes that are of one thing
 };
 void list_fields(ChangeScoresConfig& config, ConfigFields& fields);
@@ -35,6 +38,9 @@ struct ChangeScores {
   std::size_t ghost_points = 0;  ///< of those, where the map still has surface
   std::size_t static_points = 0;  ///< of what never changed and was seen in the last visit
   std::size_t kept_points = 0;    ///< of those, where the map has surface
+  std::size_t mover_points = 0;  ///< of what moved while it was seen, where nothing else is
+  std::size_t mover_left = 0;    ///< of those, where the map has surface
+  std::size_t knowable_points = 0;  ///< of mover_points, those that `frames` others looked through
   ChangeCounts moved, removed, added;
   std::size_t ids_kept = 0;  ///< of moved.real: things whose move is told under the id they had
   std::size_t in_doubt = 0;  ///< of the others: told as gone and as new, which may be what is gone
@@ -42,13 +48,17 @@ struct ChangeScores {
   double ghost() const {
     return left_points == 0 ? 0. : double(ghost_points) / double(left_points);
   }
+  double mover_share() const {
+    return mover_points == 0 ? 0. : double(mover_left) / double(mover_points);
+  }
   double kept() const {
     return static_points == 0 ? 1. : double(kept_points) / double(static_points);
   }
 };
 
-/// Scores a map that was continued through all visits of `folder` (load_true_changes). Things of
-/// which the earlier visit saw nothing are no changes that a map could tell. Throws Error where the
+/// Scores a map that was continued through all visits of `folder` (load_true_changes). Things that
+/// the visits saw too little of (seen_frames, seen_px) are no changes that a map could tell; they count
+/// where it told them all the same. Throws Error where the
 /// map was not made from that many visits, and what the parts throw.
 ChangeScores score_changes(const MapDocument& map, const std::filesystem::path& folder,
                            const ChangeScoresConfig& config = {});

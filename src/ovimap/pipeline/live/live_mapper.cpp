@@ -214,7 +214,7 @@ void LiveMapper::fuse(Prepared prepared) {
   if (mask_source_ && schedule_.wants(frame, mapper_->map())) {
     const bool busy = masks_under_way_ > 0 || waiting > live_.mask_backlog;
     if (!busy || live_.wait_for_masks) {
-      schedule_.chosen(frame);
+      schedule_.chosen();
       if (live_.wait_for_masks) {
         prepared.cut = masks_for(prepared);
         if (!prepared.cut) schedule_.went_without();

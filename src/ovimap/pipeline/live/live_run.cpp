@@ -95,7 +95,8 @@ LiveRunResult run_live(const FrameSource& source, const std::vector<std::int64_t
   return result;
 }
 
-LiveRunResult run_pushed(FrameIntake& intake, LiveMapper& mapper, const LiveProgress& progress) {
+LiveRunResult run_pushed(FrameIntake& intake, LiveMapper& mapper, const LiveProgress& progress,
+                         const FrameFilter& filter) {
   constexpr std::chrono::milliseconds kLook{50};  // between looks at whether to go on
   LiveRunResult result;
   std::optional<Clock::time_point> start;  // the first frame's
@@ -105,7 +106,8 @@ LiveRunResult run_pushed(FrameIntake& intake, LiveMapper& mapper, const LiveProg
     if (std::optional<Frame> frame = intake.next(kLook)) {
       if (!start) start = Clock::now();
       result.sequence.depth_camera = frame->depth_camera;
-      mapper.push_and_wait(std::move(*frame));
+      if (filter) frame = filter(std::move(*frame));
+      if (frame) mapper.push_and_wait(std::move(*frame));
       result.camera_seconds = std::chrono::duration<double>(Clock::now() - *start).count();
       ++done;
     }

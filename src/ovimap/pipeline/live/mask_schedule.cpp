@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/pipeline/live/mask_schedule.h"
 
-#include <cmath>
-
 #include "ovimap/base/config.h"
 #include "ovimap/map/rays/surface_lookup.h"
 #include "ovimap/map/voxels/label_slots.h"
@@ -17,33 +15,29 @@ void list_fields(MaskScheduleConfig& config, ConfigFields& fields) {
   fields.add("interval", config.interval, 1, 1000000, "rule interval: every n-th frame");
   fields.add("unexplained_share", config.unexplained_share, 0.f, 1.f,
              "rule need: share of the view without a label that asks for masks");
-  fields.add("move_m", config.move_m, 0.f, 1000.f,
-             "... or this much motion since the last masks, metres");
-  fields.add("turn_rad", config.turn_rad, 0.f, 7.f, "... or this much turning, radians");
+  fields.add("motion", config.motion, 0.f, 1.f,
+             "... or what is in view moved by this share of the picture since the last masks");
   fields.add("min_gap", config.min_gap, 1, 1000000, "... but not before this many frames");
 }
 
 bool MaskSchedule::wants(const Frame& frame, const VoxelMap& map) {
   const std::int64_t since = frames_++ - last_;
-  if (!last_pose_) return true;
+  const bool moved = motion_.wants(frame);
+  motion_.add(frame.world_from_camera);
+  if (!any_) return true;
   if (config_.rule == MaskRule::kInterval) return since >= config_.interval;
   return since >= config_.min_gap &&
-         (moved(frame) || unexplained_share(map, frame) > config_.unexplained_share);
+         (moved || unexplained_share(map, frame) > config_.unexplained_share);
 }
 
-void MaskSchedule::chosen(const Frame& frame) {
+void MaskSchedule::chosen() {
   last_ = frames_ - 1;
-  last_pose_ = frame.world_from_camera;
+  any_ = true;
+  motion_.masked();
 }
 
 void MaskSchedule::went_without() {
-  if (config_.rule == MaskRule::kNeed) last_pose_.reset();
-}
-
-bool MaskSchedule::moved(const Frame& frame) const {
-  const Pose motion = last_pose_->inverse() * frame.world_from_camera;
-  const double turn = Eigen::AngleAxisd(motion.linear()).angle();
-  return motion.translation().norm() > double{config_.move_m} || turn > double{config_.turn_rad};
+  if (config_.rule == MaskRule::kNeed) any_ = false;
 }
 
 float unexplained_share(const VoxelMap& map, const Frame& frame) {

@@ -30,7 +30,7 @@ TEST(MaskSchedule, IntervalCountsFrames) {
     const Frame frame = *scene.read(0).frame;
     const bool wanted = schedule.wants(frame, map);
     EXPECT_EQ(wanted, i % 3 == 0) << i;
-    if (wanted) schedule.chosen(frame);
+    if (wanted) schedule.chosen();
   }
 }
 
@@ -50,7 +50,7 @@ TEST(MaskSchedule, WhatWentWithoutIsStillNeeded) {
   MaskSchedule need({.min_gap = 100}), interval({.rule = MaskRule::kInterval, .interval = 3});
   for (MaskSchedule* schedule : {&need, &interval}) {
     ASSERT_TRUE(schedule->wants(frame, map));
-    schedule->chosen(frame);
+    schedule->chosen();
     schedule->went_without();
   }
   EXPECT_TRUE(need.wants(frame, map));
@@ -63,13 +63,13 @@ TEST(MaskSchedule, NeedLooksAgainAfterMotionAndNotBefore) {
   MapperConfig config;
   Mapper mapper(config, std::make_shared<DeskMasks>());
   mapper.process(frame);
-  MaskSchedule schedule({.unexplained_share = 0.5f, .move_m = 0.2f, .min_gap = 2});
+  MaskSchedule schedule({.unexplained_share = 0.5f, .motion = 0.1f, .min_gap = 2});
   ASSERT_TRUE(schedule.wants(frame, mapper.map())) << "the first frame";
-  schedule.chosen(frame);
+  schedule.chosen();
   for (int i = 0; i < 5; ++i) EXPECT_FALSE(schedule.wants(frame, mapper.map())) << "nothing new";
   frame.world_from_camera.translation().x() += 0.3;
   EXPECT_TRUE(schedule.wants(frame, mapper.map()));
-  schedule.chosen(frame);
+  schedule.chosen();
   frame.world_from_camera.translation().x() += 0.3;
   EXPECT_FALSE(schedule.wants(frame, mapper.map())) << "too soon";
   EXPECT_TRUE(schedule.wants(frame, mapper.map()));

@@ -46,7 +46,7 @@ void Checkpointer::make_room(Mapper& mapper) {
   tiles_->require_room(map);
 }
 
-void Checkpointer::end_frames(Mapper& mapper) {
+void Checkpointer::let_tiles_leave(Mapper& mapper) {
   if (tiles_->bounded()) finish_writing(mapper);
 }
 

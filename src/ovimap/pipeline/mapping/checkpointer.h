@@ -39,9 +39,9 @@ class Checkpointer {
   /// could not be written; the one before that stays.
   void after_frame(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
                    const PinholeCamera& depth_camera);
-  /// The last frame is fused: waits for what is being written, if tiles may have to leave memory
-  /// from here on.
-  void end_frames(Mapper& mapper);
+  /// The last frame is fused, or many blocks are about to change: waits for what is being written,
+  /// if tiles may have to leave memory from here on.
+  void let_tiles_leave(Mapper& mapper);
   /// Stores everything by now and waits for it, unless there are no checkpoints (CheckpointConfig):
   /// what comes next takes long. Throws what after_frame throws.
   void store(Mapper& mapper, const std::vector<FrameLogEntry>& frames,

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include "ovimap/frames/recording/sequence_fixture.h"
@@ -29,12 +30,21 @@ MapperConfig small_views() {
   return config;
 }
 
+/// As a network is, asked when the picture has moved.
+class SlowDeskMasks : public DeskMasks {
+ public:
+  bool is_slow() const override { return true; }
+};
+
 class CheckpointerTest : public ::testing::Test {
  protected:
   Mapper mapper() const {
-    auto masks = std::make_shared<DeskMasks>();
+    const std::shared_ptr<DeskMasks> masks(slow_ ? new SlowDeskMasks : new DeskMasks);
     masks->masked_every = masked_every_;
-    return Mapper(small_views(), masks, std::make_shared<ColorEncoder>());
+    MapperConfig config = small_views();
+    if (slow_) config.mask_interval = 0;
+    config.mask_motion = 0.4f;  // the desk's frames are far apart
+    return Mapper(config, masks, std::make_shared<ColorEncoder>());
   }
 
   Checkpointer checkpointer(int frames, CheckpointFile::Start start, std::size_t done = 0) const {
@@ -97,12 +107,24 @@ class CheckpointerTest : public ::testing::Test {
   }
 
   std::int64_t masked_every_ = 1;
+  bool slow_ = false;
   DeskScene scene_;
   fixture::TemporaryFolder folder_;
   fs::path partial_ = checkpoint_path(folder_.path() / "map.ovimap");
 };
 
 TEST_F(CheckpointerTest, AResumedRunEndsAsIfNeverInterrupted) {
+  expect_resumed_runs_to_end_alike();
+}
+
+TEST_F(CheckpointerTest, SoDoesOneThatAsksForMasksByMotion) {
+  slow_ = true;
+  Mapper whole = mapper();
+  const SequenceResult sequence = run_sequence(scene_, positions({}, scene_.size()), whole);
+  const auto masked = std::count_if(sequence.frames.begin(), sequence.frames.end(),
+                                    [](const FrameLogEntry& frame) { return frame.labelled; });
+  ASSERT_GT(masked, 2);
+  ASSERT_LT(masked, DeskScene::kFrames);
   expect_resumed_runs_to_end_alike();
 }
 

@@ -42,15 +42,24 @@ void list_fields(FrameStoreConfig& config, ConfigFields& fields) {
   fields.add("max_mb", config.max_mb, 0, 1 << 30,
              "fused frames kept in the map for `ovimap correct`, 10^6 bytes; 0: none");
   fields.add("color_quality", config.color_quality, 1, 100, "of their colour, as JPEG");
+  fields.add("still_voxels", config.still_voxels, 0.f, 1e6f,
+             "a closed loop fuses again what moved by more than so many voxels");
+  fields.add("still_at_m", config.still_at_m, 0.f, 1000.f, "measured so far ahead of the camera");
+}
+
+DepthImage decode_kept_depth(const KeptFrame& frame, const PinholeCamera& depth_camera) {
+  const ImageSize size{depth_camera.width, depth_camera.height};
+  const GrayPng units = decode_gray(frame.depth_png, size);
+  DepthImage depth(units.values.width(), units.values.height());
+  std::transform(units.values.begin(), units.values.end(), depth.begin(),
+                 [](std::uint16_t value) { return static_cast<float>(value) / kUnits_per_m; });
+  return depth;
 }
 
 KeptImages decode_kept(const KeptFrame& frame, const PinholeCamera& depth_camera) {
   const ImageSize size{depth_camera.width, depth_camera.height};
   KeptImages images;
-  const GrayPng depth = decode_gray(frame.depth_png, size);
-  images.depth = DepthImage(depth.values.width(), depth.values.height());
-  std::transform(depth.values.begin(), depth.values.end(), images.depth.begin(),
-                 [](std::uint16_t units) { return static_cast<float>(units) / kUnits_per_m; });
+  images.depth = decode_kept_depth(frame, depth_camera);
   images.color = decode_rgb(frame.color_jpeg, size);
   for (Rgb8& color : images.color)
     if (color.r + color.g + color.b <= kDarkest) color = {};

@@ -14,6 +14,10 @@ class ConfigFields;
 struct FrameStoreConfig {
   int max_mb = 0;          ///< for all kept frames together, 10^6 bytes; 0: none is kept
   int color_quality = 85;  ///< of their JPEGs, 1 to 100
+  /// A frame whose pose is corrected stays as it was fused where that moves by less than so many
+  /// voxels what it shows still_at_m ahead: the map cannot show it.
+  float still_voxels = 0.5f;
+  float still_at_m = 3.f;
 };
 void list_fields(FrameStoreConfig& config, ConfigFields& fields);
 
@@ -25,6 +29,8 @@ struct KeptImages {
 };
 /// Throws Error with a phrase when the images are not of that size, or a segment has no label.
 KeptImages decode_kept(const KeptFrame& frame, const PinholeCamera& depth_camera);
+/// The depth alone; throws likewise.
+DepthImage decode_kept_depth(const KeptFrame& frame, const PinholeCamera& depth_camera);
 
 /// Keeps fused frames, compressed, so that they can be fused again when their poses turn out to be
 /// wrong. When they grow beyond the budget, every second of them goes, and from there on only

@@ -3,7 +3,6 @@
 #include "ovimap/pipeline/mapping/kept_fusion.h"
 
 #include "ovimap/map/fusion/integrate.h"
-#include "ovimap/pipeline/mapping/frame_store.h"
 
 namespace ovimap {
 
@@ -18,24 +17,32 @@ std::vector<Label> roots_of(const std::vector<Label>& labels, const LabelForest&
 
 }  // namespace
 
-void KeptFusion::fuse(const KeptFrame& kept, const Pose& world_from_camera, VoxelMap& map) {
-  const KeptImages images = decode_kept(kept, camera_);
-  const DepthSurface surface = fit_depth_surface(images.depth, camera_, config_.segment.surface);
+PreparedKept::PreparedKept(const KeptFrame& kept, const MapperConfig& config,
+                           const PinholeCamera& camera)
+    : images(decode_kept(kept, camera)),
+      surface(fit_depth_surface(images.depth, camera, config.segment.surface)),
+      estimate(estimate_depth(images.depth, surface, config.segment.surface.noise, config.depth)) {}
+
+std::vector<std::uint32_t> KeptFusion::fuse(const KeptFrame& kept, const Pose& world_from_camera,
+                                            VoxelMap& map, const BlockChoice* blocks) {
+  const PreparedKept frame(kept, config_, camera_);
   const std::vector<Label> labels = roots_of(kept.labels, map.labels());
-  const DepthEstimate estimate =
-      estimate_depth(images.depth, surface, config_.segment.surface.noise, config_.depth);
   const Observation observation{
-      .depth = estimate.depth_m,
+      .depth = frame.estimate.depth_m,
       .camera = camera_,
       .world_from_camera = world_from_camera,
-      .color = &images.color,
-      .plane_slope = &surface.plane_slope,
-      .sigma_m = estimate.sigma_m.empty() ? nullptr : &estimate.sigma_m,
-      .segment_ids = labels.empty() ? nullptr : &images.segment_ids,
-      .segment_labels = labels};
+      .color = &frame.images.color,
+      .plane_slope = &frame.surface.plane_slope,
+      .sigma_m = frame.estimate.sigma_m.empty() ? nullptr : &frame.estimate.sigma_m,
+      .segment_ids = labels.empty() ? nullptr : &frame.images.segment_ids,
+      .segment_labels = labels,
+      .blocks = blocks};
+  std::vector<std::uint32_t> slots;
   if (looks_.next(world_from_camera, config_.free_space))
-    clear_free_space(map, observation, config_.free_space);
-  integrate(map, observation);
+    slots = clear_free_space(map, observation, config_.free_space).slots;
+  const std::vector<std::uint32_t> filled = integrate(map, observation);
+  slots.insert(slots.end(), filled.begin(), filled.end());
+  return slots;
 }
 
 }  // namespace ovimap

@@ -10,17 +10,17 @@
 #include "ovimap/base/version.h"
 #include "ovimap/map/fusion/integrate.h"
 #include "ovimap/map/rays/surface_lookup.h"
-#include "ovimap/pipeline/mapping/kept_fusion.h"
 #include "ovimap/pipeline/mapping/mask_prompts.h"
+#include "ovimap/pipeline/motion/motion_filter.h"
 
 namespace ovimap {
 
 namespace {
 
 Observation observation_of(const PreparedFrame& prepared, const FrameSegments* cut,
-                           std::span<const Label> labels) {
+                           std::span<const Label> labels, const DepthImage& depth) {
   const Image<float>& sigma = prepared.estimate.sigma_m;
-  return {.depth = prepared.estimate.depth_m,
+  return {.depth = depth,
           .camera = prepared.frame->depth_camera,
           .world_from_camera = prepared.frame->world_from_camera,
           .color = &prepared.color,
@@ -28,6 +28,24 @@ Observation observation_of(const PreparedFrame& prepared, const FrameSegments* c
           .sigma_m = sigma.empty() ? nullptr : &sigma,
           .segment_ids = cut ? &cut->segments.ids : nullptr,
           .segment_labels = labels};
+}
+
+Observation observation_of(const PreparedFrame& prepared, const FrameSegments* cut,
+                           std::span<const Label> labels) {
+  return observation_of(prepared, cut, labels, prepared.estimate.depth_m);
+}
+
+/// Nothing where nothing moves, or there are no segments.
+std::optional<FrameSegments> without(const IdImage& moving, const FrameSegments* cut) {
+  if (cut == nullptr || moving.empty()) return std::nullopt;
+  FrameSegments still = *cut;
+  still.segments = still_segments(cut->segments, moving);
+  return still;
+}
+
+/// The image itself where nothing moves, else a copy in `still`.
+const DepthImage& without(const IdImage& moving, const DepthImage& depth, DepthImage& still) {
+  return moving.empty() ? depth : still = still_depth(depth, moving);
 }
 
 std::vector<Label> labels_of(std::span<const SegmentAssociation> associations) {
@@ -56,23 +74,32 @@ Mapper::Mapper(const MapperConfig& config, std::shared_ptr<MaskSource> masks,
       masks_(std::move(masks)),
       map_(config.map),
       registry_(config.instance),
-      frame_store_(config.frame_store) {
+      frame_store_(config.frame_store),
+      mask_motion_(config.mask_motion),
+      motion_(std::make_unique<MotionFilter>(config.motion)) {
   if (config_.view_interval == 0)
     config_.view_interval = encoder ? 1 : config_.stored_view_interval;
   builder_ = std::make_unique<AppearanceBuilder>(config_.semantics, std::move(encoder));
-  if (config_.mask_interval == 0)
-    config_.mask_interval = masks_ && masks_->is_slow() ? config_.network_mask_interval : 1;
+  if (config_.mask_interval == 0 && !(masks_ && masks_->is_slow())) config_.mask_interval = 1;
 }
+
+Mapper::~Mapper() = default;
+Mapper::Mapper(Mapper&&) noexcept = default;
 
 FrameReport Mapper::process(const Frame& frame) {
   const std::shared_ptr<const Frame> borrowed(std::shared_ptr<const Frame>(), &frame);
   const PreparedFrame prepared = prepare_frame(borrowed, config_, timers_);
   std::optional<FrameSegments> cut;
-  if (frames_ % config_.mask_interval == 0)
+  if (wants_masks(frame))
     cut = cut_segments(prepared, masks_.get(), config_, timers_, known_objects(prepared));
   FrameReport report = fuse(prepared, cut ? &*cut : nullptr);
   if (frames_ % config_.view_interval == 0) report.views = look_at_objects(frame);
   return report;
+}
+
+bool Mapper::wants_masks(const Frame& frame) const {
+  return config_.mask_interval > 0 ? frames_ % config_.mask_interval == 0
+                                   : mask_motion_.wants(frame);
 }
 
 std::vector<MaskPrompt> Mapper::known_objects(const PreparedFrame& prepared) {
@@ -86,22 +113,52 @@ std::vector<MaskPrompt> Mapper::known_objects(const PreparedFrame& prepared) {
 FrameReport Mapper::fuse(const PreparedFrame& prepared, const FrameSegments* cut) {
   builder_->rethrow_failure();  // before anything changes
   settled_ = false;
+  const MovingPixels moving = find_motion(prepared);
+  const std::optional<FrameSegments> still = without(moving.ids, cut);
+  if (still) cut = &*still;
   const std::vector<SegmentAssociation> associations = find_labels(prepared, cut);
   const std::vector<Label> labels = labels_of(associations);
-  const Observation observation = observation_of(prepared, cut, labels);
-  const std::vector<std::uint32_t> cleared = clear_free_space(observation);
+  // Before what moves, space is as free as before anything else.
+  const std::vector<std::uint32_t> cleared =
+      clear_free_space(observation_of(prepared, cut, labels));
+  const std::vector<std::uint32_t> taken_back = take_back(prepared, moving);
   {
     auto t = timers_.measure("integrate");
-    touched_blocks_ = integrate(map_, observation);
+    DepthImage copy;
+    const DepthImage& depth = without(moving.ids, prepared.estimate.depth_m, copy);
+    touched_blocks_ = integrate(map_, observation_of(prepared, cut, labels, depth));
   }
   add_slots(cleared, map_, touched_blocks_);
+  add_slots(taken_back, map_, touched_blocks_);
   if (config_.frame_store.max_mb > 0) {
     auto t = timers_.measure("keep_frame");
-    frame_store_.add(number_of(*prepared.frame), prepared.frame->depth, prepared.color,
-                     cut ? &cut->segments.ids : nullptr, labels);
+    DepthImage copy;
+    frame_store_.add(number_of(*prepared.frame), without(moving.ids, prepared.frame->depth, copy),
+                     prepared.color, cut ? &cut->segments.ids : nullptr, labels);
   }
   ++frames_;
-  return observe(*prepared.frame, cut, associations);
+  fused_from_.push_back(prepared.frame->world_from_camera);
+  mask_motion_.add(prepared.frame->world_from_camera);
+  if (cut) mask_motion_.masked();
+  FrameReport report = observe(*prepared.frame, cut, associations);
+  report.moving_px = static_cast<int>(moving.ids.size()) -
+                     static_cast<int>(std::count(moving.ids.begin(), moving.ids.end(), 0));
+  return report;
+}
+
+MovingPixels Mapper::find_motion(const PreparedFrame& prepared) {
+  if (config_.motion.mode == DynamicMode::kOff) return {};
+  auto t = timers_.measure("motion");
+  return motion_->see(map_, observation_of(prepared, nullptr, {}), config_.free_space,
+                     prepared.frame->timestamp_s, number_of(*prepared.frame));
+}
+
+std::vector<std::uint32_t> Mapper::take_back(const PreparedFrame& prepared,
+                                             const MovingPixels& moving) {
+  if (config_.motion.mode == DynamicMode::kOff || !config_.free_space.enabled) return {};
+  auto t = timers_.measure("take_back");
+  return motion_->take_back(map_, observation_of(prepared, nullptr, {}), moving,
+                            config_.free_space);
 }
 
 std::vector<std::uint32_t> Mapper::clear_free_space(const Observation& observation) {
@@ -112,8 +169,11 @@ std::vector<std::uint32_t> Mapper::clear_free_space(const Observation& observati
   return ovimap::clear_free_space(map_, observation, config_.free_space).slots;
 }
 
-FrameReport Mapper::label(const PreparedFrame& prepared, const FrameSegments& cut) {
+FrameReport Mapper::label(const PreparedFrame& prepared, const FrameSegments& all) {
   settled_ = false;
+  const IdImage* const moving = motion_->moved_in(number_of(*prepared.frame));
+  const std::optional<FrameSegments> still = without(moving ? *moving : IdImage(), &all);
+  const FrameSegments& cut = still ? *still : all;
   const std::vector<SegmentAssociation> associations = find_labels(prepared, &cut);
   const std::vector<Label> labels = labels_of(associations);
   {
@@ -124,16 +184,23 @@ FrameReport Mapper::label(const PreparedFrame& prepared, const FrameSegments& cu
   return observe(*prepared.frame, &cut, associations);
 }
 
-void Mapper::fuse_again(const std::vector<Pose>& poses, const PinholeCamera& depth_camera) {
-  OVIMAP_ASSERT(poses.size() == static_cast<std::size_t>(frames_) && !map_.has_store());
+FusedAgain Mapper::fuse_again(const std::vector<Pose>& poses, const PinholeCamera& depth_camera,
+                              const std::function<void(std::size_t, std::size_t)>& progress) {
+  OVIMAP_ASSERT(poses.size() == static_cast<std::size_t>(frames_));
   auto t = timers_.measure("fuse_again");
   settled_ = false;
-  map_.empty_blocks();
-  KeptFusion fusion(config_, depth_camera);
-  for (const auto& [position, kept] : frame_store_.frames())
-    fusion.fuse(*kept, poses[position], map_);
-  looks_ = fusion.looks();
-  touched_blocks_ = map_.ordered_slots();
+  motion_->forget_space();
+  const FrameStoreConfig& store = config_.frame_store;
+  PoseChange change = change_of(std::move(fused_from_), poses,
+                                double{store.still_voxels} * double{config_.map.voxel_size_m},
+                                double{store.still_at_m});
+  FusedAgain done =
+      fuse_moved(map_, frame_store_.frames(), change, config_, depth_camera, progress);
+  fused_from_ = std::move(change.after);
+  looks_ = done.looks;
+  mask_motion_.move(poses);
+  touched_blocks_ = done.slots;
+  return done;
 }
 
 std::vector<SegmentAssociation> Mapper::find_labels(const PreparedFrame& prepared,
@@ -184,6 +251,12 @@ int Mapper::look_at_objects(const Frame& frame, Encoder encoder) {
   return chosen;
 }
 
+const std::vector<Mover>& Mapper::movers() const {
+  return motion_->movers();
+}
+
+const SeenFree& Mapper::seen_free() const { return motion_->space(); }
+
 MapRecord Mapper::record(MapHeader header, std::vector<FrameLogEntry> frames,
                          const PinholeCamera& depth_camera) const {
   MapRecord record{std::move(header)};
@@ -197,6 +270,8 @@ MapRecord Mapper::record(MapHeader header, std::vector<FrameLogEntry> frames,
   record.kept_frames = kept_frames();
   record.depth_camera = depth_camera;
   record.mask_frames = mask_frames_;
+  record.seen_free = motion_->space();
+  record.movers = motion_->movers();
   record.version = concat(version(), " (", commit(), ")");
   return record;
 }
@@ -210,8 +285,13 @@ void Mapper::restore(MapDocument&& document) {
       for (ObjectView& view : look.views) view.things.resize(0);
   builder_->restore(std::move(document.semantics.looks));
   frame_store_.restore(std::move(document.kept_frames), document.frames.size());
-  for (const FrameLogEntry& frame : document.frames)
+  for (const FrameLogEntry& frame : document.frames) {
+    fused_from_.push_back(frame.world_from_camera);
     looks_.next(frame.world_from_camera, config_.free_space);
+    mask_motion_.add(frame.world_from_camera);
+    if (frame.labelled) mask_motion_.masked();
+  }
+  motion_->restore(std::move(document.seen_free), std::move(document.movers), document.frames);
   frames_ = static_cast<int>(document.frames.size());
   mask_frames_ = document.mask_frames;
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "ovimap/base/stage_timers.h"
@@ -13,9 +14,14 @@
 #include "ovimap/map/voxels/voxel_map.h"
 #include "ovimap/pipeline/mapping/appearance_builder.h"
 #include "ovimap/pipeline/mapping/mapper_config.h"
+#include "ovimap/pipeline/mapping/moved_fusion.h"
+#include "ovimap/pipeline/mapping/picture_motion.h"
 #include "ovimap/pipeline/mapping/prepared_frame.h"
 
 namespace ovimap {
+
+class MotionFilter;
+struct MovingPixels;
 
 /// What became of one frame.
 struct FrameReport {
@@ -24,6 +30,7 @@ struct FrameReport {
   int segments = 0;       ///< pieces lifted to 3D
   int founded = 0;        ///< new super-points
   int views = 0;          ///< views of objects chosen for embedding
+  int moving_px = 0;      ///< pixels that were left out because what they show moves
   bool labelled = false;  ///< the frame voted for labels (else it added geometry and colour alone,
                           ///< as one that is not masked does)
 };
@@ -45,6 +52,9 @@ class Mapper {
   explicit Mapper(const MapperConfig& config, std::shared_ptr<MaskSource> masks = nullptr,
                   std::shared_ptr<ImageTextEncoder> encoder = nullptr);
 
+  ~Mapper();
+  Mapper(Mapper&&) noexcept;
+
   /// From now on views are also shown to what recognizes things; null: to nothing.
   void recognize_with(std::shared_ptr<const ThingRecognizer> recognizer) {
     builder_->recognize_with(std::move(recognizer));
@@ -61,7 +71,7 @@ class Mapper {
   FrameReport fuse(const PreparedFrame& prepared, const FrameSegments* cut);
   /// Adds the labels of a frame that was fused without, some time ago: its segments vote with the
   /// depth and pose of their own frame on the map as it is now.
-  FrameReport label(const PreparedFrame& prepared, const FrameSegments& cut);
+  FrameReport label(const PreparedFrame& prepared, const FrameSegments& all);
   enum class Encoder {
     kCatchUp,  ///< while too many views wait for the encoder, so does the mapper
     kRunOn,    ///< views wait, however many
@@ -71,12 +81,14 @@ class Mapper {
   /// Whether few enough views wait for the encoder to look for more.
   bool encoder_keeps_up() const { return builder_->keeps_up(); }
 
-  /// Fuses the frames that are kept anew, from these poses of all frames so far (world_from_camera
-  /// of their depth camera); labels stay what they are, and so do objects. The map stays the same
-  /// one: its blocks are emptied and filled again, and those that nothing fills stay empty.
-  /// touched_blocks() are all. Frames must be kept, and all voxels be in memory (without a store).
-  /// Throws Error when a kept frame is damaged.
-  void fuse_again(const std::vector<Pose>& poses, const PinholeCamera& depth_camera);
+  /// Moves the map to where its frames are by now: `poses` of all frames so far (world_from_camera
+  /// of their depth camera). What a frame shows that moved visibly from where it was fused
+  /// (FrameStoreConfig::still_voxels) is fused anew from what is kept (fuse_moved); labels stay what
+  /// they are, and so do objects. touched_blocks() are those that were made anew. Frames must be
+  /// kept. A map with a store stays within its bound; its blocks may not be frozen then.
+  /// `progress(done, total)`: after each kept frame. Throws Error when one is damaged.
+  FusedAgain fuse_again(const std::vector<Pose>& poses, const PinholeCamera& depth_camera,
+                        const std::function<void(std::size_t, std::size_t)>& progress = nullptr);
 
   /// The map seen from a frame's depth camera, guided by its depth (method section 8).
   InstanceView project(const Frame& frame);
@@ -122,6 +134,10 @@ class Mapper {
   VoxelMap& map() { return map_; }
   VoxelMap take_map() && { return std::move(map_); }
   const InstanceRegistry& registry() const { return registry_; }
+  /// What moved so far while it was seen (MotionConfig::mode kTrack).
+  const std::vector<Mover>& movers() const;
+  /// Which space frames of this visit looked through.
+  const SeenFree& seen_free() const;
   const KeptFrames& kept_frames() const { return frame_store_.frames(); }
   const StageTimers& timers() const { return timers_; }
   StageTimers& timers() { return timers_; }
@@ -132,10 +148,13 @@ class Mapper {
 
  private:
   void settle();
+  MovingPixels find_motion(const PreparedFrame& prepared);
+  std::vector<std::uint32_t> take_back(const PreparedFrame& prepared, const MovingPixels& moving);
   std::vector<std::uint32_t> clear_free_space(const Observation& observation);
   std::vector<SegmentAssociation> find_labels(const PreparedFrame& prepared,
                                               const FrameSegments* cut);
   Image<InstanceId> instances_of(const Image<Label>& labels) const;
+  bool wants_masks(const Frame& frame) const;
   std::vector<MaskPrompt> known_objects(const PreparedFrame& prepared);
   FrameReport observe(const Frame& frame, const FrameSegments* cut,
                       std::span<const SegmentAssociation> associations);
@@ -148,7 +167,10 @@ class Mapper {
   std::unique_ptr<AppearanceBuilder> builder_;
   StageTimers timers_;
   FrameStore frame_store_;
+  std::vector<Pose> fused_from_;  ///< of all frames: the poses that the voxels have them from
   SeparateLooks looks_;
+  MaskMotion mask_motion_;
+  std::unique_ptr<MotionFilter> motion_;
   bool settled_ = false;  ///< the objects are those of all that is in the map
   std::vector<std::uint32_t> touched_blocks_;
   int frames_ = 0, mask_frames_ = 0;

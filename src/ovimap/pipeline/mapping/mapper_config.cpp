@@ -21,6 +21,7 @@ void list_fields(MapperConfig& config, ConfigFields& fields) {
   fields.group("summary", [&](ConfigFields& f) { list_fields(config.summary, f); });
   fields.group("map", [&](ConfigFields& f) { list_fields(config.map, f); });
   fields.group("free_space", [&](ConfigFields& f) { list_fields(config.free_space, f); });
+  fields.group("motion", [&](ConfigFields& f) { list_fields(config.motion, f); });
   list_fields(config.semantics, fields);
   fields.group("frame_store", [&](ConfigFields& f) { list_fields(config.frame_store, f); });
   fields.add("view_interval", config.view_interval, 0, 1000000,
@@ -28,11 +29,11 @@ void list_fields(MapperConfig& config, ConfigFields& fields) {
              "stored_view_interval without");
   fields.add("stored_view_interval", config.stored_view_interval, 1, 1000000,
              "what view_interval 0 means when crops are only kept, frames");
-  fields.add(
-      "mask_interval", config.mask_interval, 0, 1000000,
-      "2D masks every n-th frame; 0: by network_mask_interval for networks, every frame otherwise");
-  fields.add("network_mask_interval", config.network_mask_interval, 1, 1000000,
-             "what mask_interval 0 means for networks, frames");
+  fields.add("mask_interval", config.mask_interval, 0, 1000000,
+             "2D masks every n-th frame; 0: by mask_motion for networks, every frame otherwise");
+  fields.add("mask_motion", config.mask_motion, 0.f, 1.f,
+             "networks are asked again when what is in view moved by this share of the picture; "
+             "0: every frame");
   fields.add("ask_for_known", config.ask_for_known,
              "networks are asked for the objects of the map so far, by their boxes; not by live runs");
   fields.add("occlusion_margin_m", config.occlusion_margin_m, 0.f, 10.f,
@@ -56,6 +57,7 @@ MapperConfig mapper_preset(const std::string& name) {
   config.instance.merging.merge_max_dissent = 1e6f;  // the paper counts no dissent
   config.depth.enabled = false;
   config.free_space.enabled = false;
+  config.motion.mode = DynamicMode::kOff;
   config.map.max_weight = 1e4f;
   config.map.min_mesh_weight = 1e-4f;
   config.map.label_band_voxels = static_cast<float>(config.map.truncation_voxels);
@@ -64,7 +66,7 @@ MapperConfig mapper_preset(const std::string& name) {
   config.mask_fusion.split_core_px = kNeverSoMany;
   config.summary.min_instance_voxels = 1;
   config.summary.min_instance_views = 1;
-  config.network_mask_interval = 1;
+  config.mask_motion = 0.f;
   config.view_interval = 1;
   config.semantics.views = view_preset("combine");
   config.semantics.views.fusion.largest_views = 8;

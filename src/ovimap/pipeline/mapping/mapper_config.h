@@ -12,6 +12,7 @@
 #include "ovimap/map/voxels/voxel_map.h"
 #include "ovimap/pipeline/mapping/appearance_builder.h"
 #include "ovimap/pipeline/mapping/frame_store.h"
+#include "ovimap/pipeline/motion/motion_config.h"
 #include "ovimap/segment/depth_estimate.h"
 #include "ovimap/segment/depth_segmentation.h"
 #include "ovimap/segment/mask_fusion.h"
@@ -28,15 +29,17 @@ struct MapperConfig {
   InstanceSummaryConfig summary;
   VoxelMapConfig map;
   FreeSpaceConfig free_space;
+  MotionConfig motion;
   SemanticsConfig semantics;
   FrameStoreConfig frame_store;
   int view_interval = 0;  ///< objects are looked at in every n-th frame; 0: in every frame with an
                           ///< encoder, in every stored_view_interval-th without
   int stored_view_interval = 5;  ///< what view_interval 0 means when crops are only kept
-  int mask_interval =
-      0;  ///< 2D masks are asked for every n-th frame, the frames between add geometry and
-          ///< colour; 0: every 5th frame for networks, every frame otherwise
-  int network_mask_interval = 5;  ///< what mask_interval 0 means for a mask source that is slow
+  int mask_interval = 0;  ///< 2D masks are asked for every n-th frame, the frames between add
+                          ///< geometry and colour; 0: by mask_motion where the source is slow (a
+                          ///< network), every frame otherwise
+  float mask_motion = 0.1f;  ///< what moves by less of the picture's width since the last masks
+                             ///< needs no new ones (MaskMotion); 0: every frame
   bool ask_for_known = false;     ///< networks are asked for the objects of the map so far, by their
                                   ///< boxes, where they should be in sight
   float occlusion_margin_m =

@@ -88,7 +88,7 @@ TEST(MapperPreset, ReferenceIsWhatTheReleasedCodeDoes) {
       {"summary.min_instance_voxels", "1"},
       {"summary.min_instance_views", "1"},
       {"mask_interval", "0"},
-      {"network_mask_interval", "1"},
+      {"mask_motion", "0"},
       {"view_interval", "1"},
       {"views.strategy", "combine"},
       {"views.grid_px_per_bin", "8"},
@@ -124,7 +124,7 @@ TEST(MapperPreset, ReferenceIsWhatTheReleasedCodeDoes) {
 }
 
 TEST(MapperPreset, KnowsItsNames) {
-  EXPECT_EQ(mapper_preset("default").network_mask_interval, 5);
+  EXPECT_EQ(mapper_preset("default").mask_motion, 0.1f);
   EXPECT_THROW(mapper_preset("fastest"), Error);
 }
 

@@ -132,6 +132,23 @@ class AskedDeskMasks : public DeskMasks {
   std::vector<std::vector<MaskPrompt>> known;  ///< by frame
 };
 
+TEST(Mapper, AsksANetworkWhenThePictureHasMoved) {
+  MapperConfig config;
+  config.mask_motion = 0.4f;  // the desk's frames are 30 degrees apart
+  config.allow_still_camera = true;
+  Mapper mapper(config, std::make_shared<AskedDeskMasks>());
+  const DeskScene scene;
+  std::vector<std::int64_t> asked;
+  for (const std::int64_t i : {0, 0, 1, 1, 2, 2, 3, 3, 4})
+    if (mapper.process(*scene.read(i).frame).labelled) asked.push_back(i);
+  EXPECT_EQ(asked.front(), 0);
+  EXPECT_EQ(std::adjacent_find(asked.begin(), asked.end()), asked.end()) << "nothing had moved";
+  EXPECT_GE(asked.size(), 2u);
+  config.mask_motion = 0.f;
+  Mapper every(config, std::make_shared<AskedDeskMasks>());
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(every.process(*scene.read(0).frame).labelled);
+}
+
 /// Whether some prompt is asked for in the box of a true object, give or take two pixels.
 bool asked_for(const std::vector<MaskPrompt>& prompts, const IdImage& truth, std::uint16_t id) {
   Eigen::AlignedBox2f box;

@@ -45,7 +45,7 @@ class TileKeeper : public BlockStore {
   void remove();
 
   /// A frame changed these blocks.
-  void note_changes(const VoxelMap& map, std::span<const std::uint32_t> slots);
+  void note_changes(const VoxelMap& map, std::span<const std::uint32_t> slots) override;
   /// The tiles whose voxels are not in the file as they are now; from here on they count as if they
   /// were.
   std::vector<Tile> take_changed(const VoxelMap& map);

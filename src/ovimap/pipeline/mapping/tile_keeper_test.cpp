@@ -82,7 +82,7 @@ class TileKeeperTest : public ::testing::Test {
 
   Run finish(Mapper&& mapper, const SequenceResult& sequence, Checkpointer* checkpoints) const {
     Run run;
-    if (checkpoints) checkpoints->end_frames(mapper);
+    if (checkpoints) checkpoints->let_tiles_leave(mapper);
     StageTimers timers;
     if (checkpoints) checkpoints->report(timers);
     auto stages = timers.summary();
@@ -174,6 +174,35 @@ TEST_F(TileKeeperTest, AKilledRunGoesOnWithinTheBound) {
         &checkpoints);
   }
   EXPECT_EQ(resume().bytes, expected.bytes);
+}
+
+/// Frames moved a little and fused again, as when a loop was closed.
+TEST_F(TileKeeperTest, FramesAreFusedAgainWithinTheBound) {
+  const auto corrected = [&](int max_mb) {
+    MapperConfig keeping = config();
+    keeping.frame_store.max_mb = 100;
+    Mapper mapped(keeping, std::make_shared<DeskRowMasks>());
+    Checkpointer checkpoints(
+        std::make_shared<TileKeeper>(partial_, TileKeeper::Start::kAnew, MemoryConfig{max_mb}),
+        {0.f, 7}, {}, 0);
+    const SequenceResult sequence = run_sequence(row_, positions({}, row_.size()), mapped, nullptr,
+                                                 {}, &checkpoints);
+    std::vector<Pose> poses = poses_of(sequence.frames);
+    for (std::size_t i = 0; i < poses.size(); ++i)
+      poses[i].translation().x() += 0.0007 * static_cast<double>(i);
+    checkpoints.let_tiles_leave(mapped);
+    std::size_t most_blocks = 0;
+    mapped.fuse_again(poses, sequence.depth_camera, [&](std::size_t, std::size_t) {
+      most_blocks = std::max(most_blocks, mapped.map().blocks_in_memory());
+    });
+    checkpoints.remove();
+    return std::pair(mapped.map().content_hash(), most_blocks);
+  };
+  const auto [whole, whole_blocks] = corrected(0);
+  const auto [bounded, bounded_blocks] = corrected(kBound_mb);
+  EXPECT_EQ(whole, bounded);
+  EXPECT_LE(bounded_blocks * sizeof(VoxelBlock), kBound_mb * 1000000u);
+  EXPECT_GT(whole_blocks, 2 * bounded_blocks) << "the bound was too easy";
 }
 
 /// No file may grow beyond what it is now.

@@ -5,8 +5,9 @@
 #include <algorithm>
 
 #include "ovimap/base/error.h"
-#include "ovimap/pipeline/mapping/kept_fusion.h"
+#include "ovimap/pipeline/mapping/moved_fusion.h"
 #include "ovimap/pipeline/sequence/map_description.h"
+#include "ovimap/pipeline/sequence/sequence_run.h"
 
 namespace ovimap {
 
@@ -14,15 +15,14 @@ namespace {
 
 constexpr double kStill = 1e-6;  // metres and radians that text files lose
 
-PoseCorrection compare(const std::vector<FrameLogEntry>& frames, const std::vector<Pose>& poses) {
+PoseCorrection compare(const PoseChange& change) {
   PoseCorrection correction;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    const Pose new_from_old = poses[i].inverse() * frames[i].world_from_camera;
-    const double moved_m = new_from_old.translation().norm(),
-                 turned_rad = Eigen::AngleAxisd(new_from_old.linear()).angle();
-    correction.moved += moved_m > kStill || turned_rad > kStill;
-    correction.furthest_m = std::max(correction.furthest_m, moved_m);
-    correction.widest_rad = std::max(correction.widest_rad, turned_rad);
+  for (std::size_t i = 0; i < change.moved.size(); ++i) {
+    const Pose new_from_old = change.after[i].inverse() * change.before[i];
+    correction.moved += change.moved[i];
+    correction.furthest_m = std::max(correction.furthest_m, new_from_old.translation().norm());
+    correction.widest_rad =
+        std::max(correction.widest_rad, Eigen::AngleAxisd(new_from_old.linear()).angle());
   }
   return correction;
 }
@@ -40,23 +40,14 @@ PoseCorrection correct_poses(MapDocument& document, const std::vector<Pose>& pos
   if (!document.depth_camera.valid())
     throw Error("the map does not say which camera took its frames; map the recording anew with "
                 "the corrected poses");
-  PoseCorrection correction = compare(document.frames, poses);
-  for (std::size_t i = 0; i < poses.size(); ++i) document.frames[i].world_from_camera = poses[i];
-  VoxelMap map(document.map.config());
-  map.labels() = document.map.labels();
-  document.map = VoxelMap(map.config());
-  KeptFusion fusion(config, document.depth_camera);
-  for (const auto& [position, kept] : document.kept_frames) {
-    try {
-      fusion.fuse(*kept, poses[position], map);
-    } catch (const Error& fault) {
-      throw Error(concat("the kept frame ", position, " cannot be fused again (", fault.what(),
-                         "); map the recording anew with the corrected poses"));
-    }
-    if (progress) progress(++correction.refused, document.kept_frames.size());
-  }
-  correction.refused = document.kept_frames.size();
-  document.map = std::move(map);
+  const PoseChange change = change_of(poses_of(document.frames), poses, kStill, 1.);
+  PoseCorrection correction = compare(change);
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    document.frames[i].world_from_camera = change.after[i];
+  const FusedAgain done = fuse_moved(document.map, document.kept_frames, change, config,
+                                     document.depth_camera, progress);
+  correction.refused = done.frames;
+  correction.blocks = done.slots.size();
   InstanceRegistry registry(document.instance_config);
   registry.restore(InstanceRegistry::State(document.registry));
   describe_map(document.map, registry, config.summary, document);

@@ -127,6 +127,7 @@ class MapComparison {
   void judge_places() {
     const Witness later(after_, before_from_after_.inverse(), config_),
         earlier(before_, before_from_after_, config_);
+    std::vector<float> arrived(changes_.size(), 0.f);
     parallel_for(changes_.size(), 1, [&](std::size_t i) {
       ObjectChange& change = changes_[i];
       if (change.before != 0)
@@ -134,7 +135,7 @@ class MapComparison {
       else
         earlier.testify(surface_of(after_, change.after), change);
       if (change.before != 0 && change.after != 0) {
-        judge_shift(earlier, change);
+        arrived[i] = judge_shift(earlier, change);
         return;
       }
       if (change.seen_through >= config_.gone_share)
@@ -143,17 +144,41 @@ class MapComparison {
         change.kind =
             change.surface_there >= config_.gone_share ? ChangeKind::kSame : ChangeKind::kUnseen;
     });
+    part_from_remains(arrived);
+  }
+
+  /// What came to where remains of another thing lie is an object of its own: the two share hardly
+  /// any of their surface, and most of it is where nothing was.
+  bool is_other(const ObjectChange& change, float arrived) const {
+    return change.overlap < config_.same_iou && arrived >= config_.gone_share;
+  }
+
+  void part_from_remains(const std::vector<float>& arrived) {
+    for (std::size_t i = 0; i < arrived.size(); ++i) {
+      ObjectChange& change = changes_[i];
+      if (change.before == 0 || change.after == 0 || !is_other(change, arrived[i])) continue;
+      ObjectChange come;
+      come.kind = ChangeKind::kNew;
+      come.after = change.after;
+      come.seen_through = arrived[i];
+      change.after = 0;
+      if (change.seen_through >= config_.gone_share) change.kind = ChangeKind::kRemoved;
+      changes_.push_back(come);
+    }
   }
 
   /// An object that overlaps with itself but left a part of its place, and came to a new part.
-  void judge_shift(const Witness& earlier, ObjectChange& change) const {
+  /// Returns the share of where it is now that the earlier map saw through.
+  float judge_shift(const Witness& earlier, ObjectChange& change) const {
     change.cosine = look_similarity(before_, change.before, after_, change.after);
     ObjectChange arrived;
     earlier.testify(surface_of(after_, change.after), arrived);
-    if (change.seen_through < config_.shift_share || arrived.seen_through < config_.shift_share)
-      return;
-    change.kind = ChangeKind::kMoved;
-    change.shift_m = shift(change.before, change.after);
+    if (!is_other(change, arrived.seen_through) && change.seen_through >= config_.shift_share &&
+        arrived.seen_through >= config_.shift_share) {
+      change.kind = ChangeKind::kMoved;
+      change.shift_m = shift(change.before, change.after);
+    }
+    return arrived.seen_through;
   }
 
   Eigen::Vector3f shift(InstanceId before, InstanceId after) const {

@@ -110,6 +110,25 @@ TEST_F(MapDiffTest, ASmallShiftIsSeen) {
   EXPECT_NEAR(red->shift_m.norm(), 0.12f, 0.03f);
 }
 
+TEST_F(MapDiffTest, WhatComesToWhereRemainsLieIsNewAndNotThem) {
+  MapDocument before = room_with({kChest});
+  const MapDocument after = room_with({kChest, kRedBox});
+  const InstanceId red = at(after, kRedBox);
+  ASSERT_NE(red, 0u);
+  // A few points of something that had stood there and left them behind.
+  const std::vector<Eigen::Vector3f>& surface = after.surfaces.at(red);
+  InstanceSummary remains = before.instances.front();
+  remains.id = before.instances.back().id + 1;
+  before.instances.push_back(remains);
+  before.surfaces[remains.id] = {surface.begin(), surface.begin() + 8};
+  const auto changes = diff_maps(before, after, Pose::Identity());
+  const ObjectChange* come = change_of(changes, 0, red);
+  ASSERT_NE(come, nullptr);
+  EXPECT_EQ(come->kind, ChangeKind::kNew) << come->evidence;
+  EXPECT_EQ(come->before, 0u);
+  EXPECT_EQ(change_of(changes, remains.id, 0)->after, 0u);
+}
+
 TEST_F(MapDiffTest, AMapIsTheSameAsItself) {
   const MapDocument map = room_with({kChest, kRedBox, kBlueBox});
   for (const ObjectChange& change : diff_maps(map, map, Pose::Identity())) {

@@ -142,8 +142,10 @@ void append_instances(MapDocument& a, const MapRecord& b, const Offsets& by) {
     for (Label& label : instance.super_points) label += by.label;
     a.instances.push_back(std::move(instance));
   }
-  measure_instances(a.map, a.instances);
+  const SurfaceExtents extents = surface_extents(a.map);
+  measure_instances(extents, a.instances);
   std::erase_if(a.instances, [](const InstanceSummary& instance) { return instance.points == 0; });
+  a.parts = find_parts(extents, a.instances, a.registry.entity_sightings, InstanceSummaryConfig{});
   for (const auto& [id, name] : b.names) a.names[id + by.instance] = name;
   a.surfaces = sample_surfaces(extract_instance_mesh(a.map, a.instances),
                                InstanceSummaryConfig{}.surface_spacing_m);

@@ -110,7 +110,8 @@ class VisitTeller {
         change.kind = ChangeKind::kSame;
     for (ObjectChange& change : changes_)
       if (change.kind == ChangeKind::kSame && change.before != 0 &&
-          change.before == change.after && change.seen_through >= config_.diff.gone_share) {
+          (change.before == change.after || change.overlap < config_.diff.same_iou) &&
+          change.seen_through >= config_.diff.gone_share) {
         change.kind = ChangeKind::kRemoved;
         change.after = 0;
       }
@@ -125,12 +126,19 @@ class VisitTeller {
     return last != events.rend() && last->kind == ObjectEventKind::kGone;
   }
 
+  /// Things that the map before did not have: new ones, and those whose places nobody had looked at,
+  /// which are told of only where a thing that is gone fits them.
+  static bool may_have_come(const ObjectChange& change) {
+    return change.before == 0 && change.after != 0 &&
+           (change.kind == ChangeKind::kNew || change.kind == ChangeKind::kUnseen);
+  }
+
   /// Pairs that could be one thing, the likeliest first.
   std::vector<Pair> likely_pairs() const {
     std::vector<Pair> pairs;
     std::map<std::size_t, ThingLook> found_looks;
     for (std::size_t k = 0; k < changes_.size(); ++k)
-      if (changes_[k].kind == ChangeKind::kNew)
+      if (may_have_come(changes_[k]))
         found_looks.emplace(k, thing_look(after_, changes_[k].after, before_.up));
     for (std::size_t i = 0; i < changes_.size(); ++i) {
       if (changes_[i].kind != ChangeKind::kRemoved) continue;
@@ -138,7 +146,9 @@ class VisitTeller {
       for (const auto& [k, found] : found_looks) {
         if (common_colors(gone, found) < config_.same_colors) continue;
         const float distance = shape_distance(gone, found);
-        if (distance <= config_.same_shape) pairs.push_back({i, k, distance});
+        const float coarse = config_.coarse_voxels * before_.map.config().voxel_size_m /
+                             std::max(gone.reach_m, found.reach_m);
+        if (distance <= std::max(config_.same_shape, coarse)) pairs.push_back({i, k, distance});
       }
     }
     std::stable_sort(pairs.begin(), pairs.end(),

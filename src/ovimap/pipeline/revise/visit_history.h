@@ -12,6 +12,7 @@ struct VisitHistoryConfig {
   float least_shift_m = 0.08f;  ///< what moved less than that has not
   float same_shape = 0.15f;   ///< mean distance of two surfaces laid over each other, as a share of
                               ///< their reach, up to which they may be of one thing
+  float coarse_voxels = 1.f;  ///< surfaces that differ by no more than that may be as well
   float same_colors = 0.5f;   ///< least share of two surfaces that has the same colours
   float doubt = 0.5f;  ///< the likeliest pair is one thing when it is so much nearer than the next:
                        ///< pairs of things of one shape differ by nearly as much

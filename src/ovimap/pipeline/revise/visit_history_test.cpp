@@ -130,6 +130,21 @@ TEST(VisitHistory, WithoutEmbeddingsShapeAndColourTell) {
   EXPECT_EQ(at(after, kRedBoxAway), at(before, kRedBox));
 }
 
+TEST(VisitHistory, WhatCameToWhereNobodyHadLookedMovedWhenSomethingGoneFitsIt) {
+  const FurnishedRoom evening = room_with({kChest, kRedBox, kBlueBox}),
+                      morning = room_with({kChest, kRedBoxAway, kGreenBox, kBlueBox});
+  MapDocument before = map_of(evening, MapDocument(), false),
+              after = map_of(morning, map_of(evening, MapDocument(), false), false);
+  const InstanceId red = at(before, kRedBox);
+  before.frames.clear();  // nobody bears witness of what was empty
+  tell_visit(before, after);
+  const ObjectEvent* moved = event_of(after, red);
+  ASSERT_NE(moved, nullptr);
+  EXPECT_EQ(moved->kind, ObjectEventKind::kMoved);
+  EXPECT_EQ(at(after, kRedBoxAway), red);
+  EXPECT_EQ(event_of(after, at(after, kGreenBox)), nullptr) << "nothing that is gone fits it";
+}
+
 TEST(VisitHistory, OfTwoAlikeNeitherIsTakenForTheOther) {
   const Furniture twin = furniture(1.0f, -0.5f, {0.3f, 0.2f, 0.3f}, {220, 20, 20}),
                   twin_away = furniture(-0.1f, -1.0f, {0.3f, 0.2f, 0.3f}, {220, 20, 20});

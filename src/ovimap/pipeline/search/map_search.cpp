@@ -63,6 +63,26 @@ QueryScene scene_of(const SearchableMap& map, const SearchIndex& index,
   return scene;
 }
 
+/// Null where no object has parts.
+std::shared_ptr<const QueryParts> parts_of(const SearchableMap& map, const SearchIndex& index,
+                                           const ObjectShapeConfig& config) {
+  auto parts = std::make_shared<QueryParts>();
+  std::vector<SearchObject> objects;
+  std::vector<Eigen::Index> rows;
+  for (const auto& [id, of_object] : parts_by_object(map.info.parts, map.info.instances))
+    for (std::size_t i = 0; i < of_object.size(); ++i) {
+      const ObjectPart* const part = of_object[i];
+      parts->owners.push_back(*index.find(id));
+      parts->numbers.push_back(static_cast<int>(i) + 1);
+      objects.push_back({part->id, part->box, part->centroid, part->points, ""});
+      rows.push_back(part - map.info.parts.data());
+    }
+  if (objects.empty()) return nullptr;
+  parts->index = SearchIndex(std::move(objects), map.part_embeddings(rows, Eigen::all));
+  parts->scene = scene_of_boxes(parts->index, map.info.up, config);
+  return parts;
+}
+
 /// The largest crop of each object that keeps one.
 std::vector<StoredCrop> crops_of(const SuperPointLooks& looks,
                                  std::span<const InstanceSummary> instances) {
@@ -81,6 +101,7 @@ MapSearch search_in(SearchableMap&& map, const ObjectShapeConfig& config) {
   MapSearch search;
   search.index = index_of(map);
   search.scene = scene_of(map, search.index, config);
+  search.scene.parts = parts_of(map, search.index, config);
   search.info = std::move(map.info);
   return search;
 }
@@ -131,6 +152,7 @@ MapSearch make_map_search(const MapRecord& corrected, MapInfo info,
   info.instances = corrected.instances;
   info.hidden = corrected.hidden;
   info.locked = corrected.locked;
+  info.parts = corrected.parts;
   info.names = corrected.names;
   info.writing_reader = corrected.semantics.writing_reader;
   info.writing.clear();
@@ -151,6 +173,9 @@ MapSearch make_map_search(const MapRecord& corrected, MapInfo info,
   map.embeddings = fused_embeddings(corrected.semantics.looks, corrected.instances,
                                     corrected.semantics.views.fusion,
                                     corrected.semantics.encoder.dimension);
+  map.part_embeddings = fused_embeddings(corrected.semantics.looks, corrected.parts,
+                                         corrected.semantics.views.fusion,
+                                         corrected.semantics.encoder.dimension);
   map.surfaces = corrected.surfaces;
   map.frames = corrected.frames;
   map.info = std::move(info);

@@ -10,7 +10,9 @@ namespace ovimap {
 
 void describe_map(const VoxelMap& map, const InstanceRegistry& registry,
                   const InstanceSummaryConfig& config, MapRecord& record) {
-  record.instances = summarize_instances(map, registry, config);
+  const SurfaceExtents extents = surface_extents(map);
+  record.instances = summarize_instances(extents, map.labels(), registry, config);
+  record.parts = find_parts(extents, record.instances, record.registry.entity_sightings, config);
   const std::vector<InstanceId> instance_of = instances_by_label(map, record.instances);
   SurfaceSampler sampler(config.surface_spacing_m);
   SurfaceDirections directions;

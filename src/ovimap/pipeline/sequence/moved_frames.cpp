@@ -36,8 +36,9 @@ std::vector<MovedPose> moves_of(const PoseUpdate& update,
   return moves;
 }
 
-void move_frames(const std::vector<MovedPose>& moves, bool by_time, Mapper& mapper,
-                 std::vector<FrameLogEntry>& frames, const PinholeCamera& depth_camera) {
+FusedAgain move_frames(const std::vector<MovedPose>& moves, bool by_time, Mapper& mapper,
+                 std::vector<FrameLogEntry>& frames, const PinholeCamera& depth_camera,
+                 const std::function<void(std::size_t, std::size_t)>& progress) {
   std::vector<Pose> poses;
   std::vector<double> at;
   for (const FrameLogEntry& frame : frames) {
@@ -46,7 +47,7 @@ void move_frames(const std::vector<MovedPose>& moves, bool by_time, Mapper& mapp
   }
   poses = follow(poses, at, moves);
   for (std::size_t i = 0; i < frames.size(); ++i) frames[i].world_from_camera = poses[i];
-  mapper.fuse_again(poses, depth_camera);
+  return mapper.fuse_again(poses, depth_camera, progress);
 }
 
 }  // namespace ovimap

@@ -84,11 +84,11 @@ TEST_F(MovedFrames, TheMapIsThatOfTheNewPoses) {
   std::vector<Pose> poses;
   for (std::size_t i = 0; i < done_.frames.size(); ++i) poses.push_back(truth(i));
   mapper_.fuse_again(poses, done_.depth_camera);
-  Mapper straight(keeping(), std::make_shared<DeskMasks>());
-  const DeskScene desk;
-  run_sequence(desk, positions({}, desk.size()), straight);
-  straight.fuse_again(poses, done_.depth_camera);
-  EXPECT_EQ(distances(mapper_.map()), distances(straight.map()));
+  VoxelMap straight;
+  KeptFusion fusion(mapper_.config(), done_.depth_camera);
+  for (const auto& [position, kept] : mapper_.kept_frames())
+    fusion.fuse(*kept, poses[position], straight);
+  EXPECT_EQ(distances(mapper_.map()), distances(straight));
 }
 
 /// Blocks that are being stored stay as they are meanwhile.

@@ -16,7 +16,7 @@ const TrackedFrame& PoseFinder::locate(Frame& frame, Mapper& mapper) {
 
 bool PoseFinder::close_loops(Mapper& mapper, std::vector<FrameLogEntry>& frames,
                              const PinholeCamera& depth_camera) {
-  if (!config_.online || mapper.kept_frames().empty() || mapper.map().has_store()) return false;
+  if (!config_.online || mapper.kept_frames().empty()) return false;
   const std::vector<Keyframe>& keyframes = tracker_.keyframes();
   const LoopClosure closure = [&] {
     auto t = mapper.timers().measure("find_loops");
@@ -30,6 +30,7 @@ bool PoseFinder::close_loops(Mapper& mapper, std::vector<FrameLogEntry>& frames,
   const double least_m = static_cast<double>(config_.least_voxels * mapper.config().map.voxel_size_m);
   if (closure.closed < static_cast<std::size_t>(config_.agreeing) || closure.furthest_m < least_m)
     return false;
+  if (before_correction) before_correction(mapper);
   move_frames(moved_keyframes(keyframes, closure.poses), false, mapper, frames, depth_camera);
   tracker_.correct(closure.poses);
   loops_ = 0;

@@ -27,14 +27,17 @@ class PoseFinder {
   const TrackedFrame& locate(Frame& frame, Mapper& mapper);
 
   /// Call after a frame that was located is fused. True when `frames`, all that are in the map, and
-  /// the map got other poses (Mapper::fuse_again). Leaves to the end (close_map_loops) what is
-  /// little, and all of it where the map keeps no frames or is bounded in memory.
+  /// the map got other poses (Mapper::fuse_again). Leaves to the end (close_last_loops) what is
+  /// little, and all of it where the map keeps no frames.
   bool close_loops(Mapper& mapper, std::vector<FrameLogEntry>& frames,
                    const PinholeCamera& depth_camera);
 
   Tracker& tracker() { return tracker_; }
   const Tracker& tracker() const { return tracker_; }
   const LoopCorrections& corrections() const { return corrections_; }
+
+  /// Called before the map is fused again: its blocks may not be frozen then where it has a store.
+  std::function<void(Mapper&)> before_correction;
 
  private:
   Tracker tracker_;

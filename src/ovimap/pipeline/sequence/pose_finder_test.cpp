@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ovimap/pipeline/sequence/last_loops.h"
 #include "ovimap/pipeline/sequence/sequence_run.h"
 #include "ovimap/track/room_camera_fixture.h"
 
@@ -88,6 +89,21 @@ TEST(PoseFinder, LeavesLittleToTheEnd) {
   loops = eager();
   loops.online = false;
   EXPECT_EQ(RoundTrip(loops).finder.corrections().times, 0u);
+}
+
+/// All is left to the end: what is closed there is closed alike when it is done again from a map that
+/// was stored before.
+TEST(PoseFinder, ClosesTheLastLoopsAfterTheLastFrame) {
+  LoopConfig loops = eager();
+  loops.online = false;
+  RoundTrip trip(loops), again(loops);
+  const double before = trip.furthest_m();
+  const LoopReport report = close_last_loops(trip.mapper, trip.done.frames, trip.done.depth_camera,
+                                             TrackConfig{}, loops);
+  EXPECT_GT(report.closed, 0u);
+  EXPECT_LE(trip.furthest_m(), std::max(before, 0.03));
+  close_last_loops(again.mapper, again.done.frames, again.done.depth_camera, TrackConfig{}, loops);
+  EXPECT_EQ(trip.mapper.map().content_hash(), again.mapper.map().content_hash());
 }
 
 TEST(PoseFinder, WithoutKeptFramesLoopsStayOpen) {

@@ -3,6 +3,7 @@
 #include "ovimap/semantics/classes/object_names.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace ovimap {
 
@@ -22,6 +23,23 @@ Eigen::MatrixXf kinds_below(const Concepts& concepts) {
                                ? 1.f
                                : 0.f;
   return below;
+}
+
+/// What looks like a thing that somebody named is called so, where no clear word contradicts.
+void name_by_examples(const TextEvidence& evidence, std::vector<ObjectName>& names) {
+  if (evidence.config().taught_weight == 0.f) return;
+  const Concepts& concepts = evidence.concepts();
+  const auto nearest = evidence.taught().nearest();
+  for (std::size_t i = 0; i < nearest.size(); ++i) {
+    const auto& [example, ratio] = nearest[i];
+    const float odds = ratio - evidence.config().taught_name_ratio;
+    if (odds < 0.f) continue;
+    const auto kinds = concepts.senses_of(example);
+    if (names[i].clear() && !kinds.empty() &&
+        !concepts.compatible(kinds, concepts.senses_of(names[i].word)))
+      continue;
+    names[i] = {example, 1.f / (1.f + std::exp(-odds))};
+  }
 }
 
 }  // namespace
@@ -51,6 +69,7 @@ std::vector<ObjectName> name_objects(const TextEvidence& evidence) {
       names[static_cast<std::size_t>(i)] = {words[static_cast<std::size_t>(best)].word,
                                             std::min(shares(i, best), 1.f)};
   }
+  name_by_examples(evidence, names);
   return names;
 }
 

@@ -32,6 +32,11 @@ CountEstimate count_of(const PhraseMatch& found) {
   return count;
 }
 
+bool asks_for_parts(const QueryPhrase& phrase) {
+  return phrase.relation == Relation::kPartOf ||
+         std::any_of(phrase.anchors.begin(), phrase.anchors.end(), asks_for_parts);
+}
+
 std::vector<std::size_t> some_embedded(const SearchIndex& index, std::size_t most) {
   std::vector<std::size_t> positions;
   for (std::size_t i = 0; i < index.size(); ++i)
@@ -52,7 +57,16 @@ QueryEngine::QueryEngine(const SearchIndex& index, ImageTextEncoder* encoder,
     scene_.shapes = scene_of_boxes(index, Eigen::Vector3f::UnitZ(), config.shapes).shapes;
   if (encoder)
     matcher_.emplace(index, *encoder, config, std::move(vocabulary),
-                     measure_objects(scene_.shapes), scene_.writing, scene_.things);
+                     measure_objects(scene_.shapes), scene_.writing, scene_.things, scene_.taught);
+}
+
+const TextMatcher* QueryEngine::part_matcher() const {
+  if (!scene_.parts || scene_.parts->index.embedded() == 0 || !encoder_) return nullptr;
+  std::call_once(parts_asked_, [&] {
+    part_matcher_.emplace(scene_.parts->index, *encoder_, config_, matcher_->vocabulary(),
+                          measure_objects(scene_.parts->scene.shapes));
+  });
+  return &*part_matcher_;
 }
 
 QueryAnswer QueryEngine::find(const Query& query) const {
@@ -62,7 +76,8 @@ QueryAnswer QueryEngine::find(const Query& query) const {
     for (std::string& term : split_terms(checked_query_text(negative, config_.max_text_chars)))
       negatives.push_back(std::move(term));
   if (config_.grammar) {
-    const QueryPhrase phrase = parse_query(text, scene_.colors != nullptr);
+    const QueryPhrase phrase = parse_query(
+        text, {.colors = scene_.colors != nullptr, .parts = scene_.parts != nullptr});
     if (!phrase.free_text()) {
       QueryAnswer result = find_phrase(phrase, negatives, query);
       result.query = text;
@@ -90,27 +105,29 @@ QueryAnswer QueryEngine::find(const Query& query) const {
 QueryAnswer QueryEngine::find_phrase(const QueryPhrase& phrase,
                                      const std::vector<std::string>& negatives,
                                      const Query& query) const {
-  const PhraseSearch search(index_, matcher(), scene_, config_, query.among);
+  const PhraseSearch search(index_, matcher(), scene_, config_, query.among,
+                            asks_for_parts(phrase) ? part_matcher() : nullptr);
   const PhraseMatch found = search.match(phrase, negatives);
   QueryAnswer result;
   result.reading = describe(phrase);
   std::vector<std::size_t> order;
   bool any_holds = false;
-  for (std::size_t i = 0; i < index_.size(); ++i)
+  const SearchIndex& asked = found.of_parts ? scene_.parts->index : index_;
+  for (std::size_t i = 0; i < asked.size(); ++i)
     if (found.scores[static_cast<Eigen::Index>(i)] > 0.f) {
       order.push_back(i);
       any_holds = any_holds || found.holds[i];
     }
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return std::tuple(-found.scores[static_cast<Eigen::Index>(a)], index_.object(a).id) <
-           std::tuple(-found.scores[static_cast<Eigen::Index>(b)], index_.object(b).id);
+    return std::tuple(-found.scores[static_cast<Eigen::Index>(a)], asked.object(a).id) <
+           std::tuple(-found.scores[static_cast<Eigen::Index>(b)], asked.object(b).id);
   });
   if (phrase.how_many || phrase.count > 0) result.count = count_of(found);
   std::size_t shown = static_cast<std::size_t>(config_.top_k);
   if (phrase.count > 0) shown = static_cast<std::size_t>(phrase.count);
   if (phrase.how_many) shown = static_cast<std::size_t>(std::max(result.count->found, 1));
   order.resize(std::min(order.size(), shown));
-  for (const std::size_t position : order) result.matches.push_back(phrase_match(found, position));
+  for (const std::size_t row : order) result.matches.push_back(phrase_match(found, row));
   const bool enough = !result.count || result.count->found >= std::max(phrase.count, 1);
   if (found.missing.empty() && any_holds && enough) result.verdict = Verdict::kFound;
   for (const std::string& things : found.missing)
@@ -118,21 +135,36 @@ QueryAnswer QueryEngine::find_phrase(const QueryPhrase& phrase,
   if (found.missing.empty() && !any_holds) result.reason = "for nothing in the map is this true";
   if (found.missing.empty() && any_holds && !enough)
     result.reason = concat("only ", result.count->found, " of ", phrase.count);
-  if (query.relevance) result.relevance = found.scores;
+  if (query.relevance) result.relevance = relevance_of(found);
   return result;
 }
 
-QueryMatch QueryEngine::phrase_match(const PhraseMatch& found, std::size_t position) const {
-  const auto row = static_cast<Eigen::Index>(position);
+Eigen::VectorXf QueryEngine::relevance_of(const PhraseMatch& found) const {
+  if (!found.of_parts) return found.scores;
+  Eigen::VectorXf relevance = Eigen::VectorXf::Zero(static_cast<Eigen::Index>(index_.size()));
+  for (std::size_t p = 0; p < scene_.parts->index.size(); ++p) {
+    float& best = relevance[static_cast<Eigen::Index>(scene_.parts->owners[p])];
+    best = std::max(best, found.scores[static_cast<Eigen::Index>(p)]);
+  }
+  return relevance;
+}
+
+QueryMatch QueryEngine::phrase_match(const PhraseMatch& found, std::size_t row) const {
+  const auto i = static_cast<Eigen::Index>(row);
   QueryMatch match;
-  match.position = position;
-  match.id = index_.object(position).id;
-  match.probability = double{found.scores[row]};
-  match.evidence = found.evidence[position];
+  match.position = found.of_parts ? scene_.parts->owners[row] : row;
+  match.id = index_.object(match.position).id;
+  if (found.of_parts) {
+    match.part = scene_.parts->numbers[row];
+    match.part_box = scene_.parts->index.object(row).box;
+  }
+  match.probability = double{found.scores[i]};
+  match.evidence = found.evidence[row];
   if (found.things.standard.size() == 0) return match;  // "anything"
-  match.score = found.things.cosines[row];
-  match.standard_score = found.things.standard[row];
-  match.p_value = matcher_->p_value(found.things, match.standard_score);
+  match.score = found.things.cosines[i];
+  match.standard_score = found.things.standard[i];
+  const TextMatcher& matcher = found.of_parts ? *part_matcher() : *matcher_;
+  match.p_value = matcher.p_value(found.things, match.standard_score);
   return match;
 }
 
@@ -196,6 +228,8 @@ std::vector<QueryMatch> QueryEngine::best_matches(const MatchScores& scores, Ran
     const auto row = static_cast<Eigen::Index>(position);
     matches.push_back({position,
                        index_.object(position).id,
+                       0,
+                       {},
                        scores.cosines[row],
                        scores.standard[row],
                        {},

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,6 +25,8 @@ struct Query {
 struct QueryMatch {
   std::size_t position = 0;  ///< of the object in the index
   InstanceId id = 0;
+  int part = 0;                       ///< of the object, where a part was asked for; 0: all of it
+  Eigen::AlignedBox3f part_box;       ///< of that part; empty: all of it
   float score = 0;                    ///< cosine
   float standard_score = 0;           ///< standard deviations above unrelated things
   std::optional<double> p_value;      ///< chance that an absent thing's best object scores as high
@@ -73,6 +76,9 @@ class QueryEngine {
 
   /// Null without encoder.
   const TextMatcher* matcher() const { return matcher_ ? &*matcher_ : nullptr; }
+  /// Of the objects' parts; made when it is first asked for. Null without encoder, or where no part
+  /// has an embedding.
+  const TextMatcher* part_matcher() const;
 
  private:
   using PValue = std::function<double(float standard_score)>;  // empty: no calibration
@@ -80,7 +86,8 @@ class QueryEngine {
 
   QueryAnswer find_phrase(const QueryPhrase& phrase, const std::vector<std::string>& negatives,
                           const Query& query) const;
-  QueryMatch phrase_match(const PhraseMatch& found, std::size_t position) const;
+  Eigen::VectorXf relevance_of(const PhraseMatch& found) const;
+  QueryMatch phrase_match(const PhraseMatch& found, std::size_t row) const;
   QueryAnswer answer(const MatchScores& scores, const PValue& p_value,
                      const Probability& probability, bool relevance) const;
   QueryAnswer answer_like(const Eigen::VectorXf& embedding, std::size_t itself,
@@ -97,6 +104,8 @@ class QueryEngine {
   QueryConfig config_;
   std::optional<TextMatcher> matcher_;
   QueryScene scene_;
+  mutable std::once_flag parts_asked_;
+  mutable std::optional<TextMatcher> part_matcher_;
 };
 
 }  // namespace ovimap

@@ -13,7 +13,7 @@ namespace {
 constexpr const char* kAnyThing = "anything";
 constexpr std::size_t kMaxRelations = 16;  // in one query; more is no question but a text
 
-std::optional<QueryPhrase> parse_words(Words words, bool colors);
+std::optional<QueryPhrase> parse_words(Words words, const QueryAbilities& can);
 
 /// Takes "red" or "dark red" off the front, where one thing follows: of "red chair, sofa" only the
 /// chair is red, which is left to the encoder.
@@ -29,7 +29,7 @@ std::optional<Color> take_color(Words& words) {
 }
 
 /// `[number] [superlative] [color] things [size] [text:"WRITING"]`, at least one thing or writing.
-std::optional<QueryPhrase> parse_things(Words words, bool colors) {
+std::optional<QueryPhrase> parse_things(Words words, const QueryAbilities& can) {
   words = without_articles(words);
   QueryPhrase phrase;
   phrase.writing = take_writing(words);
@@ -43,7 +43,7 @@ std::optional<QueryPhrase> parse_things(Words words, bool colors) {
   if (words.size() > 1) phrase.superlative = superlative_of(words[0]);
   if (phrase.superlative) words = without_articles(words.subspan(1));
   phrase.size = take_size(words);
-  if (colors) phrase.color = take_color(words);
+  if (can.colors) phrase.color = take_color(words);
   if (words.empty()) return std::nullopt;
   phrase.things = phrase.count > 0 ? singular(words) : joined(words);
   phrase.anything = words.size() == 1 && plays(words[0], WordRole::kAnything);
@@ -51,17 +51,17 @@ std::optional<QueryPhrase> parse_things(Words words, bool colors) {
 }
 
 /// `A and B`, or `[the two] As`; empty when neither fits.
-std::vector<QueryPhrase> parse_pair(Words words, bool colors, bool& same_kind) {
+std::vector<QueryPhrase> parse_pair(Words words, const QueryAbilities& can, bool& same_kind) {
   std::vector<QueryPhrase> anchors;
   for (std::size_t i = 1; i + 1 < words.size(); ++i) {
     if (lower_case(words[i]) != "and") continue;
-    const auto first = parse_things(words.first(i), colors);
-    const auto second = parse_words(words.subspan(i + 1), colors);
+    const auto first = parse_things(words.first(i), can);
+    const auto second = parse_words(words.subspan(i + 1), can);
     if (first && second) return {*first, *second};
   }
   words = without_articles(words);
   if (!words.empty() && plays(words[0], WordRole::kPair)) words = words.subspan(1);
-  const auto both = parse_words(words, colors);
+  const auto both = parse_words(words, can);
   if (!both) return {};
   same_kind = true;
   return {*both};
@@ -69,21 +69,26 @@ std::vector<QueryPhrase> parse_pair(Words words, bool colors, bool& same_kind) {
 
 /// Reads the relation found at words[at], when there is something on both sides of it.
 std::optional<QueryPhrase> parse_relation(Words words, std::size_t at, const FoundRelation& found,
-                                          bool colors) {
+                                          const QueryAbilities& can) {
   Words left = words.first(at);
   const Words right = words.subspan(at + found.length);
   if (relation_at(right).length > 0) return std::nullopt;  // "television on on the wall"
   const bool negated = left.size() > 1 && lower_case(left.back()) == "not";
   if (negated) left = left.first(left.size() - 1);
-  std::optional<QueryPhrase> phrase = parse_things(without_fillers(left), colors);
+  const bool part = found.relation == Relation::kPartOf;
+  if (part && (negated || !can.parts)) return std::nullopt;
+  // Colours are known of objects alone.
+  std::optional<QueryPhrase> phrase =
+      parse_things(without_fillers(left), {.colors = can.colors && !part, .parts = can.parts});
   if (!phrase) return std::nullopt;
   phrase->relation = found.relation;
   phrase->negated = negated;
+  if (part && (phrase->things == "part" || phrase->things == "parts")) phrase->anything = true;
   if (found.relation == Relation::kBetween)
-    phrase->anchors = parse_pair(right, colors, phrase->same_kind);
+    phrase->anchors = parse_pair(right, can, phrase->same_kind);
   else if (is_place(right))
     return std::nullopt;
-  else if (auto anchor = parse_words(right, colors))
+  else if (auto anchor = parse_words(right, can))
     phrase->anchors = {*std::move(anchor)};
   if (phrase->anchors.empty()) return std::nullopt;
   return phrase;
@@ -91,17 +96,17 @@ std::optional<QueryPhrase> parse_relation(Words words, std::size_t at, const Fou
 
 /// The leftmost relation that has something on both sides splits the words; what is right of it is
 /// read the same way.
-std::optional<QueryPhrase> parse_words(Words words, bool colors) {
+std::optional<QueryPhrase> parse_words(Words words, const QueryAbilities& can) {
   for (std::size_t at = 1; at < words.size(); ++at) {
     const FoundRelation found = relation_at(words.subspan(at));
     if (found.length == 0) continue;
-    if (auto phrase = parse_relation(words, at, found, colors)) return phrase;
+    if (auto phrase = parse_relation(words, at, found, can)) return phrase;
   }
-  return parse_things(words, colors);
+  return parse_things(words, can);
 }
 
 /// "how many chairs [are there] [relation anchor]".
-std::optional<QueryPhrase> parse_how_many(Words words, bool colors) {
+std::optional<QueryPhrase> parse_how_many(Words words, const QueryAbilities& can) {
   if (match_length(words, "how many") == 0) return std::nullopt;
   words = words.subspan(2);
   while (words.size() > 1 && plays(words.back(), WordRole::kCountFiller))
@@ -109,7 +114,7 @@ std::optional<QueryPhrase> parse_how_many(Words words, bool colors) {
   std::vector<std::string> asked;  // "chairs are there on the rug": the fillers in the middle go
   for (const std::string& word : words)
     if (!plays(word, WordRole::kCountFiller)) asked.push_back(word);
-  std::optional<QueryPhrase> phrase = parse_words(asked, colors);
+  std::optional<QueryPhrase> phrase = parse_words(asked, can);
   if (!phrase) return std::nullopt;
   phrase->how_many = true;
   const std::vector<std::string> things = words_of(phrase->things);
@@ -131,14 +136,14 @@ const char* side_name(Side side) {
   return "";
 }
 
-QueryPhrase parse_query(std::string_view text, bool colors) {
+QueryPhrase parse_query(std::string_view text, const QueryAbilities& can) {
   const std::vector<std::string> words = words_of(text);
-  if (const auto counted = parse_how_many(words, colors)) return *counted;
+  if (const auto counted = parse_how_many(words, can)) return *counted;
   std::size_t relations = 0;
   for (std::size_t at = 0; at < words.size(); ++at)
     relations += relation_at(Words(words).subspan(at)).length > 0;
   if (relations <= kMaxRelations) {
-    const std::optional<QueryPhrase> phrase = parse_words(words, colors);
+    const std::optional<QueryPhrase> phrase = parse_words(words, can);
     if (phrase && !phrase->free_text()) return *phrase;
   }
   // Free text goes to the encoder as it was written, articles included.
@@ -194,6 +199,8 @@ const char* relation_name(Relation relation) {
       return "in front of";
     case Relation::kBehind:
       return "behind";
+    case Relation::kPartOf:
+      return "of";
   }
   return "";
 }

@@ -43,10 +43,15 @@ struct QueryPhrase {
   }
 };
 
+/// What a map can be asked for beside things; else the words are the encoder's.
+struct QueryAbilities {
+  bool colors = true;  ///< colour words before a thing are read as its colour
+  bool parts = true;   ///< "drawer of the cabinet" is read as a part of an object
+};
+
 /// Reads `text` by the grammar of docs/query.md. Whatever does not fit it is free text: every text
 /// that names something has a reading. Text between double quotes is never taken for grammar.
-/// `colors`: whether colour words before a thing are read as its colour.
-QueryPhrase parse_query(std::string_view text, bool colors = true);
+QueryPhrase parse_query(std::string_view text, const QueryAbilities& abilities = {});
 
 /// The reading in one line, for people: "largest [cabinet] under [window]".
 std::string describe(const QueryPhrase& phrase);

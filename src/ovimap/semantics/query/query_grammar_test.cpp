@@ -43,7 +43,19 @@ TEST(QueryGrammar, ReadsColors) {
   EXPECT_EQ(reading("gray office chair"), "grey [office chair]");
   for (const char* text : {"red", "dark red", "orange", "red chair, armchair", "\"white wine\" glass"})
     EXPECT_TRUE(parse_query(text).free_text()) << text;
-  EXPECT_TRUE(parse_query("red chair", false).free_text());  // a map without colours
+  EXPECT_TRUE(parse_query("red chair", {.colors = false}).free_text());  // a map without colours
+}
+
+TEST(QueryGrammar, ReadsPartsOfObjects) {
+  EXPECT_EQ(reading("drawer of the cabinet"), "[drawer] of [cabinet]");
+  EXPECT_EQ(reading("largest drawer of the white cabinet near the door"),
+            "largest [drawer] of white [cabinet] near [door]");
+  EXPECT_EQ(reading("red cushion of the sofa"), "[red cushion] of [sofa]");
+  EXPECT_EQ(reading("mug on the shelf of the cabinet"), "[mug] on [shelf] of [cabinet]");
+  EXPECT_TRUE(parse_query("parts of the chair").anything);
+  for (const char* text : {"bottle of milk", "a cup of tea", "middle of the room"})
+    EXPECT_TRUE(parse_query(text).free_text()) << text;
+  EXPECT_TRUE(parse_query("drawer of the cabinet", {.parts = false}).free_text());
 }
 
 TEST(QueryGrammar, ReadsSizes) {

@@ -30,6 +30,13 @@ void join(MatchScores& scores, const MatchScores& other, TermRule rule) {
   }
 }
 
+/// What people named in this map and in others.
+TaughtNames names_for(const SearchIndex& index, const TaughtThings& elsewhere) {
+  TaughtThings own{{}, index.embeddings()};
+  for (const SearchObject& object : index.objects()) own.names.push_back(object.name);
+  return {builtin_concepts(), own, elsewhere};
+}
+
 }  // namespace
 
 void require_embeddings(const SearchIndex& index) {
@@ -53,7 +60,7 @@ TextMatcher::TextMatcher(const SearchIndex& index, ImageTextEncoder& encoder,
                          const QueryConfig& config, Embeddings vocabulary,
                          std::span<const ObjectMeasures> measures,
                          std::span<const std::vector<WrittenLine>> writing,
-                         const SeenThings& things)
+                         const SeenThings& things, const TaughtThings& taught)
     : index_(index),
       encoder_(encoder),
       config_(config),
@@ -72,13 +79,13 @@ TextMatcher::TextMatcher(const SearchIndex& index, ImageTextEncoder& encoder,
   calibration_.emplace(index, vocabulary_, config.verdict);
   null_ = calibration_->null_distribution();
   if (index.size() <= static_cast<std::size_t>(config.evidence.max_objects))
-    weigh_evidence(measures, things);
+    weigh_evidence(measures, things, taught);
 }
 
 void TextMatcher::weigh_evidence(std::span<const ObjectMeasures> measures,
-                                 const SeenThings& things) {
+                                 const SeenThings& things, const TaughtThings& taught) {
   evidence_.emplace(
-      measures, things, encode_word_lists(encoder_, config_),
+      measures, things, names_for(index_, taught), encode_word_lists(encoder_, config_),
       [&](const Eigen::VectorXf& row) {
         return calibration_->standard_scores(index_.cosines(row));
       },

@@ -29,11 +29,12 @@ class TextMatcher {
   /// `vocabulary`: embeddings of vocabulary_texts(); encoded here when it has no rows. Throws Error
   /// when the map has no embeddings or they are of another length than the encoder's or the
   /// vocabulary's. `measures`: of each object, or none where sizes are not known. `writing`: on each
-  /// object, or none where it was not read. `things`: what a recognizer tells of each object.
+  /// object, or none where it was not read. `things`: what a recognizer tells of each object. `taught`:
+  /// what people named elsewhere.
   TextMatcher(const SearchIndex& index, ImageTextEncoder& encoder, const QueryConfig& config,
               Embeddings vocabulary, std::span<const ObjectMeasures> measures = {},
               std::span<const std::vector<WrittenLine>> writing = {},
-              const SeenThings& things = {});
+              const SeenThings& things = {}, const TaughtThings& taught = {});
 
   /// The unrelated words that calibrate the verdict.
   static std::vector<std::string> vocabulary_texts();
@@ -71,7 +72,8 @@ class TextMatcher {
   MatchScores joined(std::span<const std::string> texts, const Embeddings& rows,
                      TermRule rule) const;
   void add_writing(const std::string& text, MatchScores& scores) const;
-  void weigh_evidence(std::span<const ObjectMeasures> measures, const SeenThings& things);
+  void weigh_evidence(std::span<const ObjectMeasures> measures, const SeenThings& things,
+                      const TaughtThings& taught);
   void apply_negatives(const MatchScores& negative, MatchScores& scores) const;
 
   const SearchIndex& index_;

@@ -90,6 +90,15 @@ std::vector<std::size_t> positive(const Eigen::VectorXf& scores) {
 
 }  // namespace
 
+std::vector<std::size_t> QueryScene::parts_of(std::size_t position) const {
+  if (!parts) return {};
+  const auto first = std::find(parts->owners.begin(), parts->owners.end(), position);
+  std::vector<std::size_t> of_it;
+  for (auto at = first; at != parts->owners.end() && *at == position; ++at)
+    of_it.push_back(static_cast<std::size_t>(at - parts->owners.begin()));
+  return of_it;
+}
+
 QueryScene scene_of_boxes(const SearchIndex& index, const Eigen::Vector3f& up_in_world,
                           const ObjectShapeConfig& config) {
   const Eigen::Matrix3f ground = ground_from_world(up_in_world);
@@ -117,14 +126,20 @@ GroundViewpoint mean_viewpoint(const Eigen::Matrix3f& ground_from_world,
 
 PhraseSearch::PhraseSearch(const SearchIndex& index, const TextMatcher* matcher,
                            const QueryScene& scene, const QueryConfig& config,
-                           std::vector<bool> among)
-    : index_(index), matcher_(matcher), scene_(scene), config_(config), among_(std::move(among)) {
+                           std::vector<bool> among, const TextMatcher* part_matcher)
+    : index_(index),
+      matcher_(matcher),
+      scene_(scene),
+      config_(config),
+      among_(std::move(among)),
+      part_matcher_(part_matcher) {
   OVIMAP_ASSERT(scene.shapes.size() == index.size());
   OVIMAP_ASSERT(among_.empty() || among_.size() == index.size());
 }
 
 PhraseMatch PhraseSearch::match(const QueryPhrase& phrase,
                                 const std::vector<std::string>& negatives) const {
+  if (phrase.relation == Relation::kPartOf && scene_.parts) return match_parts(phrase, negatives);
   // What only resembles the thing may be listed, but proves nothing.
   return match_phrase(phrase, negatives, Role::kThing);
 }
@@ -132,6 +147,8 @@ PhraseMatch PhraseSearch::match(const QueryPhrase& phrase,
 PhraseMatch PhraseSearch::match_phrase(const QueryPhrase& phrase,
                                        const std::vector<std::string>& negatives,
                                        Role role) const {
+  if (phrase.relation == Relation::kPartOf && scene_.parts)
+    return owners_of(match_parts(phrase, negatives));
   PhraseMatch result = match_things(phrase, negatives, role);
   apply_attributes(phrase, result);
   if (phrase.relation && !apply_room(phrase, result)) {
@@ -151,6 +168,57 @@ PhraseMatch PhraseSearch::match_phrase(const QueryPhrase& phrase,
     }
   }
   if (phrase.superlative) apply_superlative(*phrase.superlative, result);
+  return result;
+}
+
+PhraseMatch PhraseSearch::none_of(const QueryParts& parts, const QueryPhrase& part) {
+  PhraseMatch result;
+  result.scores = Eigen::VectorXf::Zero(static_cast<Eigen::Index>(parts.index.size()));
+  result.holds.assign(parts.index.size(), false);
+  result.evidence.resize(parts.index.size());
+  result.missing = {part.things};
+  return result;
+}
+
+PhraseMatch PhraseSearch::match_parts(const QueryPhrase& phrase,
+                                      const std::vector<std::string>& negatives) const {
+  const PhraseMatch anchors = match_phrase(phrase.anchors[0], {}, Role::kAnchor);
+  const QueryParts& parts = *scene_.parts;
+  std::vector<bool> of_anchor(parts.index.size());
+  for (std::size_t p = 0; p < parts.index.size(); ++p)
+    of_anchor[p] = at(anchors.scores, parts.owners[p]) > 0.f;
+  QueryPhrase part = phrase;
+  part.relation.reset();
+  part.anchors.clear();
+  const PhraseSearch search(parts.index, part_matcher_, parts.scene, config_, of_anchor);
+  const bool looks_known = part_matcher_ || !matcher_ || part.anything;
+  PhraseMatch result = looks_known ? search.match(part, negatives) : none_of(parts, part);
+  result.of_parts = true;
+  add_missing(result, anchors);
+  for (const std::size_t p : positive(result.scores)) {
+    const std::size_t owner = parts.owners[p];
+    at(result.scores, p) *= at(anchors.scores, owner);
+    result.holds[p] = result.holds[p] && anchors.holds[owner];
+    add_evidence(result.evidence[p],
+                 with_anchor(concat("part ", parts.numbers[p], " of #", id_of(owner)),
+                             anchors.evidence[owner]));
+  }
+  return result;
+}
+
+PhraseMatch PhraseSearch::owners_of(const PhraseMatch& parts) const {
+  PhraseMatch result;
+  result.scores = Eigen::VectorXf::Zero(static_cast<Eigen::Index>(index_.size()));
+  result.holds.assign(index_.size(), false);
+  result.evidence.resize(index_.size());
+  result.missing = parts.missing;
+  for (const std::size_t p : positive(parts.scores)) {
+    const std::size_t owner = scene_.parts->owners[p];
+    if (parts.holds[p]) result.holds[owner] = true;
+    if (at(parts.scores, p) <= at(result.scores, owner)) continue;
+    at(result.scores, owner) = at(parts.scores, p);
+    result.evidence[owner] = parts.evidence[p];
+  }
   return result;
 }
 

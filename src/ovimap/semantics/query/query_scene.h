@@ -15,6 +15,8 @@
 
 namespace ovimap {
 
+struct QueryParts;
+
 /// The geometry that relations are judged by.
 struct QueryScene {
   std::vector<ObjectShape> shapes;  ///< of each object of the index, by position
@@ -23,6 +25,19 @@ struct QueryScene {
   std::vector<std::vector<WrittenLine>> writing;  ///< on each object; empty: none was read
   std::shared_ptr<const ObjectRooms> rooms;  ///< where each object is; null: not known
   SeenThings things;  ///< of each object; no words: nothing looked
+  TaughtThings taught;  ///< in other maps
+  std::shared_ptr<const QueryParts> parts;  ///< of the objects; null: none are known
+
+  /// Positions in parts->index of what is of the object at a position, by number.
+  std::vector<std::size_t> parts_of(std::size_t position) const;
+};
+
+/// Parts of objects, searched as objects are.
+struct QueryParts {
+  SearchIndex index;                ///< by ObjectPart::id
+  QueryScene scene;                 ///< their boxes
+  std::vector<std::size_t> owners;  ///< position of the object that each is of, side by side
+  std::vector<int> numbers;         ///< among the parts of its object, from 1
 };
 
 /// A scene of the objects' boxes, exact where an axis of the world is up.
@@ -40,6 +55,7 @@ struct PhraseMatch {
   std::vector<std::string> evidence;  ///< why; empty where the score is 0
   std::vector<std::string> missing;   ///< things named that are not in the map
   MatchScores things;                 ///< what the text alone says; no rows for "anything"
+  bool of_parts = false;              ///< rows are parts (QueryScene::parts) instead of objects
 };
 
 /// Judges phrases in a scene. Scores combine as chances: a thing and its anchor and the relation
@@ -48,9 +64,10 @@ struct PhraseMatch {
 class PhraseSearch {
  public:
   /// `matcher` may be null: then only "anything" can be asked for. `among`: [objects] which may be
-  /// the thing that is looked for; empty: all.
+  /// the thing that is looked for; empty: all. `part_matcher`: of scene.parts; null: likewise.
   PhraseSearch(const SearchIndex& index, const TextMatcher* matcher, const QueryScene& scene,
-               const QueryConfig& config, std::vector<bool> among = {});
+               const QueryConfig& config, std::vector<bool> among = {},
+               const TextMatcher* part_matcher = nullptr);
 
   /// `negatives`: what the things looked for must not be. Throws Error when a text needs a matcher.
   PhraseMatch match(const QueryPhrase& phrase, const std::vector<std::string>& negatives) const;
@@ -61,6 +78,13 @@ class PhraseSearch {
 
   PhraseMatch match_phrase(const QueryPhrase& phrase, const std::vector<std::string>& negatives,
                            Role role) const;
+  /// [parts] "drawer of the cabinet".
+  PhraseMatch match_parts(const QueryPhrase& phrase,
+                          const std::vector<std::string>& negatives) const;
+  /// Where no part was seen well enough to look like anything.
+  static PhraseMatch none_of(const QueryParts& parts, const QueryPhrase& part);
+  /// The objects of which some part fits.
+  PhraseMatch owners_of(const PhraseMatch& parts) const;
   PhraseMatch match_things(const QueryPhrase& phrase, const std::vector<std::string>& negatives,
                            Role role) const;
   /// Lowers what has not the colour, the size or the writing that was asked for.
@@ -90,6 +114,7 @@ class PhraseSearch {
   const QueryScene& scene_;
   const QueryConfig& config_;
   const std::vector<bool> among_;
+  const TextMatcher* part_matcher_;
 };
 
 }  // namespace ovimap

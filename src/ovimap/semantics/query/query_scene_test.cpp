@@ -212,6 +212,39 @@ TEST_F(QuerySceneTest, FindsWhatIsWritten) {
   EXPECT_EQ(engine.find({"dedalus", {}}).matches.at(0).id, 11u);
 }
 
+TEST_F(QuerySceneTest, FindsPartsOfObjects) {
+  EXPECT_EQ(engine_->find({"drawer of the cabinet", {}}).reading, "") << "no parts are known";
+  auto parts = std::make_shared<QueryParts>();
+  parts->index = map_of({"drawer", "door", "drawer", "leg"},
+                        {box(0, 4.4f, 0, 0.6f, 0.6f, 0.3f), box(0, 4.4f, 0.3f, 0.6f, 0.6f, 1.7f),
+                         box(4, 4, 0, 0.5f, 0.6f, 0.2f), box(1, 1, 0, 0.1f, 0.1f, 0.7f)});
+  parts->scene = scene_of_boxes(parts->index, Eigen::Vector3f::UnitZ());
+  parts->owners = {8, 8, 4, 1};  // cabinet 9, counter 5, table 2
+  parts->numbers = {1, 2, 1, 1};
+  QueryScene scene = scene_of_boxes(index_, Eigen::Vector3f::UnitZ());
+  scene.parts = parts;
+  const QueryEngine engine(index_, &encoder_, pictures_alone(), Embeddings{}, scene);
+  const QueryAnswer drawer = engine.find({"drawer of the cabinet", {}, true});
+  EXPECT_EQ(drawer.verdict, Verdict::kFound) << drawer.reason;
+  EXPECT_EQ(drawer.reading, "[drawer] of [cabinet]");
+  ASSERT_GE(drawer.matches.size(), 1u);
+  EXPECT_EQ(drawer.matches[0].id, 9u);
+  EXPECT_EQ(drawer.matches[0].part, 1);
+  EXPECT_TRUE(drawer.matches[0].part_box.isApprox(parts->index.object(0).box));
+  EXPECT_NE(drawer.matches[0].evidence.find("part 1 of #9"), std::string::npos);
+  EXPECT_GT(drawer.relevance[8], 0.5f);
+  EXPECT_EQ(drawer.relevance[4], 0.f) << "the counter's drawer";
+  EXPECT_EQ(engine.find({"drawer of the counter", {}}).matches.at(0).id, 5u);
+  EXPECT_EQ(engine.find({"largest part of the cabinet", {}}).matches.at(0).part, 2);
+  EXPECT_EQ(engine.find({"drawer of the table", {}}).verdict, Verdict::kNotInMap);
+  EXPECT_EQ(engine.find({"drawer of the submarine", {}}).verdict, Verdict::kNotInMap);
+  EXPECT_EQ(engine.find({"drawer of the cabinet near the chair", {}}).reading,
+            "[drawer] of [cabinet] near [chair]");
+  EXPECT_EQ(engine.find({"how many parts of the cabinet", {}}).count->found, 2);
+  // An anchor may be a part: then it stands for its object.
+  EXPECT_EQ(engine.find({"mug on the drawer of the counter", {}}).matches.at(0).id, 4u);
+}
+
 TEST_F(QuerySceneTest, ThreadsDoNotChangeTheAnswer) {
   const QueryAnswer many = engine_->find({"anything near the table", {}, true});
   const ThreadLimit one(1);

@@ -58,6 +58,10 @@ constexpr std::array kRelations{
     RelationWords{"closest", Relation::kNearest},
     RelationWords{"farthest from", Relation::kFarthest},
     RelationWords{"furthest from", Relation::kFarthest},
+    // A bottle of milk and a cup of tea are things, a drawer of the cabinet is a part of one.
+    RelationWords{"of the", Relation::kPartOf},
+    RelationWords{"of this", Relation::kPartOf},
+    RelationWords{"of that", Relation::kPartOf},
 };
 
 struct SuperlativeWord {

@@ -20,11 +20,18 @@ constexpr float kRival = 3.6f, kSameThing = 6.f;       // texts that compete, or
 constexpr float kSmallestShare = 1e-3f;                // of a text among the things it is like
 constexpr float kLeastLikelihood = 1e-4f;
 constexpr float kLeastRivals = 1e-3f;                  // share of all words that always competes
+constexpr float kPersonsWord = 20.f;  // log likelihood ratio that nothing seen outweighs
 constexpr std::size_t kObjectsPerTask = 64;
 
 const std::vector<ThingSize>& builtin_sizes() {
   static const auto sizes = read_thing_sizes(list_entries(builtin_word_list("thing_sizes")));
   return sizes;
+}
+
+/// What a room consists of: encoders of things have seen little of it, and its size and place are like
+/// nothing else's.
+bool is_structure(const ThingSize& thing) {
+  return thing.word == "floor" || thing.word == "wall" || thing.word == "ceiling";
 }
 
 float ramp(float value, float from, float to) {
@@ -44,10 +51,20 @@ void list_fields(EvidenceConfig& config, ConfigFields& fields) {
              "weight of size and place beside the picture; 0: the picture alone");
   fields.add("most_size_ratio", config.most_size_ratio, 0.f, 100.f,
              "what size and place may say at most, log likelihood");
+  fields.add("structure_weight", config.structure_weight, 0.f, 10.f,
+             "weight of size and place for floor, wall and ceiling, which they tell better than pictures");
+  fields.add("most_structure_ratio", config.most_structure_ratio, 0.f, 100.f,
+             "what they may say of these at most, log likelihood");
   fields.add("thing_weight", config.thing_weight, 0.f, 10.f,
              "weight of what a recognizer of things tells; 0: nothing");
   fields.add("most_thing_ratio", config.most_thing_ratio, 0.f, 100.f,
              "what a recognizer may say at most, log likelihood");
+  fields.add("taught_weight", config.taught_weight, 0.f, 10.f,
+             "weight of what people named, in this map or in those that taught; 0: nothing");
+  fields.add("most_taught_ratio", config.most_taught_ratio, 0.f, 100.f,
+             "what a named thing may say of another at most, log likelihood");
+  fields.add("taught_name_ratio", config.taught_name_ratio, 0.f, 100.f,
+             "log likelihood from which an object is called by the name of what it resembles");
   fields.add("writing_weight", config.writing_weight, 0.f, 100.f,
              "what a text that is written on the object adds to its score; 0: nothing");
   fields.add("competition", config.competition, 0.f, 1.f,
@@ -73,9 +90,12 @@ std::vector<std::string> TextEvidence::texts() {
 }
 
 TextEvidence::TextEvidence(std::span<const ObjectMeasures> objects, const SeenThings& seen,
-                           const WordLists& lists, const PictureScores& pictures,
-                           const EvidenceConfig& config)
-    : config_(config), concepts_(builtin_concepts()), things_(concepts_, seen) {
+                           TaughtNames taught, const WordLists& lists,
+                           const PictureScores& pictures, const EvidenceConfig& config)
+    : config_(config),
+      concepts_(builtin_concepts()),
+      things_(concepts_, seen),
+      taught_(std::move(taught)) {
   const auto words = static_cast<Eigen::Index>(concepts_.household().size());
   household_rows_ = lists.rows.topRows(words);
   thing_rows_ = lists.rows.bottomRows(lists.rows.rows() - words);
@@ -87,6 +107,7 @@ TextEvidence::TextEvidence(std::span<const ObjectMeasures> objects, const SeenTh
       std::sqrt(std::max((apart.sum() - apart.matrix().diagonal().sum()) / pairs, 1e-12f));
 
   const std::vector<ThingSize>& things = builtin_sizes();
+  for (const ThingSize& thing : things) structures_.push_back(is_structure(thing));
   sizes_.resize(static_cast<Eigen::Index>(objects.size()),
                 objects.empty() ? 0 : static_cast<Eigen::Index>(things.size()));
   parallel_for(objects.size(), kObjectsPerTask, [&](std::size_t i) {
@@ -102,6 +123,7 @@ TextEvidence::TextEvidence(std::span<const ObjectMeasures> objects, const SeenTh
     columns[word] = pictures(row);
     add_size(row, columns[word]);
     add_things(concepts_.household()[word].word, columns[word]);
+    add_taught(concepts_.household()[word].word, columns[word]);
   });
   weights_.resize(columns[0].size(), words);
   for (Eigen::Index word = 0; word < words; ++word)
@@ -115,21 +137,26 @@ void TextEvidence::add_size(const Eigen::VectorXf& row, Eigen::VectorXf& scores)
   if (sizes_.cols() == 0 || config_.size_weight == 0.f) return;
   const Eigen::VectorXf alike =
       ((thing_rows_ * row).array() - mean_cosine_) / cosine_deviation_;
-  const float most = alike.maxCoeff(), certainty = ramp(most, kUnlike, kAlike);
+  const float nearest = alike.maxCoeff(), certainty = ramp(nearest, kUnlike, kAlike);
   if (certainty == 0.f) return;
   Eigen::VectorXf fit = Eigen::VectorXf::Zero(sizes_.rows());
-  float shares = 0.f;
+  float shares = 0.f, structure = 0.f;
   for (Eigen::Index k = 0; k < alike.size(); ++k) {
-    const float share = std::exp((alike[k] - most) / kSoftness);
+    const float share = std::exp((alike[k] - nearest) / kSoftness);
     if (share < kSmallestShare) continue;
     fit += share * sizes_.col(k);
     shares += share;
+    if (structures_[static_cast<std::size_t>(k)]) structure += share;
   }
+  structure /= shares;
   const Eigen::ArrayXf ratio = (fit.array() / shares + kLeastLikelihood).log() -
                                (size_means_.array() + kLeastLikelihood).log();
-  const float most_ratio = config_.most_size_ratio;
-  scores.array() +=
-      config_.size_weight * certainty * ratio.cwiseMax(-most_ratio).cwiseMin(most_ratio);
+  const auto between = [structure](float thing, float of_structure) {
+    return thing + structure * (of_structure - thing);
+  };
+  const float most = between(config_.most_size_ratio, config_.most_structure_ratio);
+  const float weight = between(config_.size_weight, config_.structure_weight);
+  scores.array() += weight * certainty * ratio.cwiseMax(-most).cwiseMin(most);
 }
 
 void TextEvidence::add_things(const std::string& text, Eigen::VectorXf& scores) const {
@@ -137,6 +164,15 @@ void TextEvidence::add_things(const std::string& text, Eigen::VectorXf& scores) 
   const float most = config_.most_thing_ratio;
   if (ratios.size() > 0)
     scores.array() += config_.thing_weight * ratios.array().cwiseMax(-most).cwiseMin(most);
+}
+
+void TextEvidence::add_taught(const std::string& text, Eigen::VectorXf& scores) const {
+  const Eigen::VectorXf ratios = taught_.log_ratios(text);
+  const float most = config_.most_taught_ratio;
+  if (ratios.size() == 0) return;
+  scores += config_.taught_weight * ratios.unaryExpr([most](float ratio) {
+    return ratio == TaughtNames::kCertain ? kPersonsWord : std::clamp(ratio, -most, most);
+  });
 }
 
 Eigen::VectorXf TextEvidence::competitors(const std::string& text,
@@ -161,6 +197,7 @@ TextScores TextEvidence::weigh(const std::string& text, const Eigen::VectorXf& r
   scores.alone = pictures;
   add_size(row, scores.alone);
   add_things(text, scores.alone);
+  add_taught(text, scores.alone);
   const Eigen::VectorXf rivals = best_.array() + competitors(text, row).array().log();
   scores.log_odds = scores.alone - rivals;
   scores.standard = scores.alone - config_.competition * rivals;

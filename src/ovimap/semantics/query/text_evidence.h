@@ -12,6 +12,7 @@
 #include "ovimap/inference/encoders/image_text_encoder.h"
 #include "ovimap/semantics/words/concepts.h"
 #include "ovimap/semantics/words/named_things.h"
+#include "ovimap/semantics/words/taught_things.h"
 #include "ovimap/semantics/words/thing_sizes.h"
 
 namespace ovimap {
@@ -21,14 +22,19 @@ class ConfigFields;
 struct EvidenceConfig {
   float size_weight = 0.5f;        ///< of size and place beside the picture; 0: the picture alone
   float most_size_ratio = 3.f;     ///< what they may say at most, in log likelihood
+  float structure_weight = 2.f;      ///< of size and place for floor, wall and ceiling
+  float most_structure_ratio = 6.f;  ///< what they may say of these at most
   float thing_weight = 0.25f;     ///< of what a recognizer of things tells; 0: nothing
   float most_thing_ratio = 6.f;    ///< what it may say at most, in log likelihood
+  float taught_weight = 1.f;       ///< of what people named; 0: nothing
+  float most_taught_ratio = 6.f;   ///< what it may say at most, in log likelihood
+  float taught_name_ratio = 4.f;   ///< log likelihood that shows an example's own name
   float writing_weight = 3.f;      ///< of words that are written on the object; 0: none
   float competition = 0.5f;        ///< how much other words for an object take from a text; 0: none
   float odds_scale = 1.f;          ///< probability of a match: sigmoid(scale * log odds + offset)
   float odds_offset = 2.3f;        ///< fitted on generated rooms (docs/experiments.md)
   float found_probability = 0.35f;  ///< a match with less does not count as found
-  float name_share = 0.3f;         ///< of all household words, that a name needs to be shown
+  float name_share = 0.4f;         ///< of all household words, that a name needs to be shown
   float wide_name_share = 0.6f;    ///< ... a name of more than three kinds ("furniture")
   int max_objects = 50000;         ///< larger maps are searched by pictures alone
 };
@@ -59,8 +65,9 @@ class TextEvidence {
   using PictureScores = std::function<Eigen::VectorXf(const Eigen::VectorXf&)>;
 
   /// `objects`: measures of each, or none where they are not known. `lists`: as word_lists() gives
-  /// them, with `encode` for the prompts. `seen`: what a recognizer tells of each object.
-  TextEvidence(std::span<const ObjectMeasures> objects, const SeenThings& seen,
+  /// them, with `encode` for the prompts. `seen`: what a recognizer tells of each object. `taught`:
+  /// what people named.
+  TextEvidence(std::span<const ObjectMeasures> objects, const SeenThings& seen, TaughtNames taught,
                const WordLists& lists, const PictureScores& pictures,
                const EvidenceConfig& config);
 
@@ -73,6 +80,7 @@ class TextEvidence {
 
   const EvidenceConfig& config() const { return config_; }
   const Concepts& concepts() const { return concepts_; }
+  const TaughtNames& taught() const { return taught_; }
   /// [objects, household words] exp(score - the object's best), and the best [objects].
   const Eigen::MatrixXf& household_weights() const { return weights_; }
   const Eigen::VectorXf& household_best() const { return best_; }
@@ -82,13 +90,17 @@ class TextEvidence {
   void add_size(const Eigen::VectorXf& row, Eigen::VectorXf& scores) const;
   /// Adds what a recognizer says of it.
   void add_things(const std::string& text, Eigen::VectorXf& scores) const;
+  /// Adds what people taught of it.
+  void add_taught(const std::string& text, Eigen::VectorXf& scores) const;
   Eigen::VectorXf competitors(const std::string& text, const Eigen::VectorXf& row) const;
 
   EvidenceConfig config_;
   const Concepts& concepts_;
   NamedThings things_;
+  TaughtNames taught_;
   Embeddings household_rows_, thing_rows_;
   float mean_cosine_ = 0, cosine_deviation_ = 1;  ///< between household words
+  std::vector<bool> structures_;  ///< of each thing of known size: whether a room consists of it
   Eigen::MatrixXf sizes_;         ///< [objects, things] likelihoods; no columns: not known
   Eigen::VectorXf size_means_;    ///< [objects] over all things
   Eigen::MatrixXf weights_;       ///< [objects, household words]

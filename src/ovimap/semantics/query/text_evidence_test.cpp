@@ -33,6 +33,21 @@ TEST(TextEvidence, SizeDecidesWherePicturesCannot) {
   EXPECT_EQ(first_for(engine, "wardrobe"), 2u);
 }
 
+/// No picture tells a floor from a wall or a ceiling here; where they are does.
+TEST(TextEvidence, SizeAndPlaceTellWhatARoomConsistsOf) {
+  WordEncoder encoder;
+  const SearchIndex index =
+      map_of({"zeppelin", "zeppelin", "zeppelin", "mug", "lamp", "desk"},
+             {box_of(4.f, 3.f, -0.02f, 0.02f), box_of(4.f, 0.1f, 0.f, 2.4f),
+              box_of(4.f, 3.f, 2.5f, 2.54f), box_of(0.1f, 0.1f, 0.75f, 0.84f),
+              box_of(0.3f, 0.3f, 0.8f, 1.2f), box_of(1.4f, 0.7f, 0.f, 0.72f)});
+  const QueryEngine engine(index, &encoder);
+  EXPECT_EQ(first_for(engine, "floor"), 1u);
+  EXPECT_EQ(first_for(engine, "wall"), 2u);
+  EXPECT_EQ(first_for(engine, "ceiling"), 3u);
+  EXPECT_EQ(first_for(engine, "mug"), 4u);
+}
+
 TEST(TextEvidence, WhatIsRatherSomethingElseIsLeftBehind) {
   WordEncoder encoder;
   // Object 1 is a monitor, and more of a keyboard than object 2, which is nothing else.

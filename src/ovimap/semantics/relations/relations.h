@@ -14,7 +14,7 @@ namespace ovimap {
 class ConfigFields;
 
 /// What one object is to another. kNearest and kFarthest compare several objects, kBetween needs
-/// two anchors; the others hold or not for a pair alone.
+/// two anchors, kPartOf is known (ObjectPart) and not judged; the others hold or not for a pair alone.
 enum class Relation {
   kOn,
   kUnder,
@@ -28,7 +28,8 @@ enum class Relation {
   kLeftOf,
   kRightOf,
   kInFrontOf,
-  kBehind
+  kBehind,
+  kPartOf  ///< a drawer of a cabinet: parts of objects are looked for, not objects
 };
 
 enum class Superlative { kLargest, kSmallest, kTallest, kShortest, kHighest, kLowest };

@@ -75,6 +75,10 @@ std::vector<Concepts::Kind> Concepts::senses_of(std::string_view text) const {
   return find(text, Senses::kHousehold);
 }
 
+bool Concepts::knows(std::string_view text) const {
+  return !known(lower_case(text), Senses::kAll).empty();
+}
+
 std::vector<Concepts::Kind> Concepts::find(std::string_view text, Senses senses) const {
   std::string words = lower_case(text);
   if (auto whole = known(words, senses); !whole.empty()) return whole;

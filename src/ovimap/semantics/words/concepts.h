@@ -28,6 +28,9 @@ class Concepts {
   /// The same, but of a household word its household sense alone: a stool to sit on, no toilet.
   std::vector<Kind> senses_of(std::string_view text) const;
 
+  /// Whether the whole text is a word of it, in the singular or the plural.
+  bool knows(std::string_view text) const;
+
   bool is_kind_of(Kind kind, Kind of) const;
 
   /// Whether one thing can be both: one of them is a kind of the other, in some sense of the texts.

@@ -57,5 +57,10 @@ TEST(Concepts, RefusesWhatIsNoTable) {
   EXPECT_THROW(Concepts({"chair;1", "seat;"}), Error);
 }
 
+TEST_F(ConceptsTest, KnowsWholeTextsAndNotTheirEnds) {
+  for (const char* text : {"mug", "Mugs", "trash can"}) EXPECT_TRUE(table_.knows(text)) << text;
+  for (const char* text : {"Anna's mug", "", "zeppelin hangar"}) EXPECT_FALSE(table_.knows(text)) << text;
+}
+
 }  // namespace
 }  // namespace ovimap

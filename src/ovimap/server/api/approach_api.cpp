@@ -63,6 +63,14 @@ HttpReply show_rooms(const ServedMap& map) {
   }
 }
 
+HttpReply show_gaps(const ServedMap& map) {
+  const auto now = map.snapshot();
+  json reply = gaps_json(map.gaps());
+  reply["version"] = now->version;
+  reply["space_known"] = !now->record->seen_free.regions().empty();
+  return text_reply(200, "application/json", reply.dump());
+}
+
 HttpReply answer_approach(const ServedMap& map, const HttpRequest& request) {
   const json body = body_of(request);
   check_keys(body, {"instance", "from", "radius_m", "camera_height_m", "fov_deg", "range_m",

@@ -14,4 +14,7 @@ HttpReply answer_approach(const ServedMap& map, const HttpRequest& request);
 /// The scene graph: rooms, doors, places, objects, relations.
 HttpReply show_rooms(const ServedMap& map);
 
+/// Where somebody who scans should look next.
+HttpReply show_gaps(const ServedMap& map);
+
 }  // namespace ovimap

@@ -57,4 +57,17 @@ json approach_json(const Approach& approach, const OccupancyGrid& grid) {
   return {{"poses", poses}, {"reason", approach.reason}};
 }
 
+json gaps_json(const std::vector<Gap>& gaps) {
+  const auto point = [](const Eigen::Vector3f& at) -> json {
+    return {rounded(at.x()), rounded(at.y()), rounded(at.z())};
+  };
+  json list = json::array();
+  for (const Gap& gap : gaps)
+    list.push_back({{"kind", gap.kind == GapKind::kUnseen ? "unseen" : "thin"},
+                    {"middle", point(gap.middle)},
+                    {"box", {{"min", point(gap.box.min())}, {"max", point(gap.box.max())}}},
+                    {"area_m2", rounded(gap.area_m2)}});
+  return {{"gaps", list}};
+}
+
 }  // namespace ovimap

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/server/api/frame_api.h"
 
+#include <cmath>
+
 #include <nlohmann/json.hpp>
 
 #include "ovimap/server/http/multipart.h"
@@ -16,6 +18,7 @@ using nlohmann::json;
 constexpr const char* kRetry = "ovimap-retry";  // header of a frame that was refused before
 constexpr const char* kOtherCamera =
     "the map's frames are of another camera; send that one's, or finish and start a new map";
+constexpr double kQuaternionOff = 1e-3;  // by which its length may miss 1: texts have few digits
 constexpr std::size_t kLongestName = 200;  // bytes; it names files of masks
 
 using Parts = std::map<std::string, std::string_view>;
@@ -46,16 +49,40 @@ FrameIntake::Offer offer_of(const HttpRequest& request) {
   return request.header(kRetry).empty() ? FrameIntake::Offer::kFirst : FrameIntake::Offer::kAgain;
 }
 
+/// Empty where `value` is no list of that many numbers.
+std::vector<double> numbers_of(const json& value, std::size_t count) {
+  const auto is_number = [](const json& number) { return number.is_number(); };
+  if (!value.is_array() || value.size() != count ||
+      !std::all_of(value.begin(), value.end(), is_number))
+    return {};
+  return value.get<std::vector<double>>();
+}
+
 /// Nullopt where none is given.
 std::optional<Eigen::Matrix4d> pose_of(const json& about) {
   if (!about.contains("pose")) return std::nullopt;
-  const json numbers = about["pose"].is_array() ? about["pose"] : json::array();
-  const auto is_number = [](const json& number) { return number.is_number(); };
-  if (numbers.size() != 16 || !std::all_of(numbers.begin(), numbers.end(), is_number))
+  const std::vector<double> numbers = numbers_of(about["pose"], 16);
+  if (numbers.empty())
     throw BadRequest(400, "'pose' must be 16 numbers, the rows of a 4x4 matrix");
   Eigen::Matrix4d pose;
   for (int i = 0; i < 16; ++i) pose(i / 4, i % 4) = numbers[static_cast<std::size_t>(i)];
   return pose;
+}
+
+constexpr const char* kNoRotation =
+    "'orientation' must be a unit quaternion, 4 numbers x, y, z, w";
+
+/// Nullopt where none is given. Its length is whatever was sent.
+std::optional<Eigen::Quaterniond> orientation_of(const json& about) {
+  if (!about.contains("orientation")) return std::nullopt;
+  const std::vector<double> xyzw = numbers_of(about["orientation"], 4);
+  if (xyzw.empty()) throw BadRequest(400, kNoRotation);
+  return Eigen::Quaterniond(xyzw.data());
+}
+
+Eigen::Quaterniond rotation_of(const Eigen::Quaterniond& sent) {
+  if (!(std::abs(sent.norm() - 1) < kQuaternionOff)) throw BadRequest(400, kNoRotation);
+  return sent.normalized();
 }
 
 double time_of(const json& about) {
@@ -145,8 +172,9 @@ HttpReply FrameApi::frame(const HttpRequest& request) {
     if (name != "color" && name != "depth" && name != "frame")
       throw BadRequest(400, concat("'", name, "' is no part of a frame; see /api/openapi.json"));
   const json about = object_of(part_of(parts, "frame"), "the part 'frame'");
-  check_keys(about, {"pose", "timestamp_s", "name"});
+  check_keys(about, {"pose", "orientation", "timestamp_s", "name"});
   const std::optional<Eigen::Matrix4d> pose = pose_of(about);
+  const std::optional<Eigen::Quaterniond> orientation = orientation_of(about);
   const double timestamp_s = time_of(about);
   const std::string name = name_of(about);
   const auto color = bytes_of(part_of(parts, "color")),
@@ -163,6 +191,7 @@ HttpReply FrameApi::frame(const HttpRequest& request) {
   if (const auto room = intake_->room(offer); room != FrameIntake::Answer::kTaken)
     return reply_to(room);
   Frame frame = decoder_->decode(color, depth, pose);
+  if (orientation) frame.orientation = rotation_of(*orientation);
   frame.timestamp_s = timestamp_s;
   frame.name = name;
   return reply_to(intake_->offer(std::move(frame), offer));

@@ -82,6 +82,7 @@ TEST_F(FrameApiTest, TakesFramesUntilTheQueueIsFull) {
   auto named = frame(4);
   json text = about(4);
   text["name"] = "kitchen 4";
+  text["orientation"] = {0.6, 0, -0.8, 0.0001};
   named[2].content = text.dump();
   EXPECT_EQ(push(named, 200)["taken"], 2);
   EXPECT_NE(push(frame(5), 503)["error"].get<std::string>().find("skipped"), std::string::npos);
@@ -93,7 +94,12 @@ TEST_F(FrameApiTest, TakesFramesUntilTheQueueIsFull) {
   EXPECT_TRUE(first.world_from_camera.isApprox(fixture::room_pose(3), 1e-9));
   EXPECT_DOUBLE_EQ(first.timestamp_s, 0.3);
   EXPECT_EQ(first.name, "frame000000");
-  EXPECT_EQ(intake.next(std::chrono::milliseconds(0))->name, "kitchen 4");
+  EXPECT_FALSE(first.orientation);
+  const Frame second = *intake.next(std::chrono::milliseconds(0));
+  EXPECT_EQ(second.name, "kitchen 4");
+  ASSERT_TRUE(second.orientation);
+  EXPECT_LT(second.orientation->angularDistance(Eigen::Quaterniond(0, 0.6, 0, -0.8)), 1e-3);
+  EXPECT_DOUBLE_EQ(second.orientation->norm(), 1);
 
   EXPECT_EQ(parsed(running_->client().post("/api/finish"), 202)["taken"], 2);
   push(frame(6), 409);
@@ -143,6 +149,16 @@ TEST_F(FrameApiTest, SaysWhatIsWrongWithARequest) {
     text["name"] = name;
     items[2].content = text.dump();
     push(items, 400);
+  }
+  for (const json& orientation : {json{0, 0, 0, 0}, json{0, 0, 1}, json{0, 0, 1e308, 1e308},
+                                  json{0, 0, "1", 0}, json(1), json(nullptr)}) {
+    auto items = frame(0);
+    json text = about(0);
+    text["orientation"] = orientation;
+    items[2].content = text.dump();
+    EXPECT_NE(push(items, 400)["error"].get<std::string>().find("unit quaternion"),
+              std::string::npos)
+        << orientation;
   }
   auto extra = frame(0);
   extra.push_back({"mask", "1", "text/plain"});

@@ -16,6 +16,7 @@
 #include "ovimap/server/api/event_stream.h"
 #include "ovimap/server/api/history_api.h"
 #include "ovimap/server/api/map_json.h"
+#include "ovimap/server/api/watch_api.h"
 #include "ovimap/server/http/request_body.h"
 #include "ovimap/server/surface/chunk_encoding.h"
 #include "ovimap/server/surface/surface_measure.h"
@@ -106,32 +107,6 @@ HttpReply answer_query(const ServedMap& map, const HttpRequest& request) {
   }
 }
 
-/// One answer for each text, in order; a text that cannot be asked for has its fault instead. What
-/// is not in the map has no matches: this is for many texts that are asked again and again.
-HttpReply answer_queries(const ServedMap& map, const HttpRequest& request) {
-  const json body = body_of(request);
-  check_keys(body, {"texts"});
-  const std::vector<std::string> texts = texts_field(body, "texts");
-  if (texts.empty()) throw BadRequest(400, "'texts' is missing: a list of what to look for");
-  const std::uint64_t version = map.snapshot()->version;
-  json answers = json::array();
-  for (const std::string& text : texts) {
-    MapQuestion question;
-    question.query.text = text;
-    try {
-      question.past = map.past_of(text, "", "");
-      json answer = answer_json(map.ask(question));
-      if (answer["verdict"] != verdict_name(Verdict::kFound)) answer["matches"] = json::array();
-      answers.push_back(std::move(answer));
-    } catch (const SearchUnavailable&) {  // of all texts alike
-      throw;
-    } catch (const Error& error) {
-      answers.push_back({{"query", text}, {"error", error.what()}});
-    }
-  }
-  return json_reply({{"version", version}, {"answers", answers}});
-}
-
 HttpReply show_place(const ServedMap& map, const HttpRequest& request) {
   constexpr int kQuality = 85;
   const InstanceId id = instance_of(request);
@@ -173,7 +148,8 @@ HttpReply show_chunk(const ServedMap& map, const HttpRequest& request) {
   if (!chunk) return fault(404, "the map has no such chunk; GET /api/mesh lists those it has");
   return text_reply(200, "application/octet-stream",
                     encode_chunk(*chunk, map.mesh().grid(), level,
-                                 query_number<std::uint64_t>(request, "since", 0)));
+                                 query_number<std::uint64_t>(request, "since", 0),
+                                 level > 0 ? map.mesh().find(0, index).get() : nullptr));
 }
 
 HttpReply correct(ServedMap& map, const HttpRequest& request) {
@@ -233,7 +209,7 @@ HttpHandler guarded(HttpHandler handler) {
 
 }  // namespace
 
-Router map_api(ServedMap& map, FrameApi& frames) {
+Router map_api(ServedMap& map, FrameApi& frames, StandingQueries& standing) {
   Router router;
   const auto add = [&](const char* method, const char* pattern, BodyType body, RouteCost cost,
                        HttpHandler handler) {
@@ -266,16 +242,20 @@ Router map_api(ServedMap& map, FrameApi& frames) {
       [&map](Request) { return show_history(map); });
   get_large("/api/history/{event}/surface", [&map](Request r) { return show_past_surface(map, r); });
   get_large("/api/history/{event}/crop", [&map](Request r) { return show_past_crop(map, r); });
+  add("GET", "/api/gaps", BodyType::kNone, RouteCost::kWork,
+      [&map](Request) { return show_gaps(map); });
   get("/api/mesh", [&map](Request r) { return list_chunks(map, r); });
   get_large("/api/mesh/{level}/{x}/{y}/{z}", [&map](Request r) { return show_chunk(map, r); });
   get("/api/cameras", [&map](Request) { return json_reply(cameras_json(map)); });
   get("/api/events", [&map](Request r) { return event_stream(map.events(), r); });
+  add("GET", "/api/watch", BodyType::kNone, RouteCost::kWork,
+      [&map, &standing](Request r) { return watch_of_address(map, standing, r); });
+  work("/api/watch", [&map, &standing](Request r) { return watch_of_body(map, standing, r); });
   get("/api/labels", [&map](Request) { return json_reply(labels_json(map)); });
   get("/api/corrections", [&map](Request) { return json_reply(corrections_json(map)); });
   add("GET", "/api/export.glb", BodyType::kNone, RouteCost::kWork,
       [&map, kept = std::make_shared<KeptGlb>()](Request) { return export_glb(map, *kept); });
   work("/api/query", [&map](Request r) { return answer_query(map, r); });
-  work("/api/queries", [&map](Request r) { return answer_queries(map, r); });
   work("/api/approach", [&map](Request r) { return answer_approach(map, r); });
   work("/api/corrections", [&map](Request r) { return correct(map, r); });
   work("/api/camera", [&frames](Request r) { return frames.camera(r); });

@@ -136,6 +136,25 @@ std::size_t position_of(const MapSnapshot& now, InstanceId id) {
   throw Error(concat("the map has no object ", id, "; GET /api/instances lists those it has"));
 }
 
+/// Parts that masks tell in an object, by number.
+json parts_json(const MapSnapshot& now, std::size_t position) {
+  json list = json::array();
+  const QueryScene& scene = now.objects->scene;
+  for (const std::size_t p : scene.parts_of(position)) {
+    const SearchObject& part = scene.parts->index.object(p);
+    list.push_back({{"number", scene.parts->numbers[p]},
+                    {"box", box(part.box)},
+                    {"centroid", point(part.centroid)},
+                    {"points", part.points}});
+  }
+  return list;
+}
+
+json part_json(const QueryMatch& match) {
+  if (match.part == 0) return nullptr;
+  return {{"number", match.part}, {"box", box(match.part_box)}};
+}
+
 json match_json(const MapAnswer& answered, const QueryMatch& match) {
   const SearchObject& object = answered.index().object(match.position);
   const std::size_t event = answered.past ? answered.past->events[match.position] : 0;
@@ -148,7 +167,12 @@ json match_json(const MapAnswer& answered, const QueryMatch& match) {
           {"standard_score", match.standard_score},
           {"p_value", optional_number(match.p_value)},
           {"probability", optional_number(match.probability)},
-          {"evidence", match.evidence}};
+          {"evidence", match.evidence},
+          {"part", part_json(match)}};
+}
+
+json teaching_json(const Teaching& teaching) {
+  return {{"on", teaching.on}, {"examples", teaching.examples}, {"fault", teaching.fault}};
 }
 
 json camera_json(const PinholeCamera& camera) {
@@ -178,6 +202,7 @@ json map_json(const ServedMap& map) {
           {"encoder", info.encoder.name},
           {"search", {{"state", search_state_name(now->search)}, {"reason", now->why_no_search}}},
           {"classes", now->guesses ? json(now->guesses->set.name) : json()},
+          {"teaching", teaching_json(map.teaching())},
           {"heat_ramp", heat_ramp()}};
 }
 
@@ -213,6 +238,7 @@ json instance_detail_json(const ServedMap& map, InstanceId id) {
   detail["height_m"] = number(shape.height_m());
   detail["footprint_m2"] = number(area_m2(shape.footprint));
   detail["colors"] = colors_json(scene, position);
+  detail["parts"] = parts_json(*now, position);
   detail["neighbors"] = json::array();
   for (const Neighbor& other : neighbors_of(now->index(), scene, position, map.relations()))
     detail["neighbors"].push_back({{"id", other.id},

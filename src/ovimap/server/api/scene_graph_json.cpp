@@ -59,13 +59,29 @@ Json room_json(const SceneGraph& graph, const Room& room, const SearchIndex& ind
           {"objects", objects}};
 }
 
-Json object_json(const SceneGraph& graph, const SearchObject& object, std::size_t position) {
+Json box_json(const Eigen::AlignedBox3f& box) {
+  return {{"min", point(box.min())}, {"max", point(box.max())}};
+}
+
+/// What masks tell in the object at a position, in the order of their numbers, from 1.
+Json parts_json(const QueryScene& scene, std::size_t position) {
+  Json list = Json::array();
+  for (const std::size_t p : scene.parts_of(position)) {
+    const SearchObject& part = scene.parts->index.object(p);
+    list.push_back({{"box", box_json(part.box)}, {"centroid", point(part.centroid)}});
+  }
+  return list;
+}
+
+Json object_json(const SceneGraph& graph, const MapSearch& search, std::size_t position) {
+  const SearchObject& object = search.index.object(position);
   return {{"id", object.id},
           {"name", object.name},
           {"title", graph.titles[position]},
           {"room", graph.room_of[position]},
-          {"box", {{"min", point(object.box.min())}, {"max", point(object.box.max())}}},
-          {"centroid", point(object.centroid)}};
+          {"box", box_json(object.box)},
+          {"centroid", point(object.centroid)},
+          {"parts", parts_json(search.scene, position)}};
 }
 
 }  // namespace
@@ -84,7 +100,7 @@ std::string scene_graph_json(const SceneGraph& graph, const MapSearch& search) {
                       {"room", place.room}});
   for (const auto& [a, b] : graph.places.links) links.push_back(Json::array({a, b}));
   for (std::size_t i = 0; i < search.index.size(); ++i)
-    objects.push_back(object_json(graph, search.index.object(i), i));
+    objects.push_back(object_json(graph, search, i));
   for (const ObjectRelation& relation : graph.relations)
     relations.push_back({{"object", relation.object},
                          {"relation", relation_name(relation.relation)},

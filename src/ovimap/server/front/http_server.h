@@ -26,6 +26,8 @@ struct ServerConfig {
   int max_connections_of_one = 256;  ///< of these, from one address
   std::size_t max_event_streams = 64;  ///< of these connections
   std::size_t max_event_streams_of_one = 32;
+  std::size_t max_standing_queries = 4000;  ///< of all clients that watch for something
+  std::size_t max_standing_queries_of_one = 2000;
   std::size_t max_body_bytes = 1 << 16;
   std::size_t max_frame_bytes = 32 << 20;  ///< of a body that carries a frame's images
   double requests_per_second = 400;        ///< of one address, on average

@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/server/front/http_server.h"
 
+#include <fstream>
+
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include "ovimap/io/corrections/taught_file.h"
 #include "ovimap/io/map_file/map_edits.h"
 #include "ovimap/server/api/map_api.h"
 #include "ovimap/server/front/http_server_fixture.h"
@@ -40,6 +43,28 @@ TEST_F(HttpServerTest, DescribesTheMap) {
   EXPECT_EQ(cameras["frames"].size(), 3u);
   EXPECT_EQ(cameras["frames"][0]["world_from_camera"].size(), 12u);
   EXPECT_EQ(get("/api/openapi.json")["info"]["title"], "ovimap");
+}
+
+TEST_F(HttpServerTest, SaysWhereToLookNext) {
+  MapDocument document = random_document(40, 3);
+  SeenFree::Regions looked_through;
+  looked_through[pack_index({30, 0, 0})].fill({5, 0});  // far from any surface: its faces are frontiers
+  document.seen_free.restore(looked_through);
+  save_map(map_, document);
+  serve();
+  const json reply = get("/api/gaps");
+  EXPECT_EQ(reply["space_known"], true);
+  ASSERT_FALSE(reply["gaps"].empty());
+  double before = 1e9;
+  for (const json& gap : reply["gaps"]) {
+    EXPECT_TRUE(gap["kind"] == "unseen" || gap["kind"] == "thin");
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      EXPECT_GT(gap["middle"][axis].get<double>(), gap["box"]["min"][axis].get<double>());
+      EXPECT_LT(gap["middle"][axis].get<double>(), gap["box"]["max"][axis].get<double>());
+    }
+    EXPECT_LE(gap["area_m2"].get<double>(), before) << "the largest first";
+    before = gap["area_m2"].get<double>();
+  }
 }
 
 TEST_F(HttpServerTest, ListsObjects) {
@@ -182,6 +207,38 @@ TEST_F(HttpServerTest, KeepsNamesInTheMapFile) {
   EXPECT_EQ(get("/api/instances")["instances"][1]["name"], "");
 }
 
+/// What is named in the browser teaches other maps, where the server was told so.
+TEST_F(HttpServerTest, NamesTeachOtherMaps) {
+  ServedMapConfig served;
+  served.encoder = "none";
+  served.taught = root_ / "kept" / "taught.json";
+  running_ = std::make_unique<fixture::RunningServer>(map_, ServerConfig{}, served);
+  EXPECT_EQ(get("/api/map")["teaching"], json({{"on", true}, {"examples", 0}, {"fault", ""}}));
+  const auto named = [&] {
+    std::vector<std::string> names;
+    for (const TaughtThing& thing : read_taught_file(served.taught)) names.push_back(thing.name);
+    return names;
+  };
+  const auto rename = [&](const std::string& name) {
+    post("/api/corrections", json{{"kind", "rename"}, {"instance", 1}, {"name", name}}.dump(), 200);
+  };
+  rename("Küchentisch");
+  EXPECT_EQ(named(), std::vector<std::string>{"Küchentisch"});
+  post("/api/corrections", json{{"kind", "undo"}}.dump(), 200);
+  rename("");
+  EXPECT_TRUE(named().empty());
+  // A file that is none keeps nobody from correcting the map.
+  std::ofstream(served.taught) << "[]";
+  rename("table");
+  EXPECT_EQ(load_corrected_map(map_).names.at(1), "table");
+  EXPECT_NE(get("/api/map")["teaching"]["fault"], "");
+}
+
+TEST_F(HttpServerTest, TeachesNothingUnlessAsked) {
+  serve();
+  EXPECT_EQ(get("/api/map")["teaching"]["on"], false);
+}
+
 TEST_F(HttpServerTest, ShowsAMapAsItWasCorrectedBefore) {
   MapEdit edit;
   edit.action = EditAction::kDelete;
@@ -303,6 +360,22 @@ TEST_F(HttpServerTest, ChecksWhatIsAskedWhereToStand) {
     post("/api/approach", wrong, 400);
 }
 
+TEST_F(HttpServerTest, AMapThatWasReplacedUnderneathIsLeftAlone) {
+  serve();
+  const std::filesystem::path other = root_ / "other.ovimap";
+  save_map(other, random_document(41, 3));
+  std::filesystem::rename(other, map_);
+  const auto refused = post("/api/corrections", R"({"kind":"rename","instance":1,"name":"mug"})", 409);
+  EXPECT_NE(refused["error"].get<std::string>().find("replaced by another map"), std::string::npos);
+  post("/api/approach", R"({"instance":1})", 409);
+  get("/api/rooms", 409);
+  EXPECT_TRUE(read_edits(map_).empty());
+  EXPECT_FALSE(get("/api/instances")["instances"].empty()) << "what was read is served on";
+
+  serve();  // anew
+  post("/api/corrections", R"({"kind":"rename","instance":1,"name":"mug"})", 200);
+}
+
 TEST_F(HttpServerTest, DrawsWhereAnObjectIs) {
   serve();
   const auto picture = running_->client().get("/api/instances/1/place");
@@ -311,17 +384,6 @@ TEST_F(HttpServerTest, DrawsWhereAnObjectIs) {
   EXPECT_TRUE(picture->body.starts_with("\xff\xd8")) << "no JPEG";
   get("/api/instances/2/place", 404);
   get("/api/instances/x/place", 404);
-}
-
-TEST_F(HttpServerTest, RefusesManyQueriesAsItDoesOne) {
-  serve();
-  post("/api/queries", R"({"texts":["mug"]})", 409);  // no encoder: of all alike
-  post("/api/queries", R"({"texts":[]})", 400);
-  post("/api/queries", R"({"texts":"mug"})", 400);
-  post("/api/queries", R"({"texts":[1]})", 400);
-  post("/api/queries", R"({"texts":["mug"],"heat":true})", 400);
-  const nlohmann::json many = {{"texts", std::vector<std::string>(101, "mug")}};
-  post("/api/queries", many.dump(), 400);
 }
 
 TEST_F(HttpServerTest, WritesAnExportOnceAndCountsItAsWork) {
@@ -334,7 +396,8 @@ TEST_F(HttpServerTest, WritesAnExportOnceAndCountsItAsWork) {
   get("/api/export.glb", 429);
 
   FrameApi no_frames(nullptr, {});
-  const Router routes = map_api(running_->map(), no_frames);
+  StandingQueries standing(running_->map(), {});
+  const Router routes = map_api(running_->map(), no_frames, standing);
   HttpRequest request;
   request.method = "GET";
   request.path = "/api/export.glb";

@@ -12,6 +12,7 @@
 #include "ovimap/server/http/http_message.h"
 #include "ovimap/server/http/sent_bodies.h"
 #include "ovimap/server/http/shares.h"
+#include "ovimap/server/served/standing_queries.h"
 
 namespace ovimap {
 
@@ -51,6 +52,7 @@ class RequestDesk {
   const AccessRule access_;
   const ViewerFiles files_;
   FrameApi frames_;
+  StandingQueries standing_;
   const Router api_;
   RateLimit requests_, work_;
   SentBodies sent_;

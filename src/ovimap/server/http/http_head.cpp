@@ -90,9 +90,10 @@ void read_target(std::string_view target, HttpRequest& request) {
     rest.remove_prefix(std::min(pair.size() + 1, rest.size()));
     const std::size_t equals = std::min(pair.find('='), pair.size());
     const std::string_view value = pair.substr(std::min(equals + 1, pair.size()));
-    if (!pair.empty())
-      request.query.try_emplace(percent_decoded(pair.substr(0, equals), true),
-                                percent_decoded(value, true));
+    if (pair.empty()) continue;
+    const auto added = request.parameters.emplace(percent_decoded(pair.substr(0, equals), true),
+                                                  percent_decoded(value, true));
+    request.query.insert(*added);
   }
 }
 

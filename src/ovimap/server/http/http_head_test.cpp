@@ -23,7 +23,7 @@ int refused_with(const std::string& headers, const std::string& first = "POST /a
 
 TEST(HttpHeadTest, ReadsARequest) {
   const auto parsed = parse_head(
-      "POST /api/in%20stances/%zz?level=1&name=a+b%2B&&flag HTTP/1.1\r\nHost: localhost\r\n"
+      "POST /api/in%20stances/%zz?level=1&name=a+b%2B&&flag&level=2 HTTP/1.1\r\nHost: localhost\r\n"
       "X-Name:  a b \r\nContent-Length: 12\r\n\r\n");
   const auto& request = std::get<HttpRequest>(parsed);
   EXPECT_EQ(request.method, "POST");
@@ -31,6 +31,7 @@ TEST(HttpHeadTest, ReadsARequest) {
   EXPECT_EQ(request.query.at("level"), "1");
   EXPECT_EQ(request.query.at("name"), "a b+");
   EXPECT_EQ(request.query.at("flag"), "");
+  EXPECT_EQ(request.parameters.count("level"), 2u) << "the first counts where one is wanted";
   EXPECT_EQ(request.header("x-name"), "a b");
   EXPECT_EQ(request.content_length, 12u);
   EXPECT_TRUE(request.keep_alive);

@@ -37,13 +37,14 @@ bool is_whole(const json& value, double most) {
   return number >= 0 && number <= most && number == std::floor(number);
 }
 
-std::vector<std::string> texts_field(const json& body, const char* name) {
+std::vector<std::string> texts_field(const json& body, const char* name, std::size_t most) {
   if (!body.contains(name)) return {};
   const json& list = body[name];
   if (!list.is_array() ||
       !std::all_of(list.begin(), list.end(), [](const json& item) { return item.is_string(); }))
     throw BadRequest(400, concat("'", name, "' must be a list of texts"));
-  if (list.size() > 100) throw BadRequest(400, concat("'", name, "' has more than 100 entries"));
+  if (list.size() > most)
+    throw BadRequest(400, concat("'", name, "' has more than ", most, " entries"));
   return list.get<std::vector<std::string>>();
 }
 

@@ -9,6 +9,7 @@
 
 #include "ovimap/base/thread_priority.h"
 #include "ovimap/io/pictures/scene_axes.h"
+#include "ovimap/map/surface/surface_precision.h"
 
 namespace ovimap {
 
@@ -151,8 +152,10 @@ void LiveFeed::hand_over_surface(Mapper& mapper) {
     if (slot >= shown_.size()) shown_.resize(slot + 1, false);
     if (patch == nullptr && !shown_[slot]) continue;
     shown_[slot] = patch != nullptr;
-    patches.push_back(
-        {mapper.map().block_index(slot), 0, patch ? std::make_shared<Mesh>(patch->mesh) : nullptr});
+    const VoxelMap& map = mapper.map();
+    patches.push_back({map.block_index(slot), 0,
+                       patch ? std::make_shared<Mesh>(patch->mesh) : nullptr,
+                       patch ? error_byte(surface_error_m(map, map.block(slot))) : std::uint8_t{0}});
     if (patch) vertices += patch->mesh.vertices.size();
   }
   allowance_ -= static_cast<double>(vertices);
@@ -184,6 +187,7 @@ void LiveFeed::hand_over_objects(Mapper& mapper, const std::vector<FrameLogEntry
   found.record.semantics.recognizer = mapper.recognizer();
   found.record.semantics.looks = mapper.looks();
   found.record.frames = frames;
+  found.record.seen_free = mapper.seen_free();
   found.record.depth_camera = depth_camera;
   found.record.mask_frames = mapper.mask_frames();
   found.record.names = names_;

@@ -121,6 +121,8 @@ TEST_F(LiveFeedTest, ShowsSurfaceObjectsAndCamera) {
     EXPECT_EQ(shown.views, found.views);
     for (const Label root : found.super_points) EXPECT_EQ(now->instance_of_label[root], found.id);
   }
+  EXPECT_FALSE(now->record->seen_free.regions().empty()) << "for where to look next";
+  EXPECT_FALSE(map_->mesh().errors().empty());
   std::set<std::string> heard;
   for (std::uint64_t i = 0; i < map_->events().last(); ++i)
     if (const auto event = map_->events().next(i)) heard.insert(event->type);

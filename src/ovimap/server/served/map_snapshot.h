@@ -47,6 +47,7 @@ struct MapSnapshot {
   std::vector<ObjectName> names;                 ///< by position; empty: not known
   SearchState search = SearchState::kPreparing;
   std::string why_no_search;  ///< a sentence
+  bool waits_for_objects = false;  ///< it cannot be searched because none has an embedding yet
 
   const SearchIndex& index() const { return objects->index; }
   std::string name_of(InstanceId id) const;  ///< as given; empty: none

@@ -10,7 +10,9 @@
 #include "ovimap/io/map_file/map_edits.h"
 #include "ovimap/io/map_file/map_file.h"
 #include "ovimap/map/surface/mesh_extraction.h"
+#include "ovimap/map/surface/surface_precision.h"
 #include "ovimap/pipeline/rooms/map_rooms.h"
+#include "ovimap/pipeline/search/teaching.h"
 #include "ovimap/semantics/query/query_text.h"
 
 namespace ovimap {
@@ -25,12 +27,27 @@ VoxelSource voxels_of(const std::filesystem::path& path, std::optional<VoxelMap>
   };
 }
 
+BlockErrors errors_of(const VoxelMap& map) {
+  BlockErrors errors;
+  for (const std::uint32_t slot : map.ordered_slots())
+    if (const auto error_m = surface_error_m(map, map.block(slot)))
+      errors[pack_index(map.block_index(slot))] = error_byte(error_m);
+  return errors;
+}
+
 /// Parts of what was taken apart are measured on the surface, so that no voxels are needed.
 VoxelSource no_voxels(std::optional<VoxelMap>& place) {
   return [&]() -> const VoxelMap& {
     if (!place) place.emplace();
     return *place;
   };
+}
+
+/// What is asked of the file must be of the map that clients see.
+void require_same_map(const std::filesystem::path& path, const MapInfo& seen) {
+  if (read_map_identity(path).content_hash != seen.content_hash)
+    throw Error(concat("the map file '", path.string(), "' was replaced by another map since it ",
+                       "was read; start `ovimap serve` anew"));
 }
 
 }  // namespace
@@ -89,7 +106,7 @@ void ServedMap::take_document(MapDocument&& document) {
   auto found = std::make_shared<FoundMap>();
   found->info = read_map_info(path_);
   found->forest = document.map.labels();
-  mesh_->replace(extract_mesh(document.map));
+  mesh_->replace(extract_mesh(document.map), errors_of(document.map));
   found->record = std::move(static_cast<MapRecord&>(document));
   log_ = found->record.edits;
   found_ = std::move(found);
@@ -116,6 +133,7 @@ void ServedMap::rebuild() {
                        found_->surface_spacing_m, record);
   auto objects =
       std::make_shared<MapSearch>(make_map_search(record, found_->info, config_.query.shapes));
+  objects->scene.taught = taught_;
   if (!next->live)
     objects->scene.rooms =
         std::make_shared<const ObjectRooms>([this, ids = ids_of(objects->index)] {
@@ -139,7 +157,7 @@ void ServedMap::set_search(MapSnapshot& next) const {
   const bool none_embedded = next.index().embedded() == 0;
   if (!why_no_encoder_.empty())
     next.why_no_search = why_no_encoder_;
-  else if (none_embedded && next.live)
+  else if ((next.waits_for_objects = none_embedded && next.live))
     next.why_no_search = "no object has an embedding yet; mapping goes on";
   if (!next.why_no_search.empty()) {
     next.search = SearchState::kUnavailable;
@@ -201,7 +219,48 @@ void ServedMap::open_encoder(const MapSnapshot& now) {
   TextMatcher::encode_word_lists(*encoder, config_.query);
   const std::lock_guard lock(changing_);
   encoder_ = std::move(encoder);
+  learn_names();
   rebuild();
+}
+
+Teaching ServedMap::teaching() const {
+  const std::lock_guard lock(mutex_);
+  Teaching now = teaching_;
+  now.on = !config_.taught.empty();
+  return now;
+}
+
+void ServedMap::show(const Teaching& teaching) {
+  const std::lock_guard lock(mutex_);
+  teaching_ = teaching;
+}
+
+/// What other maps taught by now. A file that cannot be read takes nothing from the map. `changing_` is
+/// held.
+void ServedMap::learn_names() {
+  if (config_.taught.empty() || !encoder_) return;
+  Teaching now;
+  try {
+    taught_ = taught_elsewhere(config_.taught, path_, encoder_->identity());
+    now.examples = taught_.names.size();
+  } catch (const Error& error) {
+    now.fault = error.what();
+  }
+  show(now);
+}
+
+/// What people named in this map is an example for others. A correction that teaches nothing stands.
+/// `changing_` is held.
+void ServedMap::teach_names() {
+  if (config_.taught.empty()) return;
+  Teaching now = teaching();
+  try {
+    teach(config_.taught, path_, *snapshot()->objects);
+    now.fault.clear();
+  } catch (const Error& error) {
+    now.fault = error.what();
+  }
+  show(now);
 }
 
 MapAnswer ServedMap::ask(const MapQuestion& question) const {
@@ -230,8 +289,10 @@ std::optional<HistoryPhrase> ServedMap::past_of(const std::string& text, const s
 /// What changed can be told of any map; what a text means needs its encoder.
 MapAnswer ServedMap::ask_past(std::shared_ptr<const MapSnapshot> now,
                               const MapQuestion& question) const {
-  const auto past = std::make_shared<const HistorySearch>(
+  const auto found = std::make_shared<HistorySearch>(
       search_history(*now->record, now->objects->info, *question.past, config_.query.shapes));
+  found->search.scene.taught = now->objects->scene.taught;
+  const std::shared_ptr<const HistorySearch> past = found;
   const bool listing = past->for_anything() && question.query.not_texts.empty();
   if (!now->engine && !listing) throw SearchUnavailable(now->why_no_search);
   std::optional<QueryEngine> engine;
@@ -250,8 +311,10 @@ NamedHistory ServedMap::with_gone_objects(const MapSnapshot& now) const {
   HistoryPhrase all;
   all.text = "anything";
   all.change = AskedChange::kAny;
-  gone_.history = std::make_shared<const HistorySearch>(
+  const auto history = std::make_shared<HistorySearch>(
       search_history(*now.record, now.objects->info, all, config_.query.shapes));
+  history->search.scene.taught = now.objects->scene.taught;
+  gone_.history = history;
   const MapSearch& search = gone_.history->search;
   const QueryEngine engine(search.index, encoder_.get(), config_.query, Embeddings{}, search.scene);
   gone_.names.clear();
@@ -261,11 +324,18 @@ NamedHistory ServedMap::with_gone_objects(const MapSnapshot& now) const {
   return gone_;
 }
 
+std::vector<Gap> ServedMap::gaps(const GapsConfig& config) const {
+  SurfaceErrors surface;
+  for (const auto& [block, error] : mesh_->errors()) surface[block] = error_of_byte(error);
+  return find_gaps(snapshot()->record->seen_free, surface, mesh_->grid().block_m(), config);
+}
+
 std::shared_ptr<const StandingSpace> ServedMap::standing_space() const {
   const auto now = snapshot();
   if (now->live) throw Error("the map is still being made; ask when it is finished");
   const std::lock_guard lock(standing_mutex_);
   if (!standing_ || standing_edits_ != now->record->edits.size()) {
+    require_same_map(path_, now->objects->info);
     standing_ = std::make_shared<StandingSpace>(make_standing_space(load_corrected_map(path_)));
     standing_edits_ = now->record->edits.size();
   }
@@ -285,10 +355,13 @@ MapEdit ServedMap::correct(MapEdit edit) {
     edit = append_edit(record, found_->forest, no_voxels(place), std::move(edit));
     log_ = std::move(record.edits);
   } else {
+    require_same_map(path_, found_->info);
     edit = edit_map(path_, std::move(edit));
     log_ = read_edits(path_);  // with what other programs wrote
   }
+  learn_names();
   rebuild();
+  teach_names();
   return edit;
 }
 

@@ -13,6 +13,7 @@
 #include "ovimap/base/error.h"
 #include "ovimap/geometry/pose.h"
 #include "ovimap/io/map_file/map_edits.h"
+#include "ovimap/pipeline/approach/gaps.h"
 #include "ovimap/pipeline/approach/standing_space.h"
 #include "ovimap/pipeline/search/history_search.h"
 #include "ovimap/server/served/event_hub.h"
@@ -27,6 +28,7 @@ struct ServedMapConfig {
   std::string classes = "scannet200";  ///< the names that objects are given by guess
   int guesses = 3;                     ///< names an object is given
   int threads = 0;
+  std::filesystem::path taught;  ///< file of what corrections teach; empty: they teach nothing
   QueryConfig query;
   MeshLevelConfig levels;
 };
@@ -65,6 +67,13 @@ enum class CameraState {
 };
 const char* camera_state_name(CameraState state);  ///< "given", "tracked", "lost"
 
+/// What names that people give teach other maps.
+struct Teaching {
+  bool on = false;
+  std::size_t examples = 0;  ///< things in other maps that speak in this one
+  std::string fault;         ///< why the latest correction taught nothing; empty: it did
+};
+
 /// How the camera of a map that is being made is followed.
 struct CameraTracking {
   CameraState state = CameraState::kGiven;
@@ -94,9 +103,11 @@ class ServedMap {
   const std::filesystem::path& path() const { return path_; }
   const MeshStore& mesh() const { return *mesh_; }
   const RelationConfig& relations() const { return config_.query.relations; }
+  int max_query_chars() const { return config_.query.max_text_chars; }
   EventHub& events() const { return events_; }
   std::shared_ptr<const MapSnapshot> snapshot() const;
   CameraTracking tracking() const;
+  Teaching teaching() const;
 
   /// What a text asks of the past, or it and times that history_of_question takes; nothing: it asks of
   /// the present. Throws Error for what is no query and no time.
@@ -109,6 +120,9 @@ class ServedMap {
 
   /// All that the map ever had, kept until it changes. `now`: of which search is ready.
   NamedHistory with_gone_objects(const MapSnapshot& now) const;
+
+  /// Where somebody who scans should look next, of a map that is being made too.
+  std::vector<Gap> gaps(const GapsConfig& config = {}) const;
 
   /// What is asked where to stand. Read from the map file the first time and after a correction,
   /// which takes seconds. Throws Error for a map that is still being made or cannot be read.
@@ -141,6 +155,9 @@ class ServedMap {
   void take_document(MapDocument&& document);
   MapRecord corrected() const;
   void set_search(MapSnapshot& next) const;
+  void learn_names();
+  void teach_names();
+  void show(const Teaching& teaching);
   MapAnswer ask_past(std::shared_ptr<const MapSnapshot> now, const MapQuestion& question) const;
 
   const std::filesystem::path path_;
@@ -155,11 +172,13 @@ class ServedMap {
   std::unique_ptr<ImageTextEncoder> encoder_;  ///< engines of snapshots use it
   std::string why_no_encoder_;                 ///< empty: there is one, or it is being opened
   std::optional<LabelSet> classes_;            ///< once their names are encoded
+  TaughtThings taught_;                        ///< by other maps, for the encoder
 
   mutable std::mutex mutex_;  ///< held for a moment only
   mutable std::condition_variable prepared_;
   std::shared_ptr<const MapSnapshot> snapshot_;
   CameraTracking tracking_;
+  Teaching teaching_;
 
   mutable std::mutex standing_mutex_;  ///< guards what follows; held while it is read
   mutable std::shared_ptr<const StandingSpace> standing_;

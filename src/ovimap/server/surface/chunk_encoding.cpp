@@ -90,18 +90,27 @@ void put_positions(ByteWriter& out, const Mesh& mesh, const ChunkGrid& grid,
   }
 }
 
-void put_colors(ByteWriter& out, const Mesh& mesh) {
+/// How well the surface around a vertex is known; 0: not told.
+std::uint8_t error_at(const Eigen::Vector3f& vertex, const ChunkGrid& grid,
+                      const BlockErrors& errors) {
+  const auto found = errors.find(pack_index(grid.block_of(vertex)));
+  return found == errors.end() ? std::uint8_t{0} : found->second;
+}
+
+void put_colors(ByteWriter& out, const SurfacePatch& patch, const ChunkGrid& grid,
+                const BlockErrors& errors) {
+  const Mesh& mesh = *patch.mesh;
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     for (std::size_t c = 0; c < 3; ++c)
       out.put(mesh.colors.empty() ? std::uint8_t{160} : mesh.colors[v][c]);
-    out.put(std::uint8_t{0});
+    out.put(patch.error > 0 ? patch.error : error_at(mesh.vertices[v], grid, errors));
   }
 }
 
 }  // namespace
 
 std::string encode_chunk(const MeshChunk& chunk, const ChunkGrid& grid, int level,
-                         std::uint64_t since) {
+                         std::uint64_t since, const MeshChunk* fine) {
   Totals totals;
   for_each_newer(chunk, since, [&](const SurfacePatch& patch) {
     ++totals.patches;
@@ -121,7 +130,9 @@ std::string encode_chunk(const MeshChunk& chunk, const ChunkGrid& grid, int leve
   const Eigen::Vector3f origin = grid.origin(chunk.index);
   for_each_newer(chunk, since,
                  [&](const SurfacePatch& patch) { put_positions(out, *patch.mesh, grid, origin); });
-  for_each_newer(chunk, since, [&](const SurfacePatch& patch) { put_colors(out, *patch.mesh); });
+  const BlockErrors errors = fine ? errors_of(*fine) : BlockErrors();
+  for_each_newer(chunk, since,
+                 [&](const SurfacePatch& patch) { put_colors(out, patch, grid, errors); });
   for_each_newer(chunk, since, [&](const SurfacePatch& patch) {
     for (std::size_t v = 0; v < patch.mesh->vertices.size(); ++v)
       out.put(patch.mesh->labels.empty() ? std::uint32_t{0} : patch.mesh->labels[v]);

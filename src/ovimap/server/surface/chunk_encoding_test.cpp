@@ -60,6 +60,18 @@ TEST(ChunkEncodingTest, IsWhatTheViewerReads) {
          "OVIMAP_WRITE_FIXTURES=1";
 }
 
+TEST(ChunkEncodingTest, TellsHowWellPlacesAreKnown) {
+  MeshChunk fine = two_patches();
+  fine.patches[0].error = 12;
+  const std::size_t known = 56 + 2 * 28 + 7 * 8 + 3;  // of the first vertex
+  const std::string bytes = encode_chunk(fine, kGrid, 0);
+  for (std::size_t v = 0; v < 4; ++v) EXPECT_EQ(at<std::uint8_t>(bytes, known + 4 * v), 12);
+  EXPECT_EQ(at<std::uint8_t>(bytes, known + 4 * 4), 0) << "of a block of which nothing is told";
+  const std::string coarse = encode_chunk(two_patches(), kGrid, 1, 0, &fine);
+  EXPECT_EQ(at<std::uint8_t>(coarse, known), 12);
+  EXPECT_EQ(at<std::uint8_t>(coarse, known + 4), 0) << "a vertex in another block";
+}
+
 TEST(ChunkEncodingTest, LiesAsDocumented) {
   const std::string bytes = encode_chunk(two_patches(), kGrid, 1);
   EXPECT_EQ(bytes.substr(0, 4), "OVMC");

@@ -37,7 +37,7 @@ MeshChunk make_chunk(const Mesh& mesh, const std::vector<std::uint32_t>& triangl
   chunk.index = ChunkGrid::chunk_of(unpack_index(by_block.begin()->first));
   for (const auto& [block, own] : by_block)
     chunk.patches.push_back(
-        {unpack_index(block), version, std::make_shared<Mesh>(part_of_mesh(mesh, own))});
+        {unpack_index(block), version, std::make_shared<Mesh>(part_of_mesh(mesh, own)), 0});
   return chunk;
 }
 
@@ -116,7 +116,7 @@ MeshChunk coarser_chunk(const MeshChunk& chunk, float triangle_share, float max_
   if (mesh.triangles.empty())
     return {chunk.index,
             chunk.version,
-            {{chunk.index * ChunkGrid::kChunkBlocks, chunk.version, std::make_shared<Mesh>()}}};
+            {{chunk.index * ChunkGrid::kChunkBlocks, chunk.version, std::make_shared<Mesh>(), 0}}};
   const std::size_t indices = mesh.triangles.size() * 3;
   const float* positions = mesh.vertices.front().data();
   constexpr std::size_t kStride = sizeof(Eigen::Vector3f);
@@ -134,8 +134,15 @@ MeshChunk coarser_chunk(const MeshChunk& chunk, float triangle_share, float max_
   result.index = chunk.index;
   result.version = chunk.version;
   result.patches.push_back({chunk.index * ChunkGrid::kChunkBlocks, chunk.version,
-                            std::make_shared<Mesh>(part_of_mesh(mesh, all))});
+                            std::make_shared<Mesh>(part_of_mesh(mesh, all)), 0});
   return result;
+}
+
+BlockErrors errors_of(const MeshChunk& chunk) {
+  BlockErrors errors;
+  for (const SurfacePatch& patch : chunk.patches)
+    if (patch.error > 0) errors[pack_index(patch.block)] = patch.error;
+  return errors;
 }
 
 }  // namespace ovimap

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -41,6 +42,7 @@ struct SurfacePatch {
   BlockIndex block = BlockIndex::Zero();
   std::uint64_t version = 0;  ///< of the update that made it
   std::shared_ptr<const Mesh> mesh;
+  std::uint8_t error = 0;  ///< of its block, error_byte (map/surface/surface_precision.h); 0: unknown
 };
 
 struct MeshChunk {
@@ -48,6 +50,9 @@ struct MeshChunk {
   std::uint64_t version = 0;          ///< of the newest patch
   std::vector<SurfacePatch> patches;  ///< ordered by block (z, y, x)
 };
+
+/// error_byte of blocks, by pack_index.
+using BlockErrors = std::map<std::uint64_t, std::uint8_t>;
 
 /// Cuts a mesh with normals, colours and labels into chunks, ordered by index (z, y, x). A triangle
 /// belongs to the block of its centre; vertices that several parts need are copied.
@@ -58,6 +63,9 @@ std::vector<MeshChunk> cut_into_chunks(const Mesh& mesh, const ChunkGrid& grid,
 /// that neighbours meet and each can be made anew alone. `triangle_share` of the triangles are
 /// kept where that moves the surface by no more than `max_error_m`.
 MeshChunk coarser_chunk(const MeshChunk& chunk, float triangle_share, float max_error_m);
+
+/// What the patches say of their blocks.
+BlockErrors errors_of(const MeshChunk& chunk);
 
 /// Some triangles of a mesh, with the vertices they need.
 Mesh part_of_mesh(const Mesh& mesh, const std::vector<std::uint32_t>& triangles);

@@ -58,6 +58,21 @@ TEST(MeshChunksTest, ChunksAreOrderedAndFoundByIndex) {
   EXPECT_TRUE(store.list(0, 1).empty());
 }
 
+TEST(MeshChunksTest, PatchesKnowHowWellTheirBlockIsKnown) {
+  MeshStore store(kGrid);
+  EXPECT_TRUE(store.errors().empty());
+  const Mesh mesh = fixture::wavy_sheet(20, 0.02f);
+  const BlockIndex block = kGrid.block_of(
+      (mesh.vertices[mesh.triangles[0][0]] + mesh.vertices[mesh.triangles[0][1]] +
+       mesh.vertices[mesh.triangles[0][2]]) /
+      3.f);
+  const BlockErrors errors{{pack_index(block), 7}};
+  store.replace(mesh, errors);
+  EXPECT_EQ(store.errors(), errors);
+  store.update({{block, 0, std::make_shared<Mesh>(mesh), 3}});
+  EXPECT_EQ(store.errors().at(pack_index(block)), 3);
+}
+
 TEST(MeshChunksTest, TheCoarseLevelIsSmallAndNear) {
   const Mesh mesh = fixture::wavy_sheet(120, 0.01f);
   for (const MeshChunk& chunk : cut_into_chunks(mesh, kGrid, 1)) {

@@ -59,15 +59,25 @@ void keep_emptied(const MeshChunk& before, std::uint64_t version, std::vector<Me
   std::vector<SurfacePatch> emptied;
   std::set_difference(before.patches.begin(), before.patches.end(), chunk->patches.begin(),
                       chunk->patches.end(), std::back_inserter(emptied), by_block);
-  for (SurfacePatch& patch : emptied) patch = {patch.block, version, std::make_shared<Mesh>()};
+  for (SurfacePatch& patch : emptied) patch = {patch.block, version, std::make_shared<Mesh>(), 0};
   if (!emptied.empty()) *chunk = with_patches(*chunk, std::move(emptied));
 }
 
 }  // namespace
 
-void MeshStore::replace(const Mesh& mesh) {
+BlockErrors MeshStore::errors() const {
+  BlockErrors all;
+  for (const auto& chunk : chunks()) all.merge(errors_of(*chunk));
+  return all;
+}
+
+void MeshStore::replace(const Mesh& mesh, const BlockErrors& errors) {
   const std::uint64_t version = this->version() + 1;
   std::vector<MeshChunk> fine = cut_into_chunks(mesh, grid_, version);
+  for (MeshChunk& chunk : fine)
+    for (SurfacePatch& patch : chunk.patches)
+      if (const auto error = errors.find(pack_index(patch.block)); error != errors.end())
+        patch.error = error->second;
   for (const auto& before : chunks()) keep_emptied(*before, version, fine);
   std::array<Chunks, kLevels> levels;
   for (Chunks& level : levels) level.resize(fine.size());

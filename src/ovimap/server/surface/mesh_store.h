@@ -34,7 +34,8 @@ class MeshStore {
 
   /// Takes the whole surface, with the map's labels, as the next version. Blocks that had surface
   /// before and have none now get an empty patch.
-  void replace(const Mesh& mesh);
+  /// `errors`: how well the surface is known, by block.
+  void replace(const Mesh& mesh, const BlockErrors& errors = {});
 
   /// Takes new patches of some blocks as the next version, at level 0 alone: a coarse surface of
   /// what still changes would cost more than it saves. Null meshes: the block has no surface.
@@ -46,6 +47,8 @@ class MeshStore {
   std::vector<ChunkListing> list(int level, std::uint64_t since = 0) const;
   /// Null where there is no such chunk.
   std::shared_ptr<const MeshChunk> find(int level, const Eigen::Vector3i& index) const;
+  /// How well the surface is known, of all blocks of level 0 that tell it.
+  BlockErrors errors() const;
   /// All chunks of level 0.
   std::vector<std::shared_ptr<const MeshChunk>> chunks() const;
   const ChunkGrid& grid() const { return grid_; }

@@ -27,6 +27,19 @@ constexpr float kOutward = 0.75f;        // of the way from a room's middle to i
 constexpr float kStandsThere_m = 0.15f;  // from a point that counts as reached
 constexpr float kLeastRound_m = 1.5f;    // of a room's round; less is no walk
 
+constexpr double kWhipPeriod_s = 4, kWhip_s = 1.5;  // of one pan aside and back
+
+/// Yaw beside where one would look. Smooth up to the second derivative, to the left and right in
+/// turn: the square of a raised cosine, whose fastest change is 3 sqrt(3) / 8 of its height times
+/// the speed of its phase.
+double whip_rad(double time_s, double fastest_rad_s) {
+  const double count = std::floor(time_s / kWhipPeriod_s), since = time_s - count * kWhipPeriod_s;
+  const double phase = kTurn_rad * std::min(since / kWhip_s, 1.0);
+  const double height = fastest_rad_s * kWhip_s / kTurn_rad * 8 / (3 * std::numbers::sqrt3);
+  const double pulse = (1 - std::cos(phase)) / 2;
+  return (std::fmod(count, 2) == 0 ? height : -height) * pulse * pulse;
+}
+
 /// Where the body may be: furniture is walked round, not stepped over.
 WalkMap free_floor(const SynthRoom& room, const WalkConfig& config) {
   TrajectoryConfig body;
@@ -74,6 +87,8 @@ void list_fields(WalkConfig& config, ConfigFields& fields) {
   fields.add("drift_rad", config.drift_rad, 0.f, 0.2f, "slow turns of the hands, radians");
   fields.add("tremor_m", config.tremor_m, 0.f, 0.01f, "tremor of the hands, metres");
   fields.add("tremor_rad", config.tremor_rad, 0.f, 0.01f, "tremor of the hands, radians");
+  fields.add("whip_rad_s", config.whip_rad_s, 0.f, 20.f,
+             "fastest turn of a pan aside and back every few seconds, radians a second; 0: none");
 }
 
 Wobble::Wobble(Random& random, float lowest_hz, float highest_hz) {
@@ -114,7 +129,8 @@ Pose Walk::at(double time_s) const {
   eye.z() = config_.eye_m + config_.rise_m * std::sin(step);
   for (int axis = 0; axis < 3; ++axis)
     eye[axis] += hand(static_cast<std::size_t>(axis), config_.drift_m, config_.tremor_m);
-  const double yaw = gaze.x() + hand(3, config_.drift_rad, config_.tremor_rad);
+  const double yaw = gaze.x() + whip_rad(time_s, double{config_.whip_rad_s}) +
+                     hand(3, config_.drift_rad, config_.tremor_rad);
   const double pitch =
       gaze.y() + config_.nod_rad * std::cos(step) + hand(4, config_.drift_rad, config_.tremor_rad);
   const double roll =

@@ -38,6 +38,7 @@ struct WalkConfig {
   float drift_rad = 0.02f;     ///< and about each axis
   float tremor_m = 0.0001f;    ///< 8 to 12 Hz, along each axis
   float tremor_rad = 0.0005f;  ///< and about each axis
+  float whip_rad_s = 0;        ///< every few seconds a pan aside and back, so fast at most; 0: none
 };
 void list_fields(WalkConfig& config, ConfigFields& fields);
 

@@ -85,6 +85,23 @@ TEST(WalkTest, SpeedAndTurnsAreBoundedAndSmooth) {
   EXPECT_NEAR(length_m / walk.seconds(), config.speed_mps, 0.25 * config.speed_mps);
 }
 
+TEST(WalkTest, WhipsThePanAsFastAsAsked) {
+  const SynthRoom room = build_room(room_spec("bare"));
+  WalkConfig config;
+  config.max_turn_rad_s = 0.15f;
+  config.nod_rad = config.roll_rad = config.drift_rad = config.tremor_rad = 0;
+  config.whip_rad_s = 2.1f;
+  const Walk walk = walk_in(room, config);
+  double fastest_rad_s = 0;
+  for (double t = 0; t < walk.seconds(); t += kStep_s) {
+    const double turn = turn_between(walk.at(t), walk.at(t + kStep_s));
+    const double next = turn_between(walk.at(t + kStep_s), walk.at(t + 2 * kStep_s));
+    fastest_rad_s = std::max(fastest_rad_s, turn / kStep_s);
+    EXPECT_LT(std::abs(next - turn) / (kStep_s * kStep_s), 20) << t;
+  }
+  EXPECT_NEAR(fastest_rad_s, 2.1, 0.15);
+}
+
 TEST(WalkTest, ComesBackToWhereItBegan) {
   WalkConfig still;
   still.rise_m = still.sideways_m = still.drift_m = still.tremor_m = 0;

@@ -192,6 +192,7 @@ const std::vector<PaletteClass>& palette() {
       {"ruler", {}},
       {"tissue box", {}},
       {"keys", {}},
+      {"person", {}},
   };
   return classes;
 }

@@ -34,11 +34,15 @@ void list_fields(SynthSequenceConfig& config, ConfigFields& fields) {
   fields.group("trajectory", [&](ConfigFields& group) { list_fields(config.trajectory, group); });
   fields.group("sensor", [&](ConfigFields& group) { list_fields(config.sensor, group); });
   fields.group("truth", [&](ConfigFields& group) { list_fields(config.truth, group); });
+  if (config.figure.enabled)  // rooms without are what they were before there were figures
+    fields.group("figure", [&](ConfigFields& group) { list_fields(config.figure, group); });
 }
 
 void list_fields(VideoConfig& config, ConfigFields& fields) {
   fields.group("walk", [&](ConfigFields& group) { list_fields(config.walk, group); });
   fields.group("camera", [&](ConfigFields& group) { list_fields(config.camera, group); });
+  if (config.gyroscope.rate_hz > 0)  // walks without are what they were before there were any
+    fields.group("gyroscope", [&](ConfigFields& group) { list_fields(config.gyroscope, group); });
 }
 
 struct SynthSequence::State {
@@ -48,7 +52,9 @@ struct SynthSequence::State {
         camera(made_camera),
         config(sequence_config),
         renderer(room, config.render),
-        poses(plan_trajectory(room, renderer.scene(), camera, frames, config.trajectory)) {}
+        poses(plan_trajectory(room, renderer.scene(), camera, frames, config.trajectory)) {
+    add_figure();
+  }
   State(SynthRoom made_room, const PinholeCamera& made_camera, const VideoConfig& video_config,
         const SynthSequenceConfig& sequence_config)
       : room(std::move(made_room)),
@@ -61,6 +67,12 @@ struct SynthSequence::State {
     const double frames = video->walk.seconds() * static_cast<double>(video_config.walk.fps);
     for (std::int64_t i = 0; i < std::max(1L, std::lround(frames)); ++i)
       poses.push_back(video->walk.at(time_s(i)));
+    add_figure();
+  }
+
+  void add_figure() {
+    if (config.figure.enabled)
+      figure.emplace(room, config.figure, config.trajectory, room.seed);
   }
 
   struct Video {
@@ -74,11 +86,20 @@ struct SynthSequence::State {
   SynthSequenceConfig config;
   Renderer renderer;
   std::optional<Video> video;
+  std::optional<Figure> figure;
   std::vector<Pose> poses;
 
   double time_s(std::int64_t position) const {
     return static_cast<double>(position) /
            (video ? static_cast<double>(video->config.walk.fps) : kFramesPerSecond);
+  }
+
+  /// What moves, where it is in that frame.
+  MovingThing thing_at(std::int64_t position) const {
+    if (!figure) return {};
+    return figure->at(video ? time_s(position)
+                            : static_cast<double>(position) *
+                                  static_cast<double>(config.figure.picture_s));
   }
 
   /// Frames of a video hardly differ: a few a second show all that is seen.
@@ -89,11 +110,12 @@ struct SynthSequence::State {
 
   RenderedView render(std::int64_t position) const {
     const Pose& pose = poses[static_cast<std::size_t>(position)];
-    if (!video || !config.noise) return renderer.render(camera, pose);
+    const MovingThing thing = thing_at(position);
+    if (!video || !config.noise) return renderer.render(camera, pose, true, thing);
     const double time = time_s(position);
     Shutter shutter{shutter_poses(video->walk, camera, time, video->config.camera)};
     if (video->exposure) shutter.exposure = video->exposure->at(time);
-    return renderer.render(camera, pose, shutter);
+    return renderer.render(camera, pose, shutter, thing);
   }
 
   void keep_ids(std::int64_t position, const IdImage& ids) {
@@ -170,7 +192,13 @@ std::optional<IdImage> SynthSequence::truth_ids(std::int64_t position) const {
   if (position < 0 || position >= size()) return std::nullopt;
   if (auto ids = state_->kept_ids(position)) return ids;
   const Pose& pose = state_->poses[static_cast<std::size_t>(position)];
-  return state_->renderer.render(state_->camera, pose, false).ids;
+  return state_->renderer.render(state_->camera, pose, false, state_->thing_at(position)).ids;
+}
+
+std::vector<TurnRate> SynthSequence::turn_rates() const {
+  if (!state_->video) return {};
+  return gyroscope_samples(state_->video->walk, state_->video->config.gyroscope,
+                           state_->room.seed);
 }
 
 std::vector<TruthInstance> SynthSequence::instances() const {
@@ -179,7 +207,18 @@ std::vector<TruthInstance> SynthSequence::instances() const {
     if (!object.box.isEmpty())
       instances.push_back({object.id, object.name, room_class_id(object.class_name),
                            object.class_name, object.room});
+  if (state_->figure)
+    for (const RoomObject& object : state_->figure->objects())
+      instances.push_back({object.id, object.name, room_class_id(object.class_name),
+                           object.class_name, object.room});
   return instances;
+}
+
+std::vector<std::uint32_t> SynthSequence::moving() const {
+  std::vector<std::uint32_t> ids;
+  if (state_->figure)
+    for (const RoomObject& object : state_->figure->objects()) ids.push_back(object.id);
+  return ids;
 }
 
 Mesh SynthSequence::truth_mesh() const {

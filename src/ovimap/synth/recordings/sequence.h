@@ -8,10 +8,12 @@
 
 #include "ovimap/frames/frame/frame_source.h"
 #include "ovimap/geometry/mesh.h"
+#include "ovimap/synth/camera/gyroscope.h"
 #include "ovimap/synth/camera/sensor_noise.h"
 #include "ovimap/synth/camera/trajectory.h"
 #include "ovimap/synth/camera/video_camera.h"
 #include "ovimap/synth/camera/walk.h"
+#include "ovimap/synth/recordings/figure.h"
 #include "ovimap/synth/render/renderer.h"
 #include "ovimap/synth/render/truth_mesh.h"
 #include "ovimap/synth/rooms/room.h"
@@ -24,6 +26,7 @@ struct SynthSequenceConfig {
   TrajectoryConfig trajectory;
   SensorNoiseConfig sensor;
   TruthMeshConfig truth;
+  FigureConfig figure;  ///< who walks through the room
 };
 void list_fields(SynthSequenceConfig& config, ConfigFields& fields);
 
@@ -31,6 +34,7 @@ void list_fields(SynthSequenceConfig& config, ConfigFields& fields);
 struct VideoConfig {
   WalkConfig walk;
   VideoCameraConfig camera;
+  GyroscopeConfig gyroscope;
 };
 void list_fields(VideoConfig& config, ConfigFields& fields);
 
@@ -67,9 +71,14 @@ class SynthSequence final : public FrameSource {
   const std::vector<Pose>& true_poses() const;  ///< world_from_camera, without noise
   bool is_video() const;                        ///< whether frames have true times
 
-  /// In the order of their ids.
+  /// What the camera's gyroscope measures on the walk; empty where it has none.
+  std::vector<TurnRate> turn_rates() const;
+  /// In the order of their ids; a figure and what it carries come last.
   std::vector<TruthInstance> instances() const;
-  /// The labelled surfaces that at least one frame sees.
+  /// The ids of what moves: a figure and what it carries, or nothing.
+  std::vector<std::uint32_t> moving() const;
+  /// The labelled surfaces that at least one frame sees, or would see if nobody stood before them;
+  /// what moves is not among them.
   Mesh truth_mesh() const;
   /// Who made the models in the room, as a text to go beside anything drawn from it (Markdown).
   std::string notice() const;

@@ -81,17 +81,34 @@ struct Renderer::State {
   State(const SynthRoom& room, const RenderConfig& render_config)
       : config(render_config), tracer(room.objects), lighting(room, tracer.scene(), config) {}
 
-  Image<SurfacePoint> trace(const PinholeCamera& camera, const Pose& pose, bool with_color) const {
+  /// What the ray meets first: the room, or what moves in it.
+  SurfacePoint trace(const PinholeCamera& camera, const Pose& pose, double u, double v,
+                     bool with_color, const MovingThing& thing) const {
+    SurfacePoint point = tracer.trace(camera, pose, u, v, with_color);
+    if (thing.tracer == nullptr) return point;
+    SurfacePoint moving = thing.tracer->trace(camera, thing.world_from_thing.inverse() * pose, u, v,
+                                              with_color);
+    if (moving.id == 0 || (point.id != 0 && point.depth <= moving.depth)) return point;
+    const Eigen::Isometry3f world_from_thing = thing.world_from_thing.cast<float>();
+    moving.position = world_from_thing * moving.position;
+    moving.face_normal = world_from_thing.linear() * moving.face_normal;
+    moving.normal = world_from_thing.linear() * moving.normal;
+    return moving;
+  }
+
+  Image<SurfacePoint> trace(const PinholeCamera& camera, const Pose& pose, bool with_color,
+                            const MovingThing& thing) const {
     Image<SurfacePoint> surfaces(camera.width, camera.height);
     for_each_pixel(camera.width, camera.height, [&](int x, int y) {
-      surfaces.at(x, y) = tracer.trace(camera, pose, x, y, with_color);
+      surfaces.at(x, y) = trace(camera, pose, x, y, with_color, thing);
     });
     return surfaces;
   }
 
   /// Linear light after the tone curve.
   Image<Eigen::Vector3f> draw(const PinholeCamera& camera, const Pose& pose,
-                              const Image<SurfacePoint>& surfaces, float exposure) const {
+                              const Image<SurfacePoint>& surfaces, float exposure,
+                              const MovingThing& thing) const {
     const LightImage light = lighting.gather(surfaces);
     Image<Eigen::Vector3f> picture(camera.width, camera.height);
     for_each_pixel(camera.width, camera.height, [&](int x, int y) {
@@ -101,7 +118,7 @@ struct Renderer::State {
       }
       Eigen::Vector3f sum = Eigen::Vector3f::Zero();
       for (const auto& [dx, dy] : kSubPixels) {
-        const SurfacePoint point = tracer.trace(camera, pose, x + dx, y + dy, true);
+        const SurfacePoint point = trace(camera, pose, x + dx, y + dy, true, thing);
         sum += toned(point, borrowed_light(surfaces, light, point, x, y), exposure);
       }
       picture.at(x, y) = sum / kSubPixels.size();
@@ -145,17 +162,17 @@ RenderedView view_of(const Image<SurfacePoint>& surfaces) {
 }  // namespace
 
 RenderedView Renderer::render(const PinholeCamera& camera, const Pose& world_from_camera,
-                              bool with_color) const {
-  if (with_color) return render(camera, world_from_camera, Shutter{});
-  return view_of(state_->trace(camera, world_from_camera, false));
+                              bool with_color, const MovingThing& thing) const {
+  if (with_color) return render(camera, world_from_camera, Shutter{}, thing);
+  return view_of(state_->trace(camera, world_from_camera, false, thing));
 }
 
 RenderedView Renderer::render(const PinholeCamera& camera, const Pose& world_from_camera,
-                              const Shutter& shutter) const {
-  const Image<SurfacePoint> surfaces = state_->trace(camera, world_from_camera, true);
+                              const Shutter& shutter, const MovingThing& thing) const {
+  const Image<SurfacePoint> surfaces = state_->trace(camera, world_from_camera, true, thing);
   const float exposure = state_->config.exposure * shutter.exposure;
   RenderedView view = view_of(surfaces);
-  view.color = encoded(blurred(state_->draw(camera, world_from_camera, surfaces, exposure),
+  view.color = encoded(blurred(state_->draw(camera, world_from_camera, surfaces, exposure, thing),
                                view.depth, camera, world_from_camera, shutter.poses));
   return view;
 }

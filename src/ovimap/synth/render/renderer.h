@@ -10,6 +10,7 @@
 #include "ovimap/geometry/pose.h"
 #include "ovimap/image/image.h"
 #include "ovimap/synth/render/ray_scene.h"
+#include "ovimap/synth/render/surface_tracer.h"
 #include "ovimap/synth/rooms/room.h"
 
 namespace ovimap {
@@ -23,6 +24,13 @@ struct RenderConfig {
   float exposure = 1.f;          ///< factor on the light before the tone curve
 };
 void list_fields(RenderConfig& config, ConfigFields& fields);
+
+/// What moves in a room: its surfaces in a frame of its own, and where that is. It is lit as if it
+/// threw no shadow.
+struct MovingThing {
+  const SurfaceTracer* tracer = nullptr;  ///< null: nothing
+  Pose world_from_thing = Pose::Identity();
+};
 
 /// How the colour image is taken.
 struct Shutter {
@@ -51,10 +59,10 @@ class Renderer {
   Renderer& operator=(Renderer&&) noexcept;
 
   RenderedView render(const PinholeCamera& camera, const Pose& world_from_camera,
-                      bool with_color = true) const;
+                      bool with_color = true, const MovingThing& thing = {}) const;
   /// Depth and ids at the pose, colour as the shutter lets it in (see motion_blur.h).
   RenderedView render(const PinholeCamera& camera, const Pose& world_from_camera,
-                      const Shutter& shutter) const;
+                      const Shutter& shutter, const MovingThing& thing = {}) const;
 
   const RayScene& scene() const;
 

@@ -56,11 +56,6 @@ AlignmentQuality quality_of(const ResidualSums& sums) {
   return quality;
 }
 
-bool beyond_doubt(const AlignmentQuality& quality) {
-  return quality.agreement >= kSureAgreement &&
-         (quality.texture < kTexture || quality.correlation >= kSureCorrelation);
-}
-
 /// Of a level's residuals, those that err independently: a coarse pixel stands for four finer ones.
 double independent_share(std::size_t level, const FrameAlignmentConfig& config) {
   const auto halvings = static_cast<double>(std::max(level, kSurfaceLevel) - kSurfaceLevel);
@@ -104,6 +99,11 @@ void list_fields(FrameAlignmentConfig& config, ConfigFields& fields) {
              "directions that the data know less well are left to the prediction, metres");
   fields.add("max_iterations", config.max_iterations, 1, 100,
              "steps at the coarsest level; finer levels take fewer");
+}
+
+bool beyond_doubt(const AlignmentQuality& quality) {
+  return quality.agreement >= kSureAgreement &&
+         (quality.texture < kTexture || quality.correlation >= kSureCorrelation);
 }
 
 Alignment align(const Reference& reference, const TrackPyramid& frame, const Pose& predicted,

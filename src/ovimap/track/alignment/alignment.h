@@ -33,6 +33,9 @@ struct AlignmentQuality {
   double cost = 1e9;       ///< mean robust cost of a point; compares poses, not frames
 };
 
+/// Agrees so well that no other start need be tried.
+bool beyond_doubt(const AlignmentQuality& quality);
+
 struct Alignment {
   Pose reference_from_frame = Pose::Identity();
   Matrix6d information = Matrix6d::Zero();  ///< of the data alone: translation in metres, rotation

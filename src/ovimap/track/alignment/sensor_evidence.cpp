@@ -15,14 +15,14 @@ namespace {
 constexpr std::size_t kFewestFrames = 5;  // whose scatter says anything
 constexpr double kFreedom = 5;            // degrees of freedom of Student's t, as of residuals
 
-using Vector7d = Eigen::Matrix<double, 7, 1>;
-using Matrix7d = Eigen::Matrix<double, 7, 7>;
+constexpr int kFocal = 6, kDelay = 7;  // after the six unknowns of the pose
+using Row = Eigen::Matrix<double, 8, 1>;
 
-/// Normal equations of a pose's six unknowns and the logarithm of the focal length.
+/// Normal equations of a pose's six unknowns, the logarithm of the focal length and the delay.
 struct Sums {
-  Matrix7d h = Matrix7d::Zero();
-  Vector7d b = Vector7d::Zero();
-  void add(const Vector7d& j, double residual, double emphasis) {
+  Eigen::Matrix<double, 8, 8> h = Eigen::Matrix<double, 8, 8>::Zero();
+  Row b = Row::Zero();
+  void add(const Row& j, double residual, double emphasis) {
     const double weight = emphasis * (kFreedom + 1) / (kFreedom + residual * residual);
     h += weight * j * j.transpose();
     b -= weight * residual * j;
@@ -31,7 +31,7 @@ struct Sums {
 
 /// Both the frame's point and the surface, which was seen by the same camera, move sideways when
 /// the focal length grows: towards the optical axis of each.
-Vector7d geometric_row(const ReferencePoint& point, const PointResidual& at,
+Row geometric_row(const ReferencePoint& point, const PointResidual& at,
                        const Pose& reference_from_frame) {
   const Eigen::Vector3d normal = point.normal.cast<double>(), hit = at.hit.cast<double>(),
                         place = point.point.cast<double>();
@@ -39,14 +39,15 @@ Vector7d geometric_row(const ReferencePoint& point, const PointResidual& at,
   const Eigen::Vector3d moves =
       reference_from_frame.linear() * Eigen::Vector3d(-in_frame.x(), -in_frame.y(), 0) +
       Eigen::Vector3d(place.x(), place.y(), 0);
-  Vector7d row;
-  row << normal, hit.cross(normal), normal.dot(moves);
+  Row row;
+  row << normal, hit.cross(normal), normal.dot(moves), 0;
   return row;
 }
 
-/// Derivatives of the frame's intensity where a point projects.
-Vector7d photometric_row(const ReferencePoint& point, const PinholeCamera& camera,
-                         const Pose& reference_from_frame) {
+/// Derivatives of the frame's intensity where a point projects. Colour that comes a frame late shows
+/// the scene from a pose that is `motion_change` farther on.
+Row photometric_row(const ReferencePoint& point, const PinholeCamera& camera,
+                    const Pose& reference_from_frame, const Vector6d& motion_change) {
   const Eigen::Vector3d place = point.point.cast<double>();
   const double inverse = 1 / place.z(), du = static_cast<double>(point.gradient.x() * camera.fx),
                dv = static_cast<double>(point.gradient.y() * camera.fy);
@@ -59,14 +60,14 @@ Vector7d photometric_row(const ReferencePoint& point, const PinholeCamera& camer
   const Eigen::Vector3d growth =
       reference_from_frame.linear() * Eigen::Vector3d(seen.x(), seen.y(), 0);
   const double focal = by_point.dot(growth - Eigen::Vector3d(place.x(), place.y(), 0));
-  Vector7d row;
-  row << motion, focal;
+  Row row;
+  row << motion, focal, motion.dot(motion_change);
   return row;
 }
 
 Sums sums_of(const ReferenceLevel& reference, const TrackLevel& frame,
-             const Pose& reference_from_frame, const ResidualScale& scale,
-             const FrameAlignmentConfig& config) {
+             const Pose& reference_from_frame, const Vector6d& motion_change,
+             const ResidualScale& scale, const FrameAlignmentConfig& config) {
   const Eigen::Isometry3f forth = reference_from_frame.cast<float>(),
                           back = reference_from_frame.inverse().cast<float>();
   Sums sums;
@@ -81,29 +82,29 @@ Sums sums_of(const ReferenceLevel& reference, const TrackLevel& frame,
     const auto unit = static_cast<double>(scale.photometric);
     const double off =
         static_cast<double>(scale.gain * at.intensity + scale.bias - point.intensity) / unit;
-    sums.add(photometric_row(point, reference.camera, reference_from_frame) / unit, off,
-             static_cast<double>(config.photometric_weight));
+    sums.add(photometric_row(point, reference.camera, reference_from_frame, motion_change) / unit,
+             off, static_cast<double>(config.photometric_weight));
   }
   return sums;
 }
 
-}  // namespace
-
-void SensorEvidence::add(const ReferenceLevel& reference, const TrackLevel& frame,
-                         const Pose& reference_from_frame, const FrameAlignmentConfig& config) {
-  ResidualScale scale;
-  scale = sum_residuals(reference, frame, reference_from_frame, scale, config, false)
-              .next_scale(scale);
-  const Sums sums = sums_of(reference, frame, reference_from_frame, scale, config);
+/// Adds what a frame says of one unknown where the pose is whatever fits best.
+void learn(const Sums& sums, int unknown, UnknownEvidence& evidence) {
   // A little of each direction is known beforehand, so that one that is not seen is no division by 0.
   const Eigen::LDLT<Matrix6d> pose(sums.h.topLeftCorner<6, 6>() + Matrix6d::Identity());
-  const Vector6d shared = sums.h.col(6).head<6>(), solved = pose.solve(shared);
-  const double information = sums.h(6, 6) - shared.dot(solved);
+  const Vector6d shared = sums.h.col(unknown).head<6>(), solved = pose.solve(shared);
+  const double information = sums.h(unknown, unknown) - shared.dot(solved);
   if (information > 0)
-    parts_.push_back({information, sums.b[6] - solved.dot(sums.b.head<6>())});
+    evidence.add(information, sums.b[unknown] - solved.dot(sums.b.head<6>()));
 }
 
-std::optional<Estimate> SensorEvidence::log_focal_ratio() const {
+}  // namespace
+
+void UnknownEvidence::add(double information, double score) {
+  parts_.push_back({information, score});
+}
+
+std::optional<Estimate> UnknownEvidence::estimate() const {
   if (parts_.size() < kFewestFrames) return std::nullopt;
   double information = 0, score = 0;
   for (const Part& part : parts_) information += part.information, score += part.score;
@@ -115,6 +116,19 @@ std::optional<Estimate> SensorEvidence::log_focal_ratio() const {
   }
   estimate.sigma = std::sqrt(squares) / information;
   return estimate;
+}
+
+void SensorEvidence::add(const ReferenceLevel& reference, const TrackLevel& frame,
+                         const Pose& reference_from_frame,
+                         const std::optional<Vector6d>& motion_change,
+                         const FrameAlignmentConfig& config) {
+  ResidualScale scale;
+  scale = sum_residuals(reference, frame, reference_from_frame, scale, config, false)
+              .next_scale(scale);
+  const Sums sums = sums_of(reference, frame, reference_from_frame,
+                            motion_change.value_or(Vector6d::Zero()), scale, config);
+  learn(sums, kFocal, focal_);
+  if (motion_change) learn(sums, kDelay, delay_);
 }
 
 }  // namespace ovimap

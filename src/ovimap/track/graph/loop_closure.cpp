@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "ovimap/base/config.h"
+#include "ovimap/track/places/place_view.h"
 
 namespace ovimap {
 
@@ -52,6 +53,48 @@ std::optional<PoseEdge> verified(const Keyframe& earlier, const Keyframe& later,
   return edge;
 }
 
+/// The keyframe that was nearest to keyframe `at` before the camera came back to it; nullopt: none
+/// was as near as the drift makes possible.
+std::optional<std::size_t> nearest_place(std::size_t at, const std::vector<Keyframe>& keyframes,
+                                         const std::vector<double>& paths,
+                                         const LoopConfig& config) {
+  std::optional<std::size_t> nearest;
+  double least = 0;
+  for (std::size_t i = 0; i < at && paths[at] - paths[i] >= config.min_path_m; ++i) {
+    const Pose &place = keyframes[i].world_from_camera, &here = keyframes[at].world_from_camera;
+    const double off_m = (place.inverse() * here).translation().norm();
+    if (off_m > config.near_m + config.drift_per_m * (paths[at] - paths[i])) continue;
+    const double rank = place_distance(place, here);
+    if (!nearest || rank < least) nearest = i, least = rank;
+  }
+  return nearest;
+}
+
+/// The keyframes of the way through a place, old ones alone: they agree with each other.
+std::span<const Keyframe> way_through(std::size_t place, std::size_t at,
+                                      const std::vector<Keyframe>& keyframes,
+                                      const std::vector<double>& paths, const LoopConfig& config) {
+  std::size_t first = place, end = place + 1;
+  while (first > 0 && paths[place] - paths[first - 1] <= config.way_m) --first;
+  while (end < at && paths[end] - paths[place] <= config.way_m &&
+         paths[at] - paths[end] >= config.min_path_m)
+    ++end;
+  return std::span(keyframes).subspan(first, end - first);
+}
+
+/// The edge to `place` when keyframe `later` shows what the keyframes on the way through it show
+/// from where it seems to be.
+std::optional<PoseEdge> verified(std::span<const Keyframe> way, const Keyframe& place,
+                                 const Keyframe& later, const TrackConfig& track) {
+  Keyframe seen{later.index, later.world_from_camera, {}, {}};
+  seen.image = place_view(way, later.image.camera, later.world_from_camera);
+  std::optional<PoseEdge> edge = verified(seen, later, track);
+  if (edge)
+    edge->from_to =
+        place.world_from_camera.inverse() * later.world_from_camera * edge->from_to;
+  return edge;
+}
+
 }  // namespace
 
 void list_fields(LoopConfig& config, ConfigFields& fields) {
@@ -64,6 +107,8 @@ void list_fields(LoopConfig& config, ConfigFields& fields) {
              "keyframes so near each other are held against each other as well, metres");
   fields.add("drift_per_m", config.drift_per_m, 0.f, 1.f,
              "and by this much farther ones for each metre of way between them");
+  fields.add("way_m", config.way_m, 0.f, 1000.f,
+             "keyframes of so much way to either side of a place show it together, metres");
   fields.add("step_sigma_m", config.step_sigma_m, 1e-5f, 10.f,
              "standard deviation of the motion between two keyframes, metres");
   fields.add("step_sigma_rad", config.step_sigma_rad, 1e-5f, 10.f,
@@ -94,16 +139,29 @@ std::size_t LoopGraph::take(const std::vector<Keyframe>& keyframes) {
         keyframes[at - 1].world_from_camera.inverse() * keyframes[at].world_from_camera;
     edges_.push_back({at - 1, at, step, config_.step_sigma_m, config_.step_sigma_rad, false});
     paths_m_.push_back(paths_m_.back() + step.translation().norm());
-    for (const Candidate& candidate : candidates_of(at, keyframes, paths_m_, config_)) {
-      ++candidates_;
-      auto edge = verified(keyframes[candidate.place], keyframes[at], track_);
-      if (!edge) continue;
-      edge->from = candidate.place, edge->to = at;
-      edge->sigma_m = config_.loop_sigma_m, edge->sigma_rad = config_.loop_sigma_rad;
-      edges_.push_back(*edge);
-      ++found;
-    }
+    found += add_loops(at, keyframes);
   }
+  return found;
+}
+
+std::size_t LoopGraph::add_loops(std::size_t at, const std::vector<Keyframe>& keyframes) {
+  std::size_t found = 0;
+  const auto add = [&](std::optional<PoseEdge> edge, std::size_t place) {
+    ++candidates_;
+    if (!edge) return;
+    edge->from = place, edge->to = at;
+    edge->sigma_m = config_.loop_sigma_m, edge->sigma_rad = config_.loop_sigma_rad;
+    edges_.push_back(*edge);
+    ++found;
+  };
+  for (const Candidate& candidate : candidates_of(at, keyframes, paths_m_, config_))
+    add(verified(keyframes[candidate.place], keyframes[at], track_), candidate.place);
+  if (found > 0) return found;
+  // No single keyframe shows the place from here; several together may.
+  if (const auto place = nearest_place(at, keyframes, paths_m_, config_))
+    add(verified(way_through(*place, at, keyframes, paths_m_, config_), keyframes[*place],
+                 keyframes[at], track_),
+        *place);
   return found;
 }
 

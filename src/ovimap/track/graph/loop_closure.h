@@ -13,6 +13,7 @@ struct LoopConfig {
   float min_similarity = 0.6f;
   float near_m = 0.5f;  ///< keyframes estimated so near each other are held against each other
   float drift_per_m = 0.02f;  ///< as well, this much farther for each metre between them
+  float way_m = 3.f;  ///< keyframes of so much way to either side of a place show it together
   float step_sigma_m = 0.008f, step_sigma_rad = 0.006f;  ///< of the motion between two keyframes
   float loop_sigma_m = 0.01f, loop_sigma_rad = 0.006f;   ///< of a verified place
   float most_sigmas = 8.f;  ///< loops that the poses of all contradict more are dropped
@@ -39,6 +40,8 @@ class LoopGraph {
   /// Takes those of `keyframes`, which are in the order in which they were taken, that came since
   /// the last time. Finds places that they show again (their codes, or poses that the drift makes
   /// possible), aligns the frames of each pair and believes what a lost frame would have to reach.
+  /// Where no pair does, the frame is held against what the keyframes on the way through the nearest
+  /// place show together (place_view): the camera may come by it at another angle.
   /// The way to a new keyframe is that of its pose, and stays that when poses are corrected later.
   /// Returns how many loops are new.
   std::size_t take(const std::vector<Keyframe>& keyframes);
@@ -49,6 +52,8 @@ class LoopGraph {
   double path_m() const { return paths_m_.empty() ? 0 : paths_m_.back(); }
 
  private:
+  std::size_t add_loops(std::size_t at, const std::vector<Keyframe>& keyframes);
+
   TrackConfig track_;
   LoopConfig config_;
   std::vector<PoseEdge> edges_;

@@ -94,5 +94,60 @@ TEST(LoopClosure, FindsThePlaceThatWasSeenAgain) {
   EXPECT_LT(fixture::distance_m(closure.poses.back(), truth.back()), 0.02);
 }
 
+/// Looks round, goes away and comes back, tilted by more than two keyframes may differ.
+struct TiltedReturn {
+  TiltedReturn() {
+    for (int i = -3; i <= 3; ++i) add(turned(start(), 0.3 * i, 0), turned(start(), 0.3 * i, 0));
+    const Pose away = turned(start(), M_PI, 0);
+    for (int i = 0; i <= 8; ++i) {
+      Pose pose = away;
+      pose.translation() += Eigen::Vector3d(0.25 * (i < 5 ? i : 8 - i), 0, 0);
+      add(pose, drifted(pose));
+    }
+    config.min_path_m = 1.5f;
+    config.min_similarity = 1;  // no code is so alike
+  }
+  static Pose start() { return fixture::room_pose(10); }
+  static Pose turned(Pose pose, double yaw, double roll) {
+    pose.rotate(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitY()));
+    pose.rotate(Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitZ()));
+    return pose;
+  }
+  static Pose drifted(Pose pose) {
+    pose.translation() += Eigen::Vector3d(0.03, -0.01, 0.02);
+    return pose;
+  }
+  static Pose back() {
+    Pose pose = turned(start(), 0.1, 0.8);
+    pose.translation() += Eigen::Vector3d(0.15, 0.05, 0.1);
+    return pose;
+  }
+  void add(const Pose& real, const Pose& believed) {
+    keyframes.push_back(
+        make_keyframe(make_pyramid(camera.take(real)), std::ssize(keyframes) * 10, believed));
+  }
+
+  fixture::RoomCamera camera;
+  std::vector<Keyframe> keyframes;
+  LoopConfig config;
+};
+
+TEST(LoopClosure, APlaceIsKnownByWhatItsKeyframesShowTogether) {
+  TiltedReturn way;
+  const std::size_t before = close_loops(way.keyframes, {}, way.config).closed;
+  way.add(TiltedReturn::back(), TiltedReturn::drifted(TiltedReturn::back()));
+  const LoopClosure closure = close_loops(way.keyframes, {}, way.config);
+  ASSERT_EQ(closure.closed, before + 1);
+  EXPECT_LT(fixture::distance_m(closure.poses.back(), TiltedReturn::back()), 0.015);
+}
+
+TEST(LoopClosure, AnotherPlaceWhereOneWasExpectedIsNone) {
+  TiltedReturn way;
+  const std::size_t before = close_loops(way.keyframes, {}, way.config).closed;
+  const Pose elsewhere = TiltedReturn::turned(TiltedReturn::back(), 2.4, 0);
+  way.add(elsewhere, TiltedReturn::drifted(TiltedReturn::back()));
+  EXPECT_EQ(close_loops(way.keyframes, {}, way.config).closed, before);
+}
+
 }  // namespace
 }  // namespace ovimap

@@ -7,6 +7,9 @@
 
 namespace ovimap {
 
+/// How far two poses are apart, metres: one that looks another way counts as farther.
+double place_distance(const Pose& from, const Pose& to);
+
 /// A frame that stands for a place.
 struct Keyframe {
   std::int64_t index = 0;  ///< of the frame in its source
@@ -20,6 +23,10 @@ Keyframe make_keyframe(const TrackPyramid& pyramid, std::int64_t index,
 
 /// The levels that a keyframe has: its finest is empty.
 TrackPyramid pyramid_of(const Keyframe& keyframe);
+
+/// The keyframes nearest to a pose, at most `count`, the nearest first.
+std::vector<Keyframe> nearest_keyframes(const std::vector<Keyframe>& keyframes,
+                                        const Pose& world_from_camera, std::size_t count);
 
 /// Whether the camera went far enough from a keyframe for another one.
 struct KeyframeSpacing {

@@ -22,6 +22,9 @@ void list_fields(TrackConfig& config, ConfigFields& fields) {
              "most that a camera moves between frames, metres");
   fields.add("max_step_rad", config.max_step_rad, 0.f, 3.2f,
              "most that a camera turns between frames, radians");
+  fields.add("gyroscope", config.gyroscope, "whether a gyroscope's turns are predictions");
+  fields.add("gyroscope_sigma_rad", config.gyroscope_sigma_rad, 1e-4f, 10.f,
+             "standard deviation of a frame's turn as a gyroscope gives it, radians");
   fields.add("reference_overlap", config.reference_overlap, 0.f, 1.f,
              "the map's surface is cast anew when less of it is in sight");
   fields.add("reference_frames", config.reference_frames, 1, 10000,
@@ -40,10 +43,14 @@ void list_fields(TrackConfig& config, ConfigFields& fields) {
              "min_correlation of a frame that was lost");
   fields.add("max_range_m", config.max_range_m, 0.1f, 1000.f,
              "how far the map's surface is cast, metres");
+  fields.add("part_frames", config.part_frames, 0, 1000000,
+             "lost frames on end, with depth, that are mapped by themselves; 0: none");
   fields.add("focal_off", config.focal_off, 0.f, 10.f,
              "a focal length is doubted that seems to be off by a larger share");
-  fields.add("focal_sigmas", config.focal_sigmas, 0.f, 1000.f,
-             "and that is as many standard errors");
+  fields.add("delay_frames", config.delay_frames, 0.f, 1000.f,
+             "time stamps are doubted that seem to be off by more, frames");
+  fields.add("sensor_sigmas", config.sensor_sigmas, 0.f, 1000.f,
+             "and either is as many standard errors");
 }
 
 bool believable(const AlignmentQuality& quality, const TrackConfig& config, bool lost) {

@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ovimap/geometry/camera.h"
+#include "ovimap/geometry/pose.h"
+#include "ovimap/image/image.h"
+
+namespace ovimap {
+
+/// Whether no part of a sphere (camera frame, metres) may show in the image: all of it lies off one
+/// side of the view's pyramid.
+inline bool beyond_view(const PinholeCamera& camera, const Eigen::Vector3f& center, float radius) {
+  const auto beyond = [&](float offset, float slope) {
+    return offset - slope * center.z() > radius * std::sqrt(1.f + slope * slope);
+  };
+  return beyond(center.x(), (static_cast<float>(camera.width) - camera.cx) / camera.fx) ||
+         beyond(-center.x(), (camera.cx + 1.f) / camera.fx) ||
+         beyond(center.y(), (static_cast<float>(camera.height) - camera.cy) / camera.fy) ||
+         beyond(-center.y(), (camera.cy + 1.f) / camera.fy);
+}
+
+/// Least and furthest free depth by tile of the image: tells of spheres whether all of one, or any,
+/// lies in free space.
+class LeastTiles {
+ public:
+  static constexpr int kTile_px = 8;
+
+  LeastTiles(const PinholeCamera& camera, const Image<float>& free_m)
+      : camera_(camera),
+        least_m_((free_m.width() + kTile_px - 1) / kTile_px,
+                 (free_m.height() + kTile_px - 1) / kTile_px) {
+    least_m_.fill(std::numeric_limits<float>::max());
+    for (int y = 0; y < free_m.height(); ++y) {
+      const float* row = free_m.row(y);
+      float* into = least_m_.row(y / kTile_px);
+      for (int x = 0; x < free_m.width(); ++x)
+        into[x / kTile_px] = std::min(into[x / kTile_px], row[x]);
+    }
+    for (const float least : least_m_) most_m_ = std::max(most_m_, least);
+  }
+
+  /// Whether all of a sphere (camera frame, metres) shows in the image, and every pixel of the
+  /// tiles it shows in runs free to behind it.
+  bool all_free(const Eigen::Vector3f& center, float radius) const {
+    const float near_m = center.z() - radius, far_m = center.z() + radius;
+    if (near_m < kNear_m || far_m >= most_m_) return false;
+    // The tangent planes through the eye lie nearer in; this box of the sphere's is wider.
+    const auto lowest = [&](float edge) { return edge / (edge < 0.f ? near_m : far_m); };
+    const auto highest = [&](float edge) { return edge / (edge > 0.f ? near_m : far_m); };
+    const float left = camera_.cx + camera_.fx * lowest(center.x() - radius),
+                right = camera_.cx + camera_.fx * highest(center.x() + radius),
+                top = camera_.cy + camera_.fy * lowest(center.y() - radius),
+                bottom = camera_.cy + camera_.fy * highest(center.y() + radius);
+    if (left < 0.f || top < 0.f || right > static_cast<float>(camera_.width - 1) ||
+        bottom > static_cast<float>(camera_.height - 1))
+      return false;
+    for (int y = tile(top); y <= tile(bottom); ++y)
+      for (int x = tile(left); x <= tile(right); ++x)
+        if (least_m_.at(x, y) <= far_m) return false;
+    return true;
+  }
+
+  /// False only where no part of the sphere may be in view before the furthest free depth.
+  bool any_free(const Eigen::Vector3f& center, float radius) const {
+    if (center.z() + radius < kNear_m || center.z() - radius >= most_m_) return false;
+    return !beyond_view(camera_, center, radius);
+  }
+
+  /// A box of the world around the part of the view that may be free.
+  Eigen::AlignedBox3d reach(const Pose& world_from_camera) const {
+    Eigen::AlignedBox3d box(world_from_camera.translation());
+    for (const float u : {0.f, static_cast<float>(camera_.width - 1)})
+      for (const float v : {0.f, static_cast<float>(camera_.height - 1)})
+        box.extend(world_from_camera * camera_.unproject(u, v, most_m_).cast<double>());
+    return box;
+  }
+
+ private:
+  static constexpr float kNear_m = 0.05f;
+  static int tile(float pixel) { return static_cast<int>(pixel + 0.5f) / kTile_px; }
+
+  const PinholeCamera& camera_;
+  Image<float> least_m_;
+  float most_m_ = 0;
+};
+
+}  // namespace ovimap

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "ovimap/map/fusion/seen_free.h"
+#include "ovimap/pipeline/motion/motion_config.h"
+
+namespace ovimap {
+
+/// A piece of surface that moves, as one frame shows it.
+struct MovingPatch {
+  int area_px = 0;
+  int core_px = 0;          ///< of those, pixels that contradict space that was seen empty
+  Eigen::AlignedBox3f box;  ///< world, metres
+  Eigen::Vector3f centroid = Eigen::Vector3f::Zero();  ///< likewise
+};
+
+/// What moves in a frame.
+struct MovingPixels {
+  IdImage ids;  ///< depth image size, patch of each pixel, [id - 1]; 0: it stands still; empty: all do
+  std::vector<MovingPatch> patches;
+  std::vector<BlockIndex> cells;  ///< of seen-empty space in which surface is seen, whatever it is
+  bool refused = false;  ///< more would move than the map confirms: it is the frame that is wrong
+};
+
+/// Finds surface where frames had looked through, and what hangs together with it. `observation` must
+/// have sigma_m and plane_slope; `map` is as it was before the frame. What lies within a voxel or two
+/// of the map's surface stands still. Pure; the same bits for every number of threads.
+MovingPixels find_moving(const VoxelMap& map, const SeenFree& space, const Observation& observation,
+                         const MotionConfig& config);
+
+/// The pixels in which surface contradicts seen-empty space: what find_moving begins with. Not 0:
+/// it does.
+Image<std::uint8_t> contradicting_pixels(const VoxelMapConfig& map, const SeenFree& space,
+                                         const Observation& observation, const MotionConfig& config);
+
+}  // namespace ovimap
