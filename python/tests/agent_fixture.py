@@ -31,7 +31,7 @@ def serving(*arguments, port=0):
         finally:
             if server.poll() is None:
                 server.send_signal(signal.SIGINT)
-                server.wait(timeout=60)
+                server.wait(timeout=300)
 
 
 def environment(**more):

@@ -22,7 +22,7 @@ pytest.importorskip("cyclonedds", reason="cyclonedds is not installed; tools/set
 pytest.importorskip("rosbags")
 from ovimap.ros import messages, types
 from ovimap.ros.messages import POINT, header_of
-from ovimap.ros.node import CLOCK, LATCHED, SENSOR_DATA, STATIC_TRANSFORMS, TRANSFORMS, Node, Quality
+from ovimap.ros.node import CLOCK, EVENTS, LATCHED, SENSOR_DATA, STATIC_TRANSFORMS, TRANSFORMS, Node, Quality
 from ros_fixture import image, info, moved, transforms
 
 PROGRAM = os.environ.get("OVIMAP_PROGRAM")
@@ -335,6 +335,29 @@ def test_a_map_that_is_corrected_or_replaced_is_followed(node, named_map, tmp_pa
         until(lambda: "Tea pot" in names())
         bridge.end()
         assert len(bridge.lines) == 1
+
+
+@needs_program
+def test_what_becomes_of_standing_queries_is_told_also_to_who_comes_late(node, named_map, tmp_path):
+    path = tmp_path / "watched.ovimap"
+    shutil.copyfile(named_map[0], path)
+
+    def told_to(subscription, count, events=()):
+        def enough():
+            nonlocal events
+            events = (*events, *(json.loads(message.data) for message in subscription.take()))
+            return len(events) >= count and events
+
+        return [(event["event"], event["query"], event.get("object", {}).get("id")) for event in until(enough)]
+
+    with ovimap_ros(path, "--name", "/watched", "--no-grid", "--watch", "Tea pot", "--watch", "elephant skeleton"):
+        events = node.subscription(messages.TEXT_LINE, "/watched/events", EVENTS)
+        found = ("found", "Tea pot", named_map[1])
+        assert told_to(events, 1) == [found]
+        subprocess.run([PROGRAM, "edit", path, "hide", str(named_map[1])], check=True, capture_output=True)
+        gone = ("gone", "Tea pot", named_map[1])
+        assert told_to(events, 1) == [gone]
+        assert told_to(node.subscription(messages.TEXT_LINE, "/watched/events", EVENTS), 2) == [found, gone]
 
 
 @needs_program

@@ -316,7 +316,7 @@ def test_a_map_that_is_being_made_and_a_server_that_goes_away(room, tmp_path):
             assert (told["event"], told["query"]) == ("found", "chair") and told["map"] == server.address.split("/")[2]
             server.send_signal(signal.SIGINT)
             assert line()["event"] == "fault"
-            server.wait(timeout=60)
+            server.wait(timeout=300)
             port = server.address.split(":")[2].strip("/")
             with serving(out, port=port):  # the finished map at the same place: the chair is there as before
                 hide_served(open_map(server.address), "chair")

@@ -15,8 +15,10 @@ from typing import TYPE_CHECKING
 from .._ovimap import Error
 from ..command_line import DONE, run_command
 from ..sender import FrameSender, SendError
+from ..watching import HOLD_S
 from .reporter import Reporter
 from .source import Source, is_address, open_source
+from .standing import Standing
 
 if TYPE_CHECKING:
     from .mapping import Mapping
@@ -76,10 +78,11 @@ def _publish(options: argparse.Namespace, mapping: Mapping | None, reporter: Rep
     """Until it is to stop; the command ends with it. Raises Error for a map that is none from the beginning."""
     publishing: Publishing | None = None
     try:
+        standing = Standing(options.map, options.watch, options.hold, options.cafile, reporter)
         while not stop.is_set():
             try:
                 with open_source(options.map) as source:
-                    publishing = _publishing(options, source, mapping, reporter, publishing)
+                    publishing = _publishing(options, source, mapping, standing, reporter, publishing)
                     while not stop.is_set() and not source.changed():
                         publishing.update()
                         publishing.serve(UPDATE_S)
@@ -92,7 +95,8 @@ def _publish(options: argparse.Namespace, mapping: Mapping | None, reporter: Rep
         stop.set()
 
 
-def _publishing(options: argparse.Namespace, source: Source, mapping: Mapping | None, reporter: Reporter, before: Publishing | None) -> Publishing:
+def _publishing(options: argparse.Namespace, source: Source, mapping: Mapping | None, standing: Standing, reporter: Reporter,
+                before: Publishing | None) -> Publishing:  # fmt: skip
     """That of before, if there is one, with the map as it is now."""
     from .node import Node
     from .publishing import Publishing
@@ -105,7 +109,7 @@ def _publishing(options: argparse.Namespace, source: Source, mapping: Mapping | 
     if before is not None:
         before.follow(server)
     made = before or Publishing(Node(options.domain, name="ovimap_map"), server, frame, reporter, name=options.name, most_points=options.points,
-                                simulated_clock=options.sim_time, robot=_robot(options))  # fmt: skip
+                                simulated_clock=options.sim_time, robot=_robot(options), standing=standing)  # fmt: skip
     if source.file is not None and not options.no_grid:
         _grid(made, source.file, reporter)
     reporter.again("source")
@@ -158,6 +162,9 @@ def _parser() -> argparse.ArgumentParser:
     out.add_argument("--sim-time", action="store_true", help="stamp messages with the time of /clock")
     out.add_argument("--no-grid", action="store_true", help="leave the occupancy grid out")
     out.add_argument("--no-publish", action="store_true", help="send frames alone")
+    out.add_argument("--watch", metavar="WORDS", action="append", default=[], help='tell once when such a thing is found, and when it is gone. Repeatable')
+    out.add_argument("--hold", type=float, default=HOLD_S, metavar="SECONDS",
+                     help="what is found on a map that is being made is told when it has stood so long (%(default)g)")  # fmt: skip
     robot = parser.add_argument_group("the robot, for the service approach (docs/robots.md, \"Where to stand\")")
     robot.add_argument("--radius", type=float, metavar="M", help="of the robot, which is round (0.25)")
     robot.add_argument("--camera-height", type=float, metavar="M", help="of its camera (1.2)")

@@ -21,6 +21,7 @@ GRID = "nav_msgs/msg/OccupancyGrid"
 POSES = "geometry_msgs/msg/PoseArray"
 WAY = "nav_msgs/msg/Path"
 TRANSFORM = "tf2_msgs/msg/TFMessage"
+TEXT_LINE = "std_msgs/msg/String"
 FLOAT32, UINT32 = 7, 6  # of sensor_msgs/PointField
 CUBE, TEXT, ADD, DELETE_ALL = 1, 9, 0, 3  # of visualization_msgs/Marker
 POINT = np.dtype([("x", "<f4"), ("y", "<f4"), ("z", "<f4"), ("rgb", "<u4"), ("instance", "<u4")])

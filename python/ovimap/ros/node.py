@@ -52,6 +52,7 @@ SENSOR_DATA = Quality(depth=5, reliable=False)
 TRANSFORMS = Quality(depth=100)
 STATIC_TRANSFORMS = Quality(depth=100, latched=True)
 LATCHED = Quality(depth=1, latched=True)
+EVENTS = Quality(depth=100, latched=True)
 CLOCK = Quality(depth=1, reliable=False)
 SERVICE = Quality(depth=10)
 

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import json
 import pathlib
 import time
 from collections.abc import Callable
@@ -16,6 +17,7 @@ from .messages import (
     DETECTIONS,
     GRID,
     MARKERS,
+    TEXT_LINE,
     TRANSFORM,
     cloud_message,
     detections_message,
@@ -26,9 +28,10 @@ from .messages import (
     poses_message,
     way_message,
 )
-from .node import CLOCK, LATCHED, STATIC_TRANSFORMS, Node
+from .node import CLOCK, EVENTS, LATCHED, STATIC_TRANSFORMS, Node
 from .reporter import Reporter
 from .served import MapServer
+from .standing import Standing
 from .types import APPROACH, QUERY, make
 
 SIMULATED_CLOCK = "rosgraph_msgs/msg/Clock"
@@ -53,20 +56,22 @@ class Clock:
 
 
 class Publishing:
-    """Publishes under `name`, "/ovimap" as a rule: objects, detections, markers, grid; and the services query and approach.
+    """Publishes under `name`, "/ovimap" as a rule: objects, detections, markers, grid; what becomes of
+    standing queries; and the services query and approach.
 
     frame: gives the world's frame by now, in which all of it is; "" while there is none. most_points: of the cloud. robot: its
     settings, as POST /api/approach takes them."""
 
     def __init__(self, node: Node, server: MapServer, frame: Callable[[], str], reporter: Reporter, *, name: str = "/ovimap",
-                 most_points: int = 500_000, simulated_clock: bool = False, robot: dict[str, float] | None = None) -> None:  # fmt: skip
+                 most_points: int = 500_000, simulated_clock: bool = False, robot: dict[str, float] | None = None, standing: Standing | None = None) -> None:  # fmt: skip
         self._node, self._frame, self._report, self._most_points = node, frame, reporter, most_points
-        self._robot = robot or {}
+        self._robot, self._standing = robot or {}, standing
         self.follow(server)
         self._clock = Clock(node, simulated_clock)
         self._out = {kind: node.publisher(kind, f"{name}/{topic}", LATCHED)
                      for kind, topic in ((CLOUD, "objects"), (DETECTIONS, "detections"), (MARKERS, "markers"), (GRID, "grid"))}
         self._frames = node.publisher(TRANSFORM, "/tf_static", STATIC_TRANSFORMS)
+        self._events = node.publisher(TEXT_LINE, f"{name}/events", EVENTS)
         self._services = [node.service(QUERY, f"{name}/query", self._answer), node.service(APPROACH, f"{name}/approach", self._stand)]
 
     def follow(self, server: MapServer) -> None:
@@ -82,6 +87,11 @@ class Publishing:
             self._clock.listen()
             for service in self._services:
                 service.serve()
+            self._tell()
+
+    def _tell(self) -> None:
+        for event in self._standing.events() if self._standing else ():
+            self._events.publish(make(TEXT_LINE, data=json.dumps(event.as_dict())))
 
     def update(self) -> None:
         """Publishes the map if it is another than last time. What the server refuses is said once."""

@@ -59,6 +59,7 @@ MESSAGES = [
          "color": {"r": 1.0, "g": 1.0, "b": 1.0, "a": 1.0}, "text": "mug 12"}]}),
     ("geometry_msgs/msg/PoseArray", {"header": HEADER, "poses": [POSE, POSE]}),
     ("nav_msgs/msg/Path", {"header": HEADER, "poses": [{"header": HEADER, "pose": POSE}, {"header": HEADER, "pose": POSE}]}),
+    ("std_msgs/msg/String", {"data": "mug 12"}),
     ("std_srvs/srv/SetBool_Request", {"data": True}),
     ("std_srvs/srv/SetBool_Response", {"success": True, "message": "done"}),
 ]  # fmt: skip
