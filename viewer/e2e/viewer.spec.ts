@@ -103,6 +103,26 @@ test('selects in both directions', async ({ page, map }) => {
   await expect(page.locator('.card')).toBeHidden();
 });
 
+test('lists the parts of an object beside its neighbours, and outlines them', async ({
+  page,
+  map,
+}) => {
+  const box = { min: [0, 0, 0], max: [0.4, 0.3, 0.2] };
+  await page.route(/api\/instances\/\d+$/, async (route) => {
+    const response = await route.fetch();
+    const parts = [1, 2].map((number) => ({ number, box, centroid: [0.2, 0.1, 0.1], points: 50 }));
+    await route.fulfill({ json: { ...(await response.json()), parts } });
+  });
+  await open(page, map.address);
+  await page.locator('.row').first().click();
+  await expect(page.locator('.card .parts button')).toHaveCount(2);
+  await expect(page.locator('.card .neighbors')).toContainText('Neighbours');
+  const before = await page.locator('canvas').screenshot();
+  await page.locator('.card .parts button').first().click();
+  await page.waitForTimeout(1000);
+  expect((await page.locator('canvas').screenshot()).equals(before)).toBe(false);
+});
+
 test('keeps a name through a reload', async ({ page, map }) => {
   await open(page, map.address);
   await page.locator('.row').first().click();

@@ -163,12 +163,8 @@ export class ObjectCard {
       );
       return h('li', {}, button);
     });
-    return h(
-      'div',
-      { class: 'neighbors parts' },
-      rows.length > 0 && h('h3', {}, 'Parts'),
-      h('ul', {}, ...rows),
-    );
+    if (rows.length === 0) return h('div', { class: 'parts' });
+    return h('div', { class: 'parts' }, h('h3', {}, 'Parts'), h('ul', {}, ...rows));
   }
 
   private neighbors(neighbors: readonly Neighbor[], context: CardContext): HTMLElement {
