@@ -33,6 +33,7 @@ ObservedSpace::ObservedSpace(const VoxelMap& map, const PinholeCamera& camera,
     const Pose& pose = world_from_camera[(2 * i + 1) * frames / (2 * count)];
     views_[i].camera_from_world = pose.inverse().cast<float>();
     views_[i].depth = cast_rays(map, camera_, pose, config.max_range_m).depth;
+    map.trim();
   }
 }
 

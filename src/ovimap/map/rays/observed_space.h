@@ -29,7 +29,8 @@ void list_fields(ObservedSpaceConfig& config, ConfigFields& fields);
 /// of it was empty. Rays that meet no surface tell nothing.
 class ObservedSpace {
  public:
-  /// Casts the views, a frame of `world_from_camera` each. `camera` is the depth camera.
+  /// Casts the views, a frame of `world_from_camera` each, and lets the map make room in between.
+  /// `camera` is the depth camera.
   ObservedSpace(const VoxelMap& map, const PinholeCamera& camera,
                 std::span<const Pose> world_from_camera, const ObservedSpaceConfig& config = {});
 

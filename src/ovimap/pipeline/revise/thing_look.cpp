@@ -63,6 +63,7 @@ ThingLook thing_look(const MapDocument& map, InstanceId id, const Eigen::Vector3
   const auto surface = map.surfaces.find(id);
   if (surface == map.surfaces.end() || surface->second.empty()) return look;
   look.colors = colors_at(map.map, surface->second);
+  map.map.trim();
   const std::size_t step = (surface->second.size() + kMostPoints - 1) / kMostPoints;
   const Eigen::Matrix3f upright =
       Eigen::Quaternionf::FromTwoVectors(up, Eigen::Vector3f::UnitZ()).toRotationMatrix();

@@ -63,6 +63,7 @@ std::shared_ptr<const PastObject> past_of(const MapDocument& map, InstanceId id)
                                                      surface->second, {}});
   VoxelFinder finder(map.map);
   for (const Eigen::Vector3f& point : was->surface) was->colors.push_back(color_at(finder, point));
+  map.map.trim();
   return was;
 }
 
