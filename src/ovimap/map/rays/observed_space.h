@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -38,6 +39,9 @@ class ObservedSpace {
   /// counting at `enough`.
   int seen_through(const Eigen::Vector3f& point_in_world, int enough = 1) const;
 
+  /// Whether any view shows surface at the point, within the margin.
+  bool shown(const Eigen::Vector3f& point_in_world) const;
+
   std::size_t views() const { return views_.size(); }
 
  private:
@@ -45,7 +49,9 @@ class ObservedSpace {
     Eigen::Isometry3f camera_from_world;
     DepthImage depth;
   };
-  bool sees_through(const View& view, const Eigen::Vector3f& point_in_world) const;
+  /// How far in front of the surface that the view shows there the point lies, in margins; nothing
+  /// where it shows none.
+  std::optional<float> ahead(const View& view, const Eigen::Vector3f& point_in_world) const;
 
   ObservedSpaceConfig config_;
   PinholeCamera camera_;
