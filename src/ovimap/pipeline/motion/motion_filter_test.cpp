@@ -239,9 +239,12 @@ TEST(MotionFilter, WhatWasTakenOutNeverStands) {
   scene.taken_out = DepthImage(160, 120);
   for (int y = 75; y < 105; ++y)
     for (int x = 70; x < 90; ++x) scene.taken_out.at(x, y) = kPost_m;
-  for (int i = 0; i < 60; ++i) EXPECT_EQ(scene.frame_below(true, false).ids.at(80, 90), MovingPixels::kTakenOut);
+  for (int i = 0; i < 60; ++i)
+    EXPECT_EQ(scene.frame_below(true, false).ids.at(80, 90), MovingPixels::kTakenOut);
   EXPECT_FALSE(scene.has_post());
-  EXPECT_EQ(scene.filter.space().at(block_at(scene.camera.unproject(80, 90, kPost_m), 1.f / scene.map.config().block_size_m())).taken, 0);
+  const BlockIndex cell = block_at(scene.camera.unproject(80, 90, kPost_m),
+                                   1.f / scene.map.config().block_size_m());
+  EXPECT_EQ(scene.filter.space().at(cell).taken, 0);
 }
 
 TEST(MotionFilter, OffSeesNothingAndRemembersNothing) {
