@@ -9,7 +9,6 @@
 #include "ovimap/base/thread_priority.h"
 #include "ovimap/inference/masks/id_mask_sources.h"
 #include "ovimap/io/map_file/map_file.h"
-#include "ovimap/map/fusion/fade_votes.h"
 #include "ovimap/pipeline/people/peopleless_source.h"
 #include "ovimap/pipeline/revise/visit_history.h"
 #include "ovimap/pipeline/sequence/visit_fit.h"
@@ -187,7 +186,6 @@ SequenceResult resume(BegunRun& begun, MapHeader& header, MappingInputs& inputs,
     require_same_map(*begun.document, mapper.config().map, inputs.encoder);
     require_fit(*begun.document, inputs);
     begun.document->seen_free.clear();  // between two visits anything may have come
-    fade_votes(begun.document->map, inputs.config.visit.fade_votes);
     begin_visit(*begun.document, header);
   } else {
     require_same_settings(begun.document->config_text, header.config_text, "--resume");

@@ -65,8 +65,6 @@ void list_fields(VisitFitConfig& config, ConfigFields& fields) {
   fields.add("most_turn_rad", config.most_turn_rad, 0.f, 3.f, "likewise, radians");
   fields.add("least_agreement", config.least_agreement, 0.f, 1.f,
              "share of what they see that must lie on the map's surface");
-  fields.add("fade_votes", config.fade_votes, 1, 65535,
-             "votes of earlier visits for the labels of voxels are divided by so much");
 }
 
 VisitFit fit_visit(const VoxelMap& map, const FrameSource& source,

@@ -11,7 +11,7 @@
 
 namespace ovimap {
 
-/// When a recording's poses are taken to be in a map's world frame, and what the map's votes count.
+/// When a recording's poses are taken to be in a map's world frame.
 struct VisitFitConfig {
   bool enabled = true;
   int frames = 16;                 ///< of the recording, evenly spread, are held against the map
@@ -19,7 +19,6 @@ struct VisitFitConfig {
   float most_offset_m = 0.015f;    ///< a quarter of the frames may be further off
   float most_turn_rad = 0.0175f;
   float least_agreement = 0.5f;    ///< share of what is seen that must lie on the map's surface
-  int fade_votes = 8;              ///< votes of earlier visits are divided by so much (fade_votes)
 };
 void list_fields(VisitFitConfig& config, ConfigFields& fields);
 
