@@ -13,9 +13,9 @@ struct VisitHistoryConfig {
   float least_shift_m = 0.08f;  ///< what moved less than that has not
   int least_points = 8;  ///< nothing is told of a thing with fewer points of surface
   ThingFitConfig fit;
-  float least_agreed = 0.22f;  ///< share of two surfaces, laid over each other, that agrees where
+  float least_agreed = 0.25f;  ///< share of two surfaces, laid over each other, that agrees where
                                ///< they may be of one thing
-  float least_fit = 0.25f;     ///< likewise of what agrees or speaks against it (ThingFit::fit)
+  float least_fit = 0.3f;     ///< likewise of what agrees or speaks against it (ThingFit::fit)
   float doubt = 0.5f;  ///< the likeliest pair is one thing when so much less speaks against it than
                        ///< against the next: pairs of things of one shape differ by nearly as much
 };
