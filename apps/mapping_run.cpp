@@ -79,17 +79,6 @@ struct BegunRun {
   bool new_visit = false;             ///< the recording is another than those of the document
 };
 
-/// With a bound on memory the voxels stay in the checkpoint's file, where tiles go as well.
-void load_begun(const std::filesystem::path& map, BegunRun& begun) {
-  if (!begun.tiles->bounded()) {
-    begun.document = load_map(map);
-  } else {
-    begun.document = load_map_without_voxels(map);
-    if (map != begun.tiles->path()) begun.tiles->adopt(map);
-    begun.document->map.keep_in(begun.tiles);
-  }
-}
-
 BegunRun find_begun(const RunTarget& target, const MemoryConfig& memory) {
   BegunRun begun;
   if (target.map.empty()) {
@@ -109,9 +98,9 @@ BegunRun find_begun(const RunTarget& target, const MemoryConfig& memory) {
       target.resume && target.map != target.continued && std::filesystem::exists(target.map);
   begun.new_visit = !unfinished && !finished && !target.continued.empty();
   if (unfinished || finished)
-    load_begun(unfinished ? partial : target.map, begun);
+    begun.document = load_map_in(begun.tiles, unfinished ? partial : target.map);
   else if (begun.new_visit)
-    load_begun(target.continued, begun);
+    begun.document = load_map_in(begun.tiles, target.continued);
   const bool visit_under_way = begun.document && begun.document->unfinished &&
                                begun.document->history.visits.size() > 1;
   if (visit_under_way && target.continued.empty())
@@ -312,6 +301,20 @@ std::unique_ptr<Mapper> first_pass(const MappingInputs& inputs, const std::strin
   return mapper;
 }
 
+/// What the visit changed. Both maps share a bound on memory: voxels of the one before wait in a file
+/// beside the checkpoint.
+void tell_visit(const RunTarget& target, const MemoryConfig& memory, TileKeeper& tiles,
+                MapDocument& after) {
+  const MemoryConfig half{(memory.max_mb + 1) / 2};
+  tiles.set_bound(half);
+  std::filesystem::path beside = tiles.path();
+  const auto tiles_before =
+      std::make_shared<TileKeeper>(beside += ".before", TileKeeper::Start::kAnew, half);
+  const MapDocument before = load_map_in(tiles_before, target.continued);
+  tiles_before->remove();  // when it is closed
+  ovimap::tell_visit(before, after);
+}
+
 }  // namespace
 
 MappingRun map_recording(const MappingOptions& options, const std::string& title,
@@ -342,11 +345,10 @@ MappingRun map_recording(const MappingOptions& options, const std::string& title
         },
         std::move(sequence), checkpoints.get(), finder.get());
   }
-  const bool bounded = inputs.config.memory.max_mb > 0;
+  const MemoryConfig memory = inputs.config.memory;
   MappingRun run = finished_run(std::move(inputs), std::move(header), std::move(mapper),
                                 std::move(sequence), std::move(checkpoints));
-  if (!target.continued.empty() && !bounded)  // which takes both maps in memory
-    tell_visit(load_map(target.continued), run.document);
+  if (!target.continued.empty()) tell_visit(target, memory, *begun.tiles, run.document);
   return run;
 }
 

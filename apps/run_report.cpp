@@ -216,7 +216,8 @@ void print_run(const std::filesystem::path& map, const MappingRun& run, double f
 }
 
 double sent_fps(const LiveRunResult& run) {
-  const auto frames = run.statistics.frames_pushed + run.statistics.frames_dropped;
+  const auto frames = run.statistics.frames_pushed + run.statistics.frames_dropped +
+                      static_cast<std::int64_t>(run.sequence.skipped.size());
   return run.camera_seconds > 0 ? static_cast<double>(frames) / run.camera_seconds : 0;
 }
 

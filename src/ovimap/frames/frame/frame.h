@@ -21,6 +21,9 @@ struct Frame {
   RgbImage color;  ///< native colour image, color_camera's size
   PinholeCamera color_camera;
   DepthImage depth;  ///< metres; every invalid value (0, NaN, inf, out of range) stored as 0
+  /// What a filter took out of `depth` (people): the depth that it had, 0 elsewhere; empty: nothing
+  /// was. It tells what is empty and what moves; nothing may be made of it.
+  DepthImage taken_out;
   PinholeCamera depth_camera;
   Pose color_from_depth = Pose::Identity();   ///< x_in_color = color_from_depth * x_in_depth
   Pose world_from_camera = Pose::Identity();  ///< of the depth camera

@@ -33,27 +33,38 @@ ObservedSpace::ObservedSpace(const VoxelMap& map, const PinholeCamera& camera,
     const Pose& pose = world_from_camera[(2 * i + 1) * frames / (2 * count)];
     views_[i].camera_from_world = pose.inverse().cast<float>();
     views_[i].depth = cast_rays(map, camera_, pose, config.max_range_m).depth;
+    map.trim();
   }
 }
 
 int ObservedSpace::seen_through(const Eigen::Vector3f& point_in_world, int enough) const {
   int count = 0;
   for (const View& view : views_) {
-    count += sees_through(view, point_in_world);
+    const std::optional<float> margins = ahead(view, point_in_world);
+    count += margins && *margins > 1.f;
     if (count >= enough) break;
   }
   return count;
 }
 
-bool ObservedSpace::sees_through(const View& view, const Eigen::Vector3f& point_in_world) const {
+bool ObservedSpace::shown(const Eigen::Vector3f& point_in_world) const {
+  return std::any_of(views_.begin(), views_.end(), [&](const View& view) {
+    const std::optional<float> margins = ahead(view, point_in_world);
+    return margins && std::abs(*margins) <= 1.f;
+  });
+}
+
+std::optional<float> ObservedSpace::ahead(const View& view,
+                                          const Eigen::Vector3f& point_in_world) const {
   const Eigen::Vector3f point = view.camera_from_world * point_in_world;
-  if (point.z() <= 0.f) return false;
+  if (point.z() <= 0.f) return std::nullopt;
   const Eigen::Vector2f pixel = camera_.project(point);
   const auto x = static_cast<int>(std::floor(pixel.x() + 0.5f)),
              y = static_cast<int>(std::floor(pixel.y() + 0.5f));
-  if (!view.depth.contains(x, y)) return false;
+  if (!view.depth.contains(x, y)) return std::nullopt;
   const float depth = view.depth.at(x, y);
-  return depth > 0.f && point.z() < depth - std::max(config_.margin_m, config_.share * depth);
+  if (!(depth > 0.f)) return std::nullopt;
+  return (depth - point.z()) / std::max({config_.margin_m, config_.share * depth, 1e-6f});
 }
 
 }  // namespace ovimap

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,13 +30,17 @@ void list_fields(ObservedSpaceConfig& config, ConfigFields& fields);
 /// of it was empty. Rays that meet no surface tell nothing.
 class ObservedSpace {
  public:
-  /// Casts the views, a frame of `world_from_camera` each. `camera` is the depth camera.
+  /// Casts the views, a frame of `world_from_camera` each, and lets the map make room in between.
+  /// `camera` is the depth camera.
   ObservedSpace(const VoxelMap& map, const PinholeCamera& camera,
                 std::span<const Pose> world_from_camera, const ObservedSpaceConfig& config = {});
 
   /// In how many views the point (world frame, metres) lies clearly in front of the surface; stops
   /// counting at `enough`.
   int seen_through(const Eigen::Vector3f& point_in_world, int enough = 1) const;
+
+  /// Whether any view shows surface at the point, within the margin.
+  bool shown(const Eigen::Vector3f& point_in_world) const;
 
   std::size_t views() const { return views_.size(); }
 
@@ -44,7 +49,9 @@ class ObservedSpace {
     Eigen::Isometry3f camera_from_world;
     DepthImage depth;
   };
-  bool sees_through(const View& view, const Eigen::Vector3f& point_in_world) const;
+  /// How far in front of the surface that the view shows there the point lies, in margins; nothing
+  /// where it shows none.
+  std::optional<float> ahead(const View& view, const Eigen::Vector3f& point_in_world) const;
 
   ObservedSpaceConfig config_;
   PinholeCamera camera_;

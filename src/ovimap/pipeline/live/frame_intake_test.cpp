@@ -175,6 +175,32 @@ TEST(FrameIntake, WithoutFramesThereIsNoMap) {
   }
 }
 
+TEST(FrameIntake, ListsFramesOfWhichAFilterLeavesNothing) {
+  const fixture::Sequence sequence;
+  const auto pushed = [&](std::int64_t every) {
+    FrameIntake intake(8);
+    for (int i = 0; i < 8; ++i) intake.offer(frame_of(sequence, i));
+    intake.finish();
+    LiveMapper live(MapperConfig{}, {});
+    return run_pushed(intake, live, nullptr, [every](Frame frame) {
+      return frame.index % every == 0 ? FrameRead{std::nullopt, frame.name + ": is void"}
+                                      : FrameRead{std::move(frame), ""};
+    });
+  };
+  const LiveRunResult some = pushed(3);
+  EXPECT_EQ(some.sequence.frames.size(), 5u);
+  ASSERT_EQ(some.sequence.skipped.size(), 3u);
+  EXPECT_EQ(some.sequence.skipped[1].position, 3);
+  EXPECT_NE(some.sequence.skipped[1].fault.find(": is void"), std::string::npos);
+  try {
+    pushed(1);
+    FAIL() << "it mapped nothing";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("none of the frames is usable"), std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(FrameIntake, EndsWhenItIsTold) {
   const fixture::Sequence sequence;
   FrameIntake intake(3);

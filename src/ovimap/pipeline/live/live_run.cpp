@@ -106,8 +106,12 @@ LiveRunResult run_pushed(FrameIntake& intake, LiveMapper& mapper, const LiveProg
     if (std::optional<Frame> frame = intake.next(kLook)) {
       if (!start) start = Clock::now();
       result.sequence.depth_camera = frame->depth_camera;
-      if (filter) frame = filter(std::move(*frame));
-      if (frame) mapper.push_and_wait(std::move(*frame));
+      const std::int64_t number = frame->index;
+      FrameRead read = filter ? filter(std::move(*frame)) : FrameRead{std::move(frame), ""};
+      if (read.frame)
+        mapper.push_and_wait(std::move(*read.frame));
+      else
+        result.sequence.skipped.push_back({number, read.fault});
       result.camera_seconds = std::chrono::duration<double>(Clock::now() - *start).count();
       ++done;
     }
@@ -118,7 +122,7 @@ LiveRunResult run_pushed(FrameIntake& intake, LiveMapper& mapper, const LiveProg
   result.sequence.frames = mapper.frames();
   result.statistics = mapper.statistics();
   result.statistics.frames_dropped += intake.counts().skipped;
-  if (result.sequence.frames.empty())
+  if (result.sequence.frames.empty() && result.sequence.skipped.empty())
     throw Error("no frame came, so there is no map; docs/live.md says how to send frames");
   check_outcome(result, mapper.config());
   return result;

@@ -25,13 +25,14 @@ using LiveProgress = std::function<bool(std::size_t done, std::size_t total)>;
 LiveRunResult run_live(const FrameSource& source, const std::vector<std::int64_t>& positions,
                        LiveMapper& mapper, double fps, const LiveProgress& progress = nullptr);
 
-/// What happens to a frame before anything else looks at it; nothing: it is left out.
-using FrameFilter = std::function<std::optional<Frame>(Frame)>;
+/// What happens to a frame before anything else looks at it; with a fault it is skipped.
+using FrameFilter = std::function<FrameRead(Frame)>;
 
 /// Feeds the mapper what comes into `intake` until that ends, waiting for room, and drains it.
 /// `progress` is called after every frame and now and then while none comes, with the frames so
 /// far; when it returns false the run ends, and the intake with it. What the intake had no room for
-/// counts as dropped. `filter`: may be null. Throws as run_live.
+/// counts as dropped; what `filter`, which may be null, leaves nothing of is listed as skipped, by
+/// its number. Throws as run_live.
 LiveRunResult run_pushed(FrameIntake& intake, LiveMapper& mapper,
                          const LiveProgress& progress = nullptr,
                          const FrameFilter& filter = nullptr);

@@ -35,6 +35,19 @@ Observation observation_of(const PreparedFrame& prepared, const FrameSegments* c
   return observation_of(prepared, cut, labels, prepared.estimate.depth_m);
 }
 
+/// All that the sensor saw, what was taken out of the frame included: holes would hide what is empty,
+/// and whose the rest of somebody is.
+Observation whole_of(const PreparedFrame& prepared) {
+  const std::optional<DepthReading>& whole = prepared.whole;
+  const DepthEstimate& estimate = whole ? whole->estimate : prepared.estimate;
+  const DepthSurface& surface = whole ? whole->surface : prepared.surface;
+  return {.depth = estimate.depth_m,
+          .camera = prepared.frame->depth_camera,
+          .world_from_camera = prepared.frame->world_from_camera,
+          .plane_slope = &surface.plane_slope,
+          .sigma_m = estimate.sigma_m.empty() ? nullptr : &estimate.sigma_m};
+}
+
 /// Nothing where nothing moves, or there are no segments.
 std::optional<FrameSegments> without(const IdImage& moving, const FrameSegments* cut) {
   if (cut == nullptr || moving.empty()) return std::nullopt;
@@ -119,8 +132,7 @@ FrameReport Mapper::fuse(const PreparedFrame& prepared, const FrameSegments* cut
   const std::vector<SegmentAssociation> associations = find_labels(prepared, cut);
   const std::vector<Label> labels = labels_of(associations);
   // Before what moves, space is as free as before anything else.
-  const std::vector<std::uint32_t> cleared =
-      clear_free_space(observation_of(prepared, cut, labels));
+  const std::vector<std::uint32_t> cleared = clear_free_space(whole_of(prepared));
   const std::vector<std::uint32_t> taken_back = take_back(prepared, moving);
   {
     auto t = timers_.measure("integrate");
@@ -149,16 +161,16 @@ FrameReport Mapper::fuse(const PreparedFrame& prepared, const FrameSegments* cut
 MovingPixels Mapper::find_motion(const PreparedFrame& prepared) {
   if (config_.motion.mode == DynamicMode::kOff) return {};
   auto t = timers_.measure("motion");
-  return motion_->see(map_, observation_of(prepared, nullptr, {}), config_.free_space,
-                     prepared.frame->timestamp_s, number_of(*prepared.frame));
+  const Frame& frame = *prepared.frame;
+  return motion_->see(map_, whole_of(prepared), frame.taken_out, config_.free_space,
+                      frame.timestamp_s, number_of(frame));
 }
 
 std::vector<std::uint32_t> Mapper::take_back(const PreparedFrame& prepared,
                                              const MovingPixels& moving) {
   if (config_.motion.mode == DynamicMode::kOff || !config_.free_space.enabled) return {};
   auto t = timers_.measure("take_back");
-  return motion_->take_back(map_, observation_of(prepared, nullptr, {}), moving,
-                            config_.free_space);
+  return motion_->take_back(map_, whole_of(prepared), moving, config_.free_space);
 }
 
 std::vector<std::uint32_t> Mapper::clear_free_space(const Observation& observation) {

@@ -30,7 +30,8 @@ struct FrameReport {
   int segments = 0;       ///< pieces lifted to 3D
   int founded = 0;        ///< new super-points
   int views = 0;          ///< views of objects chosen for embedding
-  int moving_px = 0;      ///< pixels that were left out because what they show moves
+  int moving_px = 0;      ///< pixels that were left out: what they show moves, or was taken
+                          ///< out of the frame
   bool labelled = false;  ///< the frame voted for labels (else it added geometry and colour alone,
                           ///< as one that is not masked does)
 };

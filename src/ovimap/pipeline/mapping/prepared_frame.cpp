@@ -2,9 +2,36 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/pipeline/mapping/prepared_frame.h"
 
+#include <algorithm>
+
 #include "ovimap/pipeline/mapping/mask_prompts.h"
 
 namespace ovimap {
+
+namespace {
+
+DepthReading read_depth(const DepthImage& depth, const PinholeCamera& camera,
+                        const MapperConfig& config, StageTimers& timers) {
+  DepthSurface surface = [&] {
+    auto t = timers.measure("surface");
+    return fit_depth_surface(depth, camera, config.segment.surface);
+  }();
+  auto t = timers.measure("estimate");
+  DepthEstimate estimate =
+      estimate_depth(depth, surface, config.segment.surface.noise, config.depth);
+  return {std::move(surface), std::move(estimate)};
+}
+
+/// Nothing where nothing was taken out.
+std::optional<DepthReading> read_whole(const Frame& frame, const MapperConfig& config,
+                                       StageTimers& timers) {
+  if (frame.taken_out.empty()) return std::nullopt;
+  DepthImage depth = frame.depth;
+  for (std::size_t i = 0; i < depth.size(); ++i) depth[i] = std::max(depth[i], frame.taken_out[i]);
+  return read_depth(depth, frame.depth_camera, config, timers);
+}
+
+}  // namespace
 
 PreparedFrame prepare_frame(std::shared_ptr<const Frame> frame, const MapperConfig& config,
                             StageTimers& timers) {
@@ -12,16 +39,15 @@ PreparedFrame prepare_frame(std::shared_ptr<const Frame> frame, const MapperConf
     auto t = timers.measure("registration");
     return Registration(*frame, config.occlusion_margin_m);
   }();
-  DepthSurface surface = [&] {
-    auto t = timers.measure("surface");
-    return fit_depth_surface(frame->depth, frame->depth_camera, config.segment.surface);
-  }();
-  DepthEstimate estimate = [&] {
-    auto t = timers.measure("estimate");
-    return estimate_depth(frame->depth, surface, config.segment.surface.noise, config.depth);
-  }();
+  DepthReading read = read_depth(frame->depth, frame->depth_camera, config, timers);
+  std::optional<DepthReading> whole = read_whole(*frame, config, timers);
   RgbImage color = registration.color_at_depth(frame->color);
-  return {std::move(frame), std::move(registration), std::move(surface), std::move(estimate), std::move(color)};
+  return {std::move(frame),
+          std::move(registration),
+          std::move(read.surface),
+          std::move(read.estimate),
+          std::move(color),
+          std::move(whole)};
 }
 
 std::optional<FrameSegments> cut_segments(const PreparedFrame& prepared, MaskSource* masks,

@@ -13,6 +13,12 @@
 
 namespace ovimap {
 
+/// What a depth image tells.
+struct DepthReading {
+  DepthSurface surface;
+  DepthEstimate estimate;
+};
+
 /// What can be said of a frame without the map.
 struct PreparedFrame {
   std::shared_ptr<const Frame> frame;
@@ -20,6 +26,9 @@ struct PreparedFrame {
   DepthSurface surface;
   DepthEstimate estimate;  ///< what is fused
   RgbImage color;  ///< registered to the depth
+  /// Of the depth with what was taken out of the frame (Frame::taken_out), where something was: for
+  /// what moves and what is empty.
+  std::optional<DepthReading> whole = std::nullopt;
 };
 
 PreparedFrame prepare_frame(std::shared_ptr<const Frame> frame, const MapperConfig& config,

@@ -11,6 +11,7 @@
 
 #include "ovimap/base/config.h"
 #include "ovimap/base/parallel.h"
+#include "ovimap/io/map_file/map_file.h"
 #include "ovimap/io/map_file/map_file_access.h"
 
 namespace ovimap {
@@ -189,6 +190,14 @@ void TileKeeper::report(StageTimers& timers) {
   const std::lock_guard lock(loading_);
   timers.merge(timers_);
   timers_ = {};
+}
+
+MapDocument load_map_in(const std::shared_ptr<TileKeeper>& tiles, const std::filesystem::path& map) {
+  if (!tiles->bounded()) return load_map(map);
+  MapDocument document = load_map_without_voxels(map);
+  if (map != tiles->path()) tiles->adopt(map);
+  document.map.keep_in(tiles);
+  return document;
 }
 
 }  // namespace ovimap

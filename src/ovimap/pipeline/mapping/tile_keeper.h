@@ -13,6 +13,7 @@
 
 #include "ovimap/base/stage_timers.h"
 #include "ovimap/io/map_file/map_checkpoint.h"
+#include "ovimap/io/map_tables/map_document.h"
 #include "ovimap/io/map_tables/map_file_blocks.h"
 
 namespace ovimap {
@@ -38,6 +39,8 @@ class TileKeeper : public BlockStore {
 
   const std::filesystem::path& path() const { return path_; }
   bool bounded() const { return memory_.max_mb > 0; }
+  /// From now on; where there is a bound.
+  void set_bound(const MemoryConfig& memory) { memory_ = memory; }
   CheckpointFile& file();
   /// The map at hand is that of a saved file, whose tiles it goes on with.
   void adopt(const std::filesystem::path& saved);
@@ -80,5 +83,9 @@ class TileKeeper : public BlockStore {
   TileDecoder decoder_;
   StageTimers timers_;
 };
+
+/// The map of a file, with `tiles` as its store where they have a bound on memory: then its voxels
+/// stay in their file, to which they are taken first where that is another. Throws what load_map throws.
+MapDocument load_map_in(const std::shared_ptr<TileKeeper>& tiles, const std::filesystem::path& map);
 
 }  // namespace ovimap

@@ -94,7 +94,8 @@ Image<float> hasty_free_depth(const VoxelMapConfig& map, const Observation& seen
   const float behind_m = map.truncation_m();
   for (int y = 0; y < moving.height(); ++y)
     for (int x = 0; x < moving.width(); ++x)
-      if (moving.at(x, y) != 0 && inside(moving, x, y, config.edge_px))
+      if (moving.at(x, y) != 0 && moving.at(x, y) != MovingPixels::kTakenOut &&
+          inside(moving, x, y, config.edge_px))
         free_m.at(x, y) = std::max(free_m.at(x, y), seen.depth.at(x, y) + behind_m);
   return free_m;
 }

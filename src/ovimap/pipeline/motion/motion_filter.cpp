@@ -14,6 +14,13 @@ namespace {
 constexpr int kMostTicks = 10;  // a gap in the recording tells nothing of what stood there
 constexpr std::size_t kRemembered = 64;
 
+void mark_taken_out(const DepthImage& taken_out, MovingPixels& moving) {
+  if (taken_out.empty() || moving.refused) return;
+  if (moving.ids.empty()) moving.ids = IdImage(taken_out.width(), taken_out.height());
+  for (std::size_t i = 0; i < taken_out.size(); ++i)
+    if (taken_out[i] > 0.f && moving.ids[i] == 0) moving.ids[i] = MovingPixels::kTakenOut;
+}
+
 }  // namespace
 
 int MotionFilter::tick(double timestamp_s) {
@@ -38,13 +45,14 @@ bool MotionFilter::is_look(const Pose& world_from_camera, double timestamp_s) {
 }
 
 MovingPixels MotionFilter::see(const VoxelMap& map, const Observation& observation,
-                               const FreeSpaceConfig& free_space, double timestamp_s,
-                               std::int64_t number) {
+                               const DepthImage& taken_out, const FreeSpaceConfig& free_space,
+                               double timestamp_s, std::int64_t number) {
   if (config_.mode == DynamicMode::kOff) return {};
   const int ticks = tick(timestamp_s);
   const bool look = is_look(observation.world_from_camera, timestamp_s);
   if (observation.sigma_m == nullptr || observation.plane_slope == nullptr) return {};
   MovingPixels moving = find_moving(map, space_, observation, config_);
+  mark_taken_out(taken_out, moving);
   space_.take(moving.cells, ticks, ticks_of(config_.stays_s));
   stand(map, observation, moving, ticks);
   if (look && !moving.refused)

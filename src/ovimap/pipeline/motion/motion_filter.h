@@ -24,8 +24,10 @@ class MotionFilter {
   explicit MotionFilter(const MotionConfig& config) : config_(config), tracker_(config) {}
 
   /// What moves in the next frame, whose number is `number`; nothing where motion is off or the
-  /// deviation of the depth is unknown. `map`: as it was before the frame.
-  MovingPixels see(const VoxelMap& map, const Observation& observation,
+  /// deviation of the depth is unknown. `map`: as it was before the frame. `taken_out`: of the
+  /// observation's depth, what stands nowhere, whether or not it moves (Frame::taken_out); may be
+  /// empty.
+  MovingPixels see(const VoxelMap& map, const Observation& observation, const DepthImage& taken_out,
                    const FreeSpaceConfig& free_space, double timestamp_s, std::int64_t number);
   /// Takes back at once what the frame sees through, or something that moves stands in, of surface
   /// that was first seen beside something that moved: it was of that. After `see`, with what it

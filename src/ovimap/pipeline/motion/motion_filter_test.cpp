@@ -35,7 +35,7 @@ class Scene {
                            .plane_slope = &slope,
                            .sigma_m = &sigma};
     const double now_s = static_cast<double>(number) / 30;
-    MovingPixels moving = filter.see(map, seen, {}, now_s, number);
+    MovingPixels moving = filter.see(map, seen, taken_out, {}, now_s, number);
     filter.take_back(map, seen, moving, {});
     log.push_back({number, now_s, "", pose, false});
     ++number;
@@ -68,7 +68,7 @@ class Scene {
   }
 
   PinholeCamera camera{160, 120, 150.f, 150.f, 79.5f, 59.5f};
-  DepthImage depth{160, 120, kWall_m};
+  DepthImage depth{160, 120, kWall_m}, taken_out;
   Image<float> slope{160, 120, 1.f}, sigma{160, 120, 0.002f};
   Pose pose = Pose::Identity();
   VoxelMap map;
@@ -217,6 +217,34 @@ TEST(MotionFilter, WhatIsSuspectGoesAsSoonAsItIsSeenThrough) {
   }
   EXPECT_FALSE(scene.has_post());
   EXPECT_TRUE(still.has_post()) << "one look alone takes nothing else";
+}
+
+/// Somebody comes in whose upper half a filter takes out of each frame; the lower half shows where
+/// nobody could look through before.
+TEST(MotionFilter, WhatHangsTogetherWithWhatWasTakenOutMovesAsIfNothingWas) {
+  Scene whole, halved;
+  for (Scene* scene : {&whole, &halved})
+    for (int i = 0; i < 10; ++i) scene->frame_below(false, false);
+  halved.taken_out = DepthImage(160, 120);
+  for (int y = 45; y < 75; ++y)
+    for (int x = 65; x < 95; ++x) halved.taken_out.at(x, y) = kBox_m;
+  const MovingPixels a = whole.frame_below(true, true), b = halved.frame_below(true, true);
+  EXPECT_NE(b.ids.at(80, 95), 0);
+  EXPECT_TRUE(a.ids == b.ids);
+  EXPECT_FALSE(halved.has_post());
+}
+
+TEST(MotionFilter, WhatWasTakenOutNeverStands) {
+  Scene scene;
+  scene.taken_out = DepthImage(160, 120);
+  for (int y = 75; y < 105; ++y)
+    for (int x = 70; x < 90; ++x) scene.taken_out.at(x, y) = kPost_m;
+  for (int i = 0; i < 60; ++i)
+    EXPECT_EQ(scene.frame_below(true, false).ids.at(80, 90), MovingPixels::kTakenOut);
+  EXPECT_FALSE(scene.has_post());
+  const BlockIndex cell = block_at(scene.camera.unproject(80, 90, kPost_m),
+                                   1.f / scene.map.config().block_size_m());
+  EXPECT_EQ(scene.filter.space().at(cell).taken, 0);
 }
 
 TEST(MotionFilter, OffSeesNothingAndRemembersNothing) {

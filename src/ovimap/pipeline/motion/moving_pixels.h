@@ -22,6 +22,9 @@ struct MovingPatch {
 
 /// What moves in a frame.
 struct MovingPixels {
+  /// Id of pixels that a filter took out of the frame (Frame::taken_out), where they are of no patch.
+  static constexpr std::uint16_t kTakenOut = 0xffff;
+
   IdImage ids;  ///< depth image size, patch of each pixel, [id - 1]; 0: it stands still; empty: all do
   std::vector<MovingPatch> patches;
   std::vector<BlockIndex> cells;  ///< of seen-empty space in which surface is seen, whatever it is

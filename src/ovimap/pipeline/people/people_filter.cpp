@@ -49,21 +49,23 @@ void list_fields(PeopleConfig& config, ConfigFields& fields) {
              "over steps of at most such a share of the depth");
 }
 
-std::optional<Frame> PeopleFilter::without_people(Frame frame) const {
+FrameRead PeopleFilter::without_people(Frame frame) const {
   const std::vector<PersonBox> people = finder_->find(frame.color, config_.min_score);
-  if (people.empty()) return frame;
+  if (people.empty()) return {std::move(frame), ""};
   {
     const std::lock_guard lock(mutex_);
     seen_in_.insert(frame.index);
   }
   const Image<std::int32_t> places = color_places(frame);
   const PeopleMask mask = people_in(frame, places, people);
+  frame.taken_out = DepthImage(frame.depth.width(), frame.depth.height());
   for (std::size_t i = 0; i < places.size(); ++i)
-    if (places[i] >= 0 && mask[static_cast<std::size_t>(places[i])]) frame.depth[i] = 0;
+    if (places[i] >= 0 && mask[static_cast<std::size_t>(places[i])])
+      std::swap(frame.depth[i], frame.taken_out[i]);
   for (std::size_t i = 0; i < mask.size(); ++i)
     if (mask[i]) frame.color[i] = {};
-  if (!has_depth(frame.depth)) return std::nullopt;
-  return frame;
+  if (!has_depth(frame.depth)) return {std::nullopt, frame.name + ": shows nothing but people"};
+  return {std::move(frame), ""};
 }
 
 std::size_t PeopleFilter::frames_with_people() const {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 
+#include "ovimap/frames/frame/frame_source.h"
 #include "ovimap/inference/sam/sam_network.h"
 #include "ovimap/inference/things/person_finder.h"
 #include "ovimap/pipeline/people/person_pixels.h"
@@ -23,8 +24,9 @@ class PeopleFilter {
                std::shared_ptr<const SamNetwork> outlines = nullptr)
       : config_(config), finder_(std::move(finder)), outlines_(std::move(outlines)) {}
 
-  /// Nothing where no depth is left. Throws Error when a network fails.
-  std::optional<Frame> without_people(Frame frame) const;
+  /// The frame with what was taken out of its depth in Frame::taken_out, or the fault that no depth is
+  /// left. Throws Error when a network fails.
+  FrameRead without_people(Frame frame) const;
 
   /// Frames so far that showed somebody, each counted once by its index.
   std::size_t frames_with_people() const;

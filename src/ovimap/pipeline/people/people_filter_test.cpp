@@ -41,7 +41,7 @@ class TwoFrames : public FrameSource {
 
 TEST(PeopleFilter, LeavesNeitherDepthNorColourOfPeople) {
   const PeopleFilter filter({}, red_people());
-  const auto frame = filter.without_people(frame_with(true));
+  const auto frame = filter.without_people(frame_with(true)).frame;
   ASSERT_TRUE(frame);
   EXPECT_EQ(std::count(frame->depth.begin(), frame->depth.end(), 1.5f), 0);
   for (const Rgb8& pixel : frame->color) EXPECT_LT(pixel.r, 255);
@@ -49,14 +49,17 @@ TEST(PeopleFilter, LeavesNeitherDepthNorColourOfPeople) {
   EXPECT_EQ(frame->depth.at(120, 90), 3.f) << "the wall stays";
   EXPECT_EQ(frame->color.at(120, 90), (Rgb8{0, 10, 20}));
   EXPECT_EQ(frame->depth.at(81, 30), 0.f) << "the edge, whose depth may mix both";
+  EXPECT_EQ(frame->taken_out.at(40, 30), 1.5f) << "how far away they were, for what moves";
+  EXPECT_EQ(frame->taken_out.at(120, 90), 0.f);
 }
 
 TEST(PeopleFilter, AFrameOfNobodyStaysAsItIs) {
   const PeopleFilter filter({}, red_people());
-  const auto frame = filter.without_people(frame_with(false));
+  const auto frame = filter.without_people(frame_with(false)).frame;
   ASSERT_TRUE(frame);
   EXPECT_EQ(frame->color, frame_with(false).color);
   EXPECT_EQ(frame->depth, frame_with(false).depth);
+  EXPECT_TRUE(frame->taken_out.empty());
   EXPECT_EQ(filter.frames_with_people(), 0u);
 }
 
@@ -73,7 +76,9 @@ TEST(PeopleFilter, NothingIsLeftOfAFrameThatShowsPeopleAlone) {
   for (int v = 0; v < 120; ++v)
     for (int u = 0; u < 160; ++u)
       if (u >= 80 || v >= 60) frame.depth.at(u, v) = 0;
-  EXPECT_FALSE(filter.without_people(std::move(frame)));
+  const FrameRead left = filter.without_people(std::move(frame));
+  EXPECT_FALSE(left.frame);
+  EXPECT_EQ(left.fault, "f: shows nothing but people");
 }
 
 TEST(PeoplelessSource, GivesTheFramesWithoutPeople) {

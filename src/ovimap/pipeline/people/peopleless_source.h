@@ -19,11 +19,7 @@ class PeoplelessSource : public FrameSource {
   bool rectified() const override { return source_->rectified(); }
   FrameRead read(std::int64_t position) const override {
     FrameRead read = source_->read(position);
-    if (!read.frame) return read;
-    const std::string name = read.frame->name;
-    read.frame = filter_->without_people(std::move(*read.frame));
-    if (!read.frame) read.fault = name + ": shows nothing but people";
-    return read;
+    return read.frame ? filter_->without_people(std::move(*read.frame)) : read;
   }
   std::optional<IdImage> truth_ids(std::int64_t position) const override {
     return source_->truth_ids(position);

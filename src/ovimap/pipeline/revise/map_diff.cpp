@@ -17,6 +17,8 @@ namespace ovimap {
 
 namespace {
 
+constexpr std::size_t kObjectsPerPart = 32;  // then maps may make room
+
 std::vector<Pose> camera_poses(const MapRecord& map) {
   std::vector<Pose> poses;
   for (const FrameLogEntry& frame : map.frames) poses.push_back(frame.world_from_camera);
@@ -36,17 +38,18 @@ class Witness {
   void testify(const std::vector<Eigen::Vector3f>& surface, ObjectChange& change) const {
     if (surface.empty()) return;
     VoxelFinder finder(map_.map);
-    std::size_t through = 0, there = 0;
+    std::size_t through = 0, there = 0, unseen = 0;
     for (const Eigen::Vector3f& other : surface) {
       const Eigen::Vector3f point = map_from_other_ * other;
       if (is_surface(finder, point))
-        ++there;
+        ++there, unseen += !space_.shown(point);
       else if (space_.seen_through(point, config_.gone_views) >= config_.gone_views)
         ++through;
     }
     const auto count = static_cast<float>(surface.size());
     change.seen_through = static_cast<float>(through) / count;
     change.surface_there = static_cast<float>(there) / count;
+    change.surface_unseen = static_cast<float>(unseen) / count;
   }
 
  private:
@@ -128,7 +131,7 @@ class MapComparison {
     const Witness later(after_, before_from_after_.inverse(), config_),
         earlier(before_, before_from_after_, config_);
     std::vector<float> arrived(changes_.size(), 0.f);
-    parallel_for(changes_.size(), 1, [&](std::size_t i) {
+    const auto judge = [&](std::size_t i) {
       ObjectChange& change = changes_[i];
       if (change.before != 0)
         later.testify(surface_of(before_, change.before), change);
@@ -143,7 +146,13 @@ class MapComparison {
       else
         change.kind =
             change.surface_there >= config_.gone_share ? ChangeKind::kSame : ChangeKind::kUnseen;
-    });
+    };
+    for (std::size_t first = 0; first < changes_.size(); first += kObjectsPerPart) {
+      parallel_for(std::min(kObjectsPerPart, changes_.size() - first), 1,
+                   [&](std::size_t i) { judge(first + i); });
+      before_.map.trim();
+      after_.map.trim();
+    }
     part_from_remains(arrived);
   }
 

@@ -4,8 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include "ovimap/frames/recording/sequence_fixture.h"
+#include "ovimap/io/map_file/map_file.h"
 #include "ovimap/map/surface/mesh_extraction.h"
 #include "ovimap/pipeline/mapping/furnished_fixture.h"
+#include "ovimap/pipeline/mapping/tile_keeper.h"
 
 namespace ovimap {
 namespace {
@@ -111,6 +114,36 @@ TEST(VisitHistory, WhatLeftLeavesNoSurface) {
     EXPECT_LT(vertices_in(after, thing), vertices_in(before, thing) / 50);
   }
   EXPECT_GT(vertices_in(after, kChest), vertices_in(before, kChest) * 97 / 100);
+}
+
+TEST(VisitHistory, TellsTheSameOfMapsWhoseVoxelsLieInFiles) {
+  const FurnishedRoom evening = room_with({kChest, kRedBox, kBlueBox}),
+                      morning = room_with({kChest, kRedBoxAway, kGreenBox});
+  const MapDocument before = map_of(evening);
+  MapDocument after = map_of(morning, map_of(evening));
+  const fixture::TemporaryFolder folder;
+  const auto stored = [&](const MapDocument& map, const std::string& name) {
+    save_map(folder.path() / name, map);
+    const auto tiles = std::make_shared<TileKeeper>(folder.path() / (name + ".partial"),
+                                                    TileKeeper::Start::kAnew, MemoryConfig{1});
+    return load_map_in(tiles, folder.path() / name);
+  };
+  const MapDocument before_stored = stored(before, "before.ovimap");
+  MapDocument after_stored = stored(after, "after.ovimap");
+  EXPECT_EQ(before_stored.map.blocks_in_memory(), 0u);
+  tell_visit(before, after);
+  tell_visit(before_stored, after_stored);
+  ASSERT_EQ(after.history.events.size(), 3u);
+  ASSERT_EQ(after_stored.history.events.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const ObjectEvent &told = after.history.events[i], &bounded = after_stored.history.events[i];
+    EXPECT_EQ(std::tie(bounded.instance, bounded.kind, bounded.visit, bounded.frame),
+              std::tie(told.instance, told.kind, told.visit, told.frame));
+    ASSERT_EQ(bounded.was == nullptr, told.was == nullptr);
+    if (told.was) EXPECT_EQ(bounded.was->colors, told.was->colors);
+  }
+  EXPECT_LT(before_stored.map.blocks_in_memory(), before.map.block_count());
+  EXPECT_EQ(after_stored.map.content_hash(), after.map.content_hash());
 }
 
 TEST(VisitHistory, ARoomThatStaysHasNoEvents) {
