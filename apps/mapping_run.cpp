@@ -4,14 +4,14 @@
 
 #include <algorithm>
 #include <future>
-#include <sstream>
 
 #include "ovimap/base/thread_priority.h"
 #include "ovimap/inference/masks/id_mask_sources.h"
 #include "ovimap/io/map_file/map_file.h"
 #include "ovimap/pipeline/people/peopleless_source.h"
 #include "ovimap/pipeline/revise/visit_history.h"
-#include "ovimap/pipeline/sequence/visit_fit.h"
+#include "ovimap/pipeline/sequence/visit_start.h"
+#include "same_settings.h"
 
 namespace ovimap::apps {
 
@@ -70,6 +70,7 @@ struct MappingInputs {
   std::shared_ptr<ImageTextEncoder> encoder;
   std::shared_ptr<const ThingRecognizer> recognizer;
   std::shared_ptr<PoseFinder> finder;  ///< null: poses are given
+  std::optional<VisitPlacing> placing;  ///< what objects said of where the recording lies
 };
 
 /// What a run goes on with, and where its checkpoints go.
@@ -118,49 +119,6 @@ BegunRun find_begun(const RunTarget& target, const MemoryConfig& memory) {
     throw Error(concat("the unfinished run of '", partial.string(),
                        "' goes on with a map; name it by --continue as that run did"));
   return begun;
-}
-
-/// The lines of a configuration that decide what the map becomes: which frames it is made from, and
-/// when and where it is kept, may differ.
-std::vector<std::string> deciding_lines(const std::string& config) {
-  std::vector<std::string> lines;
-  std::istringstream stream(config);
-  for (std::string line; std::getline(stream, line);) {
-    if (line.starts_with("# preset")) line.resize(std::min(line.size(), line.find(", frames ")));
-    const auto names = [&](const char* start) { return line.starts_with(start); };
-    if (!names("checkpoint.") && !names("memory.") && !names("visit.") && !names("# live"))
-      lines.push_back(line);
-  }
-  return lines;
-}
-
-/// Throws Error naming the first setting in which two runs differ. `option`: the one by which this
-/// one goes on with the other.
-void require_same_settings(const std::string& begun, const std::string& now, const char* option) {
-  const std::vector<std::string> before = deciding_lines(begun), after = deciding_lines(now);
-  const auto [old_line, new_line] =
-      std::mismatch(before.begin(), before.end(), after.begin(), after.end());
-  if (old_line == before.end() && new_line == after.end()) return;
-  throw Error(concat("the run to go on with had '", old_line == before.end() ? "" : *old_line,
-                     "', this one has '", new_line == after.end() ? "" : *new_line,
-                     "'; give the same options, or map anew without ", option));
-}
-
-/// The settings of voxels are the map's, and so is the space of its embeddings.
-void require_same_map(const MapDocument& begun, const VoxelMapConfig& map,
-                      const std::shared_ptr<ImageTextEncoder>& encoder) {
-  const auto lines = [](VoxelMapConfig config) {
-    ConfigFields fields;
-    fields.group("map", [&](ConfigFields& group) { list_fields(config, group); });
-    return fields.dump();
-  };
-  require_same_settings(lines(begun.map.config()), lines(map), "--continue");
-  const std::string &before = begun.semantics.encoder.name,
-                    now = encoder ? encoder->identity().name : "";
-  if (!before.empty() && before != now)
-    throw Error(concat("the map's objects are embedded by '", before, "', and this run has ",
-                       now.empty() ? "no encoder" : concat("'", now, "'"), "; give --encoder ", before,
-                       ", or embed the map anew with `ovimap reembed`"));
 }
 
 /// Frames that are not in the map yet.
@@ -240,14 +198,57 @@ MapHeader make_header(const MappingInputs& inputs, const MappingOptions& options
 std::shared_ptr<PoseFinder> make_finder(const MappingInputs& inputs, const BegunRun& begun) {
   if (!inputs.tracking) return nullptr;
   Tracker tracker(inputs.config.track);
-  if (begun.document && !begun.document->frames.empty()) {
-    if (begun.document->kept_frames.empty())
-      throw Error("the map to go on with keeps no frames to find the camera's place by; map it with "
-                  "--set frame_store.max_mb=1000");
+  if (begun.document && !begun.document->frames.empty())
     tracker.begin_in(keyframes_of(begun.document->frames, begun.document->kept_frames,
                                   begun.document->depth_camera, inputs.config.track.keyframes));
-  }
   return std::make_shared<PoseFinder>(std::move(tracker), inputs.config.loops);
+}
+
+/// A map of which only a part could be fused again keeps nothing.
+void keep_as_before(const BegunRun& begun, MappingInputs& inputs) {
+  if (inputs.tracking && begun.document && !begun.document->frames.empty() &&
+      begun.document->kept_frames.empty())
+    inputs.config.mapper.frame_store.max_mb = 0;
+}
+
+/// Where objects say that the recording lies in the map; Error, as text, where they do not tell.
+VisitPlacing ask_objects(const MapDocument& map, const MappingInputs& inputs) {
+  std::vector<std::int64_t> first = inputs.range;
+  first.resize(std::min(first.size(), static_cast<std::size_t>(inputs.config.visit.object_frames)));
+  MapperConfig config = inputs.config.mapper;
+  config.frame_store.max_mb = 0;
+  config.allow_still_camera = true;  // the recording as a whole moved
+  Progress progress("looking for the recording's place");
+  try {
+    ObjectPlacing placing = place_by_objects(
+        map, *inputs.source, first, Mapper(config, inputs.masks, inputs.encoder),
+        PoseFinder(Tracker(inputs.config.track), inputs.config.loops), inputs.config.visit.alignment,
+        [&](std::size_t done, std::size_t total, const FrameReport*) {
+          progress.show(done, total);
+          return !interrupted();
+        });
+    inputs.finder->tracker().propose(std::move(placing.places));
+    return {placing.alignment, {}};
+  } catch (const Error& fault) {
+    return {std::nullopt, fault.what()};
+  }
+}
+
+/// A camera whose first frames show no place that the map's keyframes know is looked for by objects.
+void find_start(const BegunRun& begun, MappingInputs& inputs) {
+  if (!inputs.finder || !begun.document || begun.document->frames.empty()) return;
+  const std::vector<Keyframe>& keyframes = inputs.finder->tracker().keyframes();
+  const bool may_ask = begun.new_visit && inputs.source && inputs.config.visit.object_frames > 0 &&
+                       inputs.config.memory.max_mb == 0;  // which takes both maps in memory
+  std::vector<std::int64_t> first = inputs.range;
+  first.resize(std::min(first.size(), static_cast<std::size_t>(inputs.config.track.part_frames)));
+  if (may_ask && !shows_known_place(*inputs.source, first, begun.document->map, keyframes,
+                                    inputs.config.track))
+    inputs.placing = ask_objects(*begun.document, inputs);
+  if (keyframes.empty() && !(inputs.placing && inputs.placing->alignment))
+    throw Error(concat("the map to go on with keeps no frames to find the camera's place by; map it "
+                       "with --set frame_store.max_mb=1000",
+                       inputs.placing ? concat(" (by objects: ", inputs.placing->fault, ")") : ""));
 }
 
 /// What tracking did; where the camera came by a place again, the map's loops are closed.
@@ -255,7 +256,8 @@ TrackingRun finish_tracking(const PoseFinder& finder, const ProgramConfig& confi
                             SequenceResult& sequence) {
   const auto& log = finder.tracker().log();
   TrackingRun tracking{summarise(log), finder.corrections(), {},
-                       unknown_places(log, config.track.part_frames), sensor_doubts(finder.tracker())};
+                       unknown_places(log, config.track.part_frames), sensor_doubts(finder.tracker()),
+                       {}};
   if (config.track.part_frames == 0) tracking.unknown.clear();
   Progress progress("closing loops");
   tracking.loops = close_last_loops(
@@ -272,6 +274,7 @@ MappingRun finished_run(MappingInputs&& inputs, MapHeader header, Mapper&& mappe
   if (checkpoints) checkpoints->let_tiles_leave(mapper);
   if (inputs.finder)
     run.tracking = finish_tracking(*inputs.finder, inputs.config, mapper, sequence);
+  if (inputs.finder) run.tracking->placing = std::move(inputs.placing);
   run.source = std::move(inputs.source);
   run.masks_wanted = inputs.masks != nullptr;
   if (inputs.people) run.people_frames = inputs.people->frames_with_people();
@@ -320,13 +323,15 @@ MappingRun map_recording(const MappingOptions& options, const std::string& title
   BegunRun begun = find_begun(target, inputs.config.memory);
   inputs.open_networks(options, keep_masks);
   const auto finder = inputs.finder = make_finder(inputs, begun);
+  keep_as_before(begun, inputs);
+  watch_for_interrupt();
+  find_start(begun, inputs);
   Mapper mapper(inputs.config.mapper, inputs.masks, inputs.encoder);
   mapper.recognize_with(inputs.recognizer);
   MapHeader header = make_header(inputs, options, mapper.config());
   if (target.twice) header.config_text.insert(0, "# second pass\n");
   SequenceResult sequence = resume(begun, header, inputs, mapper);
   auto checkpoints = make_checkpointer(begun, inputs, header, sequence.frames.size());
-  watch_for_interrupt();
   std::unique_ptr<Mapper> guide;
   if (target.twice) {
     guide = first_pass(inputs, title);
@@ -362,6 +367,7 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
   LiveMapper mapper(inputs.config.mapper, inputs.config.live, inputs.masks, inputs.encoder);
   mapper.recognize_with(inputs.recognizer);
   const auto finder = inputs.finder = make_finder(inputs, begun);
+  find_start(begun, inputs);
   mapper.track_with(finder);
   MapHeader header = make_header(inputs, options, mapper.config());
   const std::string pace = intake ? std::string("pushed") : concat(fps, " frames/s");

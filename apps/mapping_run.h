@@ -4,11 +4,18 @@
 
 #include "command.h"
 #include "ovimap/pipeline/live/camera_feed.h"
+#include "ovimap/pipeline/alignment/map_alignment.h"
 #include "ovimap/pipeline/live/live_run.h"
 #include "ovimap/pipeline/sequence/last_loops.h"
 #include "ovimap/track/sensor_doubts.h"
 
 namespace ovimap::apps {
+
+/// What objects said of where a recording lies in the map that it goes on with.
+struct VisitPlacing {
+  std::optional<MapAlignment> alignment;
+  std::string fault;  ///< why they do not tell
+};
 
 /// How the camera was tracked.
 struct TrackingRun {
@@ -17,6 +24,7 @@ struct TrackingRun {
   LoopReport loops;             ///< after the last one
   std::vector<std::pair<std::int64_t, std::int64_t>> unknown;  ///< unknown_places
   std::vector<std::string> sensor_doubts;  ///< none: camera and times are as described
+  std::optional<VisitPlacing> placing;     ///< none: they were not asked
 };
 
 /// Frames of a run that were mapped by themselves, since nothing says where they lie.

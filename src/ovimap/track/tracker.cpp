@@ -68,6 +68,12 @@ void Tracker::begin_in(std::vector<Keyframe> places) {
   begun_ = lost_ = true;
 }
 
+void Tracker::propose(std::vector<Keyframe> places) {
+  proposed_ = std::move(places);
+  proposed_codes_.clear();
+  for (const Keyframe& place : proposed_) proposed_codes_.push_back(place.code);
+}
+
 void Tracker::correct(const std::vector<Pose>& poses) {
   OVIMAP_ASSERT(poses.size() == keyframes_.size() && !poses.empty());
   const Pose moved = poses.back() * keyframes_.back().world_from_camera.inverse();
@@ -213,9 +219,14 @@ bool Tracker::find_again(const Frame& frame, const VoxelMap& map) {
     if (try_view(turned({last_pose_}, *turn).front(), map)) return true;
   const auto count = static_cast<std::size_t>(config_.place_candidates);
   const auto places = most_similar(place_code(pyramid_), codes_, count, config_.min_similarity);
-  return std::any_of(places.begin(), places.end(), [&](std::size_t place) {
-    return try_place(keyframes_[place], map, kAllDirections);
-  });
+  if (std::any_of(places.begin(), places.end(), [&](std::size_t place) {
+        return try_place(keyframes_[place], map, kAllDirections);
+      }))
+    return true;
+  const auto told =
+      most_similar(place_code(pyramid_), proposed_codes_, count, config_.min_similarity);
+  return std::any_of(told.begin(), told.end(),
+                     [&](std::size_t place) { return try_proposed(proposed_[place], map); });
 }
 
 /// Holds the frame against what the keyframes around a pose show together from there. Nothing but a
@@ -242,6 +253,14 @@ bool Tracker::try_place(const Keyframe& keyframe, const VoxelMap& map, int most_
     return false;
   accept(log_.back().index, *alignment, reference, true);
   return true;
+}
+
+/// What the map does not have of the place must not speak for it.
+bool Tracker::try_proposed(Keyframe place, const VoxelMap& map) {
+  const Image<float> model =
+      cast_inverse_depth(map, place.image.camera, place.world_from_camera, config_.max_range_m);
+  return keep_what_map_has(model, place.image) >= static_cast<double>(config_.min_overlap) &&
+         try_place(place, map, kAllDirections);
 }
 
 void Tracker::keep_keyframe() {

@@ -2,33 +2,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "ovimap/io/map_tables/map_document.h"
-#include "ovimap/map/rays/observed_space.h"
+#include "ovimap/pipeline/alignment/object_layout.h"
+#include "ovimap/pipeline/alignment/place_agreement.h"
 
 namespace ovimap {
 
-class ConfigFields;
-
 struct AlignmentConfig {
-  float min_overlap = 0.15f;    ///< of the second map's surface that must meet that of the first
+  float min_overlap = 0.15f;    ///< of what the cameras of one map saw that must be in the other
   float min_fit = 0.9f;         ///< of surface where both looked that must agree
   float min_clear_fit = 0.75f;  ///< the same where the next answer is not half as good: noisy depth
                                 ///< alone costs a fifth
   float min_lead = 0.08f;       ///< by which the best answer must beat the next other one
-  float min_likeness = 0.35f;   ///< of size, for two objects that may be the same
-  int max_partners = 6;         ///< objects of the first map that one of the second may be
   float spacing_m = 0.06f;      ///< between surface points that are fitted to each other
-  float tolerance_m = 0.04f;    ///< surfaces nearer to each other agree
-  ObservedSpaceConfig space{.width_px = 80, .max_views = 100};
+  ObjectLayoutConfig layout;
+  PlaceConfig place;
 };
 void list_fields(AlignmentConfig& config, ConfigFields& fields);
 
 /// How one map lies in the frame of another.
 struct MapAlignment {
   Pose a_from_b = Pose::Identity();
-  float overlap = 0;    ///< of the smaller map's upright surface, the share at the other's
+  float overlap = 0;    ///< of what the cameras of one map saw, the share that the other map has: of
+                        ///< the map that has the larger share
   float fit = 0;        ///< of upright surface where both maps looked, the share that agrees
   float runner_up = 0;  ///< score of the best other answer, where `score` is overlap * fit
+  int objects = 0;      ///< that proposed it; 0: it was given
   float score() const { return overlap * fit; }
 };
 
@@ -36,11 +34,13 @@ struct MapAlignment {
 MapAlignment judge_alignment(const MapDocument& a, const MapDocument& b, const Pose& a_from_b,
                              const AlignmentConfig& config = {});
 
-/// Finds how two maps of one place lie to each other. Objects that are alike (in size, and in looks
-/// where both maps have embeddings of one encoder) propose poses by twos, upright ones alone, since
-/// both maps know what is up; the best are refined by fitting surface to surface (point-to-plane
-/// ICP), and judged by how much surface meets and how little of it lies where the other map saw
-/// nothing. Throws Error, with the figures, when no answer is convincing.
+/// All answers that were looked at, the best first: poses that objects propose (propose_poses),
+/// fitted surface to surface and held against what the cameras of both maps saw (agreement).
+std::vector<MapAlignment> alignments(const MapDocument& a, const MapDocument& b,
+                                     const AlignmentConfig& config = {});
+
+/// Finds how two maps of one place lie to each other: the best of `alignments`. Throws Error, with
+/// the figures, when it is not convincing.
 MapAlignment align_maps(const MapDocument& a, const MapDocument& b,
                         const AlignmentConfig& config = {});
 
