@@ -5,19 +5,15 @@
 #include <algorithm>
 #include <future>
 
+#include "find_start.h"
 #include "ovimap/base/thread_priority.h"
-#include "ovimap/inference/masks/id_mask_sources.h"
 #include "ovimap/io/map_file/map_file.h"
-#include "ovimap/pipeline/people/peopleless_source.h"
 #include "ovimap/pipeline/revise/visit_history.h"
-#include "ovimap/pipeline/sequence/visit_start.h"
 #include "same_settings.h"
 
 namespace ovimap::apps {
 
 namespace {
-
-constexpr int kStoreForLoops_mb = 1000;  // a closed loop fuses the frames again
 
 /// The settings that made the map, with what the command line chose beside them.
 std::string effective_config(ProgramConfig config, const MappingOptions& options,
@@ -30,48 +26,6 @@ std::string effective_config(ProgramConfig config, const MappingOptions& options
                 encoder ? encoder->identity().name : "none", ", frames ", options.frames, "\n",
                 fields.dump());
 }
-
-/// What the options ask for, opened.
-struct MappingInputs {
-  explicit MappingInputs(const MappingOptions& options, bool recorded = true)
-      : config(read_program_config(options)) {
-    config.masks.runtime.threads = network_threads(config, options);
-    if (recorded) {
-      config.source.poses = options.poses == "auto"    ? PoseNeed::kAllOrNone
-                            : options.poses == "track" ? PoseNeed::kNone
-                                                       : PoseNeed::kAll;
-      source = open_frame_source(options.source, config.source);
-    }
-    people = make_people_filter(options, config);
-    if (people && source) source = std::make_unique<PeoplelessSource>(std::move(source), people);
-    tracking = options.poses == "track" || options.poses == "refine" ||
-               (source && !source->posed());
-    keeps_for_loops = tracking && config.mapper.frame_store.max_mb == 0;
-    if (keeps_for_loops) config.mapper.frame_store.max_mb = kStoreForLoops_mb;
-    if (!recorded) return;
-    range = positions(parse_frame_range(options.frames), source->size());
-  }
-  void open_networks(const MappingOptions& options, const std::filesystem::path& keep_masks = {}) {
-    auto found = make_mask_source(options.masks, config.masks, {source.get(), options.model_dirs});
-    if (found && !keep_masks.empty())
-      found = std::make_unique<KeptMaskSource>(keep_masks, std::move(found));
-    masks = std::move(found);
-    encoder = make_encoder(options, config);
-    recognizer = make_recognizer(options, config, encoder != nullptr);
-  }
-
-  ProgramConfig config;
-  std::unique_ptr<FrameSource> source;  ///< null where frames are pushed
-  std::shared_ptr<const PeopleFilter> people;  ///< null: they stay in the frames
-  bool tracking = false;                ///< poses are to be found
-  bool keeps_for_loops = false;         ///< frames are kept for that alone
-  std::vector<std::int64_t> range;
-  std::shared_ptr<MaskSource> masks;
-  std::shared_ptr<ImageTextEncoder> encoder;
-  std::shared_ptr<const ThingRecognizer> recognizer;
-  std::shared_ptr<PoseFinder> finder;  ///< null: poses are given
-  std::optional<VisitPlacing> placing;  ///< what objects said of where the recording lies
-};
 
 /// What a run goes on with, and where its checkpoints go.
 struct BegunRun {
@@ -204,53 +158,6 @@ std::shared_ptr<PoseFinder> make_finder(const MappingInputs& inputs, const Begun
   return std::make_shared<PoseFinder>(std::move(tracker), inputs.config.loops);
 }
 
-/// A map of which only a part could be fused again keeps nothing.
-void keep_as_before(const BegunRun& begun, MappingInputs& inputs) {
-  if (inputs.tracking && begun.document && !begun.document->frames.empty() &&
-      begun.document->kept_frames.empty())
-    inputs.config.mapper.frame_store.max_mb = 0;
-}
-
-/// Where objects say that the recording lies in the map; Error, as text, where they do not tell.
-VisitPlacing ask_objects(const MapDocument& map, const MappingInputs& inputs) {
-  std::vector<std::int64_t> first = inputs.range;
-  first.resize(std::min(first.size(), static_cast<std::size_t>(inputs.config.visit.object_frames)));
-  MapperConfig config = inputs.config.mapper;
-  config.frame_store.max_mb = 0;
-  config.allow_still_camera = true;  // the recording as a whole moved
-  Progress progress("looking for the recording's place");
-  try {
-    ObjectPlacing placing = place_by_objects(
-        map, *inputs.source, first, Mapper(config, inputs.masks, inputs.encoder),
-        PoseFinder(Tracker(inputs.config.track), inputs.config.loops), inputs.config.visit.alignment,
-        [&](std::size_t done, std::size_t total, const FrameReport*) {
-          progress.show(done, total);
-          return !interrupted();
-        });
-    inputs.finder->tracker().propose(std::move(placing.places));
-    return {placing.alignment, {}};
-  } catch (const Error& fault) {
-    return {std::nullopt, fault.what()};
-  }
-}
-
-/// A camera whose first frames show no place that the map's keyframes know is looked for by objects.
-void find_start(const BegunRun& begun, MappingInputs& inputs) {
-  if (!inputs.finder || !begun.document || begun.document->frames.empty()) return;
-  const std::vector<Keyframe>& keyframes = inputs.finder->tracker().keyframes();
-  const bool may_ask = begun.new_visit && inputs.source && inputs.config.visit.object_frames > 0 &&
-                       inputs.config.memory.max_mb == 0;  // which takes both maps in memory
-  std::vector<std::int64_t> first = inputs.range;
-  first.resize(std::min(first.size(), static_cast<std::size_t>(inputs.config.track.part_frames)));
-  if (may_ask && !shows_known_place(*inputs.source, first, begun.document->map, keyframes,
-                                    inputs.config.track))
-    inputs.placing = ask_objects(*begun.document, inputs);
-  if (keyframes.empty() && !(inputs.placing && inputs.placing->alignment))
-    throw Error(concat("the map to go on with keeps no frames to find the camera's place by; map it "
-                       "with --set frame_store.max_mb=1000",
-                       inputs.placing ? concat(" (by objects: ", inputs.placing->fault, ")") : ""));
-}
-
 /// What tracking did; where the camera came by a place again, the map's loops are closed.
 TrackingRun finish_tracking(const PoseFinder& finder, const ProgramConfig& config, Mapper& mapper,
                             SequenceResult& sequence) {
@@ -323,9 +230,8 @@ MappingRun map_recording(const MappingOptions& options, const std::string& title
   BegunRun begun = find_begun(target, inputs.config.memory);
   inputs.open_networks(options, keep_masks);
   const auto finder = inputs.finder = make_finder(inputs, begun);
-  keep_as_before(begun, inputs);
   watch_for_interrupt();
-  find_start(begun, inputs);
+  find_start(begun.document ? &*begun.document : nullptr, begun.new_visit, inputs);
   Mapper mapper(inputs.config.mapper, inputs.masks, inputs.encoder);
   mapper.recognize_with(inputs.recognizer);
   MapHeader header = make_header(inputs, options, mapper.config());
@@ -367,7 +273,7 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
   LiveMapper mapper(inputs.config.mapper, inputs.config.live, inputs.masks, inputs.encoder);
   mapper.recognize_with(inputs.recognizer);
   const auto finder = inputs.finder = make_finder(inputs, begun);
-  find_start(begun, inputs);
+  find_start(begun.document ? &*begun.document : nullptr, begun.new_visit, inputs);
   mapper.track_with(finder);
   MapHeader header = make_header(inputs, options, mapper.config());
   const std::string pace = intake ? std::string("pushed") : concat(fps, " frames/s");

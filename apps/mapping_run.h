@@ -11,12 +11,6 @@
 
 namespace ovimap::apps {
 
-/// What objects said of where a recording lies in the map that it goes on with.
-struct VisitPlacing {
-  std::optional<MapAlignment> alignment;
-  std::string fault;  ///< why they do not tell
-};
-
 /// How the camera was tracked.
 struct TrackingRun {
   TrackSummary summary;
@@ -24,7 +18,7 @@ struct TrackingRun {
   LoopReport loops;             ///< after the last one
   std::vector<std::pair<std::int64_t, std::int64_t>> unknown;  ///< unknown_places
   std::vector<std::string> sensor_doubts;  ///< none: camera and times are as described
-  std::optional<VisitPlacing> placing;     ///< none: they were not asked
+  std::optional<AlignmentSearch> placing;  ///< what objects said of where in a map the camera is
 };
 
 /// Frames of a run that were mapped by themselves, since nothing says where they lie.

@@ -65,7 +65,7 @@ std::string share(float value) {
   return std::to_string(std::lround(100 * value)) + " %";
 }
 
-void require_convincing(const MapAlignment& best, const AlignmentConfig& config) {
+std::string doubt_of(const MapAlignment& best, const AlignmentConfig& config) {
   const bool clear = best.runner_up < 0.5f * best.score();
   const char* why = nullptr;
   if (best.overlap < config.min_overlap)
@@ -74,11 +74,9 @@ void require_convincing(const MapAlignment& best, const AlignmentConfig& config)
     why = "they would contradict each other";
   else if (best.score() - best.runner_up < config.min_lead * best.score())
     why = "another answer fits as well";
-  if (why != nullptr)
-    throw Error(concat("the maps cannot be aligned with confidence: ", why, " (overlap ",
-                       share(best.overlap), ", fit ", share(best.fit), ", next best ",
-                       share(best.score() > 0 ? best.runner_up / best.score() : 1.f),
-                       " of it); give the transform with --transform FILE"));
+  if (why == nullptr) return {};
+  return concat(why, " (overlap ", share(best.overlap), ", fit ", share(best.fit), ", next best ",
+                share(best.score() > 0 ? best.runner_up / best.score() : 1.f), " of it)");
 }
 
 }  // namespace
@@ -116,18 +114,24 @@ std::vector<MapAlignment> alignments(const MapDocument& a, const MapDocument& b,
   return answers;
 }
 
-MapAlignment align_maps(const MapDocument& a, const MapDocument& b, const AlignmentConfig& config) {
-  std::vector<MapAlignment> answers = alignments(a, b, config);
-  if (answers.empty())
-    throw Error(
-        "the maps cannot be aligned: too few objects are alike; give the transform with "
-        "--transform FILE");
-  MapAlignment best = answers.front();
+AlignmentSearch search_alignment(const MapDocument& a, const MapDocument& b,
+                                 const AlignmentConfig& config) {
+  const std::vector<MapAlignment> answers = alignments(a, b, config);
+  if (answers.empty()) return {{}, "too few objects are alike"};
+  AlignmentSearch search{answers.front(), {}};
   for (const MapAlignment& other : answers)
-    if (!same_answer(other.a_from_b, best.a_from_b))
-      best.runner_up = std::max(best.runner_up, other.score());
-  require_convincing(best, config);
-  return best;
+    if (!same_answer(other.a_from_b, search.best.a_from_b))
+      search.best.runner_up = std::max(search.best.runner_up, other.score());
+  search.doubt = doubt_of(search.best, config);
+  return search;
+}
+
+MapAlignment align_maps(const MapDocument& a, const MapDocument& b, const AlignmentConfig& config) {
+  const AlignmentSearch search = search_alignment(a, b, config);
+  if (!search.doubt.empty())
+    throw Error(concat("the maps cannot be aligned with confidence: ", search.doubt,
+                       "; give the transform with --transform FILE"));
+  return search.best;
 }
 
 }  // namespace ovimap

@@ -39,8 +39,17 @@ MapAlignment judge_alignment(const MapDocument& a, const MapDocument& b, const P
 std::vector<MapAlignment> alignments(const MapDocument& a, const MapDocument& b,
                                      const AlignmentConfig& config = {});
 
-/// Finds how two maps of one place lie to each other: the best of `alignments`. Throws Error, with
-/// the figures, when it is not convincing.
+/// The best of them, and what speaks against believing it, with the figures; empty when nothing does.
+struct AlignmentSearch {
+  MapAlignment best;
+  std::string doubt;
+};
+
+/// Looks for how two maps of one place lie to each other.
+AlignmentSearch search_alignment(const MapDocument& a, const MapDocument& b,
+                                 const AlignmentConfig& config = {});
+
+/// The same. Throws Error when the answer is not to be believed.
 MapAlignment align_maps(const MapDocument& a, const MapDocument& b,
                         const AlignmentConfig& config = {});
 

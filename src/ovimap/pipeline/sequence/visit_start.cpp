@@ -25,9 +25,11 @@ ObjectPlacing place_by_objects(const MapDocument& map, const FrameSource& source
   const SequenceResult done =
       run_sequence(source, positions, alone, progress, {}, nullptr, &finder);
   const MapDocument part = make_document(std::move(alone), done, {});
-  ObjectPlacing placing{align_maps(map, part, config), finder.tracker().keyframes()};
+  ObjectPlacing placing{search_alignment(map, part, config), {}};
+  if (!placing.alignment.doubt.empty()) return placing;
+  placing.places = finder.tracker().keyframes();
   for (Keyframe& place : placing.places)
-    place.world_from_camera = placing.alignment.a_from_b * place.world_from_camera;
+    place.world_from_camera = placing.alignment.best.a_from_b * place.world_from_camera;
   return placing;
 }
 

@@ -15,13 +15,13 @@ bool shows_known_place(const FrameSource& source, const std::vector<std::int64_t
 
 /// Where a recording lies in a map, as the objects of both say.
 struct ObjectPlacing {
-  MapAlignment alignment;        ///< of the recording's map in the other
-  std::vector<Keyframe> places;  ///< of the recording, in the map's world
+  AlignmentSearch alignment;     ///< of the recording's map in the other
+  std::vector<Keyframe> places;  ///< of the recording, in the map's world; none where that is doubted
 };
 
 /// Maps the frames at `positions` by themselves, in a world of their own, with a mapper that is
-/// fresh, and aligns that map with `map` (align_maps, which throws Error when it is not sure). The
-/// camera is tracked by `finder`, likewise fresh. Throws what run_sequence throws.
+/// fresh, and looks for that map in `map` (search_alignment). The camera is tracked by `finder`,
+/// likewise fresh. Throws what run_sequence throws.
 ObjectPlacing place_by_objects(const MapDocument& map, const FrameSource& source,
                                const std::vector<std::int64_t>& positions, Mapper&& alone,
                                PoseFinder&& finder, const AlignmentConfig& config,
