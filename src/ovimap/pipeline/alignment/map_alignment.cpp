@@ -14,8 +14,14 @@ namespace ovimap {
 
 namespace {
 
-constexpr std::array kFarReaches_m = {0.4f, 0.2f, 0.1f}, kNearReaches_m = {0.2f, 0.1f, 0.06f};
-constexpr int kFarRounds = 6, kNearRounds = 10;
+// Proposals are fitted and judged roughly; the best of them once more, by all that is known.
+constexpr std::array kFarReaches_m = {0.4f, 0.2f};
+constexpr std::array kNearReaches_m = {0.2f, 0.1f, 0.06f};
+constexpr int kFarRounds = 6, kNearRounds = 8;
+constexpr double kSameShift_m = 0.2, kSameTurn_rad = 0.1;
+constexpr float kRoughSpacing = 2;     // as large as the fine one
+constexpr int kRoughViews = 12;
+constexpr std::size_t kFineAnswers = 6;
 
 PlaceAgreement sum_of(const std::vector<PlaceView>& views, const VoxelMap& map,
                       const Pose& map_from_world, const PlaceConfig& config) {
@@ -26,6 +32,11 @@ PlaceAgreement sum_of(const std::vector<PlaceView>& views, const VoxelMap& map,
   PlaceAgreement sum;
   for (const PlaceAgreement& one : each) sum += one;
   return sum;
+}
+
+PlaceConfig rough(PlaceConfig config) {
+  config.max_views = std::min(config.max_views, kRoughViews);
+  return config;
 }
 
 /// Holds what the cameras of each of two maps saw against the other.
@@ -54,11 +65,47 @@ class Judge {
   std::vector<PlaceView> views_a_, views_b_;
 };
 
-bool same_answer(const Pose& x, const Pose& y) {
-  constexpr double kSameShift_m = 0.2, kSameTurn_rad = 0.1;
-  const Pose between = x.inverse() * y;
-  return between.translation().norm() < kSameShift_m &&
-         Eigen::AngleAxisd(between.linear()).angle() < kSameTurn_rad;
+/// Whether two answers put what b saw at one place; `middle_of_b`: of where its cameras stood.
+class SameAnswer {
+ public:
+  explicit SameAnswer(const MapDocument& b) {
+    for (const FrameLogEntry& frame : b.frames)
+      middle_of_b_ += frame.world_from_camera.translation() / static_cast<double>(b.frames.size());
+  }
+  bool operator()(const Pose& x, const Pose& y, double shift_m, double turn_rad) const {
+    return (x * middle_of_b_ - y * middle_of_b_).norm() < shift_m &&
+           Eigen::AngleAxisd((x.inverse() * y).linear()).angle() < turn_rad;
+  }
+
+ private:
+  Eigen::Vector3d middle_of_b_ = Eigen::Vector3d::Zero();
+};
+
+/// Poses that proposals lead to, fitted roughly, each once.
+std::vector<MapAlignment> rough_answers(const std::vector<LayoutProposal>& proposals,
+                                        const SurfaceFit& fit, const SameAnswer& same) {
+  constexpr double kOneShift_m = 0.05, kOneTurn_rad = 0.03;
+  std::vector<MapAlignment> answers;
+  for (const LayoutProposal& proposal : proposals) {
+    const Pose pose = fit.refine(proposal.a_from_b, kFarReaches_m, kFarRounds);
+    const auto known = std::find_if(answers.begin(), answers.end(), [&](const MapAlignment& other) {
+      return same(pose, other.a_from_b, kOneShift_m, kOneTurn_rad);
+    });
+    if (known == answers.end()) answers.push_back({.a_from_b = pose, .objects = proposal.objects});
+    else known->objects = std::max(known->objects, proposal.objects);
+  }
+  return answers;
+}
+
+void judge_anew(const Judge& judge, MapAlignment& answer) {
+  const int objects = answer.objects;
+  answer = judge(answer.a_from_b);
+  answer.objects = objects;
+}
+
+void sort_best_first(std::vector<MapAlignment>& answers) {
+  std::stable_sort(answers.begin(), answers.end(),
+                   [](const auto& x, const auto& y) { return x.score() > y.score(); });
 }
 
 std::string share(float value) {
@@ -100,17 +147,26 @@ MapAlignment judge_alignment(const MapDocument& a, const MapDocument& b, const P
 std::vector<MapAlignment> alignments(const MapDocument& a, const MapDocument& b,
                                      const AlignmentConfig& config) {
   const auto proposals = propose_poses(layout_of(a), layout_of(b), config.layout);
+  const SameAnswer same(b);
+  std::vector<MapAlignment> answers;
+  {
+    const float spacing_m = kRoughSpacing * config.spacing_m;
+    const SurfacePoints surface_a = thinned_surface(a.map, spacing_m),
+                        surface_b = thinned_surface(b.map, spacing_m);
+    answers = rough_answers(proposals, SurfaceFit(surface_a, surface_b), same);
+    const Judge judge(a, b, rough(config.place));
+    for (MapAlignment& answer : answers) judge_anew(judge, answer);
+    sort_best_first(answers);
+  }
   const SurfacePoints surface_a = thinned_surface(a.map, config.spacing_m),
                       surface_b = thinned_surface(b.map, config.spacing_m);
   const SurfaceFit fit(surface_a, surface_b);
   const Judge judge(a, b, config.place);
-  std::vector<MapAlignment> answers;
-  for (const LayoutProposal& proposal : proposals) {
-    answers.push_back(judge(fit.refine(proposal.a_from_b, kFarReaches_m, kFarRounds)));
-    answers.back().objects = proposal.objects;
+  for (MapAlignment& answer : std::span(answers).first(std::min(answers.size(), kFineAnswers))) {
+    answer.a_from_b = fit.refine(answer.a_from_b, kNearReaches_m, kNearRounds);
+    judge_anew(judge, answer);
   }
-  std::stable_sort(answers.begin(), answers.end(),
-                   [](const auto& x, const auto& y) { return x.score() > y.score(); });
+  sort_best_first(answers);
   return answers;
 }
 
@@ -119,8 +175,9 @@ AlignmentSearch search_alignment(const MapDocument& a, const MapDocument& b,
   const std::vector<MapAlignment> answers = alignments(a, b, config);
   if (answers.empty()) return {{}, "too few objects are alike"};
   AlignmentSearch search{answers.front(), {}};
+  const SameAnswer same(b);
   for (const MapAlignment& other : answers)
-    if (!same_answer(other.a_from_b, search.best.a_from_b))
+    if (!same(other.a_from_b, search.best.a_from_b, kSameShift_m, kSameTurn_rad))
       search.best.runner_up = std::max(search.best.runner_up, other.score());
   search.doubt = doubt_of(search.best, config);
   return search;

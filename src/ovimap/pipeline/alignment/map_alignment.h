@@ -10,8 +10,7 @@ namespace ovimap {
 struct AlignmentConfig {
   float min_overlap = 0.15f;    ///< of what the cameras of one map saw that must be in the other
   float min_fit = 0.9f;         ///< of surface where both looked that must agree
-  float min_clear_fit = 0.75f;  ///< the same where the next answer is not half as good: noisy depth
-                                ///< alone costs a fifth
+  float min_clear_fit = 0.85f;  ///< the same where the next answer is not half as good
   float min_lead = 0.08f;       ///< by which the best answer must beat the next other one
   float spacing_m = 0.06f;      ///< between surface points that are fitted to each other
   ObjectLayoutConfig layout;
