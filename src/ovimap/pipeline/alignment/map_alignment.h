@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+
 #include "ovimap/pipeline/alignment/object_layout.h"
 #include "ovimap/pipeline/alignment/place_agreement.h"
 
@@ -24,9 +26,10 @@ struct MapAlignment {
   float overlap = 0;    ///< of what the cameras of one map saw, the share that the other map has: of
                         ///< the map that has the larger share
   float fit = 0;        ///< of upright surface where both maps looked, the share that agrees
-  float runner_up = 0;  ///< score of the best other answer, where `score` is overlap * fit
+  float runner_up = 0;  ///< score of the best other answer
   int objects = 0;      ///< that proposed it; 0: it was given
-  float score() const { return overlap * fit; }
+  /// What meets, less as much of it as is contradicted: half of a fit is what chance gives.
+  float score() const { return overlap * std::max(0.f, 2 * fit - 1); }
 };
 
 /// How well two maps agree in a given pose.
