@@ -255,10 +255,12 @@ bool Tracker::try_place(const Keyframe& keyframe, const VoxelMap& map, int most_
   return true;
 }
 
-/// What the map does not have of the place must not speak for it.
+/// What the map does not have of the place must not speak for it, nor its own images for where it
+/// is said to be: depth alone says where in the map the frame is.
 bool Tracker::try_proposed(Keyframe place, const VoxelMap& map) {
   const Image<float> model =
       cast_inverse_depth(map, place.image.camera, place.world_from_camera, config_.max_range_m);
+  place.image.intensity.fill(-1);
   return keep_what_map_has(model, place.image) >= static_cast<double>(config_.min_overlap) &&
          try_place(place, map, kAllDirections);
 }

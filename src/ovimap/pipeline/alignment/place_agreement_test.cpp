@@ -23,7 +23,7 @@ PlaceAgreement held_against(const MapDocument& seen, const MapDocument& map, con
   return sum;
 }
 
-const Furniture kBox = furniture(0.2f, 0.3f, {0.6f, 0.5f, 0.7f}, {200, 30, 30});
+const Furniture kBox = furniture(-1.2f, 0.9f, {0.8f, 0.6f, 1.1f}, {200, 30, 30});
 
 TEST(PlaceAgreement, AMapIsWhatItsCamerasSaw) {
   const MapDocument map = room_with({kBox});
