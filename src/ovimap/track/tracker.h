@@ -69,7 +69,8 @@ class Tracker {
   bool follow(const Frame& frame);
   bool find_again(const Frame& frame, const VoxelMap& map);
   bool try_view(const Pose& world_from_camera, const VoxelMap& map);
-  bool try_place(const Keyframe& keyframe, const VoxelMap& map, int most_degenerate);
+  bool try_place(const Keyframe& keyframe, const VoxelMap& map, int most_degenerate,
+                 const FrameAlignmentConfig& config);
   bool try_proposed(Keyframe place, const VoxelMap& map);
   std::vector<Pose> predictions(const Frame& frame) const;
   std::optional<Alignment> best_alignment(const Frame& frame, std::int64_t gap) const;

@@ -115,14 +115,16 @@ std::string share(float value) {
 std::string doubt_of(const MapAlignment& best, const AlignmentConfig& config) {
   const bool clear = best.runner_up < 0.5f * best.score();
   const char* why = nullptr;
-  if (best.overlap < config.min_overlap)
+  if (best.objects < config.min_objects)
+    why = "too few objects say so";
+  else if (best.overlap < config.min_overlap)
     why = "too little of their surfaces would meet";
   else if (best.fit < (clear ? config.min_clear_fit : config.min_fit))
     why = "they would contradict each other";
   else if (best.score() - best.runner_up < config.min_lead * best.score())
     why = "another answer fits as well";
   if (why == nullptr) return {};
-  return concat(why, " (overlap ", share(best.overlap), ", fit ", share(best.fit), ", next best ",
+  return concat(why, " (objects ", best.objects, ", overlap ", share(best.overlap), ", fit ", share(best.fit), ", next best ",
                 share(best.score() > 0 ? best.runner_up / best.score() : 1.f), " of it)");
 }
 
@@ -134,6 +136,7 @@ void list_fields(AlignmentConfig& config, ConfigFields& fields) {
   fields.add("min_clear_fit", config.min_clear_fit, 0.f, 1.f,
              "the same where the next other answer is not half as good");
   fields.add("min_lead", config.min_lead, 0.f, 1.f, "over the next other answer, as a share");
+  fields.add("min_objects", config.min_objects, 0, 1000, "that must speak for the answer");
   fields.add("spacing_m", config.spacing_m, 0.001f, 1.f, "between fitted surface points, metres");
   fields.group("layout", [&](ConfigFields& group) { list_fields(config.layout, group); });
   fields.group("place", [&](ConfigFields& group) { list_fields(config.place, group); });
@@ -177,7 +180,9 @@ AlignmentSearch search_alignment(const MapDocument& a, const MapDocument& b,
   AlignmentSearch search{answers.front(), {}};
   const SameAnswer same(b);
   for (const MapAlignment& other : answers)
-    if (!same(other.a_from_b, search.best.a_from_b, kSameShift_m, kSameTurn_rad))
+    if (same(other.a_from_b, search.best.a_from_b, kSameShift_m, kSameTurn_rad))
+      search.best.objects = std::max(search.best.objects, other.objects);
+    else
       search.best.runner_up = std::max(search.best.runner_up, other.score());
   search.doubt = doubt_of(search.best, config);
   return search;

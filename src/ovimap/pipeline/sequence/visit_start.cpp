@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "ovimap/base/error.h"
+
 namespace ovimap {
 
 bool shows_known_place(const FrameSource& source, const std::vector<std::int64_t>& positions,
@@ -24,6 +26,10 @@ ObjectPlacing place_by_objects(const MapDocument& map, const FrameSource& source
                                const SequenceProgress& progress) {
   const SequenceResult done =
       run_sequence(source, positions, alone, progress, {}, nullptr, &finder);
+  if (2 * done.frames.size() < positions.size())
+    return {{{}, concat("the camera was lost in ", positions.size() - done.frames.size(), " of ",
+                        positions.size(), " frames by itself as well")},
+            {}};
   const MapDocument part = make_document(std::move(alone), done, {});
   ObjectPlacing placing{search_alignment(map, part, config), {}};
   if (!placing.alignment.doubt.empty()) return placing;
