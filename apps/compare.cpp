@@ -12,7 +12,7 @@
 #include "ovimap/io/map_file/map_file.h"
 #include "ovimap/io/mesh/ply.h"
 #include "ovimap/io/pictures/pictures.h"
-#include "ovimap/pipeline/revise/map_alignment.h"
+#include "ovimap/pipeline/alignment/map_alignment.h"
 #include "ovimap/pipeline/revise/map_diff.h"
 #include "ovimap/pipeline/revise/map_merge.h"
 #include "ovimap/pipeline/search/history_search.h"

@@ -4,20 +4,16 @@
 
 #include <algorithm>
 #include <future>
-#include <sstream>
 
+#include "find_start.h"
 #include "ovimap/base/thread_priority.h"
-#include "ovimap/inference/masks/id_mask_sources.h"
 #include "ovimap/io/map_file/map_file.h"
-#include "ovimap/pipeline/people/peopleless_source.h"
 #include "ovimap/pipeline/revise/visit_history.h"
-#include "ovimap/pipeline/sequence/visit_fit.h"
+#include "same_settings.h"
 
 namespace ovimap::apps {
 
 namespace {
-
-constexpr int kStoreForLoops_mb = 1000;  // a closed loop fuses the frames again
 
 /// The settings that made the map, with what the command line chose beside them.
 std::string effective_config(ProgramConfig config, const MappingOptions& options,
@@ -30,47 +26,6 @@ std::string effective_config(ProgramConfig config, const MappingOptions& options
                 encoder ? encoder->identity().name : "none", ", frames ", options.frames, "\n",
                 fields.dump());
 }
-
-/// What the options ask for, opened.
-struct MappingInputs {
-  explicit MappingInputs(const MappingOptions& options, bool recorded = true)
-      : config(read_program_config(options)) {
-    config.masks.runtime.threads = network_threads(config, options);
-    if (recorded) {
-      config.source.poses = options.poses == "auto"    ? PoseNeed::kAllOrNone
-                            : options.poses == "track" ? PoseNeed::kNone
-                                                       : PoseNeed::kAll;
-      source = open_frame_source(options.source, config.source);
-    }
-    people = make_people_filter(options, config);
-    if (people && source) source = std::make_unique<PeoplelessSource>(std::move(source), people);
-    tracking = options.poses == "track" || options.poses == "refine" ||
-               (source && !source->posed());
-    keeps_for_loops = tracking && config.mapper.frame_store.max_mb == 0;
-    if (keeps_for_loops) config.mapper.frame_store.max_mb = kStoreForLoops_mb;
-    if (!recorded) return;
-    range = positions(parse_frame_range(options.frames), source->size());
-  }
-  void open_networks(const MappingOptions& options, const std::filesystem::path& keep_masks = {}) {
-    auto found = make_mask_source(options.masks, config.masks, {source.get(), options.model_dirs});
-    if (found && !keep_masks.empty())
-      found = std::make_unique<KeptMaskSource>(keep_masks, std::move(found));
-    masks = std::move(found);
-    encoder = make_encoder(options, config);
-    recognizer = make_recognizer(options, config, encoder != nullptr);
-  }
-
-  ProgramConfig config;
-  std::unique_ptr<FrameSource> source;  ///< null where frames are pushed
-  std::shared_ptr<const PeopleFilter> people;  ///< null: they stay in the frames
-  bool tracking = false;                ///< poses are to be found
-  bool keeps_for_loops = false;         ///< frames are kept for that alone
-  std::vector<std::int64_t> range;
-  std::shared_ptr<MaskSource> masks;
-  std::shared_ptr<ImageTextEncoder> encoder;
-  std::shared_ptr<const ThingRecognizer> recognizer;
-  std::shared_ptr<PoseFinder> finder;  ///< null: poses are given
-};
 
 /// What a run goes on with, and where its checkpoints go.
 struct BegunRun {
@@ -107,49 +62,6 @@ BegunRun find_begun(const RunTarget& target, const MemoryConfig& memory) {
     throw Error(concat("the unfinished run of '", partial.string(),
                        "' goes on with a map; name it by --continue as that run did"));
   return begun;
-}
-
-/// The lines of a configuration that decide what the map becomes: which frames it is made from, and
-/// when and where it is kept, may differ.
-std::vector<std::string> deciding_lines(const std::string& config) {
-  std::vector<std::string> lines;
-  std::istringstream stream(config);
-  for (std::string line; std::getline(stream, line);) {
-    if (line.starts_with("# preset")) line.resize(std::min(line.size(), line.find(", frames ")));
-    const auto names = [&](const char* start) { return line.starts_with(start); };
-    if (!names("checkpoint.") && !names("memory.") && !names("visit.") && !names("# live"))
-      lines.push_back(line);
-  }
-  return lines;
-}
-
-/// Throws Error naming the first setting in which two runs differ. `option`: the one by which this
-/// one goes on with the other.
-void require_same_settings(const std::string& begun, const std::string& now, const char* option) {
-  const std::vector<std::string> before = deciding_lines(begun), after = deciding_lines(now);
-  const auto [old_line, new_line] =
-      std::mismatch(before.begin(), before.end(), after.begin(), after.end());
-  if (old_line == before.end() && new_line == after.end()) return;
-  throw Error(concat("the run to go on with had '", old_line == before.end() ? "" : *old_line,
-                     "', this one has '", new_line == after.end() ? "" : *new_line,
-                     "'; give the same options, or map anew without ", option));
-}
-
-/// The settings of voxels are the map's, and so is the space of its embeddings.
-void require_same_map(const MapDocument& begun, const VoxelMapConfig& map,
-                      const std::shared_ptr<ImageTextEncoder>& encoder) {
-  const auto lines = [](VoxelMapConfig config) {
-    ConfigFields fields;
-    fields.group("map", [&](ConfigFields& group) { list_fields(config, group); });
-    return fields.dump();
-  };
-  require_same_settings(lines(begun.map.config()), lines(map), "--continue");
-  const std::string &before = begun.semantics.encoder.name,
-                    now = encoder ? encoder->identity().name : "";
-  if (!before.empty() && before != now)
-    throw Error(concat("the map's objects are embedded by '", before, "', and this run has ",
-                       now.empty() ? "no encoder" : concat("'", now, "'"), "; give --encoder ", before,
-                       ", or embed the map anew with `ovimap reembed`"));
 }
 
 /// Frames that are not in the map yet.
@@ -229,13 +141,9 @@ MapHeader make_header(const MappingInputs& inputs, const MappingOptions& options
 std::shared_ptr<PoseFinder> make_finder(const MappingInputs& inputs, const BegunRun& begun) {
   if (!inputs.tracking) return nullptr;
   Tracker tracker(inputs.config.track);
-  if (begun.document && !begun.document->frames.empty()) {
-    if (begun.document->kept_frames.empty())
-      throw Error("the map to go on with keeps no frames to find the camera's place by; map it with "
-                  "--set frame_store.max_mb=1000");
+  if (begun.document && !begun.document->frames.empty())
     tracker.begin_in(keyframes_of(begun.document->frames, begun.document->kept_frames,
                                   begun.document->depth_camera, inputs.config.track.keyframes));
-  }
   return std::make_shared<PoseFinder>(std::move(tracker), inputs.config.loops);
 }
 
@@ -244,7 +152,8 @@ TrackingRun finish_tracking(const PoseFinder& finder, const ProgramConfig& confi
                             SequenceResult& sequence) {
   const auto& log = finder.tracker().log();
   TrackingRun tracking{summarise(log), finder.corrections(), {},
-                       unknown_places(log, config.track.part_frames), sensor_doubts(finder.tracker())};
+                       unknown_places(log, config.track.part_frames), sensor_doubts(finder.tracker()),
+                       {}};
   if (config.track.part_frames == 0) tracking.unknown.clear();
   Progress progress("closing loops");
   tracking.loops = close_last_loops(
@@ -261,6 +170,7 @@ MappingRun finished_run(MappingInputs&& inputs, MapHeader header, Mapper&& mappe
   if (checkpoints) checkpoints->let_tiles_leave(mapper);
   if (inputs.finder)
     run.tracking = finish_tracking(*inputs.finder, inputs.config, mapper, sequence);
+  if (inputs.finder) run.tracking->placing = std::move(inputs.placing);
   run.source = std::move(inputs.source);
   run.masks_wanted = inputs.masks != nullptr;
   if (inputs.people) run.people_frames = inputs.people->frames_with_people();
@@ -323,13 +233,14 @@ MappingRun map_recording(const MappingOptions& options, const std::string& title
   BegunRun begun = find_begun(target, inputs.config.memory);
   inputs.open_networks(options, keep_masks);
   const auto finder = inputs.finder = make_finder(inputs, begun);
+  watch_for_interrupt();
+  find_start(begun.document ? &*begun.document : nullptr, begun.new_visit, inputs);
   Mapper mapper(inputs.config.mapper, inputs.masks, inputs.encoder);
   mapper.recognize_with(inputs.recognizer);
   MapHeader header = make_header(inputs, options, mapper.config());
   if (target.twice) header.config_text.insert(0, "# second pass\n");
   SequenceResult sequence = resume(begun, header, inputs, mapper);
   auto checkpoints = make_checkpointer(begun, inputs, header, sequence.frames.size());
-  watch_for_interrupt();
   std::unique_ptr<Mapper> guide;
   if (target.twice) {
     guide = first_pass(inputs, title);
@@ -364,6 +275,7 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
   LiveMapper mapper(inputs.config.mapper, inputs.config.live, inputs.masks, inputs.encoder);
   mapper.recognize_with(inputs.recognizer);
   const auto finder = inputs.finder = make_finder(inputs, begun);
+  find_start(begun.document ? &*begun.document : nullptr, begun.new_visit, inputs);
   mapper.track_with(finder);
   MapHeader header = make_header(inputs, options, mapper.config());
   const std::string pace = intake ? std::string("pushed") : concat(fps, " frames/s");

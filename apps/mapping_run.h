@@ -4,6 +4,7 @@
 
 #include "command.h"
 #include "ovimap/pipeline/live/camera_feed.h"
+#include "ovimap/pipeline/alignment/map_alignment.h"
 #include "ovimap/pipeline/live/live_run.h"
 #include "ovimap/pipeline/sequence/last_loops.h"
 #include "ovimap/track/sensor_doubts.h"
@@ -17,6 +18,7 @@ struct TrackingRun {
   LoopReport loops;             ///< after the last one
   std::vector<std::pair<std::int64_t, std::int64_t>> unknown;  ///< unknown_places
   std::vector<std::string> sensor_doubts;  ///< none: camera and times are as described
+  std::optional<AlignmentSearch> placing;  ///< what objects said of where in a map the camera is
 };
 
 /// Frames of a run that were mapped by themselves, since nothing says where they lie.

@@ -94,12 +94,21 @@ void print_live(const LiveRunResult& live, double fps) {
     std::printf("looks at objects left out: %lld\n", static_cast<long long>(done.views_skipped));
 }
 
+nlohmann::json placing_json(const std::optional<AlignmentSearch>& placing) {
+  if (!placing) return nullptr;
+  return {{"doubt", placing->doubt},
+          {"objects", placing->best.objects},
+          {"overlap", placing->best.overlap},
+          {"fit", placing->best.fit}};
+}
+
 nlohmann::json tracking_json(const TrackingRun& tracking) {
   const TrackSummary& done = tracking.summary;
   nlohmann::json lost = nlohmann::json::array();
   for (const auto& [first, last] : done.lost) lost.push_back({first, last});
   return {{"frames", done.frames},
           {"doubts", tracking.sensor_doubts},
+          {"by_objects", placing_json(tracking.placing)},
           {"frames_tracked", done.tracked},
           {"lost", lost},
           {"found_times", done.found_times},
@@ -133,6 +142,11 @@ void print_parts(const MappingRun& run) {
 }
 
 void print_tracking(const TrackingRun& tracking) {
+  if (tracking.placing && tracking.placing->doubt.empty())
+    std::printf("no first frame shows a known place; %d objects say where the recording lies, and the "
+                "surfaces agree (overlap %.0f %%, fit %.0f %%)\n",
+                tracking.placing->best.objects, 100. * double{tracking.placing->best.overlap},
+                100. * double{tracking.placing->best.fit});
   std::printf("%s\n", summary_line(tracking.summary).c_str());
   if (tracking.summary.degenerate > 0)
     std::printf("in %zu frames the images did not tell every direction of the motion\n",
@@ -164,6 +178,9 @@ void report_faults(const MappingRun& run) {
   if (run.tracking)
     for (const std::string& doubt : run.tracking->sensor_doubts)
       std::fprintf(stderr, "ovimap: %s\n", doubt.c_str());
+  if (run.tracking && run.tracking->placing && !run.tracking->placing->doubt.empty())
+    std::fprintf(stderr, "ovimap: no first frame shows a known place, nor do objects tell it: %s\n",
+                 run.tracking->placing->doubt.c_str());
   if (masks_all_absent(run))
     std::fprintf(stderr,
                  "ovimap: none of the %zu frames had masks, so the map tells no objects apart; "

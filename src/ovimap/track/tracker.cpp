@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::int64_t kLongestGap = 6;  // frames; longer ones predict nothing more
 constexpr int kAllDirections = 6;
+constexpr float kProposed_m = 0.2f, kProposed_rad = 0.2f;  // how far off a proposed place may be
 constexpr int kListenEvery = 5;          // frames; neighbours say the same of the sensor
 constexpr int kLeastWidth_px = 2 * kCoarsestWidth_px;  // smaller images lack levels
 
@@ -66,6 +67,12 @@ void Tracker::begin_in(std::vector<Keyframe> places) {
   keyframes_ = std::move(places);
   for (const Keyframe& keyframe : keyframes_) codes_.push_back(keyframe.code);
   begun_ = lost_ = true;
+}
+
+void Tracker::propose(std::vector<Keyframe> places) {
+  proposed_ = std::move(places);
+  proposed_codes_.clear();
+  for (const Keyframe& place : proposed_) proposed_codes_.push_back(place.code);
 }
 
 void Tracker::correct(const std::vector<Pose>& poses) {
@@ -213,9 +220,14 @@ bool Tracker::find_again(const Frame& frame, const VoxelMap& map) {
     if (try_view(turned({last_pose_}, *turn).front(), map)) return true;
   const auto count = static_cast<std::size_t>(config_.place_candidates);
   const auto places = most_similar(place_code(pyramid_), codes_, count, config_.min_similarity);
-  return std::any_of(places.begin(), places.end(), [&](std::size_t place) {
-    return try_place(keyframes_[place], map, kAllDirections);
-  });
+  if (std::any_of(places.begin(), places.end(), [&](std::size_t place) {
+        return try_place(keyframes_[place], map, kAllDirections, config_.alignment);
+      }))
+    return true;
+  const auto told =
+      most_similar(place_code(pyramid_), proposed_codes_, count, config_.min_similarity);
+  return std::any_of(told.begin(), told.end(),
+                     [&](std::size_t place) { return try_proposed(proposed_[place], map); });
 }
 
 /// Holds the frame against what the keyframes around a pose show together from there. Nothing but a
@@ -225,23 +237,37 @@ bool Tracker::try_view(const Pose& world_from_camera, const VoxelMap& map) {
   const std::vector<Keyframe> near = nearest_keyframes(keyframes_, world_from_camera, count);
   Keyframe view{0, world_from_camera, {}, {}};
   view.image = place_view(near, near.front().image.camera, world_from_camera);
-  return try_place(view, map, 0);
+  return try_place(view, map, 0, config_.alignment);
 }
 
 /// Holds the frame against a place as the map has it, with the intensities of the keyframe.
 /// `most_degenerate`: directions that the images need not tell.
-bool Tracker::try_place(const Keyframe& keyframe, const VoxelMap& map, int most_degenerate) {
+bool Tracker::try_place(const Keyframe& keyframe, const VoxelMap& map, int most_degenerate,
+                        const FrameAlignmentConfig& config) {
   const TrackPyramid place = pyramid_of(keyframe);
   const Image<float> model = cast_inverse_depth(map, keyframe.image.camera,
                                                 keyframe.world_from_camera, config_.max_range_m);
   const Reference reference = make_reference(place, model, keyframe.world_from_camera);
   const std::optional<Alignment> alignment = align_best(
-      reference, pyramid_, {Pose::Identity(), turn_between(place, pyramid_)}, config_.alignment);
+      reference, pyramid_, {Pose::Identity(), turn_between(place, pyramid_)}, config);
   if (!alignment || alignment->degenerate > most_degenerate ||
       !believable(alignment->quality, config_, true))
     return false;
   accept(log_.back().index, *alignment, reference, true);
   return true;
+}
+
+/// What the map does not have of the place must not speak for it, nor its own images for where it
+/// is said to be: depth alone says where in the map the frame is.
+bool Tracker::try_proposed(Keyframe place, const VoxelMap& map) {
+  const Image<float> model =
+      cast_inverse_depth(map, place.image.camera, place.world_from_camera, config_.max_range_m);
+  place.image.intensity.fill(-1);
+  FrameAlignmentConfig by_depth = config_.alignment;
+  by_depth.prior_sigma_m = kProposed_m;
+  by_depth.prior_sigma_rad = kProposed_rad;
+  return keep_what_map_has(model, place.image) >= static_cast<double>(config_.min_overlap) &&
+         try_place(place, map, kAllDirections, by_depth);
 }
 
 void Tracker::keep_keyframe() {

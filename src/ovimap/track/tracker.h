@@ -46,6 +46,10 @@ class Tracker {
   /// to be found.
   void begin_in(std::vector<Keyframe> places);
 
+  /// Places of which something else than images says where in the map they lie: a frame that is lost
+  /// and like no keyframe is held against what the map has of them. They become no keyframes.
+  void propose(std::vector<Keyframe> places);
+
   /// Keyframes get numbers from there on: that of frame 0. Before the first frame.
   void number_from(std::int64_t first) { first_number_ = first; }
 
@@ -65,7 +69,9 @@ class Tracker {
   bool follow(const Frame& frame);
   bool find_again(const Frame& frame, const VoxelMap& map);
   bool try_view(const Pose& world_from_camera, const VoxelMap& map);
-  bool try_place(const Keyframe& keyframe, const VoxelMap& map, int most_degenerate);
+  bool try_place(const Keyframe& keyframe, const VoxelMap& map, int most_degenerate,
+                 const FrameAlignmentConfig& config);
+  bool try_proposed(Keyframe place, const VoxelMap& map);
   std::vector<Pose> predictions(const Frame& frame) const;
   std::optional<Alignment> best_alignment(const Frame& frame, std::int64_t gap) const;
   std::optional<Alignment> aligned(const std::vector<Pose>& starts, float prior_sigma_rad,
@@ -98,6 +104,8 @@ class Tracker {
   std::vector<TrackedFrame> log_;
   std::vector<Keyframe> keyframes_;
   std::vector<PlaceCode> codes_;
+  std::vector<Keyframe> proposed_;
+  std::vector<PlaceCode> proposed_codes_;
 };
 
 TrackSummary summarise(const std::vector<TrackedFrame>& log);

@@ -314,6 +314,43 @@ TEST_F(TrackerTest, BeginsInAMapThatIsThere) {
   EXPECT_LT(fixture::distance_m(found.world_from_camera, fixture::room_pose(11)), 0.02);
 }
 
+/// A map without keyframes, and places of which something else says where in it they lie.
+class ProposedPlaces : public TrackerTest {
+ protected:
+  ProposedPlaces() {
+    for (int i = 0; i < 30; i += 10) fixture::fuse(camera_.take(fixture::room_pose(i), i), map_);
+    tracker_.begin_in({});
+  }
+  Keyframe place(const Pose& taken_at, const Pose& said_to_be_at) const {
+    return make_keyframe(make_pyramid(camera_.take(taken_at)), 0, said_to_be_at);
+  }
+};
+
+TEST_F(ProposedPlaces, AreBelievedWhereTheMapHasTheSame) {
+  Pose near = fixture::room_pose(11);
+  near.translation() += Eigen::Vector3d(0.05, -0.04, 0.03);
+  tracker_.propose({place(fixture::room_pose(11), near)});
+  const TrackedFrame& found = see(fixture::room_pose(11));
+  ASSERT_TRUE(found.relocated);
+  EXPECT_LT(fixture::distance_m(found.world_from_camera, fixture::room_pose(11)), 0.06)
+      << "7 cm off as proposed; depth does not tell every direction here";
+  EXPECT_EQ(tracker_.keyframes().size(), 1u) << "the frame's own";
+}
+
+TEST_F(ProposedPlaces, AreNotBelievedWhereItHasAnother) {
+  Pose wrong = fixture::room_pose(11);
+  wrong.rotate(Eigen::AngleAxisd(0.8, Eigen::Vector3d::UnitY()));
+  tracker_.propose({place(fixture::room_pose(11), wrong)});
+  EXPECT_FALSE(see(fixture::room_pose(11)).tracked);
+}
+
+TEST_F(ProposedPlaces, AreNotBelievedWhereItHasNothing) {
+  Pose outside = fixture::room_pose(11);
+  outside.translation() += Eigen::Vector3d(50, 0, 0);
+  tracker_.propose({place(fixture::room_pose(11), outside)});
+  EXPECT_FALSE(see(fixture::room_pose(11)).tracked);
+}
+
 TEST(Tracker, IsTheSameForAnyNumberOfThreads) {
   const auto last_pose = [](int threads) {
     const ThreadLimit limit(threads);

@@ -11,6 +11,7 @@
 #include "ovimap/io/mesh/map_mesh.h"
 #include "ovimap/io/mesh/mesh_pieces.h"
 #include "ovimap/map/rays/surface_lookup.h"
+#include "ovimap/pipeline/alignment/object_layout.h"
 #include "ovimap/pipeline/revise/object_overlap.h"
 
 namespace ovimap {

@@ -10,6 +10,7 @@
 #include "ovimap/io/corrections/map_corrections.h"
 #include "ovimap/io/corrections/map_edit_log.h"
 #include "ovimap/map/fusion/map_fusion.h"
+#include "ovimap/pipeline/alignment/object_layout.h"
 #include "ovimap/pipeline/revise/object_overlap.h"
 
 namespace ovimap {

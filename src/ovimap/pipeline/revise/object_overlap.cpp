@@ -3,7 +3,6 @@
 #include "ovimap/pipeline/revise/object_overlap.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "ovimap/eval/geometry/nearest.h"
 
@@ -78,29 +77,6 @@ ObjectOverlaps overlaps(const MapRecord& a, const MapRecord& b, const Pose& a_fr
     overlap.common_iou = iou_of(shared, common(of_a, pair.first), common(of_b, pair.second));
   }
   return result;
-}
-
-std::optional<float> look_similarity(const MapRecord& a, InstanceId id_a, const MapRecord& b,
-                                     InstanceId id_b) {
-  if (a.semantics.encoder != b.semantics.encoder) return std::nullopt;
-  const Eigen::VectorXf x = fuse_views(appearance_of(a, id_a).views, a.semantics.views.fusion),
-                        y = fuse_views(appearance_of(b, id_b).views, b.semantics.views.fusion);
-  if (x.size() == 0 || x.size() != y.size()) return std::nullopt;
-  return x.dot(y);
-}
-
-float size_similarity(const InstanceSummary& a, const InstanceSummary& b) {
-  if (a.box.isEmpty() || b.box.isEmpty()) return 0.f;
-  Eigen::Vector3f x = a.box.sizes(), y = b.box.sizes();
-  std::sort(x.begin(), x.end());
-  std::sort(y.begin(), y.end());
-  constexpr float kThin = 0.02f;  // thinner is noise
-  float least = 1.f;
-  for (int i = 0; i < 3; ++i) {
-    const float p = std::max(x[i], kThin), q = std::max(y[i], kThin);
-    least = std::min(least, std::min(p, q) / std::max(p, q));
-  }
-  return least;
 }
 
 }  // namespace ovimap

@@ -3,10 +3,7 @@
 #pragma once
 
 #include <map>
-#include <optional>
-#include <span>
 #include <utility>
-#include <vector>
 
 #include "ovimap/io/map_tables/map_document.h"
 
@@ -26,13 +23,5 @@ struct ObjectOverlap {
 using ObjectOverlaps = std::map<std::pair<InstanceId, InstanceId>, ObjectOverlap>;
 ObjectOverlaps overlaps(const MapRecord& a, const MapRecord& b, const Pose& a_from_b,
                         float tolerance_m);
-
-/// Cosine of two objects' embeddings; none when one has none, or they are of different encoders.
-std::optional<float> look_similarity(const MapRecord& a, InstanceId id_a, const MapRecord& b,
-                                     InstanceId id_b);
-
-/// In [0, 1]: how alike two boxes are in size, whatever way they stand: the smallest ratio of their
-/// sorted sides.
-float size_similarity(const InstanceSummary& a, const InstanceSummary& b);
 
 }  // namespace ovimap

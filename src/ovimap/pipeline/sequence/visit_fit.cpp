@@ -23,24 +23,13 @@ double share_of(std::vector<double> values, double share) {
   return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
 }
 
-/// Depth of the frame where the map has surface as well, so that the rest cannot hold it in place.
-double keep_what_both_have(const Image<float>& model, TrackLevel& level) {
-  std::size_t seen = 0, both = 0;
-  for (std::size_t i = 0; i < level.inverse_depth.size(); ++i) {
-    seen += level.inverse_depth[i] > 0.f;
-    if (model[i] <= 0.f) level.inverse_depth[i] = 0.f;
-    both += level.inverse_depth[i] > 0.f;
-  }
-  return seen == 0 ? 0. : static_cast<double>(both) / static_cast<double>(seen);
-}
-
 std::optional<Alignment> align_to_map(const Frame& frame, const VoxelMap& map,
                                       const TrackConfig& track, const VisitFitConfig& config) {
   const TrackPyramid pyramid = make_pyramid(frame);
   const Image<float> model = cast_inverse_depth(map, pyramid[kSurfaceLevel].camera,
                                                 frame.world_from_camera, track.max_range_m);
   TrackPyramid known = {pyramid[0], pyramid[kSurfaceLevel]};
-  if (keep_what_both_have(model, known[kSurfaceLevel]) < static_cast<double>(config.least_share))
+  if (keep_what_map_has(model, known[kSurfaceLevel]) < static_cast<double>(config.least_share))
     return std::nullopt;
   known[0].inverse_depth.fill(0.f);
   add_coarser_levels(known);
@@ -65,6 +54,9 @@ void list_fields(VisitFitConfig& config, ConfigFields& fields) {
   fields.add("most_turn_rad", config.most_turn_rad, 0.f, 3.f, "likewise, radians");
   fields.add("least_agreement", config.least_agreement, 0.f, 1.f,
              "share of what they see that must lie on the map's surface");
+  fields.add("object_frames", config.object_frames, 0, 100000,
+             "first frames that are mapped by themselves to find their place by objects; 0: none");
+  fields.group("alignment", [&](ConfigFields& f) { list_fields(config.alignment, f); });
 }
 
 VisitFit fit_visit(const VoxelMap& map, const FrameSource& source,

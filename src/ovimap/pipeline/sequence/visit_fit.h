@@ -7,6 +7,7 @@
 
 #include "ovimap/frames/frame/frame_source.h"
 #include "ovimap/map/voxels/voxel_map.h"
+#include "ovimap/pipeline/alignment/map_alignment.h"
 #include "ovimap/track/places/track_config.h"
 
 namespace ovimap {
@@ -19,6 +20,9 @@ struct VisitFitConfig {
   float most_offset_m = 0.015f;    ///< a quarter of the frames may be further off
   float most_turn_rad = 0.0175f;
   float least_agreement = 0.5f;    ///< share of what is seen that must lie on the map's surface
+  // Where nothing places it.
+  int object_frames = 150;  ///< so many are mapped by themselves, to find its place by objects; 0: none
+  AlignmentConfig alignment;
 };
 void list_fields(VisitFitConfig& config, ConfigFields& fields);
 

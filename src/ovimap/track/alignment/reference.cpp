@@ -151,6 +151,16 @@ Image<float> cast_inverse_depth(const VoxelMap& map, const PinholeCamera& camera
   return depth;
 }
 
+double keep_what_map_has(const Image<float>& model, TrackLevel& level) {
+  std::size_t seen = 0, both = 0;
+  for (std::size_t i = 0; i < level.inverse_depth.size(); ++i) {
+    seen += level.inverse_depth[i] > 0.f;
+    if (model[i] <= 0.f) level.inverse_depth[i] = 0.f;
+    both += level.inverse_depth[i] > 0.f;
+  }
+  return seen == 0 ? 0. : static_cast<double>(both) / static_cast<double>(seen);
+}
+
 Reference make_reference(const TrackPyramid& pyramid, const Image<float>& model,
                          const Pose& world_from_camera) {
   OVIMAP_ASSERT(pyramid.size() > kSurfaceLevel);

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "same_settings.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include "ovimap/base/config.h"
+
+namespace ovimap::apps {
+
+namespace {
+
+/// The lines of a configuration that decide what the map becomes: which frames it is made from, and
+/// when and where it is kept, may differ.
+std::vector<std::string> deciding_lines(const std::string& config) {
+  std::vector<std::string> lines;
+  std::istringstream stream(config);
+  for (std::string line; std::getline(stream, line);) {
+    if (line.starts_with("# preset")) line.resize(std::min(line.size(), line.find(", frames ")));
+    const auto names = [&](const char* start) { return line.starts_with(start); };
+    if (!names("checkpoint.") && !names("memory.") && !names("visit.") && !names("# live"))
+      lines.push_back(line);
+  }
+  return lines;
+}
+
+}  // namespace
+
+void require_same_settings(const std::string& begun, const std::string& now, const char* option) {
+  const std::vector<std::string> before = deciding_lines(begun), after = deciding_lines(now);
+  const auto [old_line, new_line] =
+      std::mismatch(before.begin(), before.end(), after.begin(), after.end());
+  if (old_line == before.end() && new_line == after.end()) return;
+  throw Error(concat("the run to go on with had '", old_line == before.end() ? "" : *old_line,
+                     "', this one has '", new_line == after.end() ? "" : *new_line,
+                     "'; give the same options, or map anew without ", option));
+}
+
+void require_same_map(const MapDocument& begun, const VoxelMapConfig& map,
+                      const std::shared_ptr<ImageTextEncoder>& encoder) {
+  const auto lines = [](VoxelMapConfig config) {
+    ConfigFields fields;
+    fields.group("map", [&](ConfigFields& group) { list_fields(config, group); });
+    return fields.dump();
+  };
+  require_same_settings(lines(begun.map.config()), lines(map), "--continue");
+  const std::string &before = begun.semantics.encoder.name,
+                    now = encoder ? encoder->identity().name : "";
+  if (!before.empty() && before != now)
+    throw Error(concat("the map's objects are embedded by '", before, "', and this run has ",
+                       now.empty() ? "no encoder" : concat("'", now, "'"), "; give --encoder ", before,
+                       ", or embed the map anew with `ovimap reembed`"));
+}
+
+}  // namespace ovimap::apps
