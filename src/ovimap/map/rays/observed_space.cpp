@@ -40,31 +40,21 @@ ObservedSpace::ObservedSpace(const VoxelMap& map, const PinholeCamera& camera,
 int ObservedSpace::seen_through(const Eigen::Vector3f& point_in_world, int enough) const {
   int count = 0;
   for (const View& view : views_) {
-    const std::optional<float> margins = ahead(view, point_in_world);
-    count += margins && *margins > 1.f;
+    count += sees_through(view, point_in_world);
     if (count >= enough) break;
   }
   return count;
 }
 
-bool ObservedSpace::shown(const Eigen::Vector3f& point_in_world) const {
-  return std::any_of(views_.begin(), views_.end(), [&](const View& view) {
-    const std::optional<float> margins = ahead(view, point_in_world);
-    return margins && std::abs(*margins) <= 1.f;
-  });
-}
-
-std::optional<float> ObservedSpace::ahead(const View& view,
-                                          const Eigen::Vector3f& point_in_world) const {
+bool ObservedSpace::sees_through(const View& view, const Eigen::Vector3f& point_in_world) const {
   const Eigen::Vector3f point = view.camera_from_world * point_in_world;
-  if (point.z() <= 0.f) return std::nullopt;
+  if (point.z() <= 0.f) return false;
   const Eigen::Vector2f pixel = camera_.project(point);
   const auto x = static_cast<int>(std::floor(pixel.x() + 0.5f)),
              y = static_cast<int>(std::floor(pixel.y() + 0.5f));
-  if (!view.depth.contains(x, y)) return std::nullopt;
+  if (!view.depth.contains(x, y)) return false;
   const float depth = view.depth.at(x, y);
-  if (!(depth > 0.f)) return std::nullopt;
-  return (depth - point.z()) / std::max({config_.margin_m, config_.share * depth, 1e-6f});
+  return depth > 0.f && point.z() < depth - std::max(config_.margin_m, config_.share * depth);
 }
 
 }  // namespace ovimap

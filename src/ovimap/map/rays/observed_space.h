@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -39,9 +38,6 @@ class ObservedSpace {
   /// counting at `enough`.
   int seen_through(const Eigen::Vector3f& point_in_world, int enough = 1) const;
 
-  /// Whether any view shows surface at the point, within the margin.
-  bool shown(const Eigen::Vector3f& point_in_world) const;
-
   std::size_t views() const { return views_.size(); }
 
  private:
@@ -49,9 +45,7 @@ class ObservedSpace {
     Eigen::Isometry3f camera_from_world;
     DepthImage depth;
   };
-  /// How far in front of the surface that the view shows there the point lies, in margins; nothing
-  /// where it shows none.
-  std::optional<float> ahead(const View& view, const Eigen::Vector3f& point_in_world) const;
+  bool sees_through(const View& view, const Eigen::Vector3f& point_in_world) const;
 
   ObservedSpaceConfig config_;
   PinholeCamera camera_;

@@ -39,18 +39,17 @@ class Witness {
   void testify(const std::vector<Eigen::Vector3f>& surface, ObjectChange& change) const {
     if (surface.empty()) return;
     VoxelFinder finder(map_.map);
-    std::size_t through = 0, there = 0, unseen = 0;
+    std::size_t through = 0, there = 0;
     for (const Eigen::Vector3f& other : surface) {
       const Eigen::Vector3f point = map_from_other_ * other;
       if (is_surface(finder, point))
-        ++there, unseen += !space_.shown(point);
+        ++there;
       else if (space_.seen_through(point, config_.gone_views) >= config_.gone_views)
         ++through;
     }
     const auto count = static_cast<float>(surface.size());
     change.seen_through = static_cast<float>(through) / count;
     change.surface_there = static_cast<float>(there) / count;
-    change.surface_unseen = static_cast<float>(unseen) / count;
   }
 
  private:

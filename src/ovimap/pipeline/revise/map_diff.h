@@ -44,8 +44,6 @@ struct ObjectChange {
   float overlap = 0;                 ///< intersection over union of the surfaces
   float seen_through = 0;            ///< share of its points that the other map saw through
   float surface_there = 0;           ///< share of its points at which the other map has surface
-  float surface_unseen = 0;  ///< of those, which none of the other map's frames shows: it has them
-                             ///< from an earlier visit
   std::optional<float> cosine;       ///< of the looks, where both are known
   Eigen::Vector3f shift_m = Eigen::Vector3f::Zero();  ///< of the centroid, in the frame of `before`
   std::string evidence;                               ///< a sentence

@@ -3,31 +3,28 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <vector>
 
 #include "ovimap/io/map_tables/map_document.h"
-#include "ovimap/map/rays/surface_lookup.h"
 
 namespace ovimap {
 
 /// A thing's surface and its colours, to know it again at another place.
 struct ThingLook {
   std::vector<Eigen::Vector3f> points;  ///< about their mean, z upwards, metres
-  std::vector<std::array<std::uint8_t, 3>> colors;  ///< of each, sRGB; all 0: unknown
-  Eigen::Isometry3f world_from_look = Eigen::Isometry3f::Identity();
   float reach_m = 0;                    ///< root of their mean squared distance from it
+  std::array<float, 64> colors{};       ///< shares of 4 x 4 x 4 cells of RGB; all 0: unknown
 };
-
-/// The points without pieces of less than such a share of them, or without any where all are. Pieces
-/// are what gaps of `gap_m`, and of up to twice that, part.
-std::vector<Eigen::Vector3f> large_pieces(const std::vector<Eigen::Vector3f>& points, float gap_m,
-                                          float least_share);
-
-/// The colour of the voxel at a point, sRGB; all 0 where it has none.
-std::array<std::uint8_t, 3> color_at(VoxelFinder& finder, const Eigen::Vector3f& point);
 
 /// `up`: unit, in the world. Points without surface have no colour.
 ThingLook thing_look(const MapDocument& map, InstanceId id, const Eigen::Vector3f& up);
+
+/// Mean distance of the two surfaces, laid over each other and turned about the vertical until they
+/// fit best, as a share of the larger reach. The far fifth of either's points is left out: each was
+/// seen from other sides.
+float shape_distance(const ThingLook& a, const ThingLook& b);
+
+/// Share that two things' colours have in common, in [0, 1]; 1 where one's are unknown.
+float common_colors(const ThingLook& a, const ThingLook& b);
 
 }  // namespace ovimap

@@ -21,28 +21,35 @@ const InstanceSummary* find_instance(const MapRecord& record, InstanceId id) {
   return found == record.instances.end() ? nullptr : &*found;
 }
 
-/// The box of a thing's surface without pieces that lie apart from the rest and are less than a
-/// twentieth of it, nor a hundredth at either end of each axis: stray points would tell of another
-/// place.
+/// The box of a thing's surface without a twentieth of it at either end of each axis: a few stray
+/// points would tell of another place.
 Eigen::AlignedBox3f box_of(const MapRecord& record, InstanceId id) {
-  constexpr float kApart_m = 0.05f, kLeastPiece = 0.05f;
-  constexpr std::size_t kLeftOut = 100;
+  constexpr std::size_t kLeftOut = 20;
   const auto surface = record.surfaces.find(id);
   if (surface == record.surfaces.end() || surface->second.empty()) {
     const InstanceSummary* instance = find_instance(record, id);
     return instance ? instance->box : Eigen::AlignedBox3f();
   }
-  const std::vector<Eigen::Vector3f> points = large_pieces(surface->second, kApart_m, kLeastPiece);
-  std::vector<float> values(points.size());
+  std::vector<float> values(surface->second.size());
   Eigen::Vector3f low, high;
   for (int axis = 0; axis < 3; ++axis) {
-    std::transform(points.begin(), points.end(), values.begin(),
+    std::transform(surface->second.begin(), surface->second.end(), values.begin(),
                    [axis](const Eigen::Vector3f& point) { return point[axis]; });
     std::sort(values.begin(), values.end());
     low[axis] = values[values.size() / kLeftOut];
     high[axis] = values[values.size() - 1 - values.size() / kLeftOut];
   }
   return {low, high};
+}
+
+/// The colour of the voxel at a point, sRGB; all 0 where it has none.
+std::array<std::uint8_t, 3> color_at(VoxelFinder& finder, const Eigen::Vector3f& point) {
+  std::array<std::uint8_t, 3> color{};
+  if (!finder.seek(point)) return color;
+  const auto v = static_cast<std::size_t>(finder.voxel());
+  for (std::size_t channel = 0; channel < color.size(); ++channel)
+    color[channel] = static_cast<std::uint8_t>(finder.block().color[channel][v] >> 8);
+  return color;
 }
 
 /// What will be known of an object when it is not there any more; null where it has no surface.
@@ -63,7 +70,7 @@ std::shared_ptr<const PastObject> past_of(const MapDocument& map, InstanceId id)
 /// A gone object and a found one that may be it.
 struct Pair {
   std::size_t gone, found;  ///< in the list of changes
-  float distance;           ///< how much of what both could see speaks against it
+  float distance;           ///< of their shapes
 };
 
 /// What the last visit says, object by object.
@@ -105,17 +112,10 @@ class VisitTeller {
     for (ObjectChange& change : changes_)
       if (change.kind == ChangeKind::kSame && change.before != 0 &&
           (change.before == change.after || change.overlap < config_.diff.same_iou) &&
-          is_gone(change)) {
+          change.seen_through >= config_.diff.gone_share) {
         change.kind = ChangeKind::kRemoved;
         change.after = 0;
       }
-  }
-
-  /// By what the visit looked at: what it has from earlier ones alone may only be left.
-  bool is_gone(const ObjectChange& change) const {
-    const float looked_at = 1.f - change.surface_unseen;
-    return change.seen_through >= config_.diff.shift_share &&
-           change.seen_through >= config_.diff.gone_share * looked_at;
   }
 
   /// Whether it is known to be gone already, and what is left of it was seen through only now.
@@ -134,40 +134,24 @@ class VisitTeller {
            (change.kind == ChangeKind::kNew || change.kind == ChangeKind::kUnseen);
   }
 
-  struct Looks {
-    ObservedSpace seen;
-    std::map<std::size_t, ThingLook> things;  ///< by place in the list of changes
-  };
-  template <class Which, class Id>
-  Looks looks_of(const MapDocument& map, std::int64_t first_frame, const Which& which,
-                 const Id& id) const {
-    std::map<std::size_t, ThingLook> things;
-    for (std::size_t i = 0; i < changes_.size(); ++i)
-      if (which(changes_[i])) things.emplace(i, thing_look(map, id(changes_[i]), before_.up));
-    std::vector<Pose> poses;  // who has nothing to ask about needs no space
-    if (!things.empty())
-      for (auto frame = map.frames.begin() + first_frame; frame != map.frames.end(); ++frame)
-        poses.push_back(frame->world_from_camera);
-    return {ObservedSpace(map.map, map.depth_camera, poses, config_.diff.space), std::move(things)};
-  }
-
   /// Pairs that could be one thing, the likeliest first.
   std::vector<Pair> likely_pairs() const {
     std::vector<Pair> pairs;
-    const Looks gone = looks_of(
-        before_, 0, [](const ObjectChange& c) { return c.kind == ChangeKind::kRemoved; },
-        [](const ObjectChange& c) { return c.before; });
-    if (gone.things.empty()) return pairs;
-    const Looks found =
-        looks_of(after_, after_.history.visits.back().first_frame, may_have_come,
-                 [](const ObjectChange& c) { return c.after; });
-    const float voxel_m = before_.map.config().voxel_size_m;
-    for (const auto& [i, left] : gone.things)
-      for (const auto& [k, came] : found.things) {
-        const ThingFit fit = fit_things(left, gone.seen, came, found.seen, voxel_m, config_.fit);
-        if (fit.agreed >= config_.least_agreed && fit.fit() >= config_.least_fit)
-          pairs.push_back({i, k, 1.f - fit.fit()});
+    std::map<std::size_t, ThingLook> found_looks;
+    for (std::size_t k = 0; k < changes_.size(); ++k)
+      if (may_have_come(changes_[k]))
+        found_looks.emplace(k, thing_look(after_, changes_[k].after, before_.up));
+    for (std::size_t i = 0; i < changes_.size(); ++i) {
+      if (changes_[i].kind != ChangeKind::kRemoved) continue;
+      const ThingLook gone = thing_look(before_, changes_[i].before, before_.up);
+      for (const auto& [k, found] : found_looks) {
+        if (common_colors(gone, found) < config_.same_colors) continue;
+        const float distance = shape_distance(gone, found);
+        const float coarse = config_.coarse_voxels * before_.map.config().voxel_size_m /
+                             std::max(gone.reach_m, found.reach_m);
+        if (distance <= std::max(config_.same_shape, coarse)) pairs.push_back({i, k, distance});
       }
+    }
     std::stable_sort(pairs.begin(), pairs.end(),
                      [](const Pair& a, const Pair& b) { return a.distance < b.distance; });
     return pairs;
@@ -196,9 +180,9 @@ class VisitTeller {
   void tell(const ObjectChange& change) {
     const InstanceId id = change.before != 0 ? change.before : change.after;
     if (id == 0) return;
-    if (change.kind == ChangeKind::kRemoved && !told_gone(id) && shows(before_, id))
+    if (change.kind == ChangeKind::kRemoved && !told_gone(id))
       add(ObjectEventKind::kGone, id, box_of(before_, id), {}, last_frame());
-    if (change.kind == ChangeKind::kNew && shows(after_, id)) {
+    if (change.kind == ChangeKind::kNew) {
       add(ObjectEventKind::kAppeared, id, {}, box_of(after_, id), first_frame(id));
       if (const auto known = may_be_.find(id); known != may_be_.end())
         events_.back().may_be = known->second;
@@ -206,13 +190,6 @@ class VisitTeller {
     if (change.kind == ChangeKind::kMoved)
       add(ObjectEventKind::kMoved, id, box_of(before_, id), box_of(after_, change.after),
           first_frame(change.after));
-  }
-
-  /// Whether there is enough of a thing to tell of it.
-  bool shows(const MapRecord& record, InstanceId id) const {
-    const auto surface = record.surfaces.find(id);
-    return surface != record.surfaces.end() &&
-           surface->second.size() >= static_cast<std::size_t>(config_.least_points);
   }
 
   void add(ObjectEventKind kind, InstanceId id, const Eigen::AlignedBox3f& from,

@@ -4,20 +4,18 @@
 
 #include "ovimap/io/map_tables/map_document.h"
 #include "ovimap/pipeline/revise/map_diff.h"
-#include "ovimap/pipeline/revise/thing_fit.h"
 
 namespace ovimap {
 
 struct VisitHistoryConfig {
   MapDiffConfig diff;
   float least_shift_m = 0.08f;  ///< what moved less than that has not
-  int least_points = 8;  ///< nothing is told of a thing with fewer points of surface
-  ThingFitConfig fit;
-  float least_agreed = 0.25f;  ///< share of two surfaces, laid over each other, that agrees where
-                               ///< they may be of one thing
-  float least_fit = 0.3f;     ///< likewise of what agrees or speaks against it (ThingFit::fit)
-  float doubt = 0.5f;  ///< the likeliest pair is one thing when so much less speaks against it than
-                       ///< against the next: pairs of things of one shape differ by nearly as much
+  float same_shape = 0.15f;   ///< mean distance of two surfaces laid over each other, as a share of
+                              ///< their reach, up to which they may be of one thing
+  float coarse_voxels = 1.f;  ///< surfaces that differ by no more than that may be as well
+  float same_colors = 0.5f;   ///< least share of two surfaces that has the same colours
+  float doubt = 0.5f;  ///< the likeliest pair is one thing when it is so much nearer than the next:
+                       ///< pairs of things of one shape differ by nearly as much
 };
 
 /// Gives a header, which may name one visit with its date, the history of the map that it goes on with
@@ -26,7 +24,7 @@ void begin_visit(const MapRecord& begun, MapHeader& header);
 
 /// Writes down what the last visit of `after` changed against `before`, the same map without that
 /// visit: events of its history, with what each thing was that left its place. An object that is gone from one place and found at another is the
-/// same when its looks (diff_maps), or else its shape and colours (fit_things), say so, and goes on under the id
+/// same when its looks (diff_maps), or else its shape and colours, say so, and goes on under the id
 /// that it had. Where several could be it, each found one is a new object that says which gone one
 /// it may be. An object at its old place that the visit took for a new one gets its id back.
 void tell_visit(const MapDocument& before, MapDocument& after,
