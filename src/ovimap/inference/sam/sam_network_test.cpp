@@ -4,31 +4,20 @@
 
 #include <gtest/gtest.h>
 
-#include "ovimap/inference/models/onnx_fixture.h"
-#include "ovimap/inference/models/sha256.h"
-#include "ovimap/inference/models/test_support.h"
+#include "ovimap/inference/sam/sam_fixture.h"
 
 namespace ovimap {
 namespace {
 
-constexpr int kSide = 8, kGrid = 2;
+using sam_fixture::kSide;
+constexpr int kGrid = 2;
 
 /// A network with the inputs of transformers' exports, whose score is the sum of all labels.
 class LabelSum {
  public:
   explicit LabelSum(const std::string& keys) : scratch_("sam_network") {
-    OnnxGraph encoder;
-    encoder.input("pixel_values", OnnxGraph::kFloat, {1, 3, kSide, kSide})
-        .node("AveragePool", {"pixel_values"}, "image_embeddings",
-              {OnnxGraph::list_attribute("kernel_shape", {4, 4}),
-               OnnxGraph::list_attribute("strides", {4, 4})})
-        .output("image_embeddings", {1, 3, kGrid, kGrid});
-    OnnxGraph decoder;
-    decoder.input("input_points", OnnxGraph::kFloat, {1, 1, kAnySize, 2})
-        .input("input_labels", OnnxGraph::kInt64, {1, 1, kAnySize})
-        .input("input_boxes", OnnxGraph::kFloat, {1, kAnySize, 4})
-        .input("image_embeddings", OnnxGraph::kFloat, {1, 3, kGrid, kGrid})
-        .node("Cast", {"input_labels"}, "labels", {OnnxGraph::number_attribute("to", 1)})
+    OnnxGraph decoder = sam_fixture::decoder(kGrid);
+    decoder.node("Cast", {"input_labels"}, "labels", {OnnxGraph::number_attribute("to", 1)})
         .node("ReduceSum", {"labels"}, "sum", {OnnxGraph::number_attribute("keepdims", 0)})
         .node("ReduceSum", {"input_boxes"}, "boxes", {OnnxGraph::number_attribute("keepdims", 0)})
         .node("Add", {"sum", "boxes"}, "iou_scores")
@@ -36,22 +25,7 @@ class LabelSum {
               {OnnxGraph::list_attribute("axes", {1}), OnnxGraph::number_attribute("keepdims", 0)})
         .output("iou_scores", {})
         .output("pred_masks", {1, kGrid, kGrid});
-    scratch_.write("encoder.onnx", encoder.file());
-    scratch_.write("decoder.onnx", decoder.file());
-    scratch_.write(
-        "model.yaml",
-        concat(
-            "kind: sam\nname: n\nlicense: l\nsource: s\n"
-            "input: {size: 8, resize: stretch, mean: [0, 0, 0], std: [1, 1, 1]}\n"
-            "networks:\n"
-            "  encoder: {file: encoder.onnx, inputs: {image: pixel_values}, outputs: {embedding: "
-            "image_embeddings}}\n"
-            "  decoder:\n    file: decoder.onnx\n"
-            "    inputs: {embedding: image_embeddings, points: input_points, labels: input_labels, "
-            "boxes: input_boxes}\n"
-            "    outputs: {masks: pred_masks, scores: iou_scores}\n",
-            keys, "sha256:\n  encoder.onnx: ", sha256_of_file(scratch_.path() / "encoder.onnx"),
-            "\n  decoder.onnx: ", sha256_of_file(scratch_.path() / "decoder.onnx"), "\n"));
+    sam_fixture::write_model(scratch_, kGrid, decoder, 0, keys);
   }
 
   float score(const PromptPoints& prompt) const {
