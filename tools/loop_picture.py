@@ -12,6 +12,7 @@ import sys
 
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
+from tracking import matrix_of
 
 WIDTH_PX, MARGIN_PX, BAR_PX = 560, 30, 90
 COLORS = np.array([[44, 123, 182], [171, 217, 233], [255, 255, 160], [253, 174, 97], [215, 25, 28]])  # of none to the largest
@@ -21,11 +22,7 @@ INK, PAPER = (40, 40, 40), (255, 255, 255)
 def poses_of(file):
     """Their places [n, 3] in metres, and the rotation of the first."""
     rows = np.loadtxt(file, comments="#")
-    x, y, z, w = rows[0, 4:8]
-    turn = np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-                     [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-                     [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
-    return rows[:, 1:4], turn
+    return rows[:, 1:4], np.array(matrix_of(rows[0, 4:8], rows[0, 1:4]))[:, :3]
 
 
 def laid_on(track, truth):
