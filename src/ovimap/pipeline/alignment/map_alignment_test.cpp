@@ -3,37 +3,12 @@
 #include "ovimap/pipeline/alignment/map_alignment.h"
 
 #include "ovimap/io/map_file/map_file_fixture.h"
-#include "ovimap/pipeline/mapping/furnished_fixture.h"
+#include "ovimap/pipeline/mapping/sessions_fixture.h"
 
 namespace ovimap {
 namespace {
 
-const std::vector<Furniture> kThings = {
-    furniture(-0.9f, 0.9f, {0.6f, 0.4f, 0.5f}, {190, 120, 40}),
-    furniture(0.6f, 0.3f, {0.3f, 0.3f, 0.3f}, {220, 20, 20}),
-    furniture(0.2f, -0.9f, {0.35f, 0.25f, 0.4f}, {20, 30, 220}),
-    furniture(-1.3f, -0.6f, {0.45f, 0.3f, 0.2f}, {20, 200, 30}),
-    furniture(1.5f, 1.1f, {0.25f, 0.5f, 0.35f}, {200, 200, 20}),
-};
-
 class MapAlignmentTest : public MapFolder {};
-
-/// The same room in two sessions, the second in a frame of its own.
-MapDocument session(double first_turn, double last_turn,
-                    const Pose& world_from_room = Pose::Identity()) {
-  FurnishedRoom room;
-  room.things = kThings;
-  room.first_turn = first_turn;
-  room.last_turn = last_turn;
-  room.world_from_room = world_from_room;
-  return map_of(room);
-}
-
-Pose elsewhere() {
-  Pose pose(Eigen::AngleAxisd(2.1, Eigen::Vector3d::UnitZ()));
-  pose.translation() = Eigen::Vector3d(3.1, -1.7, 0.4);
-  return pose;
-}
 
 TEST_F(MapAlignmentTest, TheTransformIsFound) {
   const MapDocument a = session(0, 0.6), b = session(0.4, 1, elsewhere());

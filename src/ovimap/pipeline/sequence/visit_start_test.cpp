@@ -4,23 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include "ovimap/pipeline/mapping/furnished_fixture.h"
+#include "ovimap/pipeline/mapping/sessions_fixture.h"
 
 namespace ovimap {
 namespace {
-
-FurnishedRoom furnished(double first_turn, double last_turn, int frames) {
-  FurnishedRoom room;
-  room.things = {furniture(-0.9f, 0.9f, {0.6f, 0.4f, 0.5f}, {190, 120, 40}),
-                 furniture(0.6f, 0.3f, {0.3f, 0.3f, 0.3f}, {220, 20, 20}),
-                 furniture(0.2f, -0.9f, {0.35f, 0.25f, 0.4f}, {20, 30, 220}),
-                 furniture(-1.3f, -0.6f, {0.45f, 0.3f, 0.2f}, {20, 200, 30}),
-                 furniture(1.5f, 1.1f, {0.25f, 0.5f, 0.35f}, {200, 200, 20})};
-  room.first_turn = first_turn;
-  room.last_turn = last_turn;
-  room.frames = frames;
-  return room;
-}
 
 /// A room's frames without their poses.
 class Unposed : public FrameSource {
@@ -50,13 +37,19 @@ class VisitStart : public ::testing::Test {
                             PoseFinder(Tracker(TrackConfig{}), LoopConfig{}), AlignmentConfig{});
   }
 
-  FurnishedRoom room_ = furnished(0.3, 0.55, 40);
+  static FurnishedRoom seen_in(int frames, double first_turn, double last_turn) {
+    FurnishedRoom room = visited(first_turn, last_turn);
+    room.frames = frames;
+    return room;
+  }
+
+  FurnishedRoom room_ = seen_in(40, 0.3, 0.55);
   Unposed visit_{room_};
   std::vector<std::int64_t> positions_ = positions({}, room_.size());
 };
 
 TEST_F(VisitStart, TooFewObjectsAreDoubted) {
-  const MapDocument home = map_of(furnished(0, 0.6, 24));
+  const MapDocument home = map_of(seen_in(24, 0, 0.6));
   EXPECT_FALSE(shows_known_place(visit_, positions_, home.map, {}, TrackConfig{}));
   const ObjectPlacing placing = placed_in(home);
   EXPECT_NE(placing.alignment.doubt.find("too few objects say so"), std::string::npos)
