@@ -8,6 +8,7 @@
 
 #include "ovimap/base/config.h"
 #include "ovimap/base/parallel.h"
+#include "ovimap/map/surface/mesh_extraction.h"
 #include "ovimap/pipeline/alignment/surface_fit.h"
 
 namespace ovimap {
@@ -46,17 +47,15 @@ class Judge {
       : a_(a), b_(b), config_(config), views_a_(place_views(a, config)),
         views_b_(place_views(b, config)) {}
 
-  MapAlignment operator()(const Pose& a_from_b) const {
-    const PlaceAgreement of_b = sum_of(views_b_, a_.map, a_from_b, config_),
-                         of_a = sum_of(views_a_, b_.map, a_from_b.inverse(), config_);
-    MapAlignment result;
-    result.a_from_b = a_from_b;
-    result.overlap = static_cast<float>(std::max(of_a.overlap(), of_b.overlap()));
+  /// Gives an answer's overlap and fit.
+  void operator()(MapAlignment& answer) const {
+    const PlaceAgreement of_b = sum_of(views_b_, a_.map, answer.a_from_b, config_),
+                         of_a = sum_of(views_a_, b_.map, answer.a_from_b.inverse(), config_);
+    answer.overlap = static_cast<float>(std::max(of_a.overlap(), of_b.overlap()));
     PlaceAgreement both = of_a;
     both += of_b;
     const double judged = both.meeting + both.seen_through;
-    result.fit = judged > 0 ? static_cast<float>(both.meeting / judged) : 0.f;
-    return result;
+    answer.fit = judged > 0 ? static_cast<float>(both.meeting / judged) : 0.f;
   }
 
  private:
@@ -91,16 +90,12 @@ std::vector<MapAlignment> rough_answers(const std::vector<LayoutProposal>& propo
     const auto known = std::find_if(answers.begin(), answers.end(), [&](const MapAlignment& other) {
       return same(pose, other.a_from_b, kOneShift_m, kOneTurn_rad);
     });
-    if (known == answers.end()) answers.push_back({.a_from_b = pose, .objects = proposal.objects});
-    else known->objects = std::max(known->objects, proposal.objects);
+    if (known == answers.end())
+      answers.push_back({.a_from_b = pose, .objects = proposal.objects});
+    else
+      known->objects = std::max(known->objects, proposal.objects);
   }
   return answers;
-}
-
-void judge_anew(const Judge& judge, MapAlignment& answer) {
-  const int objects = answer.objects;
-  answer = judge(answer.a_from_b);
-  answer.objects = objects;
 }
 
 void sort_best_first(std::vector<MapAlignment>& answers) {
@@ -124,7 +119,8 @@ std::string doubt_of(const MapAlignment& best, const AlignmentConfig& config) {
   else if (best.score() - best.runner_up < config.min_lead * best.score())
     why = "another answer fits as well";
   if (why == nullptr) return {};
-  return concat(why, " (objects ", best.objects, ", overlap ", share(best.overlap), ", fit ", share(best.fit), ", next best ",
+  return concat(why, " (objects ", best.objects, ", overlap ", share(best.overlap), ", fit ",
+                share(best.fit), ", next best ",
                 share(best.score() > 0 ? best.runner_up / best.score() : 1.f), " of it)");
 }
 
@@ -144,30 +140,33 @@ void list_fields(AlignmentConfig& config, ConfigFields& fields) {
 
 MapAlignment judge_alignment(const MapDocument& a, const MapDocument& b, const Pose& a_from_b,
                              const AlignmentConfig& config) {
-  return Judge(a, b, config.place)(a_from_b);
+  MapAlignment answer{.a_from_b = a_from_b};
+  Judge(a, b, config.place)(answer);
+  return answer;
 }
 
 std::vector<MapAlignment> alignments(const MapDocument& a, const MapDocument& b,
                                      const AlignmentConfig& config) {
   const auto proposals = propose_poses(layout_of(a), layout_of(b), config.layout);
   const SameAnswer same(b);
+  const Mesh mesh_a = extract_mesh(a.map), mesh_b = extract_mesh(b.map);
   std::vector<MapAlignment> answers;
   {
     const float spacing_m = kRoughSpacing * config.spacing_m;
-    const SurfacePoints surface_a = thinned_surface(a.map, spacing_m),
-                        surface_b = thinned_surface(b.map, spacing_m);
+    const SurfacePoints surface_a = thinned_surface(mesh_a, spacing_m),
+                        surface_b = thinned_surface(mesh_b, spacing_m);
     answers = rough_answers(proposals, SurfaceFit(surface_a, surface_b), same);
     const Judge judge(a, b, rough(config.place));
-    for (MapAlignment& answer : answers) judge_anew(judge, answer);
+    for (MapAlignment& answer : answers) judge(answer);
     sort_best_first(answers);
   }
-  const SurfacePoints surface_a = thinned_surface(a.map, config.spacing_m),
-                      surface_b = thinned_surface(b.map, config.spacing_m);
+  const SurfacePoints surface_a = thinned_surface(mesh_a, config.spacing_m),
+                      surface_b = thinned_surface(mesh_b, config.spacing_m);
   const SurfaceFit fit(surface_a, surface_b);
   const Judge judge(a, b, config.place);
   for (MapAlignment& answer : std::span(answers).first(std::min(answers.size(), kFineAnswers))) {
     answer.a_from_b = fit.refine(answer.a_from_b, kNearReaches_m, kNearRounds);
-    judge_anew(judge, answer);
+    judge(answer);
   }
   sort_best_first(answers);
   return answers;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "ovimap/map/surface/mesh_extraction.h"
+#include "ovimap/map/voxels/voxel_block.h"
 
 namespace ovimap {
 
@@ -27,8 +27,7 @@ Pose motion(const Vector6d& turn_and_shift) {
 
 }  // namespace
 
-SurfacePoints thinned_surface(const VoxelMap& map, float spacing_m) {
-  const Mesh mesh = extract_mesh(map);
+SurfacePoints thinned_surface(const Mesh& mesh, float spacing_m) {
   std::vector<std::pair<std::array<int, 3>, std::uint32_t>> cells(mesh.vertices.size());
   for (std::uint32_t i = 0; i < cells.size(); ++i) {
     const Eigen::Vector3i cell = floor_to_int(mesh.vertices[i] / spacing_m);

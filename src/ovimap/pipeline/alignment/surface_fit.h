@@ -7,7 +7,7 @@
 
 #include "ovimap/eval/geometry/nearest.h"
 #include "ovimap/geometry/pose.h"
-#include "ovimap/map/voxels/voxel_map.h"
+#include "ovimap/geometry/mesh.h"
 
 namespace ovimap {
 
@@ -16,8 +16,8 @@ struct SurfacePoints {
   std::vector<Eigen::Vector3f> points, normals;
 };
 
-/// One vertex of the mesh from each cube of the edge `spacing_m` that holds some.
-SurfacePoints thinned_surface(const VoxelMap& map, float spacing_m);
+/// One vertex of a mesh from each cube of the edge `spacing_m` that holds some.
+SurfacePoints thinned_surface(const Mesh& mesh, float spacing_m);
 
 /// Fits one surface to another: point-to-plane ICP with a shrinking reach (Chen and Medioni 1992).
 /// Both surfaces must stay.
