@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Two maps, or one at two times: what changed from one to the other; and one map of both.
 #include <cstdio>
-#include <limits>
 
 #include "command.h"
 #include "ovimap/base/parallel.h"
@@ -144,14 +143,8 @@ int diff_times(const CompareOptions& options) {
     throw Error("--since and --until compare one map with itself; leave -o, --transform and --align out");
   const MapRecord map = read_corrected_record(options.a);
   const HistoryDates dates(map.history, map.frames);
-  const double now_s = seconds_now();
-  const MapMoment since =
-      options.since.empty() ? MapMoment{0, -std::numeric_limits<double>::infinity()}
-                            : since_of(time_of_text(options.since, now_s), dates.visits());
-  const MapMoment until = options.until.empty()
-                              ? MapMoment{dates.visits(), 0}
-                              : end_of(time_of_text(options.until, now_s), dates.visits());
-  const std::vector<HistoryChange> changes = changes_between(map.history, dates, since, until);
+  const auto [since, until, changes] =
+      changes_between(map.history, dates, options.since, options.until, seconds_now());
   if (options.json) {
     nlohmann::json list = nlohmann::json::array();
     for (const HistoryChange& change : changes)

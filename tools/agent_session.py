@@ -68,6 +68,7 @@ async def session(arguments, variables):
         named = await ask("rename", map="room", object=chosen, name="fruit bowl")
         await ask("find", map="room", text="anything on the table")
         await ask("undo", map="room", correction=named["correction"])
+        await ask("what_changed", map="room")
 
 
 def main():

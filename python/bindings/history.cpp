@@ -5,8 +5,6 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include <limits>
-
 #include "bindings.h"
 #include "ovimap/io/map_tables/map_file_history.h"
 #include "ovimap/semantics/query/query_text.h"
@@ -29,7 +27,7 @@ struct Visit {
 /// What a visit found changed, or what changed between two times.
 struct Change {
   InstanceId id;
-  std::string name, event, text;
+  std::string name, label, event, text;
   int visit;
   std::optional<double> time_s;
   std::optional<Corners> before, after;
@@ -46,12 +44,15 @@ HistoryDates dates_of(const MapRecord& record) {
   return {record.history, record.frames};
 }
 
-Change told(const MapRecord& record, const HistoryDates& dates, const HistoryChange& change) {
+Change told(SavedMap& map, const HistoryDates& dates, const HistoryChange& change) {
+  const MapRecord& record = map.record();
   const ObjectEvent &first = record.history.events[change.first],
                     &last = record.history.events[change.last];
+  const auto word = map.words_with_gone().find(change.instance);
   const auto name = record.names.find(change.instance);
   return {change.instance,
           name == record.names.end() ? "" : name->second,
+          word == map.words_with_gone().end() ? "" : word->second,
           event_name(change.kind),
           change_text(change, record.history, dates),
           last.visit,
@@ -80,7 +81,7 @@ std::vector<Change> events(SavedMap& map) {
   std::vector<Change> list;
   for (std::size_t i = 0; i < record.history.events.size(); ++i) {
     const ObjectEvent& event = record.history.events[i];
-    list.push_back(told(record, dates, {event.instance, event.kind, i, i}));
+    list.push_back(told(map, dates, {event.instance, event.kind, i, i}));
   }
   return list;
 }
@@ -88,15 +89,10 @@ std::vector<Change> events(SavedMap& map) {
 std::vector<Change> changes(SavedMap& map, const std::string& since, const std::string& until) {
   const MapRecord& record = map.record();
   const HistoryDates dates = dates_of(record);
-  const double now_s = seconds_now();
-  const MapMoment begin = since.empty()
-                              ? MapMoment{0, -std::numeric_limits<double>::infinity()}
-                              : since_of(time_of_text(since, now_s), dates.visits());
-  const MapMoment end = until.empty() ? MapMoment{dates.visits(), 0}
-                                      : end_of(time_of_text(until, now_s), dates.visits());
   std::vector<Change> list;
-  for (const HistoryChange& change : changes_between(record.history, dates, begin, end))
-    list.push_back(told(record, dates, change));
+  for (const HistoryChange& change :
+       changes_between(record.history, dates, since, until, seconds_now()).changes)
+    list.push_back(told(map, dates, change));
   return list;
 }
 
@@ -112,6 +108,7 @@ void bind_values(nb::module_& module) {
   nb::class_<Change>(module, "Change", "What became of an object.")
       .def_ro("id", &Change::id, "of the object")
       .def_ro("name", &Change::name, "given by people; empty otherwise")
+      .def_ro("label", &Change::label, "what it clearly is; empty: not known")
       .def_ro("event", &Change::event, "\"appeared\", \"gone\" or \"moved\"")
       .def_ro("text", &Change::text, "the same in a sentence")
       .def_ro("visit", &Change::visit, "that found it")
@@ -131,6 +128,20 @@ const MapRecord& SavedMap::record() {
   const std::lock_guard lock(details_mutex_);
   if (!record_) record_ = read_corrected_record(path_);
   return *record_;
+}
+
+const WordsOfObjects& SavedMap::words_with_gone() {
+  const MapRecord& past = record();
+  const std::lock_guard lock(words_mutex_);
+  if (words_) return *words_;
+  words_.emplace();
+  try {
+    engine(true);  // opens the encoder
+    if (encoder_)
+      words_ = ovimap::words_with_gone(past, info(), *encoder_, config_, scene().taught);
+  } catch (const Error&) {  // a search in words says why; names are an extra
+  }
+  return *words_;
 }
 
 std::optional<HistoryPhrase> SavedMap::past_of(const std::string& text, const std::string& at,
@@ -168,7 +179,7 @@ QueryAnswer SavedMap::ask_past(const HistoryPhrase& phrase, const Query& query) 
 void bind_history(nb::module_& module, nb::class_<SavedMap>& map) {
   bind_values(module);
   map.def_prop_ro("visits", &visits, "the recordings that went into it, oldest first")
-      .def_prop_ro("events", &events, "what its visits found changed, oldest first")
+      .def_prop_ro("events", &events, nb::call_guard<WithoutGil>(), "what its visits found changed, oldest first")
       .def("changes", &changes, nb::kw_only(), nb::arg("since") = "", nb::arg("until") = "",
            nb::call_guard<WithoutGil>(),
            "What changed between two times (docs/query.md, \"Times\"), by object; what came and went "

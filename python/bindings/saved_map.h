@@ -61,6 +61,9 @@ class SavedMap {
   /// there are no embeddings, or their encoder is not on this machine. Thread-safe.
   const std::vector<ObjectName>& guessed_names();
 
+  /// The same by id, also of objects that are gone. Thread-safe.
+  const WordsOfObjects& words_with_gone();
+
   /// The JPEG files of the pictures that the map keeps of an object, by frame. Thread-safe. Throws
   /// Error for an unknown id.
   std::vector<Bytes> crops(InstanceId id);
@@ -95,6 +98,9 @@ class SavedMap {
   std::mutex mutex_;  ///< guards what follows
   std::shared_ptr<ImageTextEncoder> encoder_;
   std::unique_ptr<QueryEngine> word_engine_, object_engine_;
+
+  std::mutex words_mutex_;  ///< guards what follows
+  std::optional<WordsOfObjects> words_;
 
   std::mutex details_mutex_;  ///< guards what follows
   std::optional<std::vector<ObjectName>> names_;

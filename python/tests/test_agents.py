@@ -43,7 +43,7 @@ def in_one_line(said, *words):
 
 def test_every_tool_says_what_it_does(reading):
     tools = reading.tools()
-    assert set(tools) == {"maps", "objects", "find", "describe", "relations", "rooms", "look", "where_to_stand"}
+    assert set(tools) == {"maps", "objects", "find", "describe", "relations", "rooms", "look", "where_to_stand", "what_changed"}
     for name, tool in tools.items():
         assert len(tool.description) > 40 and tool.annotations.read_only_hint, name
         assert name == "maps" or "map" in tool.input_schema["required"]
@@ -416,3 +416,27 @@ def test_no_token_stands_in_the_list_of_programs(capsys):
         mcp_command.main(["--help"])
     said = capsys.readouterr().out
     assert "--token-file" in said and "--token " not in said and "--token=" not in said
+
+
+def test_agents_hear_what_changed(home_map):
+    changes = ovimap.Map.open(home_map).changes()
+    with agent_over_stdio(f"home={home_map}") as agent:
+        said = agent.what_changed(map="home").value
+        assert [visit["visit"] for visit in said["visits"]] == [1, 2] and said["visits"][1]["began"].startswith("2026-03-16")
+        assert [(change["id"], change["event"], change["told"]) for change in said["changes"]] == [(change.id, change.event, change.text) for change in changes]
+        for change in said["changes"]:
+            assert change["title"] and (change["before"] is None) == (change["event"] == "appeared") and (change["after"] is None) == (change["event"] == "gone")
+        assert agent.what_changed(map="home", since="visit 1", until="2026-03-16").value["changes"] == said["changes"]
+        assert agent.what_changed(map="home", since="visit 2").value["changes"] == []
+        assert agent.what_changed(map="home", since="some day").error.startswith("'some day' is no time; give a visit")
+        for nonsense in ({"since": "x" * 5000}, {"since": 7}, {"since": "visit 9"}, {"until": ["now"]}, {"map": "nowhere"}):
+            assert "\n" not in agent.what_changed(**{"map": "home"} | nonsense).error, nonsense
+            assert agent.what_changed(**{"map": "home"} | nonsense).error, nonsense
+
+
+@needs_program
+def test_a_server_tells_the_same(home_map):
+    with serving(home_map) as server, contextlib.closing(open_map(server.address)) as behind, contextlib.closing(open_map(home_map)) as file:
+        assert vars(behind.what_changed("visit 1")) | {"map": ""} == vars(file.what_changed("visit 1")) | {"map": ""}
+        with pytest.raises(MapFault, match="visit 9"):
+            behind.what_changed("visit 9")

@@ -46,7 +46,7 @@ def test_questions_go_to_the_map_as_it_was(opened):
         opened.changes(since="some day")
 
 
-def test_agents_hear_what_changed(home_map):
+def test_agents_ask_the_past_in_words(home_map):
     from ovimap.agents.backend import open_map
 
     with contextlib.closing(open_map(home_map)) as agent:

@@ -5,13 +5,14 @@
 from __future__ import annotations
 
 import abc
+import datetime
 import math
 import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from .facts import Answer, Description, Door, MapObject, MapSummary, Point, Relation, Room, RoomList, StandingPlaces
+from .facts import Answer, ChangeList, Description, Door, MapObject, MapSummary, Point, Relation, Room, RoomList, StandingPlaces
 
 MOST_TEXT_CHARS = 2000  # of a query; docs/query.md
 
@@ -78,6 +79,10 @@ class MapBackend(abc.ABC):
         """Of finished maps alone."""
 
     @abc.abstractmethod
+    def what_changed(self, since: str = "", until: str = "") -> ChangeList:
+        """Between two times as people write them (docs/query.md, "Times"); empty: the beginning, and the last visit."""
+
+    @abc.abstractmethod
     def where_to_stand(self, id: int, robot: Robot) -> StandingPlaces:
         """Of finished maps alone."""
 
@@ -126,6 +131,13 @@ def checked_text(text: str) -> str:
     return text
 
 
+def checked_time(text: str) -> str:
+    """Raises MapFault for what is far too long to be a time; the map says of the rest whether it is one."""
+    if len(text) > MOST_TEXT_CHARS:
+        raise MapFault(f"a time of {len(text)} characters; write it as \"yesterday\", \"visit 2\" or \"2026-03-14 09:30\"")
+    return text.strip()
+
+
 def spread(count: int, most: int) -> list[int]:
     """At most so many of the positions 0 ... count - 1, the first and the last among them."""
     if count <= most:
@@ -148,6 +160,18 @@ def rounded(value: float) -> float:
 
 def share(value: float | None) -> float | None:
     return None if value is None else rounded(value)
+
+
+def moment(time_s: float | None) -> str | None:
+    """ISO 8601, with the offset of this machine's time zone."""
+    return None if time_s is None else datetime.datetime.fromtimestamp(time_s).astimezone().isoformat(timespec="seconds")
+
+
+def middle(low: Sequence[float | None], high: Sequence[float | None]) -> Point | None:
+    """Of a box; None where a corner is not known."""
+    if None in low or None in high:
+        return None
+    return point((a + b) / 2 for a, b in zip(low, high) if a is not None and b is not None)
 
 
 def room_list(name: str, graph: dict[str, Any]) -> RoomList:

@@ -167,6 +167,56 @@ class RoomList:
 
 
 @dataclass(frozen=True)
+class Visit:
+    """A time that a camera came by."""
+
+    __pydantic_config__: ClassVar[dict[str, bool]] = _DOCUMENTED
+    visit: int
+    """from 1"""
+    began: str | None
+    """date and time (ISO 8601) of the first frame, where that is known"""
+    ended: str | None
+
+
+@dataclass(frozen=True)
+class Change:
+    """What became of an object. What is gone has an id as well, but no other tool knows it."""
+
+    __pydantic_config__: ClassVar[dict[str, bool]] = _DOCUMENTED
+    id: int
+    title: str
+    """the name that a person gave it, else what it looks like, else "object\""""
+    named: bool
+    """a person gave the name"""
+    event: str
+    """appeared, gone or moved"""
+    told: str
+    """the same in a sentence"""
+    visit: int
+    """that found it; it happened some time since the visit before"""
+    time: str | None
+    """when that was noticed (ISO 8601), where that is known"""
+    before: Point | None
+    """centre of its box where it was; None: it was not there"""
+    after: Point | None
+    """where it is; None: it is gone"""
+    may_be: int | None
+    """of what appeared: a gone object that it resembles and may be"""
+
+
+@dataclass(frozen=True)
+class ChangeList:
+    """What changed in a map."""
+
+    __pydantic_config__: ClassVar[dict[str, bool]] = _DOCUMENTED
+    map: str
+    visits: list[Visit]
+    """all that the map is made of, oldest first; of one visit nothing can be told"""
+    changes: list[Change]
+    """one an object, by id"""
+
+
+@dataclass(frozen=True)
 class StandingPlace:
     """A place from which an object is seen. x, y and yaw are in a frame whose z is up: the world's, where z is up there."""
 

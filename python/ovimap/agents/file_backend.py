@@ -13,8 +13,13 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from .._ovimap import Error, Map
-from .backend import MapBackend, MapFault, Robot, Verdict, checked_text, closest_first, extent, largest_first, point, room_list, rounded, share, spread
-from .facts import Answer, ColorShare, Description, MapObject, MapSummary, Match, Relation, RoomList, StandingPlace, StandingPlaces
+from .backend import (
+    MapBackend, MapFault, Robot, Verdict,
+    checked_text, checked_time, closest_first, extent, largest_first, middle, moment, point, room_list, rounded, share, spread,
+)  # fmt: skip
+from .facts import (
+    Answer, Change, ChangeList, ColorShare, Description, MapObject, MapSummary, Match, Relation, RoomList, StandingPlace, StandingPlaces, Visit,
+)  # fmt: skip
 
 Stamp = tuple[int, int, int]
 
@@ -87,6 +92,19 @@ class FileBackend(MapBackend):
     def rooms(self) -> RoomList:
         with self._faults():
             return room_list(self.name, json.loads(self._now().map.scene_graph()))
+
+    def what_changed(self, since: str = "", until: str = "") -> ChangeList:
+        with self._faults():
+            opened = self._now()
+            visits = [Visit(said.visit, moment(said.begin_s), moment(said.end_s)) for said in opened.map.visits]
+            changes = [
+                Change(
+                    said.id, said.name or said.label or "object", bool(said.name), said.event, said.text, said.visit, moment(said.time_s),
+                    middle(*said.before) if said.before else None, middle(*said.after) if said.after else None, said.may_be,
+                )
+                for said in opened.map.changes(since=checked_time(since), until=checked_time(until))
+            ]  # fmt: skip
+            return ChangeList(self.name, visits, changes)
 
     def where_to_stand(self, id: int, robot: Robot) -> StandingPlaces:
         with self._faults():
@@ -194,7 +212,7 @@ def _open(stamp: Stamp, opened: Map) -> _Opened:
     guesses = opened.guess_names() or [("", 0.0)] * len(opened)
     for id, box, name, (guess, _) in zip(rows.ids.tolist(), rows.boxes.tolist(), rows.names, guesses, strict=True):
         low, high = box
-        center, size = point((a + b) / 2 for a, b in zip(low, high)), point(b - a for a, b in zip(low, high))
+        center, size = middle(low, high), point(b - a for a, b in zip(low, high))
         objects[id] = MapObject(id, name or guess or "object", bool(name), center, size)
     relations = [
         Relation(said.object, objects[said.object].title, said.relation, said.anchor, objects[said.anchor].title, said.evidence)

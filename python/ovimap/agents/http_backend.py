@@ -15,8 +15,13 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any, NamedTuple, ParamSpec, TypeVar
 
 from ..sender import _address
-from .backend import MapBackend, MapFault, NoAnswer, RequestRefused, Robot, checked_text, closest_first, extent, largest_first, point, room_list, rounded, share, spread
-from .facts import Answer, ColorShare, Description, MapObject, MapSummary, Match, Relation, RoomList, StandingPlace, StandingPlaces
+from .backend import (
+    MapBackend, MapFault, NoAnswer, RequestRefused, Robot,
+    checked_text, checked_time, closest_first, extent, largest_first, middle, moment, point, room_list, rounded, share, spread,
+)  # fmt: skip
+from .facts import (
+    Answer, Change, ChangeList, ColorShare, Description, MapObject, MapSummary, Match, Relation, RoomList, StandingPlace, StandingPlaces, Visit,
+)  # fmt: skip
 
 TIMEOUT_S = 20.0
 QUIET_S = 15.0  # the server says something on the event stream every 5 seconds
@@ -122,6 +127,13 @@ class HttpBackend(MapBackend):
     @_understood
     def rooms(self) -> RoomList:
         return room_list(self.name, self._get("/api/rooms"))
+
+    @_understood
+    def what_changed(self, since: str = "", until: str = "") -> ChangeList:
+        times = {"since": checked_time(since), "until": checked_time(until)}
+        said = self._get("/api/changes?" + urllib.parse.urlencode({name: time for name, time in times.items() if time}))
+        visits = [Visit(visit["visit"], moment(visit["begin_s"]), moment(visit["end_s"])) for visit in said["visits"]]
+        return ChangeList(self.name, visits, [_change(change) for change in said["changes"]])
 
     @_understood
     def where_to_stand(self, id: int, robot: Robot) -> StandingPlaces:
@@ -241,11 +253,18 @@ def _events_of(reply: http.client.HTTPResponse) -> Iterator[StandingEvent]:
             fields = {}
 
 
+def _change(said: dict[str, Any]) -> Change:
+    before, after = said["before"], said["after"]
+    return Change(
+        said["instance"], said["name"] or said["label"] or "object", bool(said["name"]), said["event"], said["text"], said["visit"], moment(said["time_s"]),
+        middle(before["min"], before["max"]) if before else None, middle(after["min"], after["max"]) if after else None, said["may_be"],
+    )  # fmt: skip
+
+
 def _object(said: dict[str, Any]) -> MapObject:
     low, high = said["box"]["min"], said["box"]["max"]
-    known = None not in low and None not in high
-    center = point((a + b) / 2 for a, b in zip(low, high)) if known else None
-    size = point(b - a for a, b in zip(low, high)) if known else None
+    center = middle(low, high)
+    size = point(b - a for a, b in zip(low, high)) if center else None
     guess = (said["label"] or {}).get("name", "")
     return MapObject(said["id"], said["name"] or guess or "object", bool(said["name"]), center, size)
 

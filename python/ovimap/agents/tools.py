@@ -13,7 +13,7 @@ from mcp_types import CallToolResult, ImageContent, InputRequiredResult, TextCon
 from pydantic import Field, ValidationError
 
 from .backend import MapBackend, MapFault, Robot
-from .facts import Answer, Correction, Description, MapSummary, ObjectList, Relations, RoomList, StandingPlaces
+from .facts import Answer, ChangeList, Correction, Description, MapSummary, ObjectList, Relations, RoomList, StandingPlaces
 
 MOST_OBJECTS = 200  # in one answer
 MOST_PICTURES = 8
@@ -38,7 +38,10 @@ class MapServer(MCPServer[None]):
     def __init__(self, maps: Sequence[MapBackend], *, corrections: bool = False, version: str = "") -> None:
         super().__init__("ovimap", instructions=INSTRUCTIONS, version=version, log_level="WARNING")
         self._maps = {backend.name: backend for backend in maps}
-        reading: list[Callable[..., Any]] = [self.maps, self.objects, self.find, self.describe, self.relations, self.rooms, self.look, self.where_to_stand]
+        reading: list[Callable[..., Any]] = [
+            self.maps, self.objects, self.find, self.describe, self.relations, self.rooms, self.look, self.where_to_stand,
+            self.what_changed,
+        ]  # fmt: skip
         writing: list[Callable[..., Any]] = [self.rename, self.merge, self.undo] if corrections else []
         for tool in reading:
             self.add_tool(tool, annotations=READS)
@@ -128,6 +131,16 @@ class MapServer(MCPServer[None]):
         backend = self._map(map)
         robot = Robot((start[0], start[1]) if start else None, radius_m, camera_height_m, fov_deg, range_m)
         return self._ask(lambda: backend.where_to_stand(object, robot))
+
+    def what_changed(
+        self,
+        map: MapName,
+        since: Annotated[str, Field(description='as people say it: "yesterday", "Monday", "visit 1", "2026-03-14 09:30"; empty: the beginning')] = "",
+        until: Annotated[str, Field(description="likewise; empty: now")] = "",
+    ) -> ChangeList:
+        """What appeared, moved or is gone between two times, as the visits of the map found it. What changed and was not looked
+        at again, no map knows. find() understands times too: "what moved since Monday", "where was the mug"."""
+        return self._ask(lambda: self._map(map).what_changed(since, until))
 
     def rename(self, map: MapName, object: ObjectId, name: Annotated[str, Field(max_length=200)]) -> Correction:
         """Names an object for everybody who uses the map; an empty name takes the name away. undo() takes it back."""

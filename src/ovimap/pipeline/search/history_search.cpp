@@ -3,16 +3,14 @@
 #include "ovimap/pipeline/search/history_search.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "ovimap/base/error.h"
+#include "ovimap/semantics/classes/object_names.h"
 #include "ovimap/semantics/query/query_text.h"
 
 namespace ovimap {
 
 namespace {
-
-constexpr MapMoment kBeginning{0, -std::numeric_limits<double>::infinity()};
 
 /// Makes the objects and what is told of them.
 class HistoryTeller {
@@ -207,6 +205,23 @@ QueryAnswer ask_history(const HistorySearch& history, const QueryEngine* engine,
       match.evidence = told + (match.evidence.empty() ? "" : "; ") + match.evidence;
   }
   return answer;
+}
+
+WordsOfObjects words_with_gone(const MapRecord& corrected, const MapInfo& info,
+                               ImageTextEncoder& encoder, const QueryConfig& config,
+                               const TaughtThings& taught) {
+  HistoryPhrase all;
+  all.text = "anything";
+  all.change = AskedChange::kAny;
+  MapSearch past = search_history(corrected, info, all, config.shapes).search;
+  past.scene.taught = taught;
+  const QueryEngine engine(past.index, &encoder, config, Embeddings{}, past.scene);
+  WordsOfObjects words;
+  const TextEvidence* evidence = engine.matcher()->evidence();
+  if (!evidence) return words;
+  const std::vector<ObjectName> names = name_objects(*evidence);
+  for (std::size_t i = 0; i < names.size(); ++i) words[past.index.object(i).id] = names[i].word;
+  return words;
 }
 
 }  // namespace ovimap

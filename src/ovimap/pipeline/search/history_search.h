@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -45,5 +46,13 @@ MapRecord read_corrected_record(const std::filesystem::path& map);
 /// `query`: the rest of
 /// the question; its text is taken from `history`. Throws what QueryEngine::find throws.
 QueryAnswer ask_history(const HistorySearch& history, const QueryEngine* engine, Query query);
+
+using WordsOfObjects = std::map<InstanceId, std::string>;
+
+/// What each object clearly is, those that are gone included; empty for what is not clearly anything.
+/// `encoder`: of the map's embeddings. Throws what QueryEngine throws.
+WordsOfObjects words_with_gone(const MapRecord& corrected, const MapInfo& info,
+                               ImageTextEncoder& encoder, const QueryConfig& config,
+                               const TaughtThings& taught);
 
 }  // namespace ovimap

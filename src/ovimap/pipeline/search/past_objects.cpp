@@ -110,6 +110,16 @@ std::vector<HistoryChange> changes_between(const MapHistory& history, const Hist
   return result;
 }
 
+MapChanges changes_between(const MapHistory& history, const HistoryDates& dates,
+                           const std::string& since, const std::string& until, double now_s) {
+  MapChanges between;
+  between.since = since.empty() ? kBeginning : since_of(time_of_text(since, now_s), dates.visits());
+  between.until = until.empty() ? MapMoment{dates.visits(), 0}
+                                : end_of(time_of_text(until, now_s), dates.visits());
+  between.changes = changes_between(history, dates, between.since, between.until);
+  return between;
+}
+
 std::string change_text(const HistoryChange& change, const MapHistory& history,
                         const HistoryDates& dates) {
   const ObjectEvent &first = history.events[change.first], &last = history.events[change.last];

@@ -39,6 +39,17 @@ struct HistoryChange {
 std::vector<HistoryChange> changes_between(const MapHistory& history, const HistoryDates& dates,
                                            const MapMoment& since, const MapMoment& until);
 
+/// What became of objects between two moments that people name.
+struct MapChanges {
+  MapMoment since, until;
+  std::vector<HistoryChange> changes;  ///< by instance
+};
+
+/// `since`, `until`: as time_of_text takes them, with `now_s`; empty: before the map begins, and its last
+/// visit. Throws Error for what is no time, and MomentUnknown.
+MapChanges changes_between(const MapHistory& history, const HistoryDates& dates,
+                           const std::string& since, const std::string& until, double now_s);
+
 /// "moved from (...) to (...), visit 2, 2026-03-14 09:30".
 std::string change_text(const HistoryChange& change, const MapHistory& history,
                         const HistoryDates& dates);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,6 +18,9 @@ struct MapMoment {
 
   bool operator==(const MapMoment&) const = default;
 };
+
+/// Before everything.
+constexpr MapMoment kBeginning{0, -std::numeric_limits<double>::infinity()};
 
 /// When a time began, or ended. `last_visit`: which one that is.
 MapMoment beginning_of(const TimeAsked& time, int last_visit);

@@ -35,16 +35,6 @@ json box_or_null(const Eigen::AlignedBox3f& box) {
   return {{"min", point(box.min())}, {"max", point(box.max())}};
 }
 
-/// What each object, also such as are gone, clearly is; empty where search is not ready.
-std::map<InstanceId, std::string> words_of_objects(const ServedMap& map, const MapSnapshot& now) {
-  std::map<InstanceId, std::string> words;
-  if (!now.engine || now.record->history.events.empty()) return words;
-  const auto past = map.with_gone_objects(now);
-  for (std::size_t i = 0; i < past.names.size(); ++i)
-    words[past.history->search.index.object(i).id] = past.names[i].word;
-  return words;
-}
-
 json visits_json(const MapRecord& record, const HistoryDates& dates) {
   std::vector<MapVisit> visits = record.history.visits;
   if (visits.empty()) visits.push_back({record.source, 0, 0});
@@ -85,34 +75,88 @@ const StoredCrop* crop_of(const MapRecord& record, const PastObject& was) {
   return largest ? &largest->crop : nullptr;
 }
 
+/// What became of objects, in words and boxes; events and what changed between times alike.
+class ChangesInJson {
+ public:
+  ChangesInJson(const ServedMap& map, const MapSnapshot& now)
+      : now_(now), dates_(now.record->history, now.record->frames) {
+    if (!now.record->history.events.empty()) words_ = map.words_with_gone(now);
+  }
+
+  const HistoryDates& dates() const { return dates_; }
+
+  json of(const HistoryChange& change) const {
+    const auto& events = now_.record->history.events;
+    const ObjectEvent &first = events[change.first], &last = events[change.last];
+    const auto word = words_.find(change.instance);
+    return {{"instance", change.instance},
+            {"name", now_.name_of(change.instance)},
+            {"label", word == words_.end() ? "" : word->second},
+            {"event", event_name(change.kind)},
+            {"visit", last.visit},
+            {"time_s", known(dates_.date_of(change.last))},
+            {"before", box_or_null(first.before)},
+            {"after", box_or_null(last.after)},
+            {"may_be", first.may_be == 0 ? json() : json(first.may_be)}};
+  }
+
+ private:
+  const MapSnapshot& now_;
+  HistoryDates dates_;
+  WordsOfObjects words_;
+};
+
+HttpReply in_json(const json& value) {
+  return text_reply(200, "application/json",
+                    value.dump(-1, ' ', false, json::error_handler_t::replace));
+}
+
+/// Of an address, as people name times; empty: not said.
+std::string time_of(const HttpRequest& request, const char* name) {
+  const auto found = request.query.find(name);
+  if (found == request.query.end()) return {};
+  if (found->second.empty()) throw BadRequest(400, concat("'", name, "' is empty; leave it out"));
+  return found->second;
+}
+
 }  // namespace
 
 HttpReply show_history(const ServedMap& map) {
   const auto now = map.snapshot();
   const MapRecord& record = *now->record;
-  const HistoryDates dates(record.history, record.frames);
-  const auto words = words_of_objects(map, *now);
+  const ChangesInJson told(map, *now);
   json events = json::array();
   for (std::size_t i = 0; i < record.history.events.size(); ++i) {
     const ObjectEvent& event = record.history.events[i];
-    const auto word = words.find(event.instance);
-    events.push_back({{"id", i + 1},
-                      {"instance", event.instance},
-                      {"name", now->name_of(event.instance)},
-                      {"label", word == words.end() ? "" : word->second},
-                      {"event", event_name(event.kind)},
-                      {"visit", event.visit},
-                      {"time_s", known(dates.date_of(i))},
-                      {"before", box_or_null(event.before)},
-                      {"after", box_or_null(event.after)},
-                      {"may_be", event.may_be == 0 ? json() : json(event.may_be)},
-                      {"surface", event.was != nullptr},
-                      {"crop", event.was && crop_of(record, *event.was) != nullptr}});
+    json entry = told.of({event.instance, event.kind, i, i});
+    entry["id"] = i + 1;
+    entry["surface"] = event.was != nullptr;
+    entry["crop"] = event.was && crop_of(record, *event.was) != nullptr;
+    events.push_back(std::move(entry));
   }
-  const json history = {
-      {"version", now->version}, {"visits", visits_json(record, dates)}, {"events", events}};
-  return text_reply(200, "application/json",
-                    history.dump(-1, ' ', false, json::error_handler_t::replace));
+  return in_json({{"version", now->version},
+                  {"visits", visits_json(record, told.dates())},
+                  {"events", std::move(events)}});
+}
+
+HttpReply show_changes(const ServedMap& map, const HttpRequest& request) {
+  const auto now = map.prepared_snapshot();
+  const MapHistory& history = now->record->history;
+  const ChangesInJson told(map, *now);
+  const HistoryDates& dates = told.dates();
+  const MapChanges between = changes_between(history, dates, time_of(request, "since"),
+                                             time_of(request, "until"), seconds_now());
+  json changes = json::array();
+  for (const HistoryChange& change : between.changes) {
+    json entry = told.of(change);
+    entry["text"] = change_text(change, history, dates);
+    changes.push_back(std::move(entry));
+  }
+  return in_json({{"version", now->version},
+                  {"since", dates.text_of(between.since)},
+                  {"until", dates.text_of(between.until)},
+                  {"visits", visits_json(*now->record, dates)},
+                  {"changes", std::move(changes)}});
 }
 
 HttpReply show_past_surface(const ServedMap& map, const HttpRequest& request) {

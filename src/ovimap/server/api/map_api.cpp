@@ -240,6 +240,8 @@ Router map_api(ServedMap& map, FrameApi& frames, StandingQueries& standing) {
       [&map](Request) { return show_rooms(map); });
   add("GET", "/api/history", BodyType::kNone, RouteCost::kWork,
       [&map](Request) { return show_history(map); });
+  add("GET", "/api/changes", BodyType::kNone, RouteCost::kWork,
+      [&map](Request r) { return show_changes(map, r); });
   get_large("/api/history/{event}/surface", [&map](Request r) { return show_past_surface(map, r); });
   get_large("/api/history/{event}/crop", [&map](Request r) { return show_past_crop(map, r); });
   add("GET", "/api/gaps", BodyType::kNone, RouteCost::kWork,

@@ -128,6 +128,23 @@ TEST_F(HttpServerTest, TellsTheHistory) {
     EXPECT_FALSE(get(path, 404)["error"].get<std::string>().empty()) << path;
 }
 
+TEST_F(HttpServerTest, TellsWhatChangedBetweenTimes) {
+  serve();
+  const auto all = get("/api/changes");
+  ASSERT_EQ(all["changes"].size(), 3u);
+  EXPECT_EQ(all["visits"].size(), 2u);
+  const json& gone = all["changes"][1];
+  EXPECT_EQ(gone["instance"], 2);
+  EXPECT_EQ(gone["event"], "gone");
+  EXPECT_NE(gone["text"].get<std::string>().find("visit 2"), std::string::npos);
+  EXPECT_EQ(get("/api/changes?since=visit%201")["changes"], all["changes"]);
+  EXPECT_TRUE(get("/api/changes?since=visit%202")["changes"].empty());
+  EXPECT_TRUE(get("/api/changes?until=visit%201")["changes"].empty());
+  get("/api/changes?since=some%20day", 400);
+  get("/api/changes?since=", 400);
+  get("/api/changes?since=visit%203", 409);
+}
+
 TEST_F(HttpServerTest, AnswersWhatChangedWithoutAnEncoder) {
   serve();
   const auto changed = [&](const json& question) {

@@ -263,13 +263,14 @@ void ServedMap::teach_names() {
   show(now);
 }
 
+std::shared_ptr<const MapSnapshot> ServedMap::prepared_snapshot() const {
+  std::unique_lock lock(mutex_);
+  prepared_.wait(lock, [&] { return snapshot_->search != SearchState::kPreparing; });
+  return snapshot_;
+}
+
 MapAnswer ServedMap::ask(const MapQuestion& question) const {
-  std::shared_ptr<const MapSnapshot> now;
-  {
-    std::unique_lock lock(mutex_);
-    prepared_.wait(lock, [&] { return snapshot_->search != SearchState::kPreparing; });
-    now = snapshot_;
-  }
+  std::shared_ptr<const MapSnapshot> now = prepared_snapshot();
   if (question.past) return ask_past(std::move(now), question);
   if (!now->engine) throw SearchUnavailable(now->why_no_search);
   const bool relevance = question.query.relevance;
@@ -304,24 +305,14 @@ MapAnswer ServedMap::ask_past(std::shared_ptr<const MapSnapshot> now,
   return {std::move(answer), std::move(now), past};
 }
 
-NamedHistory ServedMap::with_gone_objects(const MapSnapshot& now) const {
-  OVIMAP_ASSERT(now.engine);
-  const std::lock_guard lock(gone_mutex_);
-  if (gone_.history && gone_version_ == now.version) return gone_;
-  HistoryPhrase all;
-  all.text = "anything";
-  all.change = AskedChange::kAny;
-  const auto history = std::make_shared<HistorySearch>(
-      search_history(*now.record, now.objects->info, all, config_.query.shapes));
-  history->search.scene.taught = now.objects->scene.taught;
-  gone_.history = history;
-  const MapSearch& search = gone_.history->search;
-  const QueryEngine engine(search.index, encoder_.get(), config_.query, Embeddings{}, search.scene);
-  gone_.names.clear();
-  if (const TextEvidence* evidence = engine.matcher()->evidence())
-    gone_.names = name_objects(*evidence);
-  gone_version_ = now.version;
-  return gone_;
+WordsOfObjects ServedMap::words_with_gone(const MapSnapshot& now) const {
+  if (!now.engine) return {};
+  const std::lock_guard lock(words_mutex_);
+  if (words_version_ != now.version)
+    words_ = ovimap::words_with_gone(*now.record, now.objects->info, *encoder_, config_.query,
+                                     now.objects->scene.taught);
+  words_version_ = now.version;
+  return words_;
 }
 
 std::vector<Gap> ServedMap::gaps(const GapsConfig& config) const {

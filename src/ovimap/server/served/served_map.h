@@ -54,12 +54,6 @@ struct MapAnswer {
   const SearchIndex& index() const { return past ? past->search.index : map->index(); }
 };
 
-/// The objects of a map and those that are gone, and what each clearly is.
-struct NamedHistory {
-  std::shared_ptr<const HistorySearch> history;
-  std::vector<ObjectName> names;  ///< by position; empty: not known
-};
-
 enum class CameraState {
   kGiven,    ///< its poses come from elsewhere
   kTracked,  ///< where it is, the map tells
@@ -106,6 +100,8 @@ class ServedMap {
   int max_query_chars() const { return config_.query.max_text_chars; }
   EventHub& events() const { return events_; }
   std::shared_ptr<const MapSnapshot> snapshot() const;
+  /// The same when search is ready, or known to be impossible.
+  std::shared_ptr<const MapSnapshot> prepared_snapshot() const;
   CameraTracking tracking() const;
   Teaching teaching() const;
 
@@ -118,8 +114,9 @@ class ServedMap {
   /// this map cannot be searched, MomentUnknown for times that it knows nothing of.
   MapAnswer ask(const MapQuestion& question) const;
 
-  /// All that the map ever had, kept until it changes. `now`: of which search is ready.
-  NamedHistory with_gone_objects(const MapSnapshot& now) const;
+  /// What each object clearly is, those that are gone included; empty where search is not ready. Kept
+  /// until the map changes.
+  WordsOfObjects words_with_gone(const MapSnapshot& now) const;
 
   /// Where somebody who scans should look next, of a map that is being made too.
   std::vector<Gap> gaps(const GapsConfig& config = {}) const;
@@ -184,9 +181,9 @@ class ServedMap {
   mutable std::shared_ptr<const StandingSpace> standing_;
   mutable std::size_t standing_edits_ = 0;  ///< how many corrections it has
 
-  mutable std::mutex gone_mutex_;  ///< guards what follows; held while it is found
-  mutable NamedHistory gone_;
-  mutable std::uint64_t gone_version_ = 0;  ///< of the snapshot that it speaks of
+  mutable std::mutex words_mutex_;  ///< guards what follows; held while they are found
+  mutable WordsOfObjects words_;    ///< of the objects that are and were
+  mutable std::uint64_t words_version_ = 0;  ///< of the snapshot that they speak of
   std::thread preparation_;
 };
 
