@@ -18,7 +18,7 @@
 #include "ovimap/pipeline/grids/grid_files.h"
 #include "ovimap/pipeline/report/map_pictures.h"
 #include "ovimap/pipeline/search/scene_graph.h"
-#include "ovimap/server/api/scene_graph_json.h"
+#include "ovimap/pipeline/search/scene_graph_json.h"
 
 namespace ovimap::apps {
 

@@ -10,7 +10,7 @@
 #include "ovimap/io/map_file/map_edits.h"
 #include "ovimap/io/mesh/ply.h"
 #include "ovimap/io/pictures/pictures.h"
-#include "ovimap/server/api/approach_json.h"
+#include "ovimap/pipeline/approach/approach_json.h"
 #include "kept_memory.h"
 #include "query_asking.h"
 

@@ -4,7 +4,7 @@
 
 #include "bindings.h"
 #include "ovimap/pipeline/search/scene_graph.h"
-#include "ovimap/server/api/scene_graph_json.h"
+#include "ovimap/pipeline/search/scene_graph_json.h"
 #include "saved_map.h"
 #include "without_gil.h"
 

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "ovimap/base/config.h"
-#include "ovimap/server/api/approach_json.h"
-#include "ovimap/server/api/scene_graph_json.h"
+#include "ovimap/pipeline/approach/approach_json.h"
+#include "ovimap/pipeline/search/scene_graph_json.h"
 #include "ovimap/server/http/request_body.h"
 
 namespace ovimap {

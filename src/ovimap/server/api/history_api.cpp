@@ -3,10 +3,10 @@
 #include "ovimap/server/api/history_api.h"
 
 #include <charconv>
-#include <cmath>
 
 #include <nlohmann/json.hpp>
 
+#include "ovimap/io/exports/rounded_json.h"
 #include "ovimap/io/map_tables/map_file_history.h"
 #include "ovimap/server/http/request_body.h"
 
@@ -20,19 +20,9 @@ json known(const std::optional<double>& date) {
   return date ? json(*date) : json();
 }
 
-/// To a tenth of a millimetre.
-json number(double value) {
-  constexpr double kSteps = 1e4;
-  return std::isfinite(value) ? json(std::round(value * kSteps) / kSteps) : json();
-}
-
-json point(const Eigen::Vector3f& p) {
-  return {number(p.x()), number(p.y()), number(p.z())};
-}
-
 json box_or_null(const Eigen::AlignedBox3f& box) {
   if (box.isEmpty()) return nullptr;
-  return {{"min", point(box.min())}, {"max", point(box.max())}};
+  return {{"min", rounded_point(box.min())}, {"max", rounded_point(box.max())}};
 }
 
 json visits_json(const MapRecord& record, const HistoryDates& dates) {
@@ -165,7 +155,7 @@ HttpReply show_past_surface(const ServedMap& map, const HttpRequest& request) {
   if (!event || !event->was) return nothing_kept();
   json points = json::array(), colors = json::array();
   for (const Eigen::Vector3f& p : event->was->surface)
-    for (const float value : p) points.push_back(number(double{value}));
+    for (const float value : p) points.push_back(rounded_json(double{value}));
   for (const auto& color : event->was->colors)
     for (const std::uint8_t channel : color) colors.push_back(channel);
   return text_reply(200, "application/json",

@@ -2,19 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/server/api/map_json.h"
 
-#include <cmath>
 #include <span>
 
 #include <nlohmann/json.hpp>
 
 #include "ovimap/base/error.h"
 #include "ovimap/base/version.h"
+#include "ovimap/io/exports/rounded_json.h"
 #include "ovimap/io/map_tables/map_file_record.h"
 #include "ovimap/io/pictures/palette.h"
-#include "ovimap/server/api/correction_json.h"
 #include "ovimap/semantics/query/query_grammar.h"
 #include "ovimap/semantics/relations/scene_relations.h"
 #include "ovimap/semantics/words/main_colors.h"
+#include "ovimap/server/api/correction_json.h"
 #include "ovimap/server/api/neighbors.h"
 
 namespace ovimap {
@@ -23,20 +23,10 @@ namespace {
 
 using nlohmann::json;
 
-/// To a tenth of a millimetre: more digits are noise, and bytes.
-json number(double value) {
-  constexpr double kSteps = 1e4;
-  return std::isfinite(value) ? json(std::round(value * kSteps) / kSteps) : json();
-}
-
-json point(const Eigen::Vector3f& p) {
-  return {number(p.x()), number(p.y()), number(p.z())};
-}
-
 json box(const Eigen::AlignedBox3f& b) {
   const json nowhere = {nullptr, nullptr, nullptr};
   if (b.isEmpty()) return {{"min", nowhere}, {"max", nowhere}};
-  return {{"min", point(b.min())}, {"max", point(b.max())}};
+  return {{"min", rounded_point(b.min())}, {"max", rounded_point(b.max())}};
 }
 
 json color(Rgb8 c) {
@@ -67,7 +57,7 @@ json guesses_json(const MapSnapshot& now, InstanceId id) {
   json list = json::array();
   for (const ClassGuess& guess : guesses_of(now, id))
     list.push_back(
-        {{"name", now.guesses->set.labels[guess.label].name}, {"cosine", number(guess.score)}});
+        {{"name", now.guesses->set.labels[guess.label].name}, {"cosine", rounded_json(guess.score)}});
   return list;
 }
 
@@ -102,7 +92,7 @@ json writing_of(const MapSnapshot& now, InstanceId id) {
   const auto& known = now.objects->info.writing;
   if (const auto lines = known.find(id); lines != known.end())
     for (const WrittenLine& line : lines->second)
-      list.push_back({{"text", line.text}, {"confidence", number(line.confidence)}});
+      list.push_back({{"text", line.text}, {"confidence", rounded_json(line.confidence)}});
   return list;
 }
 
@@ -115,7 +105,7 @@ json instance_json(const MapSnapshot& now, std::size_t position) {
           {"class", class_of(now, instance.id)},
           {"color", color(instance_color(instance.id))},
           {"box", box(instance.box)},
-          {"centroid", point(instance.centroid)},
+          {"centroid", rounded_point(instance.centroid)},
           {"points", instance.points},
           {"views", instance.views},
           {"locked", now.record->locked.contains(instance.id)},
@@ -127,7 +117,7 @@ json colors_json(const QueryScene& scene, std::size_t position) {
   json list = json::array();
   if (!scene.colors || position >= scene.colors->shares().size()) return list;
   for (const auto& [color, share] : main_colors(scene.colors->shares()[position]))
-    list.push_back({{"name", color_name(color)}, {"share", number(share)}});
+    list.push_back({{"name", color_name(color)}, {"share", rounded_json(share)}});
   return list;
 }
 
@@ -144,7 +134,7 @@ json parts_json(const MapSnapshot& now, std::size_t position) {
     const SearchObject& part = scene.parts->index.object(p);
     list.push_back({{"number", scene.parts->numbers[p]},
                     {"box", box(part.box)},
-                    {"centroid", point(part.centroid)},
+                    {"centroid", rounded_point(part.centroid)},
                     {"points", part.points}});
   }
   return list;
@@ -161,7 +151,7 @@ json match_json(const MapAnswer& answered, const QueryMatch& match) {
   return {{"id", match.id},
           {"name", answered.map->name_of(match.id)},
           {"box", box(object.box)},
-          {"centroid", point(object.centroid)},
+          {"centroid", rounded_point(object.centroid)},
           {"event", event == 0 ? json() : json(event)},
           {"score", match.score},
           {"standard_score", match.standard_score},
@@ -194,8 +184,8 @@ json map_json(const ServedMap& map) {
           {"frames", info.frames},
           {"mask_frames", info.mask_frames},
           {"instances", now->record->instances.size()},
-          {"voxel_size_m", number(info.voxel_size_m)},
-          {"up", point(info.up)},
+          {"voxel_size_m", rounded_json(info.voxel_size_m)},
+          {"up", rounded_point(info.up)},
           {"blocks", info.blocks},
           {"size_bytes", info.size_bytes},
           {"content_hash", hash_text(info.content_hash)},
@@ -235,15 +225,15 @@ json instance_detail_json(const ServedMap& map, InstanceId id) {
   json detail = instance_json(*now, position);
   const ObjectShape& shape = scene.shapes[position];
   detail["super_points"] = now->record->instances[position].super_points;
-  detail["height_m"] = number(shape.height_m());
-  detail["footprint_m2"] = number(area_m2(shape.footprint));
+  detail["height_m"] = rounded_json(shape.height_m());
+  detail["footprint_m2"] = rounded_json(area_m2(shape.footprint));
   detail["colors"] = colors_json(scene, position);
   detail["parts"] = parts_json(*now, position);
   detail["neighbors"] = json::array();
   for (const Neighbor& other : neighbors_of(now->index(), scene, position, map.relations()))
     detail["neighbors"].push_back({{"id", other.id},
                                    {"relation", other.relation},
-                                   {"gap_m", number(other.gap_m)},
+                                   {"gap_m", rounded_json(other.gap_m)},
                                    {"evidence", other.evidence}});
   return detail;
 }
@@ -261,7 +251,7 @@ json answer_json(const MapAnswer& answered) {
     result["heat"] = json::array();
     for (std::size_t i = 0; i < answered.index().size(); ++i)
       result["heat"].push_back(
-          {answered.index().object(i).id, number(answer.relevance[static_cast<Eigen::Index>(i)])});
+          {answered.index().object(i).id, rounded_json(answer.relevance[static_cast<Eigen::Index>(i)])});
   }
   return result;
 }
@@ -274,7 +264,7 @@ json relations_json(const ServedMap& map) {
     list.push_back({{"object", relation.object},
                     {"relation", relation_name(relation.relation)},
                     {"anchor", relation.anchor},
-                    {"score", number(relation.score)},
+                    {"score", rounded_json(relation.score)},
                     {"evidence", relation.evidence}});
   return {{"version", now->version}, {"relations", list}};
 }
@@ -303,9 +293,9 @@ json cameras_json(const ServedMap& map) {
     json pose = json::array();
     for (int row = 0; row < 3; ++row)
       for (int column = 0; column < 4; ++column)
-        pose.push_back(number(frame.world_from_camera.matrix()(row, column)));
+        pose.push_back(rounded_json(frame.world_from_camera.matrix()(row, column)));
     frames.push_back({{"index", frame.index},
-                      {"timestamp_s", number(frame.timestamp_s)},
+                      {"timestamp_s", rounded_json(frame.timestamp_s)},
                       {"labelled", frame.labelled},
                       {"world_from_camera", pose}});
   }
