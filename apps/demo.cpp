@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "ovimap/base/error.h"
-#include "models_fetch.h"
+#include "apps/models/models_fetch.h"
 #include "program.h"
 
 namespace ovimap::apps {

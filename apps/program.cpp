@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <iostream>
 
-#include "calibrate.h"
+#include "apps/mapping/calibrate.h"
 #include "ovimap/base/version.h"
-#include "usage_fault.h"
+#include "apps/command/usage_fault.h"
 
 namespace ovimap::apps {
 

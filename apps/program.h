@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "command.h"
+#include "apps/command/command.h"
 
 namespace ovimap::apps {
 

@@ -22,6 +22,8 @@ TABLE = """
 | --- | --- |
 | image/pixels | the lower room |
 | image/files | the upper room |
+| apps/command | the lower room |
+| apps/maps | the upper room |
 """
 
 
@@ -31,8 +33,9 @@ class CheckLayersTest(unittest.TestCase):
             root = pathlib.Path(folder)
             (root / "ARCHITECTURE.md").write_text(TABLE)
             (root / "apps").mkdir()
+            (root / "src/ovimap").mkdir(parents=True)
             file = root / path
-            file.parent.mkdir(parents=True)
+            file.parent.mkdir(parents=True, exist_ok=True)
             file.write_text(text)
             return check_layers.check(root)
 
@@ -64,6 +67,11 @@ class CheckLayersTest(unittest.TestCase):
         self.assertIn("listed later", self.offences("src/ovimap/image/pixels/b.cpp", '#include "ovimap/image/front.h"\n')[0])
         self.assertEqual(self.offences("src/ovimap/image/front.cpp", upper + lower), [])
         self.assertEqual(self.offences("src/ovimap/image/pixels/b_test.cpp", upper), [])
+
+    def test_the_program_has_rooms_as_well(self):
+        self.assertEqual(self.offences("apps/maps/query.cpp", '#include "apps/command/command.h"\n'), [])
+        self.assertIn("listed later", self.offences("apps/command/a.cpp", '#include "apps/maps/query.h"\n')[0])
+        self.assertIn("may not include apps", self.offences("src/ovimap/image/a.cpp", '#include "apps/maps/query.h"\n')[0])
 
     def test_refuses_a_room_without_a_row_and_a_full_folder(self):
         self.assertIn("no row", self.offences("src/ovimap/image/attic/a.h", "\n")[0])

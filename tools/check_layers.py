@@ -13,7 +13,7 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]')
 TYPE = re.compile(r"^(?:struct|class|enum class) (\w+)[^;]*\{", re.MULTILINE)
 HEADERS = {"unzip": "minizip", "sentencepiece_processor": "sentencepiece", "OniCAPI": "openni2"}  # where it is not the library's name
 TEST_LIBRARIES = {"gtest"}
-FLAT = {"apps", "python"}  # one file per subcommand or binding
+FLAT = {"python"}  # one file per binding
 SYSTEM = {"unistd.h", "dlfcn.h", "spawn.h", "sys", "fcntl.h", "dirent.h", "arpa", "netinet", "malloc.h"}  # POSIX, glibc
 
 
@@ -111,9 +111,10 @@ def check(root):
                 match = INCLUDE.match(line)
                 if not match or (match[1] == '"' and "/" not in match[2]):
                     continue  # a quoted plain name is a header of the same folder
-                reason = offence(module, match[2], table, is_test)
+                include = f"ovimap/{match[2]}" if match[2].startswith("apps/") else match[2]  # outside src, but a module like any other
+                reason = offence(module, include, table, is_test)
                 if reason is None and not is_test:  # tests may look at whatever they hold theirs against
-                    reason = room_offence(module, room, match[2], rooms)
+                    reason = room_offence(module, room, include, rooms)
                 if reason:
                     found.append(f"{file.relative_to(root)}:{number}: {reason}")
     return found + name_offences(root)

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nanobind/stl/string.h>
 
+#include "apps/evaluation/eval_report.h"
 #include "bindings.h"
-#include "eval_report.h"
 #include "settings.h"
 #include "wording.h"
 #ifdef OVIMAP_SYNTH
-#include "synth_room.h"
+#include "apps/rendering/synth_room.h"
 #include "without_gil.h"
 #endif
 

@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "apps/command/command.h"
+#include "ovimap/map/surface/incremental_mesh.h"
+
+namespace ovimap::apps {
+
+/// What keeps a map within the bound, in a file among other temporary ones that goes with it; null
+/// when there is no bound.
+std::unique_ptr<Checkpointer> bound_memory(const MemoryConfig& memory);
+
+/// Walks down a generated corridor, with depth alone and voxels of 4 cm, and reports every 500
+/// frames what a frame costs and how large the map is.
+int bench_corridor(int frames, const ProgramConfig& config, bool json);
+
+}  // namespace ovimap::apps

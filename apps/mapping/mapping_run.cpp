@@ -1,0 +1,321 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping_run.h"
+
+#include <algorithm>
+#include <future>
+
+#include "find_start.h"
+#include "ovimap/base/thread_priority.h"
+#include "ovimap/io/map_file/map_file.h"
+#include "ovimap/pipeline/revise/visit_history.h"
+#include "apps/command/same_settings.h"
+
+namespace ovimap::apps {
+
+namespace {
+
+/// The settings that made the map, with what the command line chose beside them.
+std::string effective_config(ProgramConfig config, const MappingOptions& options,
+                             const MapperConfig& mapper,
+                             const std::shared_ptr<ImageTextEncoder>& encoder) {
+  config.mapper = mapper;
+  ConfigFields fields;
+  list_fields(config, fields);
+  return concat("# preset ", options.preset, ", masks ", options.masks, ", encoder ",
+                encoder ? encoder->identity().name : "none", ", frames ", options.frames, "\n",
+                fields.dump());
+}
+
+/// What a run goes on with, and where its checkpoints go.
+struct BegunRun {
+  std::optional<MapDocument> document;
+  std::shared_ptr<TileKeeper> tiles;  ///< null: nowhere
+  bool new_visit = false;             ///< the recording is another than those of the document
+};
+
+BegunRun find_begun(const RunTarget& target, const MemoryConfig& memory) {
+  BegunRun begun;
+  if (target.map.empty()) {
+    if (memory.max_mb > 0)
+      throw Error("memory.max_mb is for `run` and `bench`; leave it away or set it to 0");
+    return begun;
+  }
+  const std::filesystem::path partial = checkpoint_path(target.map);
+  const bool unfinished = holds_checkpoint(partial);
+  if (unfinished && !target.resume)
+    throw Error(concat("an unfinished run left '", partial.string(), "' with ",
+                       read_map_info(partial).frames,
+                       " frames; --resume goes on with it, or delete it to begin anew"));
+  begun.tiles = std::make_shared<TileKeeper>(
+      partial, unfinished ? TileKeeper::Start::kGoOn : TileKeeper::Start::kAnew, memory);
+  const bool finished =
+      target.resume && target.map != target.continued && std::filesystem::exists(target.map);
+  begun.new_visit = !unfinished && !finished && !target.continued.empty();
+  if (unfinished || finished)
+    begun.document = load_map_in(begun.tiles, unfinished ? partial : target.map);
+  else if (begun.new_visit)
+    begun.document = load_map_in(begun.tiles, target.continued);
+  const bool visit_under_way = begun.document && begun.document->unfinished &&
+                               begun.document->history.visits.size() > 1;
+  if (visit_under_way && target.continued.empty())
+    throw Error(concat("the unfinished run of '", partial.string(),
+                       "' goes on with a map; name it by --continue as that run did"));
+  return begun;
+}
+
+/// Frames that are not in the map yet.
+void skip_done(std::vector<std::int64_t>& range, const MapRecord& begun) {
+  if (begun.frames.empty()) return;
+  const std::int64_t first = begun.history.visits.empty()
+                                 ? 0
+                                 : begun.history.visits.back().first_index,
+                     last = begun.frames.back().index;
+  std::erase_if(range, [&](std::int64_t position) { return first + position <= last; });
+}
+
+/// Throws Error unless the recording lies where the map is.
+void require_fit(const MapDocument& begun, const MappingInputs& inputs) {
+  if (!inputs.config.visit.enabled || inputs.tracking) return;
+  const std::string fault =
+      misfit(fit_visit(begun.map, *inputs.source, inputs.range, inputs.config.track,
+                       inputs.config.visit),
+             inputs.config.visit);
+  if (!fault.empty())
+    throw Error(concat("the recording does not fit the map, which stays as it was: ", fault,
+                       "; map it by itself and bring the two together with `ovimap merge --align`, "
+                       "or give poses in the map's world frame"));
+}
+
+/// Gives `mapper`, a Mapper or a LiveMapper, what an earlier run had, and `header` what people told
+/// that run's map, which no run finds anew; returns its frames.
+template <class AnyMapper>
+SequenceResult resume(BegunRun& begun, MapHeader& header, MappingInputs& inputs,
+                      AnyMapper& mapper) {
+  SequenceResult sequence;
+  if (!begun.document) return sequence;
+  if (begun.new_visit) {
+    require_same_map(*begun.document, mapper.config().map, inputs.encoder);
+    require_fit(*begun.document, inputs);
+    begun.document->seen_free.clear();  // between two visits anything may have come
+    begin_visit(*begun.document, header);
+  } else {
+    require_same_settings(begun.document->config_text, header.config_text, "--resume");
+    header.history = begun.document->history;
+    skip_done(inputs.range, *begun.document);
+  }
+  header.names = begun.document->names;
+  header.edits = begun.document->edits;
+  sequence.frames = begun.document->frames;
+  sequence.depth_camera = begun.document->depth_camera;
+  mapper.restore(std::move(*begun.document));
+  const auto& visits = header.history.visits;
+  if (!inputs.source || visits.empty()) return sequence;  // pushed frames have the map's numbers
+  mapper.number_from(visits.back().first_index);
+  if (inputs.finder) inputs.finder->tracker().number_from(visits.back().first_index);
+  return sequence;
+}
+
+/// Null where there are none. Loops that are closed meanwhile let its tiles leave.
+std::unique_ptr<Checkpointer> make_checkpointer(const BegunRun& begun, const MappingInputs& inputs,
+                                                const MapHeader& header, std::size_t frames_done) {
+  if (!begun.tiles) return nullptr;
+  auto checkpoints = std::make_unique<Checkpointer>(begun.tiles, inputs.config.checkpoint, header,
+                                                    frames_done);
+  if (inputs.finder)
+    inputs.finder->before_correction = [to = checkpoints.get()](Mapper& map) {
+      to->let_tiles_leave(map);
+    };
+  return checkpoints;
+}
+
+MapHeader make_header(const MappingInputs& inputs, const MappingOptions& options,
+                      const MapperConfig& mapper) {
+  MapHeader header{(inputs.source ? inputs.source->kind() + ":" : "") + options.source,
+                   effective_config(inputs.config, options, mapper, inputs.encoder)};
+  if (options.recorded_s) header.history.visits = {{header.source, 0, 0, options.recorded_s}};
+  return header;
+}
+
+/// Finds the poses of a run that has none, at home in what the run goes on with; else null.
+std::shared_ptr<PoseFinder> make_finder(const MappingInputs& inputs, const BegunRun& begun) {
+  if (!inputs.tracking) return nullptr;
+  Tracker tracker(inputs.config.track);
+  if (begun.document && !begun.document->frames.empty())
+    tracker.begin_in(keyframes_of(begun.document->frames, begun.document->kept_frames,
+                                  begun.document->depth_camera, inputs.config.track.keyframes));
+  return std::make_shared<PoseFinder>(std::move(tracker), inputs.config.loops);
+}
+
+/// What tracking did; where the camera came by a place again, the map's loops are closed.
+TrackingRun finish_tracking(const PoseFinder& finder, const ProgramConfig& config, Mapper& mapper,
+                            SequenceResult& sequence) {
+  const auto& log = finder.tracker().log();
+  TrackingRun tracking{summarise(log), finder.corrections(), {},
+                       unknown_places(log, config.track.part_frames), sensor_doubts(finder.tracker()),
+                       {}};
+  if (config.track.part_frames == 0) tracking.unknown.clear();
+  Progress progress("closing loops");
+  tracking.loops = close_last_loops(
+      mapper, sequence.frames, sequence.depth_camera, config.track, config.loops,
+      [&](std::size_t done, std::size_t total) { progress.show(done, total); });
+  return tracking;
+}
+
+MappingRun finished_run(MappingInputs&& inputs, MapHeader header, Mapper&& mapper,
+                        SequenceResult sequence, std::unique_ptr<Checkpointer> checkpoints) {
+  MappingRun run;
+  if (checkpoints && inputs.tracking)  // who kills the closing of loops leaves all frames mapped
+    checkpoints->store(mapper, sequence.frames, sequence.depth_camera);
+  if (checkpoints) checkpoints->let_tiles_leave(mapper);
+  if (inputs.finder)
+    run.tracking = finish_tracking(*inputs.finder, inputs.config, mapper, sequence);
+  if (inputs.finder) run.tracking->placing = std::move(inputs.placing);
+  run.source = std::move(inputs.source);
+  run.masks_wanted = inputs.masks != nullptr;
+  if (inputs.people) run.people_frames = inputs.people->frames_with_people();
+  run.sequence = std::move(sequence);
+  mapper.finish();
+  if (checkpoints) checkpoints->report(mapper.timers());
+  run.timers = mapper.timers();
+  run.document = make_document(std::move(mapper), run.sequence, std::move(header));
+  if (inputs.keeps_for_loops) run.document.kept_frames.clear();
+  run.checkpoints = std::move(checkpoints);
+  return run;
+}
+
+/// The map whose objects a second pass asks for; nothing of it is saved. Throws Error when the
+/// options leave no place for two passes.
+std::unique_ptr<Mapper> first_pass(const MappingInputs& inputs, const std::string& title) {
+  if (!inputs.masks || !inputs.masks->is_slow())
+    throw Error("a second pass asks a network again; give --masks sam or another network, or leave "
+                "--second-pass away");
+  if (inputs.tracking)
+    throw Error("a second pass needs poses that are known beforehand; write them down with "
+                "--trajectory, give those, or leave --second-pass away");
+  if (inputs.config.memory.max_mb > 0)
+    throw Error("a second pass keeps the first map in memory beside its own; leave --max-memory or "
+                "--second-pass away");
+  MapperConfig config = inputs.config.mapper;
+  config.frame_store.max_mb = 0;
+  auto mapper = std::make_unique<Mapper>(config, inputs.masks);
+  Progress progress(concat(title, ", first pass"));
+  run_sequence(*inputs.source, inputs.range, *mapper,
+               [&](std::size_t done, std::size_t total, const FrameReport*) {
+                 progress.show(done, total);
+                 return !interrupted();
+               });
+  if (interrupted())
+    throw Error("stopped in the first of two passes, which leaves no map; a run without "
+                "--second-pass keeps what it has by then");
+  return mapper;
+}
+
+/// What the visit changed. Both maps share a bound on memory: voxels of the one before wait in a file
+/// beside the checkpoint.
+void tell_visit(const RunTarget& target, const MemoryConfig& memory, TileKeeper& tiles,
+                MapDocument& after) {
+  const MemoryConfig half{(memory.max_mb + 1) / 2};
+  tiles.set_bound(half);
+  std::filesystem::path beside = tiles.path();
+  const auto tiles_before =
+      std::make_shared<TileKeeper>(beside += ".before", TileKeeper::Start::kAnew, half);
+  const MapDocument before = load_map_in(tiles_before, target.continued);
+  tiles_before->remove();  // when it is closed
+  ovimap::tell_visit(before, after);
+}
+
+}  // namespace
+
+MappingRun map_recording(const MappingOptions& options, const std::string& title,
+                         const std::filesystem::path& keep_masks, const RunTarget& target) {
+  MappingInputs inputs(options);
+  BegunRun begun = find_begun(target, inputs.config.memory);
+  inputs.open_networks(options, keep_masks);
+  const auto finder = inputs.finder = make_finder(inputs, begun);
+  watch_for_interrupt();
+  find_start(begun.document ? &*begun.document : nullptr, begun.new_visit, inputs);
+  Mapper mapper(inputs.config.mapper, inputs.masks, inputs.encoder);
+  mapper.recognize_with(inputs.recognizer);
+  MapHeader header = make_header(inputs, options, mapper.config());
+  if (target.twice) header.config_text.insert(0, "# second pass\n");
+  SequenceResult sequence = resume(begun, header, inputs, mapper);
+  auto checkpoints = make_checkpointer(begun, inputs, header, sequence.frames.size());
+  std::unique_ptr<Mapper> guide;
+  if (target.twice) {
+    guide = first_pass(inputs, title);
+    mapper.ask_for_objects_of(*guide);
+  }
+  {
+    Progress progress(title);
+    sequence = run_sequence(
+        *inputs.source, inputs.range, mapper,
+        [&](std::size_t done, std::size_t total, const FrameReport*) {
+          progress.show(done, total);
+          return !interrupted();
+        },
+        std::move(sequence), checkpoints.get(), finder.get());
+  }
+  const MemoryConfig memory = inputs.config.memory;
+  MappingRun run = finished_run(std::move(inputs), std::move(header), std::move(mapper),
+                                std::move(sequence), std::move(checkpoints));
+  if (!target.continued.empty()) tell_visit(target, memory, *begun.tiles, run.document);
+  return run;
+}
+
+MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& target,
+                    LiveAudience* audience, FrameIntake* intake, CameraFeed* camera) {
+  MappingInputs inputs(options, intake == nullptr);
+  BegunRun begun = find_begun(target, inputs.config.memory);
+  // The networks' threads inherit the priority of the one that opens them.
+  std::async(std::launch::async, [&] {
+    lower_thread_priority();
+    inputs.open_networks(options);
+  }).get();
+  LiveMapper mapper(inputs.config.mapper, inputs.config.live, inputs.masks, inputs.encoder);
+  mapper.recognize_with(inputs.recognizer);
+  const auto finder = inputs.finder = make_finder(inputs, begun);
+  find_start(begun.document ? &*begun.document : nullptr, begun.new_visit, inputs);
+  mapper.track_with(finder);
+  MapHeader header = make_header(inputs, options, mapper.config());
+  const std::string pace = intake ? std::string("pushed") : concat(fps, " frames/s");
+  header.config_text.insert(0, concat("# live, ", pace, "\n"));
+  const SequenceResult done = resume(begun, header, inputs, mapper);
+  if (intake && !done.frames.empty())
+    intake->resume_at(done.frames.back().index + 1, done.depth_camera);
+  auto checkpoints = make_checkpointer(begun, inputs, header, done.frames.size());
+  mapper.after_frame = [&](Mapper& map, const auto& frames, const PinholeCamera& camera) {
+    if (audience) audience->after_frame(map, frames, camera);
+    if (audience && checkpoints) checkpoints->set_edits(audience->edits());
+    if (checkpoints) checkpoints->after_frame(map, frames, camera);
+  };
+  if (audience)
+    mapper.after_tracking = [audience](const auto& frame) { audience->after_tracking(frame); };
+  if (audience)
+    audience->begin(mapper.config(),
+                    inputs.encoder ? inputs.encoder->identity() : EncoderIdentity{}, header.names,
+                    header.edits);
+  watch_for_interrupt();
+  if (camera) camera->start();
+  LiveRunResult live;
+  {
+    Progress progress("mapping live");
+    const LiveProgress look = [&](std::size_t count, std::size_t total) {
+      progress.show(count, total);
+      return !interrupted();
+    };
+    FrameFilter filter;
+    if (inputs.people)
+      filter = [&](Frame frame) { return inputs.people->without_people(std::move(frame)); };
+    live = intake ? run_pushed(*intake, mapper, look, filter)
+                  : run_live(*inputs.source, inputs.range, mapper, fps, look);
+  }
+  if (audience) header.edits = audience->end();
+  if (live.sequence.depth_camera.width == 0) live.sequence.depth_camera = done.depth_camera;
+  MappingRun run = finished_run(std::move(inputs), std::move(header), mapper.take(), live.sequence,
+                                std::move(checkpoints));
+  run.live = std::move(live);
+  return run;
+}
+
+}  // namespace ovimap::apps

@@ -1,0 +1,177 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+
+#include "apps/command/command.h"
+#include "ovimap/io/exports/instance_json.h"
+#include "ovimap/io/map_file/map_check.h"
+#include "ovimap/io/map_file/map_file.h"
+#include "ovimap/io/map_file/map_file_access.h"
+#include "ovimap/pipeline/search/history_dates.h"
+#include "ovimap/pipeline/search/scene_graph.h"
+#include "ovimap/pipeline/sequence/timings_text.h"
+
+namespace ovimap::apps {
+
+namespace {
+
+struct InfoOptions {
+  std::filesystem::path map;
+  bool check = false;
+  bool history = false, rooms = false, parts = false;
+  bool recover = false;
+  bool json = false;
+};
+
+/// Exit code 1: something is damaged.
+int check_file(const InfoOptions& options) {
+  const MapCheck check = check_map(options.map);
+  if (options.json) {
+    print_json({{"map", options.map.string()},
+                {"ok", check.faults.empty()},
+                {"faults", check.faults},
+                {"tables", check.tables},
+                {"tiles", check.tiles},
+                {"blocks", check.blocks}});
+  } else {
+    for (const std::string& fault : check.faults) std::printf("damaged: %s\n", fault.c_str());
+    std::printf("%s: %zu tables, %zu tiles with %zu blocks of voxels: %s\n", options.map.c_str(),
+                check.tables, check.tiles, check.blocks,
+                check.faults.empty() ? "all as written" : "restore it from a copy or map again");
+  }
+  return check.faults.empty() ? kDone : kAnswerIsNo;
+}
+
+HistoryDates dates_of(const std::filesystem::path& path, const MapInfo& map) {
+  return {map.history, read_searchable_map(path).frames};
+}
+
+/// A line for each visit, and below it one for each thing that it found changed.
+void print_history(const MapInfo& map, const HistoryDates& dates) {
+  std::vector<MapVisit> visits = map.history.visits;
+  if (visits.empty()) visits.push_back({map.source, 0, 0});
+  for (std::size_t i = 0; i < visits.size(); ++i) {
+    const std::int64_t end = i + 1 < visits.size() ? visits[i + 1].first_frame : map.frames;
+    const int visit = static_cast<int>(i + 1);
+    std::printf("%s, %lld frames: %s\n", dates.visit_text(visit).c_str(),
+                static_cast<long long>(end - visits[i].first_frame), visits[i].source.c_str());
+    for (const ObjectEvent& event : map.history.events) {
+      if (event.visit != visit) continue;
+      const auto name = map.names.find(event.instance);
+      std::printf("%6u  %-24s %s\n", event.instance,
+                  name == map.names.end() ? "" : name->second.c_str(), event_text(event).c_str());
+    }
+  }
+}
+
+/// A line for each room and what is in it, then one for each door.
+void print_rooms(const InfoOptions& options) {
+  const MapSearch search = open_map_search(options.map);
+  const SceneGraph graph = read_scene_graph(options.map, search, "auto");
+  if (graph.plan.rooms.empty())
+    std::printf("no rooms: the frames looked through no free space at breast height\n");
+  for (const Room& room : graph.plan.rooms) {
+    std::printf("room %d, %.1f m2: %s\n", room.id, double{room.area_m2},
+                graph.name_of(room).c_str());
+    for (std::size_t i = 0; i < search.index.size(); ++i)
+      if (graph.room_of[i] == room.id)
+        std::printf("%6u  %s\n", search.index.object(i).id, graph.titles[i].c_str());
+  }
+  for (const RoomDoor& door : graph.plan.doors)
+    std::printf("door from room %d to room %d at %.2f %.2f, %.2f m wide\n", door.first, door.second,
+                double{door.place_m.x()}, double{door.place_m.y()}, double{door.width_m});
+}
+
+/// Adds when visits were and events happened, in seconds since 1970 (UTC) or null.
+void add_dates(const HistoryDates& dates, nlohmann::json& history) {
+  const auto known = [](const std::optional<double>& date) {
+    return date ? nlohmann::json(*date) : nlohmann::json();
+  };
+  for (std::size_t i = 0; i < history["visits"].size(); ++i)
+    history["visits"][i]["begin_s"] = known(dates.begin_of(static_cast<int>(i) + 1));
+  for (std::size_t i = 0; i < history["events"].size(); ++i)
+    history["events"][i]["time_s"] = known(dates.date_of(i));
+}
+
+void print_parts(std::span<const ObjectPart* const> parts) {
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const Eigen::Vector3f center = parts[i]->centroid, size = parts[i]->box.sizes();
+    std::printf("%6s  %-24s %8.2f%8.2f%8.2f %8.2f%8.2f%8.2f %8zu %6d\n", "",
+                concat("  part ", i + 1).c_str(), double{center.x()}, double{center.y()},
+                double{center.z()}, double{size.x()}, double{size.y()}, double{size.z()},
+                parts[i]->points, parts[i]->views);
+  }
+}
+
+int info(const InfoOptions& options) {
+  if (options.recover && !recover_map(options.map))
+    std::fprintf(stderr, "%s: nothing to recover\n", options.map.c_str());
+  if (options.check || options.recover) return check_file(options);
+  const MapInfo map = read_map_info(options.map);
+  const TileTraffic tiles = tile_traffic(parse_timings(map.timings));
+  if (options.json) {
+    auto document = nlohmann::json::parse(info_json(options.map, map));
+    document["tiles_evicted"] = tiles.evicted;
+    document["tiles_loaded"] = tiles.loaded;
+    if (!map.history.visits.empty())
+      add_dates(dates_of(options.map, map), document["history"]);
+    print_json(document);
+    return kDone;
+  }
+  if (options.history) {
+    print_history(map, dates_of(options.map, map));
+    return kDone;
+  }
+  if (options.rooms) {
+    print_rooms(options);
+    return kDone;
+  }
+  std::printf(
+      "%s: %zu objects, %lld frames, %lld blocks of %g m voxels, %.1f MB, made by ovimap %s\n",
+      options.map.c_str(), map.instances.size(), static_cast<long long>(map.frames),
+      static_cast<long long>(map.blocks), double{map.voxel_size_m},
+      static_cast<double>(map.size_bytes) / 1e6, map.version.c_str());
+  if (map.unfinished)
+    std::printf(
+        "unfinished: a run was broken off; the same command with --resume goes on with it\n");
+  if (tiles.evicted > 0)
+    std::printf("made within a bound on memory: %zu tiles left it, %zu came back\n", tiles.evicted,
+                tiles.loaded);
+  std::printf("%6s  %-24s %24s %24s %8s %6s\n", "id", "name", "centroid (m)", "size (m)", "points",
+              "views");
+  const auto parts = parts_by_object(map.parts, map.instances);
+  for (const InstanceSummary& instance : map.instances) {
+    const Eigen::Vector3f center = instance.centroid, size = instance.box.sizes();
+    const auto name = map.names.find(instance.id);
+    std::printf("%6u  %-24s %8.2f%8.2f%8.2f %8.2f%8.2f%8.2f %8zu %6d\n", instance.id,
+                name == map.names.end() ? "" : name->second.c_str(), double{center.x()},
+                double{center.y()}, double{center.z()}, double{size.x()}, double{size.y()},
+                double{size.z()}, instance.points, instance.views);
+    if (const auto of_it = parts.find(instance.id); options.parts && of_it != parts.end())
+      print_parts(of_it->second);
+  }
+  return kDone;
+}
+
+}  // namespace
+
+Action add_info(CLI::App& command) {
+  auto options = std::make_shared<InfoOptions>();
+  command.add_option("MAP", options->map, "map file")->required();
+  command.add_flag("--check", options->check,
+                   "examine the file: SQLite's own check, the hash of every table and tile; exit "
+                   "code 1 and a list where something is damaged");
+  command.add_flag("--history", options->history,
+                   "which recordings went into the map, and what each found moved, gone or new");
+  command.add_flag("--rooms", options->rooms,
+                   "which rooms the map has, what is in each, and the doors between them");
+  command.add_flag("--parts", options->parts,
+                   "list below each object the parts that masks tell in it: drawers, cushions");
+  command.add_flag("--recover", options->recover,
+                   "make a map whole beside which a change that was cut short left its log: the "
+                   "change is taken back, or in where it was finished; then examine it");
+  command.add_flag("--json", options->json, "print one JSON object");
+  return [options] { return info(*options); };
+}
+
+}  // namespace ovimap::apps
