@@ -284,10 +284,10 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
   if (intake && !done.frames.empty())
     intake->resume_at(done.frames.back().index + 1, done.depth_camera);
   auto checkpoints = make_checkpointer(begun, inputs, header, done.frames.size());
-  mapper.after_frame = [&](Mapper& map, const auto& frames, const PinholeCamera& camera) {
-    if (audience) audience->after_frame(map, frames, camera);
+  mapper.after_frame = [&](Mapper& map, const auto& frames, const PinholeCamera& depth_camera) {
+    if (audience) audience->after_frame(map, frames, depth_camera);
     if (audience && checkpoints) checkpoints->set_edits(audience->edits());
-    if (checkpoints) checkpoints->after_frame(map, frames, camera);
+    if (checkpoints) checkpoints->after_frame(map, frames, depth_camera);
   };
   if (audience)
     mapper.after_tracking = [audience](const auto& frame) { audience->after_tracking(frame); };

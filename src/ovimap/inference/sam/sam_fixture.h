@@ -24,7 +24,7 @@ inline OnnxGraph decoder(int grid) {
 /// to `grid` x `grid`. mean: of all channels. keys: further lines of the decoder's part.
 inline void write_model(const ScratchFolder& scratch, int grid, OnnxGraph decoder, int mean,
                         const std::string& keys = "") {
-  const int step = kSide / grid;
+  const auto step = static_cast<std::size_t>(kSide / grid);
   OnnxGraph encoder;
   encoder.input("pixel_values", OnnxGraph::kFloat, {1, 3, kSide, kSide})
       .node("AveragePool", {"pixel_values"}, "image_embeddings",

@@ -78,7 +78,7 @@ TEST_F(OccupancyGridTest, TheWorldMayLieOnItsSide) {
 TEST_F(OccupancyGridTest, RefusesWhatCannotBe) {
   config_.cell_m = 0.001f;
   EXPECT_THROW(make_occupancy_grid(document_, config_), Error);
-  EXPECT_THROW(make_occupancy_grid(MapDocument{}), Error);
+  EXPECT_THROW(make_occupancy_grid(MapDocument()), Error);
 }
 
 }  // namespace

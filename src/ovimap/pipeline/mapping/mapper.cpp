@@ -271,7 +271,8 @@ const SeenFree& Mapper::seen_free() const { return motion_->space(); }
 
 MapRecord Mapper::record(MapHeader header, std::vector<FrameLogEntry> frames,
                          const PinholeCamera& depth_camera) const {
-  MapRecord record{std::move(header)};
+  MapRecord record;
+  static_cast<MapHeader&>(record) = std::move(header);
   record.instance_config = config_.instance;
   record.registry = registry_.state();
   record.semantics.views = config_.semantics.views;

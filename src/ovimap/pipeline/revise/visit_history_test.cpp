@@ -140,7 +140,9 @@ TEST(VisitHistory, TellsTheSameOfMapsWhoseVoxelsLieInFiles) {
     EXPECT_EQ(std::tie(bounded.instance, bounded.kind, bounded.visit, bounded.frame),
               std::tie(told.instance, told.kind, told.visit, told.frame));
     ASSERT_EQ(bounded.was == nullptr, told.was == nullptr);
-    if (told.was) EXPECT_EQ(bounded.was->colors, told.was->colors);
+    if (told.was) {
+      EXPECT_EQ(bounded.was->colors, told.was->colors);
+    }
   }
   EXPECT_LT(before_stored.map.blocks_in_memory(), before.map.block_count());
   EXPECT_EQ(after_stored.map.content_hash(), after.map.content_hash());

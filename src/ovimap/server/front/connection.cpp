@@ -163,7 +163,7 @@ void Connection::work() {
   });
   if (begun) return;
   HttpReply busy = fault(503, "the server is busy; ask again");
-  busy.headers["Retry-After"] = "1";
+  busy.headers.emplace("Retry-After", "1");
   send(RequestDesk::refused(std::move(busy)));
 }
 

@@ -49,7 +49,9 @@ TEST(MeshChunksTest, ChunksAreOrderedAndFoundByIndex) {
   const auto list = store.list(0);
   ASSERT_GT(list.size(), 4u);
   for (std::size_t i = 0; i < list.size(); ++i) {
-    if (i > 0) EXPECT_LT(pack_index(list[i - 1].index), pack_index(list[i].index));
+    if (i > 0) {
+      EXPECT_LT(pack_index(list[i - 1].index), pack_index(list[i].index));
+    }
     const auto chunk = store.find(0, list[i].index);
     ASSERT_TRUE(chunk);
     EXPECT_EQ(chunk->index, list[i].index);

@@ -75,11 +75,13 @@ TEST(Visits, ThingsGoWhereThereIsRoomAndWhatCarriesOthersStays) {
       EXPECT_NE(objects[change.object - 1u].name, "picture");
     for (const RoomObject& a : objects)
       for (const RoomObject& b : objects)
-        if (a.id < b.id && a.footprint && b.footprint)
+        if (a.id < b.id && a.footprint && b.footprint) {
           EXPECT_LE(overlap(*a.footprint, *b.footprint), 1e-3f) << a.name << " in " << b.name;
+        }
     for (const RoomObject& object : objects)
-      if (object.footprint && (object.name == "jug" || object.name == "vase"))
+      if (object.footprint && (object.name == "jug" || object.name == "vase")) {
         EXPECT_GT(object.footprint->bottom_m, 0.45f) << "things of tables stay off the floor";
+      }
   }
 }
 

@@ -35,7 +35,7 @@ Image<Eigen::Vector3f> blurred(const Image<Eigen::Vector3f>& picture, const Dept
   std::vector<Eigen::Isometry3f> camera_from_poses;
   for (const Pose& pose : world_from_poses)
     camera_from_poses.emplace_back((world_from_camera.inverse() * pose).cast<float>());
-  Image<Eigen::Vector3f> average(picture.width(), picture.height());
+  Image<Eigen::Vector3f> average(picture.width(), picture.height(), Eigen::Vector3f::Zero());
   parallel_for(static_cast<std::size_t>(picture.height()), kRowsPerTask, [&](std::size_t row) {
     const int y = static_cast<int>(row);
     for (int x = 0; x < picture.width(); ++x) {

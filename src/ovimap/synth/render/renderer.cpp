@@ -110,7 +110,7 @@ struct Renderer::State {
                               const Image<SurfacePoint>& surfaces, float exposure,
                               const MovingThing& thing) const {
     const LightImage light = lighting.gather(surfaces);
-    Image<Eigen::Vector3f> picture(camera.width, camera.height);
+    Image<Eigen::Vector3f> picture(camera.width, camera.height, Eigen::Vector3f::Zero());
     for_each_pixel(camera.width, camera.height, [&](int x, int y) {
       if (!on_edge(surfaces, x, y)) {
         picture.at(x, y) = toned(surfaces.at(x, y), light.at(x, y), exposure);
