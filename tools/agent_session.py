@@ -60,6 +60,8 @@ async def session(arguments, variables):
         print("tools:", ", ".join(tool.name for tool in (await client.list_tools()).tools))
         await ask("maps")
         on_table = await ask("find", map="room", text="anything on the table")
+        if on_table is None or not on_table["matches"]:
+            return
         await ask("find", map="room", text="elephant")
         chosen = on_table["matches"][0]["id"]
         await ask("look", map="room", object=chosen, pictures=2)
