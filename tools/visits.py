@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
 """Rooms that change between visits, for tools/benchmarks.py: what the map keeps of what left, and what it tells."""
+import functools
 import subprocess
 
 from speed import run_json
@@ -16,6 +17,12 @@ def run(*command):
     subprocess.run([str(word) for word in command], check=True, stdout=subprocess.DEVNULL)
 
 
+@functools.cache
+def render(program, folder, room, *options):
+    """Once for all rows of a room."""
+    run(program, "synth", folder, "--room", room, *options)
+
+
 def continued_map(program, folder, masks, settings):
     file = folder / f"{masks}.ovimap"
     common = ["--masks", masks, "--encoder", "none", *settings, "-o", file]
@@ -27,7 +34,7 @@ def continued_map(program, folder, masks, settings):
 
 def row(program, work, room, masks, settings):
     folder = work / "visits" / room
-    run(program, "synth", folder, "--room", room, "--noise", "--visits", VISITS)
+    render(program, folder, room, "--noise", "--visits", VISITS)
     map_file = continued_map(program, folder, masks, settings)
     scores = run_json(program, "eval-changes", map_file, folder)
     now = run_json(program, "eval", map_file, "--gt", folder / f"visit{VISITS}", "--encoder", "none")["standard"]
@@ -38,7 +45,7 @@ def row(program, work, room, masks, settings):
 
 def mover_row(program, work, room, mode):
     folder = work / "movers" / room
-    run(program, "synth", folder, "--room", room, "--walk", "--fps", 8, "--seconds", 30, "--visits", 1, "--figure", "--size", "320x240")
+    render(program, folder, room, "--walk", "--fps", 8, "--seconds", 30, "--visits", 1, "--figure", "--size", "320x240")
     map_file = folder / f"{mode}.ovimap"
     run(program, "run", folder / "visit1", "--masks", "gt", "--encoder", "none", "--dynamic", mode, "-o", map_file)
     scores = run_json(program, "eval-changes", map_file, folder)
