@@ -7,7 +7,8 @@ The encoder is taken as it is. The decoder is cut down and opened up:
 - outputs are the four mask tokens at 256x256 and their predicted IoUs, instead of one chosen mask
   at full size (ovimap chooses itself, and scales up only what it keeps);
 - the previous-mask input, unused here, becomes the constant the network uses when there is none;
-- the number of prompts is open, so that several prompts share one run.
+- the number of prompts is open, so that several prompts share one run;
+- its products are ordered so that a prompt costs half (few_token_decoder.py).
 Beside them goes the finder that train_finder.py made.
 """
 
@@ -18,6 +19,7 @@ import re
 import shutil
 import sys
 
+import few_token_decoder
 import onnx
 from onnx import TensorProto, helper
 
@@ -26,10 +28,8 @@ MODEL_YAML = pathlib.Path(__file__).with_name("mobilesam.yaml")
 FINDER = pathlib.Path(__file__).with_name("finder.onnx")
 
 # Tensors of the published decoder.
-ALL_MASKS = "/Reshape_9_output_0"
+ALL_MASKS = few_token_decoder.MASKS_OUT
 ALL_SCORES = "/iou_prediction_head/layers.2/Gemm_output_0"
-DENSE_PROMPT = "/Add_6_output_0"
-DENSE_PROMPT_WITHOUT_MASK = "onnx::Mul_1919"
 
 
 def sha256(data: bytes) -> str:
@@ -41,18 +41,21 @@ def expected_digests() -> dict:
     return dict(re.findall(r"^  (\S+\.onnx): ([0-9a-f]{64})$", lines, re.MULTILINE))
 
 
-def needed_nodes(graph, outputs):
-    """The nodes that `outputs` depend on, in graph order, and all tensor names they touch."""
-    producer = {name: node for node in graph.node for name in node.output}
-    open_names, names = list(outputs), set()
-    while open_names:
-        name = open_names.pop()
-        if name in names:
-            continue
-        names.add(name)
-        if name in producer:
-            open_names.extend(i for i in producer[name].input if i)
-    return [n for n in graph.node if any(o in names for o in n.output)], names
+def needed_nodes(nodes, outputs):
+    """The nodes that `outputs` depend on, each after those it takes from, and all tensor names they touch."""
+    producer = {name: node for node in nodes for name in node.output}
+    ordered, names, waiting = [], set(), [(name, False) for name in reversed(outputs)]
+    while waiting:
+        name, complete = waiting.pop()
+        node = producer.get(name)
+        if complete:
+            ordered.append(node)
+        elif name and name not in names:
+            names.update(node.output if node else [name])
+            if node:
+                waiting.append((name, True))
+                waiting += [(taken, False) for taken in reversed(node.input)]
+    return ordered, names
 
 
 def rename(nodes, new_names):
@@ -64,11 +67,8 @@ def rename(nodes, new_names):
 
 def edit_decoder(data: bytes) -> bytes:
     model = onnx.load_from_string(data)
-    for node in model.graph.node:
-        for i, name in enumerate(node.input):
-            if name == DENSE_PROMPT:
-                node.input[i] = DENSE_PROMPT_WITHOUT_MASK
-    nodes, names = needed_nodes(model.graph, [ALL_MASKS, ALL_SCORES])
+    nodes, constants = few_token_decoder.with_few_tokens(model.graph)
+    nodes, names = needed_nodes(nodes, [ALL_MASKS, ALL_SCORES])
     rename(nodes, {ALL_MASKS: "masks", ALL_SCORES: "iou_predictions"})
 
     def tensor(name, shape):
@@ -83,7 +83,7 @@ def edit_decoder(data: bytes) -> bytes:
             tensor("point_labels", ["prompts", "points"]),
         ],
         [tensor("masks", ["prompts", 4, 256, 256]), tensor("iou_predictions", ["prompts", 4])],
-        [i for i in model.graph.initializer if i.name in names],
+        [i for i in [*model.graph.initializer, *constants] if i.name in names],
     )
     edited = helper.make_model(graph, opset_imports=model.opset_import, ir_version=model.ir_version)
     onnx.checker.check_model(edited)
