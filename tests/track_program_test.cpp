@@ -100,6 +100,7 @@ TEST_F(TrackProgramTest, WhatIsNowhereIsMappedByItself) {
   EXPECT_EQ(parts[0]["first"], 8);
   EXPECT_EQ(parts[0]["last"], 19);
   EXPECT_EQ(parts[0]["frames"], 12);
+  EXPECT_NE(parts[0]["by_objects"]["doubt"], "") << "the map shows nothing of that place";
   EXPECT_EQ(run_json("info map.part2.ovimap --json")["frames"], 12);
   ASSERT_EQ(run(std::string(kRun) + "--frames :8").code, 0);
   const auto alone = run_json("info map.ovimap --json");
@@ -174,6 +175,21 @@ TEST_F(KilledClosureTest, ResumesToTheSameMap) {
     delay_ms = done ? delay_ms / 2 : delay_ms + 5 + delay_ms / 2;
   }
   EXPECT_GT(closing, 0) << "no kill came between the last frame and the map";
+}
+
+/// The map keeps no frames, and so has no keyframes. A bare room has few objects to tell a place by.
+TEST_F(TrackProgramTest, ObjectsSayWhereAVisitBegins) {
+  ASSERT_EQ(run(std::string(kRun) + "--frames :14").code, 0);
+  const std::string visit =
+      "run unposed --frames 6: --poses track --continue map.ovimap --set map.voxel_size_m=0.02 "
+      "--trajectory poses.txt -o visit.ovimap --json ";
+  expect_complaint(visit, {"keeps no frames", "too few objects say so (objects 2"});
+  expect_complaint(visit + "--set visit.object_frames=0", {"keeps no frames"});
+  const auto report = run_json(visit + "--set visit.alignment.min_objects=2");
+  EXPECT_EQ(report["tracking"]["frames_tracked"], 14);
+  EXPECT_EQ(report["tracking"]["by_objects"]["doubt"], "");
+  EXPECT_GT(report["tracking"]["by_objects"]["overlap"], 0.9);
+  EXPECT_EQ(run_json("info visit.ovimap --json")["frames"], 28);
 }
 
 TEST_F(TrackProgramTest, WhatNeedsPosesSaysSo) {

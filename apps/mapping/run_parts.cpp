@@ -29,6 +29,12 @@ MappingOptions options_for(MappingOptions options, const Stretch& stretch) {
   return options;
 }
 
+/// Where objects say that a part lies in the map. Both must be in memory.
+std::optional<AlignmentSearch> placed_in(const MapDocument& map, const MapDocument& part) {
+  if (map.map.has_store() || part.map.has_store()) return std::nullopt;
+  return search_alignment(map, part);
+}
+
 void add_unknown(const TrackingRun& tracking, std::deque<Stretch>& wanted) {
   wanted.insert(wanted.end(), tracking.unknown.begin(), tracking.unknown.end());
 }
@@ -49,7 +55,7 @@ std::vector<MapPart> map_parts(const MappingOptions& options, const std::filesys
     if (2 * summary.tracked >= summary.frames) {
       save_map(target.map, part.document);
       parts.push_back({target.map, stretch.first, stretch.second, part.sequence.frames.size(),
-                       part.document.instances.size()});
+                       part.document.instances.size(), placed_in(run.document, part.document)});
       add_unknown(*part.tracking, wanted);
     }
     part.checkpoints->remove();

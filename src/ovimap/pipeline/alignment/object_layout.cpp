@@ -173,8 +173,9 @@ class Ballot {
   }
 
  private:
+  /// Two that look nothing alike propose nothing: no weight would be left to fit them by.
   bool fit_together(const Partner& p, const Partner& q) const {
-    if (p.b == q.b) return false;
+    if (p.b == q.b || p.likeness + q.likeness <= 0) return false;
     const Eigen::Vector3d in_a = q.in_a - p.in_a, in_b = q.in_b - p.in_b;
     const double flat_a = in_a.head<2>().norm(), flat_b = in_b.head<2>().norm();
     const auto nearest = static_cast<double>(config_.nearest_m),

@@ -109,6 +109,17 @@ TEST(ObjectLayout, PosesAreUpright) {
   }
 }
 
+/// Objects of which each looks the opposite of another have likenesses of 0.
+TEST(ObjectLayout, WhatLooksNothingAlikeProposesNoPose) {
+  ChanceRoom room(7, 12, true), other(8, 12, true);
+  const auto proposals = propose_poses(room.layout(), other.layout());
+  ASSERT_FALSE(proposals.empty());
+  for (const LayoutProposal& proposal : proposals) {
+    EXPECT_TRUE(proposal.a_from_b.matrix().allFinite());
+    EXPECT_GT(proposal.votes, 0);
+  }
+}
+
 TEST(ObjectLayout, NothingProposesNothing) {
   EXPECT_TRUE(propose_poses({}, ChanceRoom(1).layout()).empty());
   EXPECT_TRUE(propose_poses(ChanceRoom(1).layout(), {}).empty());

@@ -21,7 +21,7 @@ struct VisitFitConfig {
   float most_turn_rad = 0.0175f;
   float least_agreement = 0.5f;    ///< share of what is seen that must lie on the map's surface
   // Where nothing places it.
-  int object_frames = 0;  ///< so many are mapped by themselves, to find its place by objects; 0: none
+  int object_frames = 150;  ///< are mapped by themselves, to find its place by objects; 0: none
   AlignmentConfig alignment;
 };
 void list_fields(VisitFitConfig& config, ConfigFields& fields);
