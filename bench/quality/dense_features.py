@@ -100,13 +100,18 @@ class Sums:
         self.weight = 0
 
 
-def frame_looks(room, dense, views):
-    """{kind: {object: embedding of length 1}}; `views`: {(object, frame): pixels}, which views of the objects were chosen."""
-    sums = {}
+def room_frames(room):
+    """(picture, ids of its pixels, number) of a rendered room."""
     frames = sorted(room.glob("results/frame*.jpg"))
     for frame in frames[:: max(1, -(-len(frames) // MOST_FRAMES))]:
-        image = Image.open(frame).convert("RGB")
         ids = np.asarray(Image.open(frame.with_name(frame.stem.replace("frame", "instance") + ".png")))
+        yield Image.open(frame).convert("RGB"), ids, int(frame.stem[5:])
+
+
+def frame_looks(frames, dense, views):
+    """{kind: {object: embedding of length 1}}; `views`: {(object, frame): pixels}, which views of the objects were chosen."""
+    sums = {}
+    for image, ids, frame in frames:
         here = {}
         places = list(windows_of(*image.size))
         features = dense.cells([image.crop((x, y, x + side, y + side)) for x, y, side in places])
@@ -126,7 +131,7 @@ def frame_looks(room, dense, views):
                     here[int(number)] = here.get(int(number), 0) + weights @ looks
         for number, cells in here.items():
             sums[number].cells = sums[number].cells + cells
-            sums[number].views = sums[number].views + views.get((number, int(frame.stem[5:])), 0) * unit(cells)
+            sums[number].views = sums[number].views + views.get((number, frame), 0) * unit(cells)
     return {
         "cells": {number: unit(mine.cells) for number, mine in sums.items()},
         "pooled": {number: dense.embeddings((mine.features / mine.weight)[None])[0] for number, mine in sums.items()},
@@ -194,7 +199,7 @@ def stored_looks(map_file, room, dense):
     files = {kind: map_file.with_suffix(f".{kind}.npz") for kind in KINDS}
     looks = {}
     if not all(files[kind].exists() for kind in KINDS[:-1]):
-        looks = frame_looks(room, dense, views_of(map_file))
+        looks = frame_looks(room_frames(room), dense, views_of(map_file))
     if not files["crops"].exists():
         looks["crops"] = crop_looks(map_file, dense)
     for kind, of_objects in looks.items():
