@@ -33,7 +33,7 @@ from PIL import Image
 STUFF = {"floor", "wall", "ceiling"}
 LEAST_SHARE = 0.25  # of a cell that an object must fill
 MOST_FRAMES = 60
-SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
+SHARES = (0.0, 0.25, 0.5)
 KINDS = ("cells", "pooled", "views", "crops")
 PICTURE_ALONE = ["--set", "query.evidence.size_weight=0", "--set", "query.evidence.competition=0", "--set", "query.evidence.thing_weight=0"]
 EVIDENCE = {"picture": PICTURE_ALONE, "all": []}
