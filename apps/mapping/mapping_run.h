@@ -27,7 +27,7 @@ struct MapPart {
   std::int64_t first = 0, last = 0;  ///< of the recording's frames
   std::size_t frames = 0;            ///< in the map
   std::size_t objects = 0;
-  std::optional<AlignmentSearch> placing;  ///< of the part in the map; nullopt: objects were not asked
+  std::optional<AlignmentSearch> placing;  ///< of the part in the map; nullopt: not looked for
 };
 
 /// A recording, mapped.

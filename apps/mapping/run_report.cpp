@@ -137,11 +137,11 @@ nlohmann::json parts_json(const std::vector<MapPart>& parts) {
 void print_parts(const MappingRun& run) {
   for (const MapPart& part : run.parts) {
     const bool placed = part.placing && part.placing->doubt.empty();
-    std::printf("no keyframe shows where frames %lld to %lld lie: %s is a map of them alone, %zu objects "
-                "from %zu frames; %s\n",
+    std::printf("no keyframe shows where frames %lld to %lld lie: %s is a map of them alone, %zu "
+                "objects from %zu frames; %s\n",
                 static_cast<long long>(part.first), static_cast<long long>(part.last),
                 part.map.c_str(), part.objects, part.frames,
-                placed ? "by its objects it lies in this map, and `ovimap merge --align` joins the two"
+                placed ? "by its objects it lies in this map, `ovimap merge --align` joins the two"
                        : "`ovimap merge --align` joins maps that share a place");
   }
 }

@@ -14,8 +14,8 @@ struct AlignmentConfig {
   float min_fit = 0.9f;         ///< of surface where both looked that must agree
   float min_clear_fit = 0.85f;  ///< the same where the next answer is not half as good
   float min_lead = 0.08f;       ///< by which the best answer must beat the next other one
-  int min_objects = 6;          ///< that must speak for it: two propose, every corner has a floor and two
-                                ///< walls, and one more must agree
+  int min_objects = 6;          ///< that must speak for it: two propose, every corner has a floor
+                                ///< and two walls, and one more must agree
   float spacing_m = 0.06f;      ///< between surface points that are fitted to each other
   ObjectLayoutConfig layout;
   PlaceConfig place;

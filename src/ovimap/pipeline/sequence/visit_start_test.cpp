@@ -69,7 +69,7 @@ TEST_F(VisitStart, ObjectsTellWhereNoKeyframeDoes) {
   EXPECT_LT(error_of(first.world_from_camera, 0).translation().norm(), 0.02);
 }
 
-/// Before bare floor and boxes, no wall in sight, the camera slides by metres: what it maps is bent.
+/// Before bare floor and boxes, no wall in sight, the camera slides by metres: its map is bent.
 TEST_F(VisitStart, ABentMapIsDoubted) {
   room_ = seen_in(40, 0.3, 0.55);
   const ObjectPlacing placing = placed_in(map_of(seen_in(24, 0, 0.6)));
