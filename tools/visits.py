@@ -3,6 +3,7 @@
 """Rooms that change between visits, for tools/benchmarks.py: what the map keeps of what left, and what it tells."""
 import functools
 import subprocess
+import sys
 
 from speed import run_json
 
@@ -38,9 +39,9 @@ def row(program, work, room, masks, settings):
     map_file = continued_map(program, folder, masks, settings)
     scores = run_json(program, "eval-changes", map_file, folder)
     now = run_json(program, "eval", map_file, "--gt", folder / f"visit{VISITS}", "--encoder", "none")["standard"]
-    told = [f"{scores[kind]['precision']:.2f} / {scores[kind]['recall']:.2f} ({scores[kind]['real']})" for kind in KINDS]
+    changes = [f"{scores[kind]['precision']:.2f} / {scores[kind]['recall']:.2f} ({scores[kind]['real']})" for kind in KINDS]
     return (f"| {room} | {masks} | {'off' if settings else 'on'} | {100 * scores['ghost']:.1f} % | {100 * scores['static_kept']:.1f} % "
-            f"| {now['class_agnostic']['ap50']:.3f} | {' | '.join(told)} | {scores['ids_kept']} + {scores['in_doubt']} of {scores['moved']['real']} |")
+            f"| {now['class_agnostic']['ap50']:.3f} | {' | '.join(changes)} | {scores['ids_kept']} + {scores['in_doubt']} of {scores['moved']['real']} |")
 
 
 def mover_row(program, work, room, mode):
@@ -55,13 +56,19 @@ def mover_row(program, work, room, mode):
 
 
 def movers(program, work):
-    rows = [mover_row(program, work, room, mode) for room in MOVER_ROOMS for mode in ("off", "drop")]
+    rows = [told(mover_row(program, work, room, mode)) for room in MOVER_ROOMS for mode in ("off", "drop")]
     return ["Somebody walks through the room with a carton in the hands (`synth --figure`). Left: share of her surface, frame by frame, that the map shows.", "",
             "| room | `--dynamic` | left | kept | AP50 of the room |", "| --- " * 5 + "|", *rows, ""]
 
 
+def told(made):
+    """Hours go into this table: what is there is said at once."""
+    print(made, file=sys.stderr, flush=True)
+    return made
+
+
 def section(program, work):
-    rows = [row(program, work, room, masks, settings) for room in ROOMS for masks in MASKS
+    rows = [told(row(program, work, room, masks, settings)) for room in ROOMS for masks in MASKS
             for settings in ([], ["--set", "free_space.enabled=false"]) if masks == "gt" or not settings]
     return [f"## {VISITS} visits to rooms where things move", "",
             f"    ovimap synth DIR --room ROOM --noise --visits {VISITS}", "    ovimap run DIR/visit1 --masks MASKS --encoder none -o MAP",
