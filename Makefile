@@ -15,7 +15,7 @@ help:
 	@echo "make test    set up and build the rest, run every test"
 	@echo "make build   build the program and its web page: $(OVIMAP); make build-all: all there is"
 	@echo "make bench   measure speed and memory on SOURCE (default: the demo room), beside their targets"
-	@echo "make rivals  install Open3D (1.3 GB) into build/rivals, for make bench to compare with"
+	@echo "make rivals  install Open3D and OpenCV (1.4 GB) into build/rivals, for make bench to compare with"
 	@echo "make benchmarks KITCHEN=FOLDER [ONLY='tiny rooms']   write docs/benchmarks.md, or these parts of it"
 	@echo "make fuzz    feed the readers with odd bytes, FUZZ_SECONDS (60) each; installs clang"
 	@echo "make live-speed SOURCE=RECORDING   what serving a map costs while it is made"

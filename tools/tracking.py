@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
-"""Tracking for tools/benchmarks.py: poses found without any given, against the true ones, beside Open3D's."""
+"""Tracking for tools/benchmarks.py: poses found without any given, against the true ones, beside those of Open3D and OpenCV."""
 import pathlib
 import shutil
 import subprocess
@@ -64,17 +64,17 @@ def our_rows(program, work, name, recording, step, aim):
 
 
 def their_row(program, name, recording, step, method, trajectory):
-    report = run_json(RIVALS / "bin" / "python", "bench/rivals/open3d_odometry.py", program.parent / "ovimap_fusion_steps", recording,
+    report = run_json(RIVALS / "bin" / "python", "bench/rivals/odometry.py", program.parent / "ovimap_fusion_steps", recording,
                       "--method", method, "--step", step, "--fps", FPS.get(name, 30), "-o", trajectory)
     scores = run_json(program, "eval-poses", trajectory, recording)
     counts = {"frames": report["frames"] + report["failed"], "frames_tracked": report["frames"]}
-    return row(name, f"Open3D {report['open3d']} {method}", counts, scores, step, None, "-", report["p50_ms"])
+    return row(name, f"{report['version']} {method.split('-')[1]}", counts, scores, step, None, "-", report["p50_ms"])
 
 
 def their_rows(program, work, name, recording, step):
     if not (RIVALS / "bin" / "python").exists():
         return
-    for method in ("odometry", "slam"):
+    for method in ("open3d-odometry", "open3d-slam", "opencv-odometry"):
         yield kept(work, name, step, method, lambda poses: their_row(program, name, recording, step, method, poses))
 
 
@@ -141,7 +141,7 @@ def tracking_lines(program, work, kitchen):
         rows += their_rows(program, work, name, pathlib.Path(recording), step)
     yield from [*("    ovimap synth DIR " + " ".join(options) for _, options, _ in WALKS),
                 "    ovimap run RECORDING --poses track --masks none --encoder none --trajectory FILE -o MAP",
-                "    ovimap eval-poses FILE RECORDING", "    make rivals    # Open3D, where it is installed", "",
+                "    ovimap eval-poses FILE RECORDING", "    make rivals    # Open3D and OpenCV, where they are installed", "",
                 "The kitchen's own poses come from a depth tracker and are good to some centimetres; the walks are rendered with the noise "
                 "and blur of a sensor and have exact truth. Times are of tracking alone, the ray cast of the map included.", "",
                 "| " + " | ".join(HEAD) + " |", "| --- " * len(HEAD) + "|", *rows, "", *object_lines(program, work)]

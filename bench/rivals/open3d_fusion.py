@@ -11,34 +11,15 @@ import argparse
 import json
 import pathlib
 import statistics
-import subprocess
 import tempfile
 import time
 
 import numpy
 import open3d
 import open3d.core as core
+from ours import MAX_RANGE_M, Ours
 
-VOXEL_M, TRUNCATION_VOXELS, MAX_RANGE_M = 0.01, 5.0, 10.0
-
-
-class Ours:
-    def __init__(self, program, recording, folder):
-        self.folder = folder
-        self.process = subprocess.Popen([str(program), str(recording), str(folder)], stdin=subprocess.PIPE,
-                                        stdout=subprocess.PIPE, text=True)
-        self.frames = int(self.process.stdout.readline())
-
-    def do(self, command, argument=""):
-        self.process.stdin.write(f"{command} {argument}\n")
-        self.process.stdin.flush()
-        answer = self.process.stdout.readline()
-        if not answer:
-            raise SystemExit("the other side ended; see above")
-        return float(answer)
-
-    def raw(self, name, kind):
-        return numpy.fromfile(self.folder / name, dtype=kind)
+VOXEL_M, TRUNCATION_VOXELS = 0.01, 5.0
 
 
 class Theirs:

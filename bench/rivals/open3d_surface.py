@@ -14,7 +14,8 @@ import tempfile
 import open3d
 import open3d.core as core
 
-from open3d_fusion import Ours, Theirs
+from open3d_fusion import Theirs
+from ours import Ours
 
 
 def fuse(program, recording):
