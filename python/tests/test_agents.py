@@ -21,6 +21,7 @@ mcp = pytest.importorskip("mcp")
 from agent_fixture import agent_over_http, agent_over_stdio, http_server, needs_program, serving  # noqa: E402
 from ovimap import mcp_command  # noqa: E402
 from ovimap.agents import MapFault, open_map  # noqa: E402
+from ovimap.agents.backend import moment  # noqa: E402
 
 
 @pytest.fixture
@@ -432,6 +433,10 @@ def test_agents_hear_what_changed(home_map):
         for nonsense in ({"since": "x" * 5000}, {"since": 7}, {"since": "visit 9"}, {"until": ["now"]}, {"map": "nowhere"}):
             assert "\n" not in agent.what_changed(**{"map": "home"} | nonsense).error, nonsense
             assert agent.what_changed(**{"map": "home"} | nonsense).error, nonsense
+
+
+def test_a_time_that_no_calendar_has_is_not_known():
+    assert moment(None) is None and moment(1e18) is None and moment(0.0).startswith("19")
 
 
 @needs_program

@@ -163,8 +163,11 @@ def share(value: float | None) -> float | None:
 
 
 def moment(time_s: float | None) -> str | None:
-    """ISO 8601, with the offset of this machine's time zone."""
-    return None if time_s is None else datetime.datetime.fromtimestamp(time_s).astimezone().isoformat(timespec="seconds")
+    """ISO 8601, with the offset of this machine's time zone; None also for what no calendar has."""
+    try:
+        return None if time_s is None else datetime.datetime.fromtimestamp(time_s).astimezone().isoformat(timespec="seconds")
+    except (OverflowError, ValueError, OSError):
+        return None
 
 
 def middle(low: Sequence[float | None], high: Sequence[float | None]) -> Point | None:
