@@ -48,11 +48,12 @@ Change told(SavedMap& map, const HistoryDates& dates, const HistoryChange& chang
   const MapRecord& record = map.record();
   const ObjectEvent &first = record.history.events[change.first],
                     &last = record.history.events[change.last];
-  const auto word = map.words_with_gone().find(change.instance);
+  const WordsOfObjects& words = map.words_with_gone();
+  const auto word = words.find(change.instance);
   const auto name = record.names.find(change.instance);
   return {change.instance,
           name == record.names.end() ? "" : name->second,
-          word == map.words_with_gone().end() ? "" : word->second,
+          word == words.end() ? "" : word->second,
           event_name(change.kind),
           change_text(change, record.history, dates),
           last.visit,

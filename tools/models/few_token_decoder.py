@@ -115,14 +115,21 @@ class Transformer:
     def softmax(self, scores):
         return self.g.add("Softmax", scores, axis=-1)
 
+    def keys(self, x):
+        """[prompts, heads, channels / heads, n] of [prompts, n, channels]."""
+        return self.g.transpose(self.heads(x), 0, 1, 3, 2)
+
+    def attended(self, name, q, k, v):
+        made = self.joined(self.g.add("MatMul", self.softmax(self.g.add("MatMul", q, k)), v))
+        return self.g.linear(made, self.w.linear(f"{name}/out_proj"))
+
     def attend_themselves(self, name, queries, values):
         layers = {part: self.w.linear(f"{name}/{part}_proj") for part in "qkv"}
         scale = self.scale(layers["q"][0])
         q = self.heads(self.g.linear(queries, tuple(part / scale for part in layers["q"])))
-        k = self.g.transpose(self.heads(self.g.linear(queries, layers["k"])), 0, 1, 3, 2)
+        k = self.keys(self.g.linear(queries, layers["k"]))
         v = self.heads(self.g.linear(values, layers["v"]))
-        made = self.joined(self.g.add("MatMul", self.softmax(self.g.add("MatMul", q, k)), v))
-        return self.g.linear(made, self.w.linear(f"{name}/out_proj"))
+        return self.attended(name, q, k, v)
 
     def queries_of_tokens(self, name, tokens):
         weight, bias = self.w.linear(f"{name}/q_proj")
@@ -132,10 +139,9 @@ class Transformer:
     def look_at_one_image(self, name, tokens, keys, values):
         """Of an image that all prompts share. The bias of keys says the same of all places: it falls out of the softmax."""
         q = self.queries_of_tokens(name, tokens)
-        k = self.g.transpose(self.heads(self.g.add("MatMul", keys, self.w.linear(f"{name}/k_proj")[0])), 0, 1, 3, 2)
+        k = self.keys(self.g.add("MatMul", keys, self.w.linear(f"{name}/k_proj")[0]))
         v = self.heads(self.g.linear(values, self.w.linear(f"{name}/v_proj")))
-        made = self.joined(self.g.add("MatMul", self.softmax(self.g.add("MatMul", q, k)), v))
-        return self.g.linear(made, self.w.linear(f"{name}/out_proj"))
+        return self.attended(name, q, k, v)
 
     def look_at_images(self, name, tokens, keys, values):
         q = self.queries_of_tokens(name, tokens)
@@ -151,7 +157,7 @@ class Transformer:
         """[prompts, places, 256]: what places take from the tokens."""
         weight, bias = self.w.linear(f"{name}/q_proj")
         scale = self.scale(weight)
-        k = self.g.transpose(self.heads(self.g.linear(keys, self.w.linear(f"{name}/k_proj"))), 0, 1, 3, 2)
+        k = self.keys(self.g.linear(keys, self.w.linear(f"{name}/k_proj")))
         ask = self.g.add("MatMul", self.by_head(weight / scale), k)  # [prompts, heads, 256, tokens]
         ask = self.g.reshape(self.g.transpose(ask, 0, 2, 1, 3), 0, CHANNELS, -1)
         always = self.g.reshape(self.g.add("MatMul", self.by_head(bias[None] / scale), k), 0, 1, -1)

@@ -162,6 +162,11 @@ def share(value: float | None) -> float | None:
     return None if value is None else rounded(value)
 
 
+def title(name: str, guess: str) -> str:
+    """What an object is called: as a person named it, else as it looks."""
+    return name or guess or "object"
+
+
 def moment(time_s: float | None) -> str | None:
     """ISO 8601, with the offset of this machine's time zone; None also for what no calendar has."""
     try:

@@ -15,7 +15,7 @@ from typing import NamedTuple
 from .._ovimap import Error, Map
 from .backend import (
     MapBackend, MapFault, Robot, Verdict,
-    checked_text, checked_time, closest_first, extent, largest_first, middle, moment, point, room_list, rounded, share, spread,
+    checked_text, checked_time, closest_first, extent, largest_first, middle, moment, point, room_list, rounded, share, spread, title,
 )  # fmt: skip
 from .facts import (
     Answer, Change, ChangeList, ColorShare, Description, MapObject, MapSummary, Match, Relation, RoomList, StandingPlace, StandingPlaces, Visit,
@@ -99,7 +99,7 @@ class FileBackend(MapBackend):
             visits = [Visit(said.visit, moment(said.begin_s), moment(said.end_s)) for said in opened.map.visits]
             changes = [
                 Change(
-                    said.id, said.name or said.label or "object", bool(said.name), said.event, said.text, said.visit, moment(said.time_s),
+                    said.id, title(said.name, said.label), bool(said.name), said.event, said.text, said.visit, moment(said.time_s),
                     middle(*said.before) if said.before else None, middle(*said.after) if said.after else None, said.may_be,
                 )
                 for said in opened.map.changes(since=checked_time(since), until=checked_time(until))
@@ -213,7 +213,7 @@ def _open(stamp: Stamp, opened: Map) -> _Opened:
     for id, box, name, (guess, _) in zip(rows.ids.tolist(), rows.boxes.tolist(), rows.names, guesses, strict=True):
         low, high = box
         center, size = middle(low, high), point(b - a for a, b in zip(low, high))
-        objects[id] = MapObject(id, name or guess or "object", bool(name), center, size)
+        objects[id] = MapObject(id, title(name, guess), bool(name), center, size)
     relations = [
         Relation(said.object, objects[said.object].title, said.relation, said.anchor, objects[said.anchor].title, said.evidence)
         for said in opened.relations()

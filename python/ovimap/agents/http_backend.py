@@ -17,7 +17,7 @@ from typing import Any, NamedTuple, ParamSpec, TypeVar
 from ..sender import _address
 from .backend import (
     MapBackend, MapFault, NoAnswer, RequestRefused, Robot,
-    checked_text, checked_time, closest_first, extent, largest_first, middle, moment, point, room_list, rounded, share, spread,
+    checked_text, checked_time, closest_first, extent, largest_first, middle, moment, point, room_list, rounded, share, spread, title,
 )  # fmt: skip
 from .facts import (
     Answer, Change, ChangeList, ColorShare, Description, MapObject, MapSummary, Match, Relation, RoomList, StandingPlace, StandingPlaces, Visit,
@@ -256,7 +256,7 @@ def _events_of(reply: http.client.HTTPResponse) -> Iterator[StandingEvent]:
 def _change(said: dict[str, Any]) -> Change:
     before, after = said["before"], said["after"]
     return Change(
-        said["instance"], said["name"] or said["label"] or "object", bool(said["name"]), said["event"], said["text"], said["visit"], moment(said["time_s"]),
+        said["instance"], title(said["name"], said["label"]), bool(said["name"]), said["event"], said["text"], said["visit"], moment(said["time_s"]),
         middle(before["min"], before["max"]) if before else None, middle(after["min"], after["max"]) if after else None, said["may_be"],
     )  # fmt: skip
 
@@ -266,7 +266,7 @@ def _object(said: dict[str, Any]) -> MapObject:
     center = middle(low, high)
     size = point(b - a for a, b in zip(low, high)) if center else None
     guess = (said["label"] or {}).get("name", "")
-    return MapObject(said["id"], said["name"] or guess or "object", bool(said["name"]), center, size)
+    return MapObject(said["id"], title(said["name"], guess), bool(said["name"]), center, size)
 
 
 def _parsed(text: bytes) -> dict[str, Any]:
