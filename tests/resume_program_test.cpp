@@ -146,6 +146,16 @@ TEST_F(ResumeProgramTest, GoesOnWithAMap) {
                    {"voxel_size_m", "0.02"});
 }
 
+TEST_F(ResumeProgramTest, ALiveRunThatWasKilledIsRepeatedWithItsPause) {
+  const std::vector<std::string> live = {
+      "run", "long/scene", "--masks", "gt", "--encoder", "none", "--set", "checkpoint.frames=1",
+      "--set", "map.voxel_size_m=0.03", "-o", "room.ovimap", "--live", "--fps", "30"};
+  ASSERT_FALSE(run_and_kill(live, 3, std::chrono::milliseconds(0)));
+  ASSERT_EQ(run(std::string(kRun) + "-o room.ovimap --live --fps 30 --resume").code, 0);
+  const nlohmann::json again = run_json(std::string(kRun) + "--repeat room.ovimap -o again.ovimap --json");
+  EXPECT_EQ(again["repeated"]["same"], true) << again["repeated"];
+}
+
 TEST_F(ResumeProgramTest, AnotherVisitGoesOnWithAMap) {
   ASSERT_EQ(run(std::string(kRun) + "-o home.ovimap").code, 0);
   const nlohmann::json home = run_json("info home.ovimap --json");

@@ -76,6 +76,17 @@ TEST_F(TrackProgramTest, LiveTracksAsWell) {
   EXPECT_EQ(report["live"]["frames_lost"], 0);
 }
 
+TEST_F(TrackProgramTest, ALiveRunIsRepeatedWithItsPoses) {
+  for (int frame : {7, 8}) cover(frame);
+  const std::string live = "run unposed --poses track --masks none --set map.voxel_size_m=0.03 ";
+  const auto hurried = run_json(live + "--live --fps 30 -o map.ovimap --trajectory live.txt --json");
+  const auto repeated =
+      run_json(live + "--repeat map.ovimap -o again.ovimap --trajectory again.txt --json");
+  EXPECT_EQ(repeated["repeated"]["same"], true) << repeated["repeated"];
+  EXPECT_EQ(slurp(path("live.txt")), slurp(path("again.txt")));
+  EXPECT_EQ(repeated["tracking"]["frames_tracked"], hurried["tracking"]["frames_tracked"]);
+}
+
 TEST_F(TrackProgramTest, GivenPosesArePredictionsToRefine) {
   const auto report =
       run_json("run recording --poses refine --set map.voxel_size_m=0.03 -o map.ovimap --json");

@@ -225,6 +225,22 @@ void tell_visit(const RunTarget& target, const MemoryConfig& memory, TileKeeper&
   ovimap::tell_visit(before, after);
 }
 
+/// A live run that is to be done again.
+struct RepeatedRun {
+  std::string title;  ///< the line of its configuration that says how live it was
+  std::vector<LiveStep> steps;
+};
+
+/// Throws Error when the map of `target.repeated` cannot be made again, or not with the settings that
+/// `header` has.
+RepeatedRun find_repeated(const RunTarget& target, const MapHeader& header, bool tracked) {
+  MapRecord live = load_map_without_voxels(target.repeated);
+  require_repeatable(live.live_steps, tracked);
+  require_same_settings(live.config_text, header.config_text, "--repeat");
+  std::string title = live.config_text.substr(0, live.config_text.find('\n') + 1);
+  return {std::move(title), std::move(live.live_steps)};
+}
+
 }  // namespace
 
 MappingRun map_recording(const MappingOptions& options, const std::string& title,
@@ -278,8 +294,11 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
   find_start(begun.document ? &*begun.document : nullptr, begun.new_visit, inputs);
   mapper.track_with(finder);
   MapHeader header = make_header(inputs, options, mapper.config());
+  RepeatedRun repeated;
+  if (!target.repeated.empty()) repeated = find_repeated(target, header, inputs.tracking);
   const std::string pace = intake ? std::string("pushed") : concat(fps, " frames/s");
-  header.config_text.insert(0, concat("# live, ", pace, "\n"));
+  header.config_text.insert(
+      0, target.repeated.empty() ? concat("# live, ", pace, "\n") : repeated.title);
   const SequenceResult done = resume(begun, header, inputs, mapper);
   if (intake && !done.frames.empty())
     intake->resume_at(done.frames.back().index + 1, done.depth_camera);
@@ -307,8 +326,12 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
     FrameFilter filter;
     if (inputs.people)
       filter = [&](Frame frame) { return inputs.people->without_people(std::move(frame)); };
-    live = intake ? run_pushed(*intake, mapper, look, filter)
-                  : run_live(*inputs.source, inputs.range, mapper, fps, look);
+    if (!target.repeated.empty())
+      live = repeat_live(*inputs.source, repeated.steps, mapper, look);
+    else if (intake)
+      live = run_pushed(*intake, mapper, look, filter);
+    else
+      live = run_live(*inputs.source, inputs.range, mapper, fps, look);
   }
   if (audience) header.edits = audience->end();
   if (live.sequence.depth_camera.width == 0) live.sequence.depth_camera = done.depth_camera;

@@ -50,6 +50,7 @@ struct RunTarget {
   bool resume = false;  ///< go on with the checkpoint or map that is there
   bool twice = false;   ///< map a second time, asking the network for the first map's objects
   std::filesystem::path continued = {};  ///< another visit to the place of this map; empty: a new map
+  std::filesystem::path repeated = {};   ///< the map of a live run, to be made again; map_live alone
 };
 
 /// Opens what the options name and maps it, with progress under `title`; Ctrl-C ends it early with
@@ -80,7 +81,8 @@ class LiveAudience {
   virtual MapEdits end() = 0;
 };
 
-/// The same as a camera of `fps` frames a second would have it. Networks let the mapping go first.
+/// The same as a camera of `fps` frames a second would have it, or as the run of `target.repeated` did
+/// it. Networks let the mapping go first.
 /// `intake`: frames come from there instead, at their own pace, until it ends. `camera`: feeds it,
 /// and is started when the mapping is.
 MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& target = {},

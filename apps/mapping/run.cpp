@@ -3,6 +3,7 @@
 #include "camera_run.h"
 #include "mapping_run.h"
 #include "ovimap/base/parallel.h"
+#include "ovimap/io/map_file/map_check.h"
 #include "ovimap/io/map_file/map_file.h"
 #include "ovimap/pipeline/report/map_pictures.h"
 #include "ovimap/pipeline/sequence/trajectory_file.h"
@@ -16,7 +17,7 @@ namespace {
 
 struct RunOptions {
   MappingOptions mapping;
-  std::filesystem::path map, continued;
+  std::filesystem::path map, continued, repeated;
   std::filesystem::path pictures, trajectory;
   std::string recorded;
   bool json = false;
@@ -41,6 +42,7 @@ void check_for_camera(const RunOptions& options) {
   };
   refuse(options.twice, "--second-pass");
   refuse(!options.continued.empty(), "--continue");
+  refuse(!options.repeated.empty(), "--repeat");
   refuse(!options.pictures.empty(), "--pictures");
 }
 
@@ -48,7 +50,7 @@ MappingRun map_source(const RunOptions& options, const RunTarget& target,
                       std::optional<CameraRun>& camera) {
   if (camera)
     return map_live(options.mapping, 0, target, nullptr, &camera->intake(), &camera->feed());
-  if (options.live) return map_live(options.mapping, options.fps, target);
+  if (options.live || !options.repeated.empty()) return map_live(options.mapping, options.fps, target);
   return map_recording(options.mapping, "mapping", {}, target);
 }
 
@@ -60,7 +62,8 @@ int run(RunOptions options) {
   const ThreadLimit limit(options.mapping.threads);
   check_map_target(options.map);
   if (!options.pictures.empty()) make_folder(options.pictures);
-  const RunTarget target{options.map, options.resume, options.twice, options.continued};
+  const RunTarget target{options.map, options.resume, options.twice, options.continued,
+                         options.repeated};
   std::optional<CameraRun> camera;
   if (names_camera(options.mapping.source)) check_for_camera(options), camera.emplace(options.mapping);
   MappingRun mapped = map_source(options, target, camera);
@@ -72,12 +75,16 @@ int run(RunOptions options) {
   if (!options.trajectory.empty()) write_trajectory(options.trajectory, mapped.document.frames);
   if (!options.pictures.empty())
     write_map_pictures(options.pictures, mapped.document, *mapped.source);
+  std::optional<Repetition> repetition;
+  if (!options.repeated.empty())
+    repetition = {options.repeated, differing_tables(options.repeated, options.map)};
   if (options.json)
-    print_json(run_json(options.map, mapped, fps));
+    print_json(run_json(options.map, mapped, fps, repetition));
   else
-    print_run(options.map, mapped, fps);
+    print_run(options.map, mapped, fps, repetition);
   advise_on_objects(mapped);
   advise_on_encoder(mapped, options.mapping.model_dirs);
+  if (repetition && !repetition->differing.empty()) return kAnswerIsNo;
   return camera && !camera->report_loss() ? kAnswerIsNo : kDone;
 }
 
@@ -98,12 +105,19 @@ Action add_run(CLI::App& command) {
       ->check(CLI::Range(0.1, 1000.))
       ->needs(live)
       ->capture_default_str();
+  auto* repeat =
+      command
+          .add_option("--repeat", options->repeated,
+                      "the map of a live run of this recording: map it again as that run did, with the "
+                      "frames that it took and the masks when they came, and say whether it is the same map")
+          ->excludes(live);
   auto* continued =
       command
       .add_option("--continue", options->continued,
                   "a map of the same place to go on with, in whose world frame the recording's poses "
                   "are: what is gone leaves it, ids, names and corrections stay")
-      ->excludes(live);
+      ->excludes(live)
+      ->excludes(repeat);
   command.add_option("--recorded", options->recorded,
                      "when the recording was made, as 2026-03-14T09:30 or \"yesterday evening\", so that the "
                      "map's history has dates; without, frames whose times are dates say it");
@@ -113,11 +127,13 @@ Action add_run(CLI::App& command) {
   add_max_memory(command, options->mapping);
   auto* resume =
       command.add_flag("--resume", options->resume,
-                       "go on with the frames that a killed run, or the map, does not have yet");
+                       "go on with the frames that a killed run, or the map, does not have yet")
+          ->excludes(repeat);
   command
       .add_flag("--second-pass", options->twice,
                 "map twice, and ask the network of --masks for the first map's objects in the second")
       ->excludes(live)
+      ->excludes(repeat)
       ->excludes(resume)
       ->excludes(continued);
   command.add_flag("--json", options->json, "print one JSON object");

@@ -94,6 +94,16 @@ void print_live(const LiveRunResult& live, double fps) {
     std::printf("looks at objects left out: %lld\n", static_cast<long long>(done.views_skipped));
 }
 
+void print_repetition(const Repetition& repetition) {
+  if (repetition.differing.empty()) {
+    std::printf("the same map as %s, bit for bit\n", repetition.of.c_str());
+    return;
+  }
+  std::string tables;
+  for (const std::string& name : repetition.differing) tables += (tables.empty() ? "" : ", ") + name;
+  std::printf("another map than %s; they differ in: %s\n", repetition.of.c_str(), tables.c_str());
+}
+
 nlohmann::json placing_json(const std::optional<AlignmentSearch>& placing) {
   if (!placing) return nullptr;
   return {{"doubt", placing->doubt},
@@ -196,7 +206,8 @@ void report_faults(const MappingRun& run) {
   report_encoder(run.live->statistics);
 }
 
-nlohmann::json run_json(const std::filesystem::path& map, const MappingRun& run, double fps) {
+nlohmann::json run_json(const std::filesystem::path& map, const MappingRun& run, double fps,
+                        const std::optional<Repetition>& repetition) {
   const TileTraffic tiles = tile_traffic(run.timers.summary());
   nlohmann::json report = {{"map", map.string()},
                            {"frames", run.sequence.frames.size()},
@@ -216,11 +227,17 @@ nlohmann::json run_json(const std::filesystem::path& map, const MappingRun& run,
   if (run.people_frames) report["people_frames"] = *run.people_frames;
   if (run.tracking) report["tracking"] = tracking_json(*run.tracking);
   if (run.tracking) report["tracking"]["parts"] = parts_json(run.parts);
-  if (run.live) report["live"] = live_json(*run.live, fps);
+  if (repetition)
+    report["repeated"] = {{"map", repetition->of.string()},
+                          {"same", repetition->differing.empty()},
+                          {"differing", repetition->differing}};
+  else if (run.live)
+    report["live"] = live_json(*run.live, fps);
   return report;
 }
 
-void print_run(const std::filesystem::path& map, const MappingRun& run, double fps) {
+void print_run(const std::filesystem::path& map, const MappingRun& run, double fps,
+               const std::optional<Repetition>& repetition) {
   std::printf("%s: %zu objects from %zu frames (%d with masks) in %.1f s (%.1f frames/s)\n",
               map.c_str(), run.document.instances.size(), run.sequence.frames.size(),
               run.document.mask_frames, run.sequence.seconds, frames_per_second(run));
@@ -234,7 +251,10 @@ void print_run(const std::filesystem::path& map, const MappingRun& run, double f
     std::printf("left out people in %zu frames\n", *run.people_frames);
   if (run.tracking) print_tracking(*run.tracking);
   print_parts(run);
-  if (run.live) print_live(*run.live, fps);
+  if (repetition)
+    print_repetition(*repetition);
+  else if (run.live)
+    print_live(*run.live, fps);
 }
 
 double sent_fps(const LiveRunResult& run) {

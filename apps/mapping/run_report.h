@@ -9,9 +9,17 @@ namespace ovimap::apps {
 /// On stderr: frames that were skipped, masks that were bad, an interruption.
 void report_faults(const MappingRun& run);
 
+/// A map that was made again.
+struct Repetition {
+  std::filesystem::path of;
+  std::vector<std::string> differing;  ///< tables in which the two differ; none: the same map
+};
+
 /// What a run did, for programs and for people. `fps`: of the camera of a live run.
-nlohmann::json run_json(const std::filesystem::path& map, const MappingRun& run, double fps);
-void print_run(const std::filesystem::path& map, const MappingRun& run, double fps);
+nlohmann::json run_json(const std::filesystem::path& map, const MappingRun& run, double fps,
+                        const std::optional<Repetition>& repetition = std::nullopt);
+void print_run(const std::filesystem::path& map, const MappingRun& run, double fps,
+               const std::optional<Repetition>& repetition = std::nullopt);
 
 /// Frames a second that a camera or clients sent, also those left out.
 double sent_fps(const LiveRunResult& run);

@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <functional>
+#include <map>
 #include <set>
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -119,6 +120,21 @@ class MapExaminer {
   MapCheck check_;
 };
 
+/// Rows and hash of each table but `meta`, by its name.
+using TableChecks = std::map<std::string, std::pair<std::int64_t, std::int64_t>>;
+
+TableChecks read_checks(const std::filesystem::path& path) {
+  TableChecks checks;
+  OpenMap file(path);
+  file.read([&](SQLite::Database& database) {
+    SQLite::Statement rows(database, "SELECT name, rows, hash FROM checks WHERE name <> 'meta'");
+    while (rows.executeStep())
+      checks[rows.getColumn(0).getString()] = {rows.getColumn(1).getInt64(),
+                                               rows.getColumn(2).getInt64()};
+  });
+  return checks;
+}
+
 }  // namespace
 
 MapCheck check_map(const std::filesystem::path& path) {
@@ -130,6 +146,21 @@ MapCheck check_map(const std::filesystem::path& path) {
     check.faults.emplace_back(fault.what());
   }
   return check;
+}
+
+std::vector<std::string> differing_tables(const std::filesystem::path& a,
+                                          const std::filesystem::path& b) {
+  const TableChecks of_a = read_checks(a), of_b = read_checks(b);
+  std::set<std::string> names;
+  for (const TableChecks* checks : {&of_a, &of_b})
+    for (const auto& [name, check] : *checks) names.insert(name);
+  std::vector<std::string> differing;
+  for (const std::string& name : names) {
+    const auto in_a = of_a.find(name), in_b = of_b.find(name);
+    if (in_a == of_a.end() || in_b == of_b.end() || in_a->second != in_b->second)
+      differing.push_back(name);
+  }
+  return differing;
 }
 
 }  // namespace ovimap

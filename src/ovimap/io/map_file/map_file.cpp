@@ -266,6 +266,7 @@ MapMeta read_found(SQLite::Database& database, int schema, LabelForest& forest, 
   record.history = read_history(database, schema, meta.frames, record.registry.last_id);
   read_past_objects(database, forest, record.history);
   read_motion(database, record);
+  record.live_steps = read_live_steps(database);
   return meta;
 }
 

@@ -181,6 +181,12 @@ inline MapDocument random_document(int block_count, std::uint32_t seed) {
   document.seen_free.suspect({-20, 3, 17});
   document.movers = {{1, {0.5f, 0.4f, 1.7f}, {{0, {0.1f, -2, 1}}, {5, {0.3f, -2, 1}}}},
                      {2, {0.1f, 0.1f, 0.1f}, {{std::int64_t{1} << 40, {1.f / 3, 0, 0}}}}};
+  using Kind = LiveStep::Kind;
+  document.live_steps = {{Kind::kFrame, 0, true, false},
+                         {Kind::kMasks, 0},
+                         {Kind::kResumed},
+                         {Kind::kFrame, std::int64_t{1} << 40, false, true},
+                         {Kind::kMoved}};
   return document;
 }
 
@@ -312,6 +318,7 @@ inline std::string difference(const MapDocument& a, const MapDocument& b) {
                   b.history.events.end(), same_event))
     return "history";
   if (a.seen_free.regions() != b.seen_free.regions() || a.movers != b.movers) return "motion";
+  if (a.live_steps != b.live_steps) return "live steps";
   if (a.depth_camera != b.depth_camera) return "camera";
   if (a.config_text != b.config_text || a.timings != b.timings || a.source != b.source ||
       a.version != b.version)

@@ -16,6 +16,7 @@
 #include "ovimap/instance/instance_registry.h"
 #include "ovimap/instance/instance_summary.h"
 #include "ovimap/instance/object_parts.h"
+#include "ovimap/io/map_tables/live_step.h"
 #include "ovimap/io/map_tables/map_edit.h"
 #include "ovimap/io/map_tables/map_history.h"
 #include "ovimap/map/fusion/seen_free.h"
@@ -81,6 +82,7 @@ struct MapRecord : MapHeader {
   std::string timings;      ///< of the run, a line "stage p50_ms p95_ms count" each; may be empty
   SeenFree seen_free;         ///< in the last visit: what may come into it moves
   std::vector<Mover> movers;  ///< what moved while it was seen, by id; mostly none
+  std::vector<LiveStep> live_steps;  ///< of a live run that made all of the map; else none
   int mask_frames = 0;      ///< frames with 2D masks
   bool unfinished = false;  ///< a checkpoint: `instances`, `surfaces` and `up` are yet to be found
   std::string version;      ///< of the program that wrote the map

@@ -11,6 +11,7 @@ namespace ovimap {
 namespace {
 
 using map_tables::kKeptFrames;
+using map_tables::kLiveSteps;
 
 Bytes label_bytes(const std::vector<Label>& labels) {
   Bytes bytes;
@@ -83,6 +84,32 @@ void KeptFramesTable::update(SQLite::Database& database, const KeptFrames& frame
   for (const auto& [position, row] : rows_) sum += row.hash;
   write_check(database, kKeptFrames, static_cast<std::int64_t>(rows_.size()),
               static_cast<std::int64_t>(sum));
+}
+
+void write_live_steps(SQLite::Database& database, const std::vector<LiveStep>& steps) {
+  if (steps.empty()) return;
+  RowWriter rows(database, kLiveSteps);
+  for (std::size_t i = 0; i < steps.size(); ++i)
+    rows.insert(i, static_cast<int>(steps[i].kind), steps[i].frame, steps[i].asked,
+                steps[i].looked);
+  rows.finish();
+}
+
+std::vector<LiveStep> read_live_steps(SQLite::Database& database) {
+  std::vector<LiveStep> steps;
+  if (!holds_table(database, kLiveSteps)) return steps;
+  RowReader rows(database, kLiveSteps);
+  while (rows.next()) {
+    if (rows.integer<std::size_t>() != steps.size()) rows.fail("has a gap");
+    const int kind = rows.integer<int>();
+    if (kind < 0 || kind > static_cast<int>(LiveStep::Kind::kResumed))
+      rows.fail(concat("has a step of kind ", kind, ", which there is not"));
+    LiveStep step{static_cast<LiveStep::Kind>(kind), rows.integer<std::int64_t>()};
+    step.asked = rows.integer<int>() != 0;
+    step.looked = rows.integer<int>() != 0;
+    steps.push_back(step);
+  }
+  return steps;
 }
 
 }  // namespace ovimap

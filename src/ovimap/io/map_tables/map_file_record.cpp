@@ -7,6 +7,7 @@
 #include <bit>
 #include <functional>
 
+#include "ovimap/io/map_tables/map_file_frames.h"
 #include "ovimap/io/map_tables/map_file_history.h"
 #include "ovimap/io/map_tables/map_file_motion.h"
 #include "ovimap/io/map_tables/map_file_rows.h"
@@ -141,6 +142,7 @@ void write_record(SQLite::Database& database, const MapRecord& record, const Map
   write_registry(database, record.registry);
   write_history(database, record.history);
   write_motion(database, record);
+  write_live_steps(database, record.live_steps);
 }
 
 void write_forest(SQLite::Database& database, const LabelForest& forest) {

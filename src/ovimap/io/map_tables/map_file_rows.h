@@ -171,6 +171,11 @@ inline constexpr MapTable kSuspectSpace{"suspect_space", "region, cells",
 inline constexpr MapTable kMovers{
     "movers", "id, size_x, size_y, size_z, path",
     "id INTEGER PRIMARY KEY, size_x REAL, size_y REAL, size_z REAL, path BLOB NOT NULL"};
+/// What a live run did, step by step; not in maps of other runs.
+inline constexpr MapTable kLiveSteps{
+    "live_steps", "step, kind, frame, asked, looked",
+    "step INTEGER PRIMARY KEY, kind INTEGER NOT NULL, frame INTEGER NOT NULL, asked INTEGER NOT "
+    "NULL, looked INTEGER NOT NULL"};
 /// The log of corrections, and what it makes of the tables above.
 inline constexpr MapTable kEdits{"edits", "id, time_s, action, arguments, undone_by",
                                  "id INTEGER PRIMARY KEY, time_s REAL, action TEXT NOT NULL, "
@@ -198,7 +203,7 @@ inline constexpr const MapTable* kAll[] = {
     &kMeta, &kInstances, &kInstanceSuperPoints, &kInstanceNames, &kInstanceAliases, &kSuperPoints,
     &kSuperPointFrames, &kVotes, &kLabelPairs, &kEntitySightings, &kLabelForest, &kFrames,
     &kSuperPointLooks, &kSuperPointViews, &kWriting, &kThings, &kRecognized, &kEmbeddings, &kSurfaces, &kObjectParts, &kPartEmbeddings, &kBlocks, &kKeptFrames,
-    &kInstanceRecords, &kAppearances, &kViews, &kVisits, &kVisitTimes, &kObjectEvents, &kPastObjects, &kSeenFree, &kSuspectSpace, &kMovers, &kEdits, &kCorrectedInstances,
+    &kInstanceRecords, &kAppearances, &kViews, &kVisits, &kVisitTimes, &kObjectEvents, &kPastObjects, &kSeenFree, &kSuspectSpace, &kMovers, &kLiveSteps, &kEdits, &kCorrectedInstances,
     &kCorrectedSuperPoints, &kCorrectedNames, &kCorrectedSurfaces, &kCorrectedEmbeddings,
     &kCorrectedFlags, &kChecks};
 }  // namespace map_tables

@@ -154,26 +154,46 @@ void LiveMapper::prepare_frames() {
 void LiveMapper::restore(MapDocument&& document) {
   frames_ = document.frames;
   depth_camera_ = document.depth_camera;
+  const bool begun = !frames_.empty();
   mapper_->restore(std::move(document));
+  if (begun) mapper_->note({LiveStep::Kind::kResumed});
 }
 
 // ------------------------------------------------------------------------------------------ fusing
 
 void LiveMapper::fuse_frames() {
   while (auto next = prepared_.pop()) {
-    apply_late_masks();
+    const LiveStep* told = repeat_until_frame();
+    if (!told) apply_late_masks();
     if (next->update) {
       move(*next->update);
       continue;
     }
-    if (finder_ && !locate(*next->frame)) continue;
-    fuse(std::move(*next));
+    if (!finder_ || locate(*next->frame))
+      fuse(std::move(*next), told);
+    else
+      mapper_->note({LiveStep::Kind::kFrame, mapper_->number_of(*next->frame->frame)});
   }
   wanted_masks_.close();
   while (auto late = found_masks_.pop()) apply_masks(std::move(*late));
   if (cancelled_) return;
   mapper_->finish();
   count_encoder_failures();
+}
+
+/// What the next frame is to be done with; null when nothing is told.
+const LiveStep* LiveMapper::repeat_until_frame() {
+  for (; next_told_ < told_.size(); ++next_told_) {
+    const LiveStep& step = told_[next_told_];
+    if (step.kind == LiveStep::Kind::kFrame) return &told_[next_told_++];
+    if (step.kind == LiveStep::Kind::kMasks && masks_under_way_ > 0)
+      if (auto late = found_masks_.pop()) apply_masks(std::move(*late));
+    if (step.kind == LiveStep::Kind::kResumed) {
+      for (; masks_under_way_ > 0; --masks_under_way_) (void)found_masks_.pop();
+      mapper_->note(step);
+    }
+  }
+  return nullptr;
 }
 
 void LiveMapper::count_encoder_failures() {
@@ -201,39 +221,27 @@ void LiveMapper::move(const PoseUpdate& update) {
   if (mapper_->kept_frames().empty() || mapper_->map().has_store()) return;
   const std::vector<MovedPose> moves = moves_of(update, frames_);
   if (moves.empty()) return;
+  mapper_->note({LiveStep::Kind::kMoved});
   move_frames(moves, update.by_time, *mapper_, frames_, depth_camera_);
   if (after_frame) after_frame(*mapper_, frames_, depth_camera_);
   const std::lock_guard lock(mutex_);
   ++statistics_.pose_updates;
 }
 
-void LiveMapper::fuse(Prepared prepared) {
+void LiveMapper::fuse(Prepared prepared, const LiveStep* told) {
   begin("fuse");
   const Frame& frame = *prepared.frame->frame;
   const auto waiting = static_cast<int>(incoming_.size() + prepared_.size());
-  if (mask_source_ && schedule_.wants(frame, mapper_->map())) {
-    const bool busy = masks_under_way_ > 0 || waiting > live_.mask_backlog;
-    if (!busy || live_.wait_for_masks) {
-      schedule_.chosen();
-      if (live_.wait_for_masks) {
-        prepared.cut = masks_for(prepared);
-        if (!prepared.cut) schedule_.went_without();
-      } else if (wanted_masks_.try_push(prepared)) {
-        ++masks_under_way_;
-      }
-    } else {
-      const std::lock_guard lock(mutex_);
-      ++statistics_.masks_skipped;
-    }
-  }
+  LiveStep step{LiveStep::Kind::kFrame, mapper_->number_of(frame)};
+  if (told ? told->asked : time_for_masks(frame, waiting)) step.asked = ask_for_masks(prepared);
   depth_camera_ = frame.depth_camera;
   mapper_->fuse(*prepared.frame, prepared.cut.get());
   const double lag_ms = milliseconds_since(prepared.pushed);
-  frames_.push_back({mapper_->number_of(frame), frame.timestamp_s, frame.name,
-                     frame.world_from_camera, prepared.cut != nullptr});
-  const bool look = mapper_->frames() % live_.view_interval == 0;
-  const bool no_time = waiting > live_.view_backlog || !mapper_->encoder_keeps_up();
-  if (look && !no_time) {
+  frames_.push_back({step.frame, frame.timestamp_s, frame.name, frame.world_from_camera,
+                     prepared.cut != nullptr});
+  step.looked = told ? told->looked : time_for_views(waiting);
+  mapper_->note(step);
+  if (step.looked) {
     begin("views");
     mapper_->look_at_objects(frame, Mapper::Encoder::kRunOn);
   }
@@ -242,9 +250,42 @@ void LiveMapper::fuse(Prepared prepared) {
   count_encoder_failures();
   const std::lock_guard lock(mutex_);
   ++statistics_.frames_fused;
-  statistics_.views_skipped += look && no_time;
   statistics_.mask_frames += prepared.cut && prepared.cut->masked;
   lags_.add("geometry", lag_ms);
+}
+
+/// Whether masks of the frame are worth having, and the network is not behind.
+bool LiveMapper::time_for_masks(const Frame& frame, int waiting) {
+  if (!mask_source_ || !schedule_.wants(frame, mapper_->map())) return false;
+  const bool busy = masks_under_way_ > 0 || waiting > live_.mask_backlog;
+  if (!busy || live_.wait_for_masks) {
+    schedule_.chosen();
+    return true;
+  }
+  const std::lock_guard lock(mutex_);
+  ++statistics_.masks_skipped;
+  return false;
+}
+
+/// True when they are there, or will be.
+bool LiveMapper::ask_for_masks(Prepared& prepared) {
+  if (live_.wait_for_masks) {
+    prepared.cut = masks_for(prepared);
+    if (!prepared.cut) schedule_.went_without();
+    return true;
+  }
+  if (!wanted_masks_.try_push(prepared)) return false;
+  ++masks_under_way_;
+  return true;
+}
+
+/// Whether it is the turn of a look at the objects, and there is time for one.
+bool LiveMapper::time_for_views(int waiting) {
+  if (mapper_->frames() % live_.view_interval != 0) return false;
+  if (waiting <= live_.view_backlog && mapper_->encoder_keeps_up()) return true;
+  const std::lock_guard lock(mutex_);
+  ++statistics_.views_skipped;
+  return false;
 }
 
 void LiveMapper::apply_late_masks() {
@@ -253,6 +294,7 @@ void LiveMapper::apply_late_masks() {
 
 void LiveMapper::apply_masks(Prepared late) {
   --masks_under_way_;
+  mapper_->note({LiveStep::Kind::kMasks, mapper_->number_of(*late.frame->frame)});
   if (!late.cut) return schedule_.went_without();
   begin("apply_masks");
   const auto entry = std::find_if(frames_.rbegin(), frames_.rend(), [&](const FrameLogEntry& e) {

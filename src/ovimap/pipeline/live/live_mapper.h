@@ -77,6 +77,11 @@ class LiveMapper {
   /// Frames are not fused meanwhile. Throws what a stage threw.
   void move_and_wait(PoseUpdate update);
 
+  /// Does what another live run did (MapRecord::live_steps), instead of what there is time for: takes
+  /// in masks, asks for them and looks at objects when that run did, and so makes the same map. Push
+  /// the frames that it took, in that order, and wait. Before the first push only.
+  void repeat(std::vector<LiveStep> steps) { told_ = std::move(steps); }
+
   /// Goes on where a stored map stopped, made with the same config. Before the first push only.
   void restore(MapDocument&& document);
   /// As Mapper::number_from; before the first frame.
@@ -123,9 +128,13 @@ class LiveMapper {
   void prepare_frames();
   void fuse_frames();
   void find_masks();
+  const LiveStep* repeat_until_frame();
   bool locate(PreparedFrame& prepared);
   void move(const PoseUpdate& update);
-  void fuse(Prepared prepared);
+  void fuse(Prepared prepared, const LiveStep* told);
+  bool time_for_masks(const Frame& frame, int waiting);
+  bool ask_for_masks(Prepared& prepared);
+  bool time_for_views(int waiting);
   void count_encoder_failures();
   void apply_masks(Prepared late);
   void apply_late_masks();
@@ -152,6 +161,8 @@ class LiveMapper {
   BoundedQueue<Prepared> prepared_;
   BoundedQueue<Prepared> wanted_masks_, found_masks_;
   std::int64_t masks_under_way_ = 0;  ///< the fusing thread's, as the next
+  std::vector<LiveStep> told_;        ///< what to repeat; empty: nothing
+  std::size_t next_told_ = 0;
   std::vector<FrameLogEntry> frames_;
   PinholeCamera depth_camera_;  ///< of the last frame that was fused
 

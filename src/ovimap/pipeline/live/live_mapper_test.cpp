@@ -142,6 +142,7 @@ TEST(LiveMapper, LateAnswersThatThereAreNoMasksChangeNothing) {
 /// Sleeps up to two milliseconds, differently each time.
 class RandomDelay {
  public:
+  explicit RandomDelay(unsigned seed = 3) : random_(seed) {}
   void operator()(const char*) {
     std::chrono::microseconds delay;
     {
@@ -153,7 +154,7 @@ class RandomDelay {
 
  private:
   std::mutex mutex_;
-  std::mt19937 random_{3};
+  std::mt19937 random_;
 };
 
 TEST(LiveMapper, DelaysInAnyStageChangeNothing) {
@@ -226,6 +227,59 @@ TEST(LiveMapper, LeavesOutMasksAndViewsBeforeFrames) {
   EXPECT_EQ(done.frames_dropped, 0);
   EXPECT_GT(done.masks_skipped, 0);
   EXPECT_GT(done.views_skipped, 0);
+}
+
+/// The desk from the same places, each time another frame.
+std::vector<Frame> numbered_frames() {
+  std::vector<Frame> frames = desk_frames();
+  for (std::size_t i = 0; i < frames.size(); ++i) frames[i].index = static_cast<std::int64_t>(i);
+  return frames;
+}
+
+std::vector<LiveStep> steps_of(const Mapper& mapper) {
+  return mapper.record({}, {}, {}).live_steps;
+}
+
+TEST(LiveMapper, RepeatsWhatAnotherRunHadTimeFor) {
+  LiveConfig hurried = live_config(1);
+  hurried.queue = 2;
+  const std::vector<Frame> frames = numbered_frames();
+  for (int seed = 0; seed < 4; ++seed) {
+    SCOPED_TRACE(seed);
+    RandomDelay delay(static_cast<unsigned>(seed));
+    LiveMapper live(mapper_config(1), hurried, std::make_shared<SlowMasks>(),
+                    std::make_shared<ColorEncoder>());
+    live.before_stage = [&](const char* stage) { delay(stage); };
+    for (const Frame& frame : frames) {
+      live.push(frame);
+      std::this_thread::sleep_for(4ms);
+    }
+    live.drain();
+    EXPECT_GT(live.statistics().masks_late, 0);
+    Mapper first = live.take();
+    const std::vector<LiveStep> steps = steps_of(first);
+
+    LiveMapper repeating(mapper_config(1), hurried, std::make_shared<DeskMasks>(),
+                         std::make_shared<ColorEncoder>());
+    repeating.repeat(steps);
+    for (const LiveStep& step : steps)
+      if (step.kind == LiveStep::Kind::kFrame)
+        repeating.push_and_wait(frames[static_cast<std::size_t>(step.frame)]);
+    repeating.drain();
+    Mapper again = repeating.take();
+    EXPECT_EQ(steps_of(again), steps);
+    expect_equal(again, first);
+  }
+}
+
+TEST(LiveMapper, ForgetsItsStepsWhenFramesComeByAnotherWay) {
+  LiveMapper live(mapper_config(1), live_config(1));
+  live.push_and_wait(desk_frames()[0]);
+  live.drain();
+  Mapper mapper = live.take();
+  EXPECT_EQ(steps_of(mapper), (std::vector<LiveStep>{{LiveStep::Kind::kFrame, 0}}));
+  mapper.process(desk_frames()[1]);
+  EXPECT_TRUE(steps_of(mapper).empty());
 }
 
 TEST(LiveMapper, BadMasksOfOneFrameAreCountedAndTheFrameStays) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/pipeline/live/live_run.h"
 
+#include <algorithm>
 #include <thread>
 
 #include "ovimap/base/error.h"
@@ -86,6 +87,47 @@ LiveRunResult run_live(const FrameSource& source, const std::vector<std::int64_t
     if (progress && !progress(i + 1, positions.size())) break;
     next = reader.next();
     result.frames_read_late += next && Clock::now() > due(i + 1);
+  }
+  mapper.drain();
+  result.sequence.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  result.sequence.frames = mapper.frames();
+  result.statistics = mapper.statistics();
+  check_outcome(result, mapper.config());
+  return result;
+}
+
+void require_repeatable(const std::vector<LiveStep>& steps, bool tracked) {
+  using Kind = LiveStep::Kind;
+  const auto count = [&](Kind kind) {
+    return std::count_if(steps.begin(), steps.end(),
+                         [&](const LiveStep& step) { return step.kind == kind; });
+  };
+  const auto refuse = [](const char* why) {
+    throw Error(concat("the map cannot be made again: ", why));
+  };
+  if (count(Kind::kFrame) == 0) refuse("it does not say how a live run made all of it");
+  if (steps.front().kind == Kind::kResumed) refuse("the live run went on with a map of another run");
+  if (count(Kind::kMoved) > 0) refuse("its poses were corrected from outside, which is not kept");
+  if (tracked && count(Kind::kResumed) > 0)
+    refuse("the live run was resumed, and the camera found its place anew");
+}
+
+LiveRunResult repeat_live(const FrameSource& source, const std::vector<LiveStep>& steps,
+                          LiveMapper& mapper, const LiveProgress& progress) {
+  LiveRunResult result;
+  const auto start = Clock::now();
+  mapper.repeat(steps);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    if (progress && !progress(i + 1, steps.size())) break;
+    if (steps[i].kind != LiveStep::Kind::kFrame) continue;
+    const std::int64_t position = steps[i].frame;
+    if (position < 0 || position >= source.size())
+      throw Error(concat("the live run took frame ", position, ", and the recording has ",
+                         source.size(), "; name the recording that it was of"));
+    FrameRead read = source.read(position);
+    if (!read.frame) throw Error(concat("frame ", position, " of the live run: ", read.fault));
+    result.sequence.depth_camera = read.frame->depth_camera;
+    mapper.push_and_wait(std::move(*read.frame));
   }
   mapper.drain();
   result.sequence.seconds = std::chrono::duration<double>(Clock::now() - start).count();

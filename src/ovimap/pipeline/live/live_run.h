@@ -25,6 +25,16 @@ using LiveProgress = std::function<bool(std::size_t done, std::size_t total)>;
 LiveRunResult run_live(const FrameSource& source, const std::vector<std::int64_t>& positions,
                        LiveMapper& mapper, double fps, const LiveProgress& progress = nullptr);
 
+/// Throws Error when these steps of a live run (MapRecord::live_steps) do not tell how to make its map
+/// again. `tracked`: poses are found.
+void require_repeatable(const std::vector<LiveStep>& steps, bool tracked);
+
+/// Maps a recording as another live run did, by its steps, and makes its map, bit for bit, however
+/// long it takes now; drains the mapper, which must be set as that one was. Throws Error when a frame
+/// is not there or cannot be read, and as run_live does.
+LiveRunResult repeat_live(const FrameSource& source, const std::vector<LiveStep>& steps,
+                          LiveMapper& mapper, const LiveProgress& progress = nullptr);
+
 /// What happens to a frame before anything else looks at it; with a fault it is skipped.
 using FrameFilter = std::function<FrameRead(Frame)>;
 

@@ -79,6 +79,46 @@ TEST(RunLive, SaysWhenNoFrameHasGoodMasks) {
             "frame0.png: is 1x1, expected 160x120");
 }
 
+std::string repeat_failure(const FrameSource& source, const std::vector<LiveStep>& steps,
+                           bool tracked = false) {
+  LiveMapper mapper({}, {});
+  try {
+    require_repeatable(steps, tracked);
+    (void)repeat_live(source, steps, mapper);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(RepeatLive, TakesTheFramesThatTheRunTook) {
+  const DeskScene scene;
+  LiveMapper mapper({}, {});
+  const LiveRunResult result =
+      repeat_live(scene, {{LiveStep::Kind::kFrame, 4}, {LiveStep::Kind::kFrame, 7}}, mapper);
+  ASSERT_EQ(result.sequence.frames.size(), 2u);
+  EXPECT_EQ(result.sequence.frames[0].index, 4);
+  EXPECT_EQ(result.sequence.frames[1].index, 7);
+}
+
+TEST(RepeatLive, SaysWhatCannotBeRepeated) {
+  using Kind = LiveStep::Kind;
+  const LiveStep frame{Kind::kFrame, 1}, resumed{Kind::kResumed}, moved{Kind::kMoved};
+  DeskScene scene;
+  const auto refuses = [&](const std::vector<LiveStep>& steps, const char* why,
+                           bool tracked = false) {
+    const std::string failure = repeat_failure(scene, steps, tracked);
+    EXPECT_NE(failure.find(why), std::string::npos) << failure;
+  };
+  refuses({}, "does not say");
+  refuses({resumed, frame}, "map of another run");
+  refuses({frame, moved}, "corrected from outside");
+  refuses({frame, resumed, frame}, "was resumed", true);
+  refuses({frame, {Kind::kFrame, 1000}}, "frame 1000");
+  scene.bad_frame = 1;
+  refuses({frame}, "pose is not finite");
+}
+
 class BrokenSource : public DeskScene {
  public:
   FrameRead read(std::int64_t position) const override {

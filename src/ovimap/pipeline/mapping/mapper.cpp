@@ -100,6 +100,7 @@ Mapper::~Mapper() = default;
 Mapper::Mapper(Mapper&&) noexcept = default;
 
 FrameReport Mapper::process(const Frame& frame) {
+  live_steps_.clear();  // they no longer tell how all of the map was made
   const std::shared_ptr<const Frame> borrowed(std::shared_ptr<const Frame>(), &frame);
   const PreparedFrame prepared = prepare_frame(borrowed, config_, timers_);
   std::optional<FrameSegments> cut;
@@ -285,6 +286,7 @@ MapRecord Mapper::record(MapHeader header, std::vector<FrameLogEntry> frames,
   record.mask_frames = mask_frames_;
   record.seen_free = motion_->space();
   record.movers = motion_->movers();
+  record.live_steps = live_steps_;
   record.version = concat(version(), " (", commit(), ")");
   return record;
 }
@@ -305,6 +307,7 @@ void Mapper::restore(MapDocument&& document) {
     if (frame.labelled) mask_motion_.masked();
   }
   motion_->restore(std::move(document.seen_free), std::move(document.movers), document.frames);
+  live_steps_ = std::move(document.live_steps);
   frames_ = static_cast<int>(document.frames.size());
   mask_frames_ = document.mask_frames;
 }

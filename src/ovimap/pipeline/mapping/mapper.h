@@ -68,6 +68,9 @@ class Mapper {
 
   // The parts of `process`, for a pipeline that runs the others on threads of its own.
 
+  /// Notes what that pipeline does (MapRecord::live_steps).
+  void note(const LiveStep& step) { live_steps_.push_back(step); }
+
   /// Adds geometry, colour and, unless `cut` is null, labels. Throws what the encoder threw.
   FrameReport fuse(const PreparedFrame& prepared, const FrameSegments* cut);
   /// Adds the labels of a frame that was fused without, some time ago: its segments vote with the
@@ -174,6 +177,7 @@ class Mapper {
   std::unique_ptr<MotionFilter> motion_;
   bool settled_ = false;  ///< the objects are those of all that is in the map
   std::vector<std::uint32_t> touched_blocks_;
+  std::vector<LiveStep> live_steps_;
   int frames_ = 0, mask_frames_ = 0;
   std::int64_t first_number_ = 0;
 };
