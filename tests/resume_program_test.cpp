@@ -154,6 +154,10 @@ TEST_F(ResumeProgramTest, ALiveRunThatWasKilledIsRepeatedWithItsPause) {
   ASSERT_EQ(run(std::string(kRun) + "-o room.ovimap --live --fps 30 --resume").code, 0);
   const nlohmann::json again = run_json(std::string(kRun) + "--repeat room.ovimap -o again.ovimap --json");
   EXPECT_EQ(again["repeated"]["same"], true) << again["repeated"];
+  ASSERT_EQ(run("edit room.ovimap rename 1 pot").code, 0);
+  const ProgramResult other = run(std::string(kRun) + "--repeat room.ovimap -o again.ovimap");
+  EXPECT_EQ(other.code, 1);
+  EXPECT_NE(other.out.find("differ in: corrected_"), std::string::npos) << other.out;
 }
 
 TEST_F(ResumeProgramTest, AnotherVisitGoesOnWithAMap) {

@@ -167,8 +167,11 @@ TileTraffic tile_traffic(const std::map<std::string, StageSummary>& stages);
 double cpu_seconds();
 double peak_rss_mb();
 
-/// True once the user pressed Ctrl-C; from then on a second Ctrl-C ends the program.
+/// Takes Ctrl-C, so many times, and SIGTERM, which counts as often; one more ends the program.
+void watch_for_interrupt(int taken = 1);
+/// True once the user pressed Ctrl-C.
 bool interrupted();
-void watch_for_interrupt();
+/// ... and once more.
+bool interrupted_again();
 
 }  // namespace ovimap::apps

@@ -12,11 +12,11 @@
 namespace ovimap::apps {
 
 namespace {
-volatile std::sig_atomic_t interrupt_seen = 0;
+volatile std::sig_atomic_t interrupts_seen = 0, interrupts_taken = 1;
 
 void on_interrupt(int signal) {
-  interrupt_seen = 1;
-  std::signal(signal, SIG_DFL);
+  interrupts_seen = signal == SIGTERM ? interrupts_taken : interrupts_seen + 1;
+  if (interrupts_seen >= interrupts_taken) std::signal(signal, SIG_DFL);
 }
 }  // namespace
 
@@ -76,9 +76,15 @@ double peak_rss_mb() {
 }
 
 bool interrupted() {
-  return interrupt_seen != 0;
+  return interrupts_seen != 0;
 }
-void watch_for_interrupt() {
+
+bool interrupted_again() {
+  return interrupts_seen > 1;
+}
+
+void watch_for_interrupt(int taken) {
+  interrupts_taken = taken;
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
   std::signal(SIGPIPE, SIG_IGN);  // who reads what is printed may go; what is mapped must not

@@ -241,6 +241,33 @@ RepeatedRun find_repeated(const RunTarget& target, const MapHeader& header, bool
   return {std::move(title), std::move(live.live_steps)};
 }
 
+/// Ctrl-C ends a live run twice: its frames, and then the masks that are to come.
+constexpr int kEndsOfALiveRun = 2;
+
+class LiveProgressBar {
+ public:
+  bool operator()(std::size_t count, std::size_t total) {
+    bar_->show(count, total, stopped_ ? "finding masks; Ctrl-C saves the map without" : "");
+    if (stopped_) return !interrupted_again();
+    stopped_ = interrupted();
+    return !stopped_;
+  }
+
+ private:
+  std::shared_ptr<Progress> bar_ = std::make_shared<Progress>("mapping live");
+  bool stopped_ = false;
+};
+
+/// Frames come from `intake` or, where that is null, from the recording at a camera's pace.
+LiveRunResult feed(LiveMapper& mapper, const MappingInputs& inputs, double fps,
+                   FrameIntake* intake) {
+  if (!intake) return run_live(*inputs.source, inputs.range, mapper, fps, LiveProgressBar());
+  FrameFilter filter;
+  if (inputs.people)
+    filter = [&](Frame frame) { return inputs.people->without_people(std::move(frame)); };
+  return run_pushed(*intake, mapper, LiveProgressBar(), filter);
+}
+
 }  // namespace
 
 MappingRun map_recording(const MappingOptions& options, const std::string& title,
@@ -314,25 +341,12 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
     audience->begin(mapper.config(),
                     inputs.encoder ? inputs.encoder->identity() : EncoderIdentity{}, header.names,
                     header.edits);
-  watch_for_interrupt();
+  watch_for_interrupt(kEndsOfALiveRun);
   if (camera) camera->start();
-  LiveRunResult live;
-  {
-    Progress progress("mapping live");
-    const LiveProgress look = [&](std::size_t count, std::size_t total) {
-      progress.show(count, total);
-      return !interrupted();
-    };
-    FrameFilter filter;
-    if (inputs.people)
-      filter = [&](Frame frame) { return inputs.people->without_people(std::move(frame)); };
-    if (!target.repeated.empty())
-      live = repeat_live(*inputs.source, repeated.steps, mapper, look);
-    else if (intake)
-      live = run_pushed(*intake, mapper, look, filter);
-    else
-      live = run_live(*inputs.source, inputs.range, mapper, fps, look);
-  }
+  LiveRunResult live =
+      target.repeated.empty()
+          ? feed(mapper, inputs, fps, intake)
+          : repeat_live(*inputs.source, repeated.steps, mapper, LiveProgressBar());
   if (audience) header.edits = audience->end();
   if (live.sequence.depth_camera.width == 0) live.sequence.depth_camera = done.depth_camera;
   MappingRun run = finished_run(std::move(inputs), std::move(header), mapper.take(), live.sequence,

@@ -86,8 +86,7 @@ void print_live(const LiveRunResult& live, double fps) {
                 static_cast<long long>(live.frames_read_late));
   if (done.mask_frames + done.masks_skipped + done.masks_failed > 0)
     std::printf(
-        "masks: %lld frames, in the map after %.1f s; %lld more wanted them while the "
-        "network was busy\n",
+        "masks: %lld frames, in the map after %.1f s; %lld more wanted them than could wait\n",
         static_cast<long long>(done.mask_frames), done.mask_lag.p50_ms / 1e3,
         static_cast<long long>(done.masks_skipped));
   if (done.views_skipped > 0)

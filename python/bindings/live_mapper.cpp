@@ -155,8 +155,10 @@ void bind_statistics(nb::module_& module) {
       .def_ro("frames_dropped", &LiveStatistics::frames_dropped)
       .def_ro("mask_frames", &LiveStatistics::mask_frames, "frames whose masks are in the map")
       .def_ro("masks_late", &LiveStatistics::masks_late, "... after their frame was fused")
+      .def_ro("masks_waiting", &LiveStatistics::masks_waiting,
+              "frames that are to get masks yet")
       .def_ro("masks_skipped", &LiveStatistics::masks_skipped,
-              "frames that wanted masks while the network was busy")
+              "frames that wanted masks, of which there were too many")
       .def_ro("masks_failed", &LiveStatistics::masks_failed, "frames whose masks were bad")
       .def_ro("masks_absent", &LiveStatistics::masks_absent,
               "frames that the source had no masks of")

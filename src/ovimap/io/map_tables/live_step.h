@@ -18,7 +18,7 @@ struct LiveStep {
   Kind kind = Kind::kFrame;
   std::int64_t frame = 0;  ///< FrameLogEntry::index; 0 where the step is of none
   bool asked = false;      ///< kFrame: its masks were asked for
-  bool looked = false;     ///< kFrame: objects were looked at in it
+  bool looked = false;     ///< kFrame, kMasks: objects were looked at in it
 
   friend bool operator==(const LiveStep&, const LiveStep&) = default;
 };

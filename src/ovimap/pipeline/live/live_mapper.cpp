@@ -3,6 +3,7 @@
 #include "ovimap/pipeline/live/live_mapper.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "ovimap/base/config.h"
@@ -45,6 +46,8 @@ void list_fields(LiveConfig& config, ConfigFields& fields) {
              "frames that wait at most; then new ones are dropped");
   fields.add("mask_backlog", config.mask_backlog, 0, 1000000,
              "no new masks while more frames than this wait");
+  fields.add("mask_wishes", config.mask_wishes, 1, 100000,
+             "frames that wait for the mask network at most; what waits at the end gets masks then");
   fields.add("view_backlog", config.view_backlog, 0, 1000000,
              "no looks at objects while more frames than this wait");
   fields.add("wait_for_masks", config.wait_for_masks, "hold each frame until its masks are there");
@@ -62,7 +65,12 @@ LiveMapper::LiveMapper(const MapperConfig& config, const LiveConfig& live,
       wanted_masks_(1),
       found_masks_(1),
       preparing_([this] { run_stage([this] { prepare_frames(); }); }),
-      fusing_([this] { run_stage([this] { fuse_frames(); }); }),
+      fusing_([this] {
+        run_stage([this] { fuse_frames(); });
+        const std::lock_guard lock(mutex_);
+        fused_ = true;
+        fusing_ends_.notify_all();
+      }),
       masking_([this] { run_stage([this] { find_masks(); }); }) {}
 
 LiveMapper::~LiveMapper() {
@@ -95,8 +103,15 @@ void LiveMapper::move_and_wait(PoseUpdate update) {
   rethrow_failure();
 }
 
-void LiveMapper::drain() {
+void LiveMapper::drain(const std::function<bool()>& go_on) {
+  constexpr std::chrono::milliseconds kLook{50};
   incoming_.close();
+  const auto ended = [&] {
+    std::unique_lock lock(mutex_);
+    return fusing_ends_.wait_for(lock, kLook, [&] { return fused_; });
+  };
+  while (go_on && !masks_suffice_ && !ended())
+    if (!go_on()) masks_suffice_ = true;
   join();
   rethrow_failure();
 }
@@ -161,8 +176,16 @@ void LiveMapper::restore(MapDocument&& document) {
 
 // ------------------------------------------------------------------------------------------ fusing
 
+/// While none comes there is time for masks.
+std::optional<LiveMapper::Prepared> LiveMapper::next_prepared() {
+  constexpr std::chrono::milliseconds kLook{50};
+  if (told_.empty())
+    while (!prepared_.wait_for(kLook)) apply_late_masks();
+  return prepared_.pop();
+}
+
 void LiveMapper::fuse_frames() {
-  while (auto next = prepared_.pop()) {
+  while (auto next = next_prepared()) {
     const LiveStep* told = repeat_until_frame();
     if (!told) apply_late_masks();
     if (next->update) {
@@ -174,24 +197,49 @@ void LiveMapper::fuse_frames() {
     else
       mapper_->note({LiveStep::Kind::kFrame, mapper_->number_of(*next->frame->frame)});
   }
+  if (told_.empty())
+    catch_up();
+  else
+    (void)repeat_until_frame();
   wanted_masks_.close();
-  while (auto late = found_masks_.pop()) apply_masks(std::move(*late));
   if (cancelled_) return;
   mapper_->finish();
   count_encoder_failures();
 }
 
+/// No frame comes any more: those that wait for masks get them, the oldest first.
+void LiveMapper::catch_up() {
+  catching_up_ = true;
+  if (network_busy_) take_answer(found_masks_.pop());
+  while (!wishes_.empty() && !masks_suffice_ && !cancelled_) {
+    hand_over_wish(wishes_.begin());
+    take_answer(found_masks_.pop());
+  }
+  const std::lock_guard lock(mutex_);
+  statistics_.masks_skipped += static_cast<std::int64_t>(wishes_.size());
+  statistics_.masks_waiting = 0;
+}
+
+void LiveMapper::repeat(std::vector<LiveStep> steps) {
+  told_ = std::move(steps);
+  for (const LiveStep& step : told_)
+    if (step.kind == LiveStep::Kind::kMasks) told_masks_.insert(step.frame);
+}
+
 /// What the next frame is to be done with; null when nothing is told.
 const LiveStep* LiveMapper::repeat_until_frame() {
-  for (; next_told_ < told_.size(); ++next_told_) {
+  for (; next_told_ < told_.size() && !cancelled_; ++next_told_) {
     const LiveStep& step = told_[next_told_];
     if (step.kind == LiveStep::Kind::kFrame) return &told_[next_told_++];
-    if (step.kind == LiveStep::Kind::kMasks && masks_under_way_ > 0)
-      if (auto late = found_masks_.pop()) apply_masks(std::move(*late));
-    if (step.kind == LiveStep::Kind::kResumed) {
-      for (; masks_under_way_ > 0; --masks_under_way_) (void)found_masks_.pop();
-      mapper_->note(step);
-    }
+    if (step.kind == LiveStep::Kind::kResumed) mapper_->note(step);
+    if (step.kind != LiveStep::Kind::kMasks) continue;
+    const auto wish = std::find_if(wishes_.begin(), wishes_.end(), [&](const Wish& w) {
+      return mapper_->number_of(*w.frame) == step.frame;
+    });
+    if (wish == wishes_.end()) continue;
+    Prepared late = answer(*wish);
+    wishes_.erase(wish);
+    apply_masks(std::move(late), &step);
   }
   return nullptr;
 }
@@ -231,15 +279,15 @@ void LiveMapper::move(const PoseUpdate& update) {
 void LiveMapper::fuse(Prepared prepared, const LiveStep* told) {
   begin("fuse");
   const Frame& frame = *prepared.frame->frame;
-  const auto waiting = static_cast<int>(incoming_.size() + prepared_.size());
   LiveStep step{LiveStep::Kind::kFrame, mapper_->number_of(frame)};
-  if (told ? told->asked : time_for_masks(frame, waiting)) step.asked = ask_for_masks(prepared);
+  step.asked = told ? told->asked : wants_masks(frame);
+  if (step.asked) ask_for_masks(prepared);
   depth_camera_ = frame.depth_camera;
   mapper_->fuse(*prepared.frame, prepared.cut.get());
   const double lag_ms = milliseconds_since(prepared.pushed);
   frames_.push_back({step.frame, frame.timestamp_s, frame.name, frame.world_from_camera,
                      prepared.cut != nullptr});
-  step.looked = told ? told->looked : time_for_views(waiting);
+  step.looked = told ? told->looked : time_for_views();
   mapper_->note(step);
   if (step.looked) {
     begin("views");
@@ -254,47 +302,68 @@ void LiveMapper::fuse(Prepared prepared, const LiveStep* told) {
   lags_.add("geometry", lag_ms);
 }
 
-/// Whether masks of the frame are worth having, and the network is not behind.
-bool LiveMapper::time_for_masks(const Frame& frame, int waiting) {
+bool LiveMapper::wants_masks(const Frame& frame) {
   if (!mask_source_ || !schedule_.wants(frame, mapper_->map())) return false;
-  const bool busy = masks_under_way_ > 0 || waiting > live_.mask_backlog;
-  if (!busy || live_.wait_for_masks) {
-    schedule_.chosen();
-    return true;
-  }
-  const std::lock_guard lock(mutex_);
-  ++statistics_.masks_skipped;
-  return false;
-}
-
-/// True when they are there, or will be.
-bool LiveMapper::ask_for_masks(Prepared& prepared) {
-  if (live_.wait_for_masks) {
-    prepared.cut = masks_for(prepared);
-    if (!prepared.cut) schedule_.went_without();
-    return true;
-  }
-  if (!wanted_masks_.try_push(prepared)) return false;
-  ++masks_under_way_;
+  schedule_.chosen();
   return true;
 }
 
+/// Has them, or puts the frame among those that wait. Where too many do, of the two that came soonest
+/// after each other the older goes: what is left is spread over the way.
+void LiveMapper::ask_for_masks(Prepared& prepared) {
+  if (live_.wait_for_masks) {
+    prepared.cut = masks_for(prepared);
+    if (!prepared.cut) schedule_.went_without();
+    return;
+  }
+  const bool repeating = !told_.empty();
+  if (repeating && !told_masks_.contains(mapper_->number_of(*prepared.frame->frame))) return;
+  wishes_.push_back({prepared.frame->frame, prepared.pushed});
+  if (repeating || wishes_.size() <= static_cast<std::size_t>(live_.mask_wishes)) return;
+  std::size_t soonest = 1;
+  const auto gap = [&](std::size_t i) { return wishes_[i].pushed - wishes_[i - 1].pushed; };
+  for (std::size_t i = 2; i < wishes_.size(); ++i)
+    if (gap(i) < gap(soonest)) soonest = i;
+  wishes_.erase(wishes_.begin() + static_cast<std::ptrdiff_t>(soonest) - 1);
+  const std::lock_guard lock(mutex_);
+  ++statistics_.masks_skipped;
+}
+
+void LiveMapper::hand_over_wish(std::deque<Wish>::iterator wish) {
+  network_busy_ = wanted_masks_.try_push(std::move(*wish));
+  wishes_.erase(wish);
+}
+
 /// Whether it is the turn of a look at the objects, and there is time for one.
-bool LiveMapper::time_for_views(int waiting) {
+bool LiveMapper::time_for_views() {
   if (mapper_->frames() % live_.view_interval != 0) return false;
-  if (waiting <= live_.view_backlog && mapper_->encoder_keeps_up()) return true;
+  if (keeps_up()) return true;
   const std::lock_guard lock(mutex_);
   ++statistics_.views_skipped;
   return false;
 }
 
+/// Takes in masks that are there, and gives the network the newest of the frames that wait: it shows
+/// where the camera is.
 void LiveMapper::apply_late_masks() {
-  while (auto late = found_masks_.try_pop()) apply_masks(std::move(*late));
+  if (network_busy_)
+    if (auto late = found_masks_.try_pop()) take_answer(std::move(late));
+  if (!network_busy_ && !wishes_.empty() && waiting() <= live_.mask_backlog)
+    hand_over_wish(std::prev(wishes_.end()));
+  const std::lock_guard lock(mutex_);
+  statistics_.masks_waiting = static_cast<std::int64_t>(wishes_.size()) + network_busy_;
 }
 
-void LiveMapper::apply_masks(Prepared late) {
-  --masks_under_way_;
-  mapper_->note({LiveStep::Kind::kMasks, mapper_->number_of(*late.frame->frame)});
+void LiveMapper::take_answer(std::optional<Prepared> late) {
+  network_busy_ = false;
+  if (late) apply_masks(std::move(*late), nullptr);  // none: cancelled
+}
+
+/// Objects that late masks found have no views yet: they are looked at in the masks' own frame.
+void LiveMapper::apply_masks(Prepared late, const LiveStep* told) {
+  LiveStep step{LiveStep::Kind::kMasks, mapper_->number_of(*late.frame->frame)};
+  step.looked = told ? told->looked : late.cut && (catching_up_ || keeps_up());
+  mapper_->note(step);
   if (!late.cut) return schedule_.went_without();
   begin("apply_masks");
   const auto entry = std::find_if(frames_.rbegin(), frames_.rend(), [&](const FrameLogEntry& e) {
@@ -305,6 +374,7 @@ void LiveMapper::apply_masks(Prepared late) {
     move_to(entry->world_from_camera, *late.frame);
   }
   mapper_->label(*late.frame, *late.cut);
+  if (step.looked) mapper_->look_at_objects(*late.frame->frame, Mapper::Encoder::kRunOn);
   if (after_frame) after_frame(*mapper_, frames_, late.frame->frame->depth_camera);
   const std::lock_guard lock(mutex_);
   ++statistics_.mask_frames;
@@ -316,11 +386,15 @@ void LiveMapper::apply_masks(Prepared late) {
 
 void LiveMapper::find_masks() {
   lower_thread_priority();
-  while (auto wanted = wanted_masks_.pop()) {
-    wanted->cut = masks_for(*wanted);
-    found_masks_.push(std::move(*wanted));
-  }
+  while (auto wish = wanted_masks_.pop()) found_masks_.push(answer(*wish));
   found_masks_.close();
+}
+
+LiveMapper::Prepared LiveMapper::answer(const Wish& wish) {
+  Prepared late{nullptr, nullptr, wish.pushed};
+  late.frame = std::make_shared<PreparedFrame>(prepare_frame(wish.frame, config_, mask_timers_));
+  late.cut = masks_for(late);
+  return late;
 }
 
 /// Null when the frame's masks are bad or there are none of it; other frames may do better.

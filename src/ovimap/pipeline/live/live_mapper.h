@@ -4,10 +4,13 @@
 
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
+#include <deque>
 #include <exception>
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <thread>
 
 #include "ovimap/base/bounded_queue.h"
@@ -24,6 +27,7 @@ struct LiveConfig {
   int view_interval = 10;       ///< objects are looked at in every n-th frame
   int queue = 8;                ///< frames that wait at most; then new ones are dropped
   int mask_backlog = 2;         ///< no new masks while more frames than this wait
+  int mask_wishes = 24;         ///< frames that wait for the network at most, also after the last one
   int view_backlog = 4;         ///< no views while more frames than this wait
   bool wait_for_masks = false;  ///< hold the frame until its masks are there, as Mapper does
 };
@@ -36,7 +40,8 @@ struct LiveStatistics {
   std::int64_t pose_updates = 0;   ///< that moved the map
   std::int64_t mask_frames = 0;    ///< frames whose masks are in the map
   std::int64_t masks_late = 0;     ///< ... after their frame was fused
-  std::int64_t masks_skipped = 0;  ///< frames that wanted masks while the network was busy
+  std::int64_t masks_waiting = 0;  ///< frames that are to get masks yet
+  std::int64_t masks_skipped = 0;  ///< frames that wanted masks, of which there were too many
   std::int64_t masks_failed = 0;   ///< frames whose masks were bad
   std::int64_t masks_absent = 0;   ///< frames that the source had no masks of
   std::int64_t views_skipped = 0;  ///< looks at objects left out
@@ -49,8 +54,8 @@ struct LiveStatistics {
 /// Mapper for a camera that does not wait. Frames go through threads of their own: one prepares
 /// (registration, surface, and regions where there are no masks), one fuses, one runs the mask
 /// network, one the encoder. Masks that come late are applied with the depth and pose of their own
-/// frame. When it falls behind it leaves out masks first, views second, frames last, and counts
-/// them. Bad masks and an encoder that throws cost what they were asked for, and are counted too;
+/// frame, those of frames that waited too long after the last frame. When it falls behind it puts off
+/// masks first, leaves out views second, frames last, and counts them. Bad masks and an encoder that throws cost what they were asked for, and are counted too;
 /// whatever else throws ends the run. All calls but `statistics` come from one thread.
 class LiveMapper {
  public:
@@ -80,7 +85,7 @@ class LiveMapper {
   /// Does what another live run did (MapRecord::live_steps), instead of what there is time for: takes
   /// in masks, asks for them and looks at objects when that run did, and so makes the same map. Push
   /// the frames that it took, in that order, and wait. Before the first push only.
-  void repeat(std::vector<LiveStep> steps) { told_ = std::move(steps); }
+  void repeat(std::vector<LiveStep> steps);
 
   /// Goes on where a stored map stopped, made with the same config. Before the first push only.
   void restore(MapDocument&& document);
@@ -88,8 +93,9 @@ class LiveMapper {
   void number_from(std::int64_t first) { mapper_->number_from(first); }
 
   /// Waits until everything pushed is in the map, with its masks and embeddings; then no more
-  /// frames are taken. Throws what a stage threw.
-  void drain();
+  /// frames are taken. `go_on`, which may be null, is asked now and then; once it says no, frames that
+  /// still wait for masks stay without. Throws what a stage threw.
+  void drain(const std::function<bool()>& go_on = nullptr);
   /// Stops as soon as each stage has finished what it is at. What was fused stays.
   void cancel();
   /// The same without waiting for the stages, from any thread: calls that wait for them return.
@@ -124,20 +130,32 @@ class LiveMapper {
     Clock::time_point pushed;
     std::shared_ptr<const PoseUpdate> update = nullptr;  ///< instead of a frame
   };
+  /// A frame that is to get masks. Preparing it again takes less than keeping what was prepared.
+  struct Wish {
+    std::shared_ptr<const Frame> frame;
+    Clock::time_point pushed;
+  };
 
   void prepare_frames();
+  std::optional<Prepared> next_prepared();
   void fuse_frames();
   void find_masks();
   const LiveStep* repeat_until_frame();
   bool locate(PreparedFrame& prepared);
   void move(const PoseUpdate& update);
   void fuse(Prepared prepared, const LiveStep* told);
-  bool time_for_masks(const Frame& frame, int waiting);
-  bool ask_for_masks(Prepared& prepared);
-  bool time_for_views(int waiting);
+  bool wants_masks(const Frame& frame);
+  void ask_for_masks(Prepared& prepared);
+  bool time_for_views();
+  void hand_over_wish(std::deque<Wish>::iterator wish);
+  void take_answer(std::optional<Prepared> late);
+  void catch_up();
+  int waiting() const { return static_cast<int>(incoming_.size() + prepared_.size()); }
+  bool keeps_up() const { return waiting() <= live_.view_backlog && mapper_->encoder_keeps_up(); }
   void count_encoder_failures();
-  void apply_masks(Prepared late);
+  void apply_masks(Prepared late, const LiveStep* told);
   void apply_late_masks();
+  Prepared answer(const Wish& wish);
   std::shared_ptr<const FrameSegments> masks_for(const Prepared& prepared);
 
   void begin(const char* stage) const {
@@ -159,18 +177,24 @@ class LiveMapper {
 
   BoundedQueue<Incoming> incoming_;
   BoundedQueue<Prepared> prepared_;
-  BoundedQueue<Prepared> wanted_masks_, found_masks_;
-  std::int64_t masks_under_way_ = 0;  ///< the fusing thread's, as the next
-  std::vector<LiveStep> told_;        ///< what to repeat; empty: nothing
+  BoundedQueue<Wish> wanted_masks_;
+  BoundedQueue<Prepared> found_masks_;
+  std::deque<Wish> wishes_;  ///< the fusing thread's, as the next; by age
+  bool network_busy_ = false, catching_up_ = false;
+  std::vector<LiveStep> told_;  ///< what to repeat; empty: nothing
   std::size_t next_told_ = 0;
+  std::set<std::int64_t> told_masks_;  ///< frames whose masks it takes in late
   std::vector<FrameLogEntry> frames_;
   PinholeCamera depth_camera_;  ///< of the last frame that was fused
 
   std::atomic<bool> cancelled_ = false;
+  std::atomic<bool> masks_suffice_ = false;  ///< frames that wait for them stay without
   mutable std::mutex mutex_;  ///< guards what follows
   LiveStatistics statistics_;
   StageTimers lags_;
   std::exception_ptr failure_;
+  bool fused_ = false;  ///< the fusing thread has ended
+  std::condition_variable fusing_ends_;
 
   std::thread preparing_, fusing_, masking_;  // last: they start when everything else is there
 };

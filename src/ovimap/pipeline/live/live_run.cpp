@@ -52,6 +52,14 @@ class ReadAhead {
   std::thread reader_;
 };
 
+/// Waits for the masks of frames that are all handed over; `progress` counts them with the frames.
+void drain(LiveMapper& mapper, std::size_t frames, const LiveProgress& progress) {
+  mapper.drain([&] {
+    const auto waiting = static_cast<std::size_t>(mapper.statistics().masks_waiting);
+    return !progress || progress(frames, frames + waiting);
+  });
+}
+
 /// What a run must not pass over in silence.
 void check_outcome(const LiveRunResult& result, const MapperConfig& config) {
   const std::vector<FrameLogEntry>& frames = result.sequence.frames;
@@ -88,7 +96,7 @@ LiveRunResult run_live(const FrameSource& source, const std::vector<std::int64_t
     next = reader.next();
     result.frames_read_late += next && Clock::now() > due(i + 1);
   }
-  mapper.drain();
+  drain(mapper, positions.size(), progress);
   result.sequence.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   result.sequence.frames = mapper.frames();
   result.statistics = mapper.statistics();
@@ -142,6 +150,7 @@ LiveRunResult run_pushed(FrameIntake& intake, LiveMapper& mapper, const LiveProg
   constexpr std::chrono::milliseconds kLook{50};  // between looks at whether to go on
   LiveRunResult result;
   std::optional<Clock::time_point> start;  // the first frame's
+  std::size_t handed_over = 0;
   for (std::size_t done = 0; !intake.ended();) {
     if (std::optional<PoseUpdate> update = intake.next_update())
       mapper.move_and_wait(std::move(*update));
@@ -158,8 +167,9 @@ LiveRunResult run_pushed(FrameIntake& intake, LiveMapper& mapper, const LiveProg
       ++done;
     }
     if (progress && !progress(done, done)) intake.finish();
+    handed_over = done;
   }
-  mapper.drain();
+  drain(mapper, handed_over, progress);
   if (start) result.sequence.seconds = std::chrono::duration<double>(Clock::now() - *start).count();
   result.sequence.frames = mapper.frames();
   result.statistics = mapper.statistics();

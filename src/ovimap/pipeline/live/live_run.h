@@ -15,7 +15,8 @@ struct LiveRunResult {
   std::int64_t frames_read_late = 0;  ///< decoding was not done when the camera would have been
 };
 
-/// Called after every frame is handed over. Returning false ends the run early; what was fused
+/// Called after every frame is handed over, and now and then while those that wait get their masks
+/// after the last one. Returning false ends the former, and the next time the latter; what was fused
 /// stays.
 using LiveProgress = std::function<bool(std::size_t done, std::size_t total)>;
 
