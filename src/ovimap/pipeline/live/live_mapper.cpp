@@ -3,7 +3,6 @@
 #include "ovimap/pipeline/live/live_mapper.h"
 
 #include <algorithm>
-#include <iterator>
 #include <utility>
 
 #include "ovimap/base/config.h"
@@ -207,17 +206,24 @@ void LiveMapper::fuse_frames() {
   count_encoder_failures();
 }
 
-/// No frame comes any more: those that wait for masks get them, the oldest first.
+/// No frame comes any more: those that wait for masks get them, the oldest first. Here and not on the
+/// network's thread, which lets all others go first: somebody waits for the map.
 void LiveMapper::catch_up() {
   catching_up_ = true;
   if (network_busy_) take_answer(found_masks_.pop());
   while (!wishes_.empty() && !masks_suffice_ && !cancelled_) {
-    hand_over_wish(wishes_.begin());
-    take_answer(found_masks_.pop());
+    count_waiting();
+    take_answer(answer(wishes_.front()));
+    wishes_.pop_front();
   }
   const std::lock_guard lock(mutex_);
   statistics_.masks_skipped += static_cast<std::int64_t>(wishes_.size());
   statistics_.masks_waiting = 0;
+}
+
+void LiveMapper::count_waiting() {
+  const std::lock_guard lock(mutex_);
+  statistics_.masks_waiting = static_cast<std::int64_t>(wishes_.size()) + network_busy_;
 }
 
 void LiveMapper::repeat(std::vector<LiveStep> steps) {
@@ -329,11 +335,6 @@ void LiveMapper::ask_for_masks(Prepared& prepared) {
   ++statistics_.masks_skipped;
 }
 
-void LiveMapper::hand_over_wish(std::deque<Wish>::iterator wish) {
-  network_busy_ = wanted_masks_.try_push(std::move(*wish));
-  wishes_.erase(wish);
-}
-
 /// Whether it is the turn of a look at the objects, and there is time for one.
 bool LiveMapper::time_for_views() {
   if (mapper_->frames() % live_.view_interval != 0) return false;
@@ -348,10 +349,11 @@ bool LiveMapper::time_for_views() {
 void LiveMapper::apply_late_masks() {
   if (network_busy_)
     if (auto late = found_masks_.try_pop()) take_answer(std::move(late));
-  if (!network_busy_ && !wishes_.empty() && waiting() <= live_.mask_backlog)
-    hand_over_wish(std::prev(wishes_.end()));
-  const std::lock_guard lock(mutex_);
-  statistics_.masks_waiting = static_cast<std::int64_t>(wishes_.size()) + network_busy_;
+  if (!network_busy_ && !wishes_.empty() && waiting() <= live_.mask_backlog) {
+    network_busy_ = wanted_masks_.try_push(std::move(wishes_.back()));
+    wishes_.pop_back();
+  }
+  count_waiting();
 }
 
 void LiveMapper::take_answer(std::optional<Prepared> late) {

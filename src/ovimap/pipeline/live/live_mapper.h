@@ -147,9 +147,9 @@ class LiveMapper {
   bool wants_masks(const Frame& frame);
   void ask_for_masks(Prepared& prepared);
   bool time_for_views();
-  void hand_over_wish(std::deque<Wish>::iterator wish);
   void take_answer(std::optional<Prepared> late);
   void catch_up();
+  void count_waiting();
   int waiting() const { return static_cast<int>(incoming_.size() + prepared_.size()); }
   bool keeps_up() const { return waiting() <= live_.view_backlog && mapper_->encoder_keeps_up(); }
   void count_encoder_failures();
