@@ -115,7 +115,11 @@ void apply_settings(const std::vector<std::string>& settings, ConfigFields& fiel
 ProgramConfig read_program_config(const MappingOptions& options) {
   ProgramConfig config;
   config.mapper = mapper_preset(options.preset);
-  if (!options.views.empty()) config.mapper.semantics.views = view_preset(options.views);
+  if (!options.views.empty()) {
+    config.mapper.semantics.views = view_preset(options.views);
+    if (options.views != "default")  // as published
+      config.mapper.semantics.telling.sharp_edge_px = 0.f;
+  }
   ConfigFields fields;
   list_fields(config, fields);
   if (!options.config_file.empty()) load_config(options.config_file, fields);

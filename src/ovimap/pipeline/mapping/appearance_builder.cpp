@@ -12,6 +12,7 @@ namespace ovimap {
 
 void list_fields(SemanticsConfig& config, ConfigFields& fields) {
   fields.group("views", [&](ConfigFields& f) { list_fields(config.views, f); });
+  fields.group("telling", [&](ConfigFields& f) { list_fields(config.telling, f); });
   fields.group("crops", [&](ConfigFields& f) { list_fields(config.crops, f); });
   fields.group("embedding", [&](ConfigFields& f) { list_fields(config.queue, f); });
 }
@@ -76,10 +77,13 @@ int AppearanceBuilder::choose(const Frame& frame, const SeenObjects& seen,
                               const InstanceRegistry& registry, const LabelForest& forest) {
   apply(queue_.take(), forest);
   std::shared_ptr<const RgbImage> picture;
+  TellingPixels telling(frame, config_.telling);
   for (ChosenView& chosen : selector_.select(seen, registry, looks_)) {
     auto crop = cut_object(frame, {seen.color_index, seen.instances, chosen.id, chosen.box_px},
                            config_.crops);
     if (!crop) continue;  // what has no picture has not been looked at
+    const bool first = appearance_of(looks_, registry.super_points_of(chosen.id)).views.empty();
+    if (!telling.weigh(chosen.view, *crop, first)) continue;
     const ViewKey key = chosen.view.key();
     selector_.commit(std::move(chosen), forest, looks_);
     asked_for_.insert(key);

@@ -10,6 +10,7 @@
 
 #include "ovimap/frames/frame/frame.h"
 #include "ovimap/pipeline/mapping/embedding_queue.h"
+#include "ovimap/semantics/views/telling_pixels.h"
 #include "ovimap/semantics/views/view_selection.h"
 
 namespace ovimap {
@@ -17,6 +18,7 @@ namespace ovimap {
 /// Everything about how objects get their embeddings.
 struct SemanticsConfig {
   ViewSelectionConfig views;
+  TellingConfig telling;
   CropConfig crops;
   EmbeddingQueueConfig queue;
 };

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/pipeline/mapping/appearance_builder.h"
 
+#include <algorithm>
 #include <latch>
 #include <numeric>
 
@@ -149,6 +150,15 @@ class Wall {
     return chosen;
   }
 
+  /// Smeared along rows over so many pixels.
+  void smear(int px) {
+    for (int y = 0; y < 90; ++y)
+      for (int x = 0; x < 120; ++x) {
+        const double blue = std::clamp((x - 40 + px / 2.0) / px, 0.0, 1.0);
+        frame_.color.at(x, y) = {static_cast<std::uint8_t>(250 * (1 - blue)), 0,
+                                 static_cast<std::uint8_t>(250 * blue)};
+      }
+  }
   void show_nothing() { color_index_.fill(Registration::kNoColor); }
   void show_all() { std::iota(color_index_.begin(), color_index_.end(), 0); }
 
@@ -227,6 +237,28 @@ TEST(AppearanceBuilder, WhatTheColourImageDoesNotShowStaysToBeLookedAt) {
   for (const auto& [label, look] : builder.looks()) EXPECT_EQ(look.queries, 0);
   wall.show_all();
   EXPECT_EQ(wall.look(builder), 1);
+}
+
+TEST(AppearanceBuilder, ASmearedViewIsTakenOnlyUntilASharpOneComes) {
+  Wall wall;
+  AppearanceBuilder builder({}, nullptr);
+  const auto views = [&] { return appearance_of(builder.looks(), std::vector<Label>{1, 2}).views; };
+  wall.smear(20);
+  EXPECT_EQ(wall.look(builder), 1) << "better than none";
+  const int smeared_px = views()[0]->visible_px;
+  EXPECT_LT(smeared_px, 120 * 90 / 5);
+  EXPECT_EQ(wall.look(builder), 0);
+  wall.smear(1);
+  EXPECT_EQ(wall.look(builder), 1) << "what the smeared one showed is not covered";
+  ASSERT_EQ(views().size(), 2u);
+  EXPECT_EQ(views()[1]->visible_px, 120 * 90);
+  wall.smear(20);
+  EXPECT_EQ(wall.look(builder), 0);
+  SemanticsConfig published;
+  published.telling.sharp_edge_px = 0.f;
+  AppearanceBuilder other(published, nullptr);
+  EXPECT_EQ(wall.look(other), 1);
+  EXPECT_EQ(appearance_of(other.looks(), std::vector<Label>{1, 2}).views[0]->visible_px, 120 * 90);
 }
 
 TEST(AppearanceBuilder, DoesNotDependOnThreadsOrTheEncodersPace) {

@@ -70,6 +70,7 @@ MapperConfig mapper_preset(const std::string& name) {
   config.view_interval = 1;
   config.semantics.views = view_preset("combine");
   config.semantics.views.fusion.largest_views = 8;
+  config.semantics.telling.sharp_edge_px = 0.f;
   config.semantics.crops.background_level = 0;
   return config;
 }

@@ -101,6 +101,7 @@ TEST(MapperPreset, ReferenceIsWhatTheReleasedCodeDoes) {
       {"views.min_frames_seen", "0"},
       {"views.fusion", "pixel_weighted"},
       {"views.fused_views", "8"},
+      {"telling.sharp_edge_px", "0"},
       {"crops.scales", "3"},
       {"crops.masked", "true"},
       {"crops.background_level", "0"},

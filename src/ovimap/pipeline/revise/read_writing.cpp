@@ -6,6 +6,7 @@
 
 #include "ovimap/base/config.h"
 #include "ovimap/base/error.h"
+#include "ovimap/image/blur.h"
 
 namespace ovimap {
 
@@ -14,8 +15,15 @@ namespace {
 struct ReadableView {
   ObjectView* view;
   ObjectCrop crop;
-  double sharpness;
+  double sharp_px;
 };
+
+/// Pixels of a crop that say something of its edges; none where there are no edges.
+double sharp_px(const RgbImage& image) {
+  const Blur blur = measure_blur(image);
+  if (blur.across.edges + blur.down.edges == 0) return 0;
+  return static_cast<double>(image.size()) / double{blur.across.px * blur.down.px};
+}
 
 /// The sharpest crops of a super-point.
 std::vector<ReadableView> readable_views(SuperPointLook& look, int wanted) {
@@ -24,12 +32,11 @@ std::vector<ReadableView> readable_views(SuperPointLook& look, int wanted) {
     view.writing.clear();
     if (view.crop.empty()) continue;
     ObjectCrop crop = restore_crop(view.crop);
-    const double sharp = sharpness(crop.image);
+    const double sharp = sharp_px(crop.image);
     views.push_back({&view, std::move(crop), sharp});
   }
-  std::stable_sort(views.begin(), views.end(), [](const auto& a, const auto& b) {
-    return a.sharpness > b.sharpness;
-  });
+  std::stable_sort(views.begin(), views.end(),
+                   [](const auto& a, const auto& b) { return a.sharp_px > b.sharp_px; });
   if (wanted > 0 && views.size() > static_cast<std::size_t>(wanted))
     views.erase(views.begin() + wanted, views.end());
   return views;
@@ -50,21 +57,6 @@ void list_fields(ReadWritingConfig& config, ConfigFields& fields) {
              "crops of each super-point that are read, the sharpest; 0: all");
   fields.add("own_share", config.own_share, 0.f, 1.f,
              "of a line that must lie on the object, not beside it");
-}
-
-double sharpness(const RgbImage& image) {
-  const auto level = [&](int x, int y) {
-    const Rgb8 pixel = image.at(x, y);
-    return 0.299 * pixel.r + 0.587 * pixel.g + 0.114 * pixel.b;
-  };
-  double sum = 0;
-  for (int y = 1; y + 1 < image.height(); ++y)
-    for (int x = 1; x + 1 < image.width(); ++x) {
-      const double laplacian = level(x - 1, y) + level(x + 1, y) + level(x, y - 1) +
-                               level(x, y + 1) - 4 * level(x, y);
-      sum += laplacian * laplacian;
-    }
-  return image.empty() ? 0 : sum / static_cast<double>(image.size());
 }
 
 ReadWritingSummary read_writing(SemanticRecord& record, const WritingReader& reader,

@@ -34,7 +34,4 @@ ReadWritingSummary read_writing(SemanticRecord& record, const WritingReader& rea
                                 const ReadWritingConfig& config = {},
                                 const ReadWritingProgress& progress = nullptr);
 
-/// How sharp a picture is: the mean square of its brightness's Laplacian (Pech-Pacheco et al. 2000).
-double sharpness(const RgbImage& image);
-
 }  // namespace ovimap

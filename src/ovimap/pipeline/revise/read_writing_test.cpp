@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "ovimap/base/error.h"
+#include "ovimap/image/resize.h"
 #include "ovimap/inference/models/test_support.h"
 #include "ovimap/semantics/words/written_words.h"
 
@@ -74,11 +75,16 @@ TEST(ReadWriting, SaysWhenThereIsNothingToReadAndKeepsWhatWasThere) {
   EXPECT_EQ(record.looks[1].views[0].writing.size(), 1u);
 }
 
-TEST(ReadWriting, SharpnessFallsWithBlur) {
-  RgbImage edge(16, 16, kWhite);
-  fill_box(edge, 0, 0, 8, 16, Rgb8{0, 0, 0});
-  EXPECT_GT(sharpness(edge), sharpness(RgbImage(16, 16, kWhite)));
-  EXPECT_EQ(sharpness({}), 0);
+TEST(ReadWriting, PrefersASharpCropToASmearedOne) {
+  SemanticRecord record = record_of({view_of(1), view_of(2)});
+  ObjectView& smeared = record.looks[1].views[0];
+  ObjectCrop crop = restore_crop(smeared.crop);
+  RgbImage small = resize_bilinear(crop.image, 32, 16);
+  crop.image = resize_bilinear(small, 128, 64);
+  smeared.crop = store_crop(crop, {});
+  read_writing(record, golden_reader(), {.sharpest_views = 1});
+  EXPECT_TRUE(record.looks[1].views[0].writing.empty());
+  EXPECT_EQ(record.looks[1].views[1].writing.size(), 1u);
 }
 
 }  // namespace
