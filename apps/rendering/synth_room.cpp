@@ -55,7 +55,8 @@ WrittenRoom write_sequence(
   pack.notice = sequence.notice();
   pack.settings = sequence.settings();
   for (const TruthInstance& instance : sequence.instances())
-    pack.instances.push_back({instance.id, instance.class_id, instance.class_name, instance.room});
+    pack.instances.push_back({instance.id, instance.class_id, instance.class_name, instance.room,
+                              instance.substance});
   write_replica_pack(out, pack, {}, progress);
   if (const std::vector<TurnRate> rates = sequence.turn_rates(); !rates.empty())
     write_text(out / scene / kGyroscopeFile, gyroscope_text(rates));

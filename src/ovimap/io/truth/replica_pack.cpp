@@ -99,6 +99,8 @@ void write_labels(const fs::path& root, const ReplicaPack& pack) {
     names["instances"][std::to_string(instance.id)] = instance.class_name;
     names["classes"][std::to_string(instance.class_id)] = instance.class_name;
     if (!instance.room.empty()) names["rooms"][std::to_string(instance.id)] = instance.room;
+    if (!instance.substance.empty())
+      names["substances"][std::to_string(instance.id)] = instance.substance;
   }
   if (!pack.unscored.empty()) names["unscored"] = pack.unscored;
   if (!pack.instances.empty()) write_text(root / pack.scene / "labels.json", names.dump(1) + "\n");

@@ -26,6 +26,7 @@ struct PackInstance {
   std::uint32_t id = 0, class_id = 0;
   std::string class_name;
   std::string room = {};  ///< which room it is in; empty: not said
+  std::string substance = {};  ///< what most of it is made of; empty: not said
 };
 
 /// A recording and its truth, as they go to disk.

@@ -9,6 +9,7 @@
 
 #include "ovimap/base/error.h"
 #include "ovimap/semantics/query/query_text.h"
+#include "ovimap/semantics/words/materials.h"
 
 namespace ovimap {
 
@@ -30,6 +31,24 @@ CountEstimate count_of(const PhraseMatch& found) {
   }
   count.deviation = std::sqrt(count.deviation);
   return count;
+}
+
+void collect_materials(const QueryPhrase& phrase, std::vector<std::string>& words) {
+  for (const std::string& term : split_terms(phrase.things))
+    for (std::string& word : material_words(term, builtin_concepts()))
+      if (std::find(words.begin(), words.end(), word) == words.end())
+        words.push_back(std::move(word));
+  for (const QueryPhrase& anchor : phrase.anchors) collect_materials(anchor, words);
+}
+
+/// An answer must not look as if it had judged what nothing in it tells.
+void admit_unjudged(const QueryPhrase& phrase, QueryAnswer& answer) {
+  std::vector<std::string> words;
+  collect_materials(phrase, words);
+  if (words.empty()) return;
+  std::string list;
+  for (const std::string& word : words) list += (list.empty() ? "" : ", ") + word;
+  answer.reason += concat(answer.reason.empty() ? "" : "; ", "not judged: ", list);
 }
 
 bool asks_for_parts(const QueryPhrase& phrase) {
@@ -75,15 +94,21 @@ QueryAnswer QueryEngine::find(const Query& query) const {
   for (const std::string& negative : query.not_texts)
     for (std::string& term : split_terms(checked_query_text(negative, config_.max_text_chars)))
       negatives.push_back(std::move(term));
-  if (config_.grammar) {
-    const QueryPhrase phrase = parse_query(
-        text, {.colors = scene_.colors != nullptr, .parts = scene_.parts != nullptr});
-    if (!phrase.free_text()) {
-      QueryAnswer result = find_phrase(phrase, negatives, query);
-      result.query = text;
-      return result;
-    }
-  }
+  QueryPhrase phrase;
+  phrase.things = text;
+  if (config_.grammar)
+    phrase = parse_query(text,
+                         {.colors = scene_.colors != nullptr, .parts = scene_.parts != nullptr});
+  QueryAnswer result =
+      phrase.free_text() ? find_text(text, negatives, query) : find_phrase(phrase, negatives, query);
+  result.query = text;
+  admit_unjudged(phrase, result);
+  return result;
+}
+
+QueryAnswer QueryEngine::find_text(const std::string& text,
+                                   const std::vector<std::string>& negatives,
+                                   const Query& query) const {
   const std::vector<std::string> terms = split_terms(text);
   if (terms.empty())
     throw Error(concat("the query '", text, "' names nothing; say what to look for"));
@@ -97,9 +122,7 @@ QueryAnswer QueryEngine::find(const Query& query) const {
     return model ? model_probability(*model, scores.cosines[static_cast<Eigen::Index>(position)])
                  : matcher_->probability(scores, position);
   };
-  QueryAnswer result = answer(scores, p_value, probability, query.relevance);
-  result.query = text;
-  return result;
+  return answer(scores, p_value, probability, query.relevance);
 }
 
 QueryAnswer QueryEngine::find_phrase(const QueryPhrase& phrase,

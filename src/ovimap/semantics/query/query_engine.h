@@ -44,7 +44,8 @@ struct CountEstimate {
 struct QueryAnswer {
   std::string query;
   std::string reading;  ///< how a phrase was understood: "[mug] on [table]"; empty for free text
-  std::string reason;   ///< why a phrase was not found: "no [table] in the map"
+  std::string reason;   ///< why a phrase was not found: "no [table] in the map"; and what of it was
+                        ///< not judged: "not judged: wooden"
   Verdict verdict = Verdict::kNotInMap;
   std::vector<QueryMatch> matches;  ///< best first, also when the verdict is kNotInMap
   std::optional<CountEstimate> count;  ///< of "how many" and "two ..."
@@ -84,6 +85,8 @@ class QueryEngine {
   using PValue = std::function<double(float standard_score)>;  // empty: no calibration
   using Probability = std::function<double(std::size_t position)>;  // empty: by p-value
 
+  QueryAnswer find_text(const std::string& text, const std::vector<std::string>& negatives,
+                        const Query& query) const;
   QueryAnswer find_phrase(const QueryPhrase& phrase, const std::vector<std::string>& negatives,
                           const Query& query) const;
   Eigen::VectorXf relevance_of(const PhraseMatch& found) const;

@@ -52,6 +52,15 @@ TEST_F(QueryEngineTest, FindsWhatIsThereAndSaysWhatIsNot) {
   }
 }
 
+TEST_F(QueryEngineTest, SaysThatMaterialsAreNotJudged) {
+  const QueryEngine engine(index_, &encoder_);
+  EXPECT_EQ(engine.find({"wooden table", {}}).reason, "not judged: wooden");
+  EXPECT_EQ(engine.find({"striped sofa, wooden table", {}}).reason, "not judged: striped, wooden");
+  const std::string both = engine.find({"metal mug nearest to the wooden table", {}}).reason;
+  EXPECT_TRUE(both.ends_with("not judged: metal, wooden")) << both;
+  EXPECT_EQ(engine.find({"table", {}}).reason, "");
+}
+
 TEST_F(QueryEngineTest, OnlySomeMayBeTheAnswer) {
   const QueryEngine engine(index_, &encoder_);
   Query query{"red chair", {}};

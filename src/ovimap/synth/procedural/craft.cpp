@@ -14,8 +14,10 @@ constexpr float kPrint_px_m = 1400;  // letters of a page are some pixels high
 constexpr int kLargestPrint_px = 900;
 constexpr float kProud_m = 4e-4f;
 
-SurfaceMaterial textured(std::shared_ptr<const Texture> texture, float emission = 0) {
+SurfaceMaterial textured(std::shared_ptr<const Texture> texture, float emission = 0,
+                         const char* substance = "") {
   SurfaceMaterial material;
+  material.substance = substance;
   material.texture = std::move(texture);
   material.emission.setConstant(emission);
   return material;
@@ -46,7 +48,12 @@ Paint grain(Split split, std::uint64_t seed) {
   };
 }
 
-Paint weave(Split split, std::uint64_t seed) {
+struct Weave {
+  Paint paint;
+  const char* substance;
+};
+
+Weave weave(Split split, std::uint64_t seed) {
   Random random(seed);
   // Upholstery is mostly pale or grey: little contrast between a thing and what is beside it.
   const float value =
@@ -57,7 +64,9 @@ Paint weave(Split split, std::uint64_t seed) {
   const PaintColor other = mixed(base, PaintColor::Constant(random.uniform(0.1f, 0.95f)), 0.3f);
   const LatticeNoise noise(random.bits());
   const std::size_t style = random.index(4);  // half of all cloths are plain
-  return [=](float x, float y) {
+  static constexpr const char* kTunedStyles[] = {"striped cloth", "dotted cloth", "cloth", "cloth"};
+  static constexpr const char* kUnseenStyles[] = {"checked cloth", "zigzag cloth", "cloth", "cloth"};
+  const auto paint = [=](float x, float y) {
     const float thread = 0.93f + 0.1f * noise.at(x * 128, y * 128, 128, 128);
     bool figure = false;
     if (style == 0)
@@ -69,22 +78,27 @@ Paint weave(Split split, std::uint64_t seed) {
                    : part_of(y * 16 + std::abs(part_of(x * 8) - 0.5f) * 2) < 0.45f;
     return PaintColor((figure ? other : base) * thread);
   };
+  return {paint, (split == Split::kTuned ? kTunedStyles : kUnseenStyles)[style]};
 }
 
 }  // namespace
 
 std::uint32_t Craft::wood(TexturedMesh& mesh) {
   return add_material(mesh,
-                      textured(painted(kMaterial_px, kMaterial_px, grain(split, random.bits()))));
+                      textured(painted(kMaterial_px, kMaterial_px, grain(split, random.bits())), 0,
+                               "wood"));
 }
 
 std::uint32_t Craft::cloth(TexturedMesh& mesh) {
-  return add_material(mesh,
-                      textured(painted(kMaterial_px, kMaterial_px, weave(split, random.bits()))));
+  const Weave woven = weave(split, random.bits());
+  return add_material(mesh, textured(painted(kMaterial_px, kMaterial_px, woven.paint), 0,
+                                     woven.substance));
 }
 
-std::uint32_t Craft::plain(TexturedMesh& mesh, const PaintColor& srgb, float emission) {
+std::uint32_t Craft::plain(TexturedMesh& mesh, const PaintColor& srgb, float emission,
+                           const char* substance) {
   SurfaceMaterial material;
+  material.substance = substance;
   for (int i = 0; i < 3; ++i)
     material.albedo[i] =
         linear_from_srgb(static_cast<std::uint8_t>(std::clamp(srgb[i], 0.f, 1.f) * 255));
@@ -95,16 +109,18 @@ std::uint32_t Craft::plain(TexturedMesh& mesh, const PaintColor& srgb, float emi
 std::uint32_t Craft::lacquer(TexturedMesh& mesh) {
   const PaintColor tint{between(-1, 1), between(-1, 1), between(-1, 1)};
   return plain(mesh, PaintColor::Constant(one_in(4) ? between(0.25f, 0.6f) : between(0.8f, 0.95f)) +
-                         0.06f * tint);
+                         0.06f * tint, 0, "lacquer");
 }
 
 std::uint32_t Craft::metal(TexturedMesh& mesh) {
-  return plain(mesh, PaintColor::Constant(one_in(2) ? between(0.08f, 0.2f) : between(0.5f, 0.8f)));
+  return plain(mesh, PaintColor::Constant(one_in(2) ? between(0.08f, 0.2f) : between(0.5f, 0.8f)), 0,
+               "metal");
 }
 
 std::uint32_t Craft::plastic(TexturedMesh& mesh) {
   return plain(mesh,
-               PaintColor::Constant(one_in(3) ? between(0.75f, 0.93f) : between(0.06f, 0.3f)));
+               PaintColor::Constant(one_in(3) ? between(0.75f, 0.93f) : between(0.06f, 0.3f)), 0,
+               "plastic");
 }
 
 std::uint32_t Craft::glaze(TexturedMesh& mesh) {
@@ -119,7 +135,7 @@ std::uint32_t Craft::glaze(TexturedMesh& mesh) {
                         if (style == 0) return body;
                         if (speckled) return noise.at(x * 40, y * 40, 40, 40) > 0.74f ? mark : body;
                         return y > low && y < high ? mark : body;
-                      })));
+                      }), 0, "ceramic"));
 }
 
 std::uint32_t Craft::print(TexturedMesh& mesh, float width_m, float height_m, const Paint& paint,

@@ -33,7 +33,8 @@ struct Craft {
   std::uint32_t metal(TexturedMesh& mesh);
   std::uint32_t plastic(TexturedMesh& mesh);  ///< grey to black
   std::uint32_t glaze(TexturedMesh& mesh);    ///< of cups: any colour, with a band or speckles
-  std::uint32_t plain(TexturedMesh& mesh, const PaintColor& srgb, float emission = 0);
+  std::uint32_t plain(TexturedMesh& mesh, const PaintColor& srgb, float emission = 0,
+                      const char* substance = "");
   std::uint32_t print(TexturedMesh& mesh, float width_m, float height_m, const Paint& paint,
                       float emission = 0);
 };

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/synth/procedural/made_model.h"
 
+#include <set>
+
 #include <gtest/gtest.h>
 
 #include "ovimap/base/error.h"
@@ -51,6 +53,16 @@ std::string spelled(const testing::TestParamInfo<std::string>& kind) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, MadeKind, testing::ValuesIn(made_kinds()), spelled);
+
+TEST(MadeModelTest, SaysWhatMostOfAThingIsMadeOf) {
+  std::set<std::string> of_tables;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Random random(seed);
+    of_tables.insert(main_substance(make_model("table", Split::kUnseen, random).mesh));
+  }
+  EXPECT_EQ(of_tables, (std::set<std::string>{"lacquer", "wood"}));
+  EXPECT_EQ(main_substance({}), "");
+}
 
 TEST(MadeModelTest, AnUnknownKindIsSaid) {
   Random random(1);

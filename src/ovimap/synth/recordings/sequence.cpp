@@ -11,6 +11,7 @@
 
 #include "ovimap/base/config.h"
 #include "ovimap/synth/furniture/furniture_palette.h"
+#include "ovimap/synth/shapes/mesh_parts.h"
 #include "ovimap/synth/shapes/random.h"
 
 namespace ovimap {
@@ -206,7 +207,7 @@ std::vector<TruthInstance> SynthSequence::instances() const {
   for (const RoomObject& object : state_->room.objects)
     if (!object.box.isEmpty())
       instances.push_back({object.id, object.name, room_class_id(object.class_name),
-                           object.class_name, object.room});
+                           object.class_name, object.room, main_substance(object.mesh)});
   if (state_->figure)
     for (const RoomObject& object : state_->figure->objects())
       instances.push_back({object.id, object.name, room_class_id(object.class_name),

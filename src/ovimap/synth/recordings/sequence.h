@@ -45,6 +45,7 @@ struct TruthInstance {
   std::uint32_t class_id = 0;  ///< room_class_id(class_name)
   std::string class_name;
   std::string room = {};  ///< of a floor plan; else empty
+  std::string substance = {};  ///< what most of it is made of; empty: not said
 };
 
 /// Posed RGB-D frames of a room with exact truth: pictures from all sides, far apart, or the video

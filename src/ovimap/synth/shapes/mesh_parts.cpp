@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/synth/shapes/mesh_parts.h"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace ovimap {
 
@@ -76,6 +78,19 @@ Eigen::AlignedBox3f bounds(const TexturedMesh& mesh) {
   Eigen::AlignedBox3f box;
   for (const Eigen::Vector3f& vertex : mesh.vertices) box.extend(vertex);
   return box;
+}
+
+std::string main_substance(const TexturedMesh& mesh) {
+  std::map<std::string, float> areas;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto& [a, b, c] = mesh.triangles[i];
+    const Eigen::Vector3f u = mesh.vertices[b] - mesh.vertices[a], v = mesh.vertices[c] - mesh.vertices[a];
+    areas[mesh.materials[mesh.triangle_materials[i]].substance] += u.cross(v).norm();
+  }
+  const auto most = std::max_element(areas.begin(), areas.end(), [](const auto& a, const auto& b) {
+    return a.second < b.second;
+  });
+  return most == areas.end() ? "" : most->first;
 }
 
 }  // namespace ovimap

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -33,5 +34,8 @@ void add_mesh(TexturedMesh& mesh, const TexturedMesh& part);
 TexturedMesh placed_mesh(const TexturedMesh& model, const OrientedBox& box);
 
 Eigen::AlignedBox3f bounds(const TexturedMesh& mesh);
+
+/// What most of the surface is made of; empty where that is not said.
+std::string main_substance(const TexturedMesh& mesh);
 
 }  // namespace ovimap

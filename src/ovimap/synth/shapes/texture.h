@@ -40,6 +40,7 @@ struct SurfaceMaterial {
   Eigen::Vector3f albedo = Eigen::Vector3f::Constant(0.5f);  ///< linear, where there is no texture
   std::shared_ptr<const Texture> texture;                    ///< may be null
   Eigen::Vector3f emission = Eigen::Vector3f::Zero();        ///< times the albedo, linear
+  const char* substance = "";  ///< in words: "wood", "striped cloth"; empty: not said
 };
 
 /// Triangles with textures, metres. `normals` and `uvs` are as long as `vertices`.

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The ovimap authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ovimap/semantics/words/materials.h"
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <sstream>
+
+#include "ovimap/base/ascii.h"
+
+namespace ovimap {
+
+namespace {
+
+// "Paper" is left out: a paper bin is for paper.
+constexpr std::array<std::string_view, 40> kWords{
+    "wood",      "wooden",   "oak",      "pine",     "beech",     "walnut",    "metal",
+    "metallic",  "steel",    "iron",     "aluminium", "aluminum", "chrome",    "brass",
+    "copper",    "glass",    "plastic",  "rubber",   "ceramic",   "porcelain", "clay",
+    "stone",     "marble",   "granite",  "concrete", "leather",   "cloth",     "fabric",
+    "woollen",   "velvet",   "wicker",   "rattan",   "bamboo",    "cardboard", "striped",
+    "checked",   "checkered", "dotted",  "spotted",  "patterned"};
+
+constexpr std::array<std::string_view, 6> kAfterThing{"of", "with", "without", "for", "full", "to"};
+
+bool is_one_of(std::string_view word, std::span<const std::string_view> words) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+struct Reading {
+  std::vector<std::string> materials;
+  std::string rest;
+};
+
+/// From the front on: "old wooden table" keeps "old", "wooden spoon" all.
+Reading read(std::string_view text, const Concepts& concepts) {
+  std::vector<std::string> words;
+  std::istringstream parts{std::string(text)};
+  for (std::string word; parts >> word;) words.push_back(word);
+  Reading reading;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    std::string from_here;
+    for (std::size_t k = i; k < words.size(); ++k) from_here += (k > i ? " " : "") + words[k];
+    const std::string word = lower_case(words[i]);
+    const bool named = i + 1 == words.size() || is_one_of(lower_case(words[i + 1]), kAfterThing) ||
+                       concepts.knows(from_here);
+    if (named || !is_one_of(word, kWords))
+      reading.rest += (reading.rest.empty() ? "" : " ") + (named ? from_here : words[i]);
+    else
+      reading.materials.push_back(word);
+    if (named) break;
+  }
+  return reading;
+}
+
+}  // namespace
+
+std::vector<std::string> material_words(std::string_view text, const Concepts& concepts) {
+  return read(text, concepts).materials;
+}
+
+std::string without_materials(std::string_view text, const Concepts& concepts) {
+  return read(text, concepts).rest;
+}
+
+}  // namespace ovimap
