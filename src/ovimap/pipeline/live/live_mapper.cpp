@@ -178,8 +178,8 @@ void LiveMapper::restore(MapDocument&& document) {
 /// While none comes there is time for masks.
 std::optional<LiveMapper::Prepared> LiveMapper::next_prepared() {
   constexpr std::chrono::milliseconds kLook{50};
-  if (told_.empty())
-    while (!prepared_.wait_for(kLook)) apply_late_masks();
+  while (!prepared_.wait_for(kLook))
+    if (!repeating_) apply_late_masks();
   return prepared_.pop();
 }
 
@@ -196,10 +196,10 @@ void LiveMapper::fuse_frames() {
     else
       mapper_->note({LiveStep::Kind::kFrame, mapper_->number_of(*next->frame->frame)});
   }
-  if (told_.empty())
-    catch_up();
-  else
+  if (repeating_)
     (void)repeat_until_frame();
+  else
+    catch_up();
   wanted_masks_.close();
   if (cancelled_) return;
   mapper_->finish();
@@ -227,6 +227,7 @@ void LiveMapper::count_waiting() {
 }
 
 void LiveMapper::repeat(std::vector<LiveStep> steps) {
+  repeating_ = true;
   told_ = std::move(steps);
   for (const LiveStep& step : told_)
     if (step.kind == LiveStep::Kind::kMasks) told_masks_.insert(step.frame);
@@ -322,10 +323,9 @@ void LiveMapper::ask_for_masks(Prepared& prepared) {
     if (!prepared.cut) schedule_.went_without();
     return;
   }
-  const bool repeating = !told_.empty();
-  if (repeating && !told_masks_.contains(mapper_->number_of(*prepared.frame->frame))) return;
+  if (repeating_ && !told_masks_.contains(mapper_->number_of(*prepared.frame->frame))) return;
   wishes_.push_back({prepared.frame->frame, prepared.pushed});
-  if (repeating || wishes_.size() <= static_cast<std::size_t>(live_.mask_wishes)) return;
+  if (repeating_ || wishes_.size() <= static_cast<std::size_t>(live_.mask_wishes)) return;
   std::size_t soonest = 1;
   const auto gap = [&](std::size_t i) { return wishes_[i].pushed - wishes_[i - 1].pushed; };
   for (std::size_t i = 2; i < wishes_.size(); ++i)

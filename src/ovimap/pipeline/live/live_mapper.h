@@ -181,13 +181,13 @@ class LiveMapper {
   BoundedQueue<Prepared> found_masks_;
   std::deque<Wish> wishes_;  ///< the fusing thread's, as the next; by age
   bool network_busy_ = false, catching_up_ = false;
-  std::vector<LiveStep> told_;  ///< what to repeat; empty: nothing
+  std::vector<LiveStep> told_;  ///< what to repeat
   std::size_t next_told_ = 0;
   std::set<std::int64_t> told_masks_;  ///< frames whose masks it takes in late
   std::vector<FrameLogEntry> frames_;
   PinholeCamera depth_camera_;  ///< of the last frame that was fused
 
-  std::atomic<bool> cancelled_ = false;
+  std::atomic<bool> cancelled_ = false, repeating_ = false;
   std::atomic<bool> masks_suffice_ = false;  ///< frames that wait for them stay without
   mutable std::mutex mutex_;  ///< guards what follows
   LiveStatistics statistics_;
