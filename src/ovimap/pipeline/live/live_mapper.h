@@ -151,6 +151,9 @@ class LiveMapper {
   void catch_up();
   void count_waiting();
   int waiting() const { return static_cast<int>(incoming_.size() + prepared_.size()); }
+  static double milliseconds_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+  }
   bool keeps_up() const { return waiting() <= live_.view_backlog && mapper_->encoder_keeps_up(); }
   void count_encoder_failures();
   void apply_masks(Prepared late, const LiveStep* told);
