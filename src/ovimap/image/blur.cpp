@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "ovimap/image/brightness.h"
+
 namespace ovimap {
 
 namespace {
@@ -23,10 +25,6 @@ struct Edge {
 };
 
 using Line = std::vector<int>;  ///< brightness of its pixels, 0 to 255
-
-int brightness(Rgb8 pixel) {
-  return (77 * pixel.r + 150 * pixel.g + 29 * pixel.b) >> 8;
-}
 
 /// Where the way from `begin` to `end` reaches `level` after pixel `before`, in pixels.
 float crossing(const Line& line, int before, float level) {

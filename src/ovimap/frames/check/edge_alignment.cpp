@@ -8,16 +8,13 @@
 
 #include "ovimap/base/config.h"
 #include "ovimap/frames/frame/registration.h"
+#include "ovimap/image/brightness.h"
 
 namespace ovimap {
 
 namespace {
 
 using ByteImage = Image<std::uint8_t>;
-
-int brightness(Rgb8 pixel) {
-  return (77 * pixel.r + 150 * pixel.g + 29 * pixel.b) >> 8;
-}
 
 /// How much brightness changes at each pixel, at most `limit` (and 255); 0 at the border.
 ByteImage color_steps(const RgbImage& color, int limit) {
