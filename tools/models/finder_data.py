@@ -1,51 +1,118 @@
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
 """What the entity finder learns from: rendered frames of the tuned halves of the benchmarks (docs/evaluation.md), of seeds that no
-benchmark uses, as MobileSAM's encoder sees them, and where the things in them are."""
+benchmark uses, changed anew each time they are looked at, and where the things in them are."""
 
-import dataclasses
-import os
 import pathlib
 import subprocess
-import zlib
 
 import cv2
 import numpy as np
-import onnxruntime
 
-INPUT_PX, EMBEDDED_PX, CELL_PX = 1024, 16, 8  # the network's input; one place of its embedding; one cell of the finder's maps
-MEAN = np.array([123.675, 116.28, 103.53], np.float32)
-STD = np.array([58.395, 57.12, 57.375], np.float32)
-LEAST_PX = 60  # fewer pixels of a thing teach nothing
+INPUT_PX, EMBEDDED_PX, CELL_PX, GRID_PX = 1024, 16, 8, 4  # the network's input; one place of its embedding, of the finder's maps, of masks
+LEAST_PX = 40  # fewer pixels of a thing, at half the input's resolution, teach nothing
 STRAY_PERCENT = 0.5  # of a thing's pixels at each side its box leaves out
 SHORTEST_CELLS = 0.25  # a box's side is no nearer to a cell's middle than this, so that it has a logarithm
+ASPECTS = [(1024, 768), (1024, 768), (1024, 768), (1024, 576), (1024, 1024), (768, 1024)]  # of cameras, the usual one thrice
+ASKED = 2  # cells of a thing that are asked for its mask
+JPEG_QUALITY = 80
 
 # Kinds of scenes, seeds, and options that make few frames, far apart. Seeds 109 and 110 are kept back, to choose methods by.
 DESKS, ROOMS, PLANS = ["writing-desk", "breakfast-table", "book-shelf"], ["living-room", "bedroom", "kitchen"], ["flat"]
 WALK = ["--fps", "1", "--seconds"]
 SCENES = [
-    (DESKS, range(101, 105), [*WALK, "8"]),
-    (DESKS, range(107, 109), [*WALK, "5"]),
-    (ROOMS, range(101, 105), ["--frames", "10", "--noise"]),
-    (ROOMS, range(107, 109), ["--frames", "5", "--noise", "--size", "640x480"]),
-    (["courtyard"], range(101, 105), [*WALK, "24"]),
-    (["courtyard"], range(107, 109), [*WALK, "12"]),
-    (DESKS, range(111, 119), [*WALK, "6"]),
-    (ROOMS, range(111, 119), ["--frames", "6", "--noise", "--size", "640x480"]),
-    (["courtyard"], range(111, 115), [*WALK, "16"]),
-    (PLANS, range(101, 107), [*WALK, "16"]),
+    (DESKS, [*range(101, 109), *range(111, 141)], [*WALK, "5"]),
+    (ROOMS, [*range(101, 109), *range(111, 141)], ["--frames", "5", "--noise", "--size", "640x480"]),
+    (["courtyard"], [*range(101, 109), *range(111, 127)], [*WALK, "12"]),
+    (PLANS, [*range(101, 109), *range(111, 127)], [*WALK, "12"]),
 ]
+KEPT_BACK = [109, 110]
 
 
-def rendered(program: pathlib.Path, folder: pathlib.Path):
-    """The recordings of SCENES, rendered unless they are there."""
-    for kind, seed, options in ((kind, str(seed), options) for kinds, seeds, options in SCENES for kind in kinds for seed in seeds):
+def scene_list(kept_back=False):
+    """(kind, seed, options), seed by seed, so that a rendering that is broken off holds every kind."""
+    all_scenes = [(kind, seed, options) for kinds, seeds, options in SCENES
+                  for kind in kinds for seed in (KEPT_BACK if kept_back else seeds)]  # fmt: skip
+    return sorted(all_scenes, key=lambda scene: scene[1])
+
+
+def render(program: pathlib.Path, folder: pathlib.Path, scenes):
+    """The recordings of `scenes`, unless they are there."""
+    for kind, seed, options in scenes:
         scene = folder / f"{kind}-{seed}"
         if not (scene / "done").exists():
             which = "--plan" if kind in PLANS else "--room"
-            subprocess.run([program, "synth", scene, which, kind, "--seed", seed, *options], check=True, stdout=subprocess.DEVNULL)
+            subprocess.run([program, "synth", scene, which, kind, "--seed", str(seed), *options], check=True, stdout=subprocess.DEVNULL)
             (scene / "done").touch()
-        yield next(path.parent for path in scene.glob("*/results"))
+
+
+def pack(folder: pathlib.Path, scenes, file: pathlib.Path):
+    """One file of all frames of the recordings in `folder` that are there: JPEG and PNG bytes in turn."""
+    frames = []
+    for kind, seed, _ in scenes:
+        for frame in sorted((folder / f"{kind}-{seed}").glob("*/results/frame*.jpg")):
+            rgb = cv2.imread(str(frame))
+            ids = cv2.imread(str(frame.with_name(frame.stem.replace("frame", "instance") + ".png")), cv2.IMREAD_UNCHANGED)
+            _, numbers = np.unique(np.append(0, ids), return_inverse=True)  # 0, of nothing, stays the first
+            small = numbers[1:].reshape(ids.shape).astype(np.uint16)
+            for extension, image, options in ((".jpg", rgb, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY]), (".png", small, [])):
+                frames.append(cv2.imencode(extension, image, options)[1])
+    np.savez(file, ends=np.cumsum([len(data) for data in frames]), data=np.concatenate(frames))
+
+
+def unpack(files):
+    """(rgb bytes, ids bytes) of every frame."""
+    frames = []
+    for file in files:
+        with np.load(file) as packed:
+            parts = np.split(packed["data"], packed["ends"][:-1])
+        frames += list(zip(parts[0::2], parts[1::2]))
+    return frames
+
+
+def decoded(frame):
+    rgb = cv2.cvtColor(cv2.imdecode(frame[0], cv2.IMREAD_COLOR), cv2.COLOR_BGR2RGB)
+    return rgb, cv2.imdecode(frame[1], cv2.IMREAD_UNCHANGED).astype(np.int32)
+
+
+def recoloured(rgb, ids, rng):
+    """Some things in another colour: what a thing is made of must not tell where it ends."""
+    chosen = rng.random(ids.max() + 1) < 0.4
+    gains = np.where(chosen[:, None], np.exp(rng.normal(0, 0.4, (len(chosen), 3)) + rng.normal(0, 0.3, (len(chosen), 1))), 1)
+    return np.clip(rgb * gains.astype(np.float32)[ids], 0, 255)
+
+
+def printed(rgb, ids, print_rgb, rng):
+    """Some things with a picture of something else on them, as wallpaper, covers and screens have it."""
+    shares = np.where(rng.random(ids.max() + 1) < 0.25, rng.uniform(0.2, 0.9, ids.max() + 1), 0).astype(np.float32)
+    zoom = rng.uniform(0.15, 1)
+    height, width = (max(8, int(size * zoom)) for size in print_rgb.shape[:2])
+    tile = cv2.resize(print_rgb, (width, height), interpolation=cv2.INTER_AREA)
+    repeated = np.tile(tile, (-(-ids.shape[0] // height), -(-ids.shape[1] // width), 1))[: ids.shape[0], : ids.shape[1]]
+    shading = 0.4 + 0.6 * rgb.mean(2, keepdims=True) / 128
+    share = shares[ids][..., None]
+    return np.clip(rgb * (1 - share) + repeated * shading * share, 0, 255)
+
+
+def strewn(rgb, ids, other_rgb, other_ids, rng):
+    """With a few small things of another frame somewhere on top."""
+    rgb, ids = rgb.copy(), ids.copy()
+    numbers, counts = np.unique(other_ids[other_ids > 0], return_counts=True)
+    fitting = numbers[(counts > 200) & (counts < 0.08 * ids.size)]
+    for number in rng.permutation(fitting)[: rng.integers(1, 6)]:
+        ys, xs = np.nonzero(other_ids == number)
+        part = np.s_[ys.min() : ys.max() + 1, xs.min() : xs.max() + 1]
+        mask, patch = (other_ids[part] == number).astype(np.uint8), other_rgb[part]
+        zoom = rng.uniform(0.6, 1.4)
+        size = max(4, round(mask.shape[1] * zoom)), max(4, round(mask.shape[0] * zoom))
+        if size[0] >= ids.shape[1] or size[1] >= ids.shape[0]:
+            continue
+        mask, patch = cv2.resize(mask, size, interpolation=cv2.INTER_NEAREST), cv2.resize(patch, size, interpolation=cv2.INTER_LINEAR)
+        x, y = rng.integers(0, ids.shape[1] - size[0]), rng.integers(0, ids.shape[0] - size[1])
+        place = np.s_[y : y + size[1], x : x + size[0]]
+        rgb[place][mask > 0] = patch[mask > 0]
+        ids[place][mask > 0] = ids.max() + 1
+    return rgb, ids
 
 
 def relit(rgb, rng):
@@ -53,42 +120,39 @@ def relit(rgb, rng):
     image = rgb.astype(np.float32) / 255
     if rng.random() < 0.15:
         image = np.repeat(image.mean(2, keepdims=True), 3, 2)
-    image = np.clip(image * rng.uniform(0.85, 1.15, 3), 0, 1) ** rng.uniform(0.7, 1.4)
+    image = np.clip(image * rng.uniform(0.85, 1.15, 3).astype(np.float32), 0, 1) ** np.float32(rng.uniform(0.6, 1.6))
     mean = image.mean()
-    image = (image - mean) * rng.uniform(0.7, 1.25) + mean + rng.uniform(-0.08, 0.08)
-    if rng.random() < 0.25:
-        image = cv2.GaussianBlur(image, (0, 0), rng.uniform(0.5, 1.6))
-    image = np.clip(image + rng.normal(0, rng.uniform(0, 0.02), image.shape), 0, 1)
-    return (image * 255).astype(np.uint8)
+    image = (image - mean) * np.float32(rng.uniform(0.6, 1.3)) + mean + np.float32(rng.uniform(-0.1, 0.1))
+    if rng.random() < 0.3:
+        image = cv2.GaussianBlur(image, (0, 0), rng.uniform(0.5, 1.8))
+    if rng.random() < 0.2:
+        length = int(rng.integers(3, 12))
+        line = cv2.warpAffine(np.eye(1, length, length // 2, dtype=np.float32).repeat(length, 0),
+                              cv2.getRotationMatrix2D((length // 2, length // 2), rng.uniform(0, 180), 1), (length, length))  # fmt: skip
+        image = cv2.filter2D(image, -1, line / line.sum())
+    image = image + rng.standard_normal(image.shape, np.float32) * np.float32(rng.uniform(0, 0.03))
+    return (np.clip(image, 0, 1) * 255).astype(np.uint8)
 
 
-def varied(rgb, ids, rng):
-    """A part of the image, larger, mirrored, in another light."""
-    height, width = ids.shape
-    if rng.random() < 0.6:
-        share = rng.uniform(0.5, 1)
-        w, h = int(width * share), int(height * share)
-        x, y = rng.integers(0, width - w + 1), rng.integers(0, height - h + 1)
-        rgb = cv2.resize(rgb[y : y + h, x : x + w], (width, height), interpolation=cv2.INTER_LINEAR)
-        ids = cv2.resize(ids[y : y + h, x : x + w], (width, height), interpolation=cv2.INTER_NEAREST)
+def view(rng, width, height, size):
+    """source_from_network of a view of size = (width, height) of the network's input: a part of the image, turned, mirrored."""
+    share = rng.uniform(0.4, 1) if rng.random() < 0.65 else 1.0
+    zoom = share * min(width / size[0], height / size[1])
+    angle = rng.normal(0, 0.1) if rng.random() < 0.4 else 0.0
+    turned = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]) * zoom
     if rng.random() < 0.5:
-        rgb, ids = rgb[:, ::-1].copy(), ids[:, ::-1].copy()
-    return relit(rgb, rng), ids
+        turned[:, 0] *= -1
+    room = np.array([width - size[0] * zoom, height - size[1] * zoom]) / 2
+    centre = np.array([width, height]) / 2 + rng.uniform(-1, 1, 2) * room
+    return np.column_stack([turned, centre - turned @ (np.array(size) / 2)]).astype(np.float64)
 
 
-class Encoder:
-    def __init__(self, file):
-        self._session = onnxruntime.InferenceSession(file, providers=["CPUExecutionProvider"])
-
-    def __call__(self, rgb):
-        """channels x rows x columns of what the image fills, and the network's pixels for one of the image."""
-        scale = INPUT_PX / max(rgb.shape[:2])
-        height, width = round(rgb.shape[0] * scale), round(rgb.shape[1] * scale)
-        tensor = np.zeros((1, 3, INPUT_PX, INPUT_PX), np.float32)
-        resized = cv2.resize(rgb, (width, height), interpolation=cv2.INTER_LINEAR)
-        tensor[0, :, :height, :width] = ((resized.astype(np.float32) - MEAN) / STD).transpose(2, 0, 1)
-        whole = self._session.run(None, {"input": tensor})[0][0]
-        return whole[:, : -(-height // EMBEDDED_PX), : -(-width // EMBEDDED_PX)], scale
+def warped(image, source_from_network, size, px, interpolation):
+    """The image seen so, in pixels of the network's input px wide; their corners, not their middles, are whole numbers."""
+    scaled = source_from_network.copy()
+    scaled[:, :2] *= px
+    scaled[:, 2] += scaled[:, :2] @ (0.5, 0.5) - 0.5
+    return cv2.warpAffine(image, scaled, (size[0] // px, size[1] // px), flags=interpolation | cv2.WARP_INVERSE_MAP)
 
 
 def things_in(ids):
@@ -107,50 +171,80 @@ def things_in(ids):
     return np.array(rows, np.float32).reshape(-1, 6), depth
 
 
-def targets(ids, things, depth, scale, rows, columns):
-    """What the finder shall say of rows x columns cells (FinderMaps of entity_finder.h, as values instead of logits), and how much a
-    cell counts: all cells of a thing together the root of their number, so that small things are heard."""
-    height, width = ids.shape
-    x, y = (np.arange(columns) + 0.5) * CELL_PX / scale - 0.5, (np.arange(rows) + 0.5) * CELL_PX / scale - 0.5
-    column, row = np.rint(x).astype(int), np.rint(y).astype(int)
-    shown = (row < height)[:, None] & (column < width)[None]
-    column, row = column.clip(0, width - 1), row.clip(0, height - 1)
-    reach = max(1, round(CELL_PX / scale / 2))  # the deepest pixel near the middle: small things keep their peak
-    deepest = cv2.dilate(depth, np.ones((reach, reach), np.uint8))
+def targets(ids, things, depth, rows, columns):
+    """What the finder shall say of rows x columns cells (FinderMaps of thing_cells.h, as values instead of logits), and how much a
+    cell counts: all cells of a thing together the root of their number, so that small things are heard. `ids` are at half the
+    input's resolution."""
+    cell = CELL_PX // 2
+    x, y = (np.arange(columns) + 0.5) * cell - 0.5, (np.arange(rows) + 0.5) * cell - 0.5
+    column, row = x.astype(int), y.astype(int)
+    deepest = cv2.dilate(depth, np.ones((cell, cell), np.uint8))  # near the middle: small things keep their peak
     number, wanted, weight = ids[row][:, column], np.zeros((6, rows, columns), np.float32), np.zeros((rows, columns), np.float32)
-    wanted[0] = deepest[row][:, column] * shown
-    weight[shown] = 0.02  # of no thing
+    wanted[0] = deepest[row][:, column]
+    weight[:] = 0.02  # of no thing
     for thing, x0, y0, x1, y1, pixels in things:
-        cells = (number == thing) & shown
-        if not cells.any():
+        v, u = np.nonzero(number == thing)
+        if not len(v):
             continue
-        weight[cells] = 1 / np.sqrt(cells.sum())
-        v, u = np.nonzero(cells)
+        weight[v, u] = 1 / np.sqrt(len(v))
         for side, distance in enumerate((x[u] - x0, y[v] - y0, x1 - x[u], y1 - y[v]), 1):
-            wanted[side][cells] = np.log(np.maximum(distance * scale / CELL_PX, SHORTEST_CELLS))
-        wanted[5][cells] = min(1, pixels / ((x1 - x0 + 1) * (y1 - y0 + 1)))
-    return wanted, weight
+            wanted[side][v, u] = np.log(np.maximum(distance / cell, SHORTEST_CELLS))
+        wanted[5][v, u] = min(1, pixels / ((x1 - x0 + 1) * (y1 - y0 + 1)))
+    return wanted, weight, number
 
 
-@dataclasses.dataclass
-class Sample:
-    embedding: np.ndarray  # float16
-    targets: np.ndarray
-    weight: np.ndarray
+def asked_cells(things, depth_of_cells, number, rng):
+    """Rows of (y, x, thing): cells to ask for the mask of their thing, deep ones more often."""
+    chosen = []
+    for thing in things[:, 0]:
+        v, u = np.nonzero(number == thing)
+        deep = depth_of_cells[v, u] ** 2
+        if not deep.sum():
+            continue
+        for place in rng.choice(len(v), ASKED, p=deep / deep.sum()):
+            chosen.append((v[place], u[place], thing))
+    return np.array(chosen, np.int64).reshape(-1, 3)
 
 
-def embedded(scene: pathlib.Path, encoder: Encoder, cache: pathlib.Path):
-    """A Sample for each frame of the recording, kept in the folder `cache`."""
-    for frame in sorted(scene.glob("results/frame*.jpg")):
-        name = f"{scene.parent.name}-{frame.stem}"
-        file = cache / f"{name}.npz"
-        if not file.exists():
-            rgb = cv2.cvtColor(cv2.imread(str(frame)), cv2.COLOR_BGR2RGB)
-            ids = cv2.imread(str(frame.with_name(frame.stem.replace("frame", "instance") + ".png")), cv2.IMREAD_UNCHANGED)
-            rgb, ids = varied(rgb, ids, np.random.default_rng(zlib.crc32(name.encode())))
-            embedding, scale = encoder(rgb)
-            wanted, weight = targets(ids, *things_in(ids), scale, *(2 * size for size in embedding.shape[1:]))
-            np.savez(file.with_suffix(".part.npz"), embedding=embedding.astype(np.float16), targets=wanted.astype(np.float16), weight=weight)
-            os.replace(file.with_suffix(".part.npz"), file)
-        with np.load(file) as kept:
-            yield Sample(kept["embedding"], kept["targets"], kept["weight"])
+def sample(frames, size, rng):
+    """A changed view of a random frame: rgb of `size`, targets, weights, cells that are asked, and the things' ids on the grid of masks."""
+    (rgb, ids), (other_rgb, other_ids) = (decoded(frames[i]) for i in rng.integers(0, len(frames), 2))
+    if rng.random() < 0.35:
+        rgb, ids = strewn(rgb, ids, other_rgb, other_ids, rng)
+    if rng.random() < 0.4:
+        rgb = recoloured(rgb, ids, rng)
+    if rng.random() < 0.35:
+        rgb = printed(rgb, ids, other_rgb, rng)
+    rgb = relit(rgb, rng)
+    return seen(rgb, ids, view(rng, ids.shape[1], ids.shape[0], size), size, rng)
+
+
+def seen(rgb, ids, source_from_network, size, rng):
+    flat = ids.astype(np.float32)  # OpenCV warps no 32-bit integers
+    half, grid = (warped(flat, source_from_network, size, px, cv2.INTER_NEAREST).astype(np.int32) for px in (2, GRID_PX))
+    things, depth = things_in(half)
+    wanted, weight, number = targets(half, things, depth, size[1] // CELL_PX, size[0] // CELL_PX)
+    image = warped(rgb, source_from_network, size, 1, cv2.INTER_LINEAR)
+    return image, wanted, weight, asked_cells(things, wanted[0], number, rng), grid
+
+
+def whole(frame):
+    """A frame as it is, as `sample` gives it."""
+    rgb, ids = decoded(frame)
+    scale = max(ids.shape) / INPUT_PX
+    size = round(ids.shape[1] / scale), round(ids.shape[0] / scale)
+    return seen(rgb, ids, np.array([[scale, 0, 0], [0, scale, 0]], np.float64), size, np.random.default_rng(0))
+
+
+def batch(frames, count, rng):
+    """`count` samples of one size, stacked; the asked cells with the number of their sample in front."""
+    size = ASPECTS[rng.integers(len(ASPECTS))]
+    samples = [sample(frames, size, rng) for _ in range(count)]
+    return stacked(samples)
+
+
+def stacked(samples):
+    images, wanted, weights, asked, grids = zip(*samples)
+    numbered = [np.column_stack([np.full(len(cells), place), cells]) for place, cells in enumerate(asked)]
+    return (np.stack(images), np.stack(wanted).astype(np.float16), np.stack(weights).astype(np.float16), np.concatenate(numbered),
+            np.stack(grids).astype(np.int16))  # fmt: skip

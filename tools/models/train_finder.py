@@ -2,11 +2,13 @@
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
 """Trains the entity finder of the default mask model and writes finder.onnx: from MobileSAM's embedding of an image, where its things
-are (src/ovimap/inference/sam/entity_finder.h). Renders what it learns from, which no benchmark's unseen half shares anything with;
-a broken-off run goes on where it stopped. Two cores need an hour and a half.
+are and which pixels are theirs (src/ovimap/inference/sam/entity_finder.h). First `render` and `pack` what it learns from, which no
+benchmark's unseen half shares anything with; a rendering that was broken off goes on where it stopped. `train` takes minutes on a
+GPU, a night on two cores.
 
     pip install -r tools/models/requirements-finder.txt  # in an environment of its own
-    python3 tools/models/train_finder.py build/release/bin/ovimap .models/mobilesam WORK_FOLDER
+    python3 tools/models/train_finder.py render build/release/bin/ovimap FRAMES_FOLDER
+    python3 tools/models/train_finder.py train FRAMES_FOLDER/*.npz --encoder .models/mobilesam/encoder.onnx
 
 Then the digest that it prints goes into mobilesam.yaml.
 """
@@ -15,141 +17,165 @@ import argparse
 import hashlib
 import math
 import pathlib
+import time
 
+import cv2
 import numpy as np
 import torch
 from torch import nn
 from torch.nn import functional
 
 import finder_data
-from onnx_graph import Graph
+from finder_network import Finder, exported
+from sam_encoder import SamEncoder
 
 HERE = pathlib.Path(__file__).parent
-CHANNELS, BATCH, RATE, WARM_UP, NOISE, DROPPED = 64, 6, 2e-3, 100, 0.02, 0.1
-BOX_WEIGHT, SHARE_WEIGHT, BOX_BETA = 0.5, 0.3, 0.2
-MIRRORED = [0, 3, 2, 1, 4, 5]  # left and right change places
+BATCH, REMEMBERED, RATE, WARM_UP, NOISE, DROPPED, DECAY = 16, 3, 2e-3, 100, 0.02, 0.1, 0.998
+BOX_WEIGHT, SHARE_WEIGHT, MASK_WEIGHT, QUALITY_WEIGHT, BOX_BETA = 0.5, 0.3, 1.0, 0.2, 0.2
+MEMORY = 96  # batches whose embeddings are kept to be learned from again
 
 
-class Finder(nn.Module):
-    """Convolutions that see about 300 pixels of the network's input around a place, then twice the resolution."""
+class Batches(torch.utils.data.IterableDataset):
+    """Batches of changed views without end, made beside the training."""
 
-    def __init__(self):
-        super().__init__()
-        half = CHANNELS // 2
-        self.a = nn.Conv2d(256, CHANNELS, 1)
-        self.b = nn.Conv2d(CHANNELS, CHANNELS, 3, padding=1)
-        self.c = nn.Conv2d(CHANNELS, CHANNELS, 3, padding=2, dilation=2)
-        self.d = nn.Conv2d(CHANNELS, CHANNELS, 3, padding=4, dilation=4)
-        self.up = nn.ConvTranspose2d(CHANNELS, half, 2, 2)
-        self.skip = nn.ConvTranspose2d(256, half // 2, 2, 2)
-        self.e = nn.Conv2d(half + half // 2, half, 3, padding=1)
-        self.f = nn.Conv2d(half, half, 3, padding=1)
-        self.o = nn.Conv2d(half, 6, 1)
-        nn.init.zeros_(self.o.bias)
-        self.o.bias.data[1:5] = 2.5  # things are some twelve cells across
+    def __init__(self, frames, seed):
+        self._frames, self._seed = frames, seed
 
-    def forward(self, x):
-        y = functional.relu(self.a(x))
-        for layer in (self.b, self.c, self.d):
-            y = y + functional.relu(layer(y))
-        y = functional.relu(self.e(torch.cat([functional.relu(self.up(y)), functional.relu(self.skip(x))], 1)))
-        return self.o(y + functional.relu(self.f(y)))
+    def __iter__(self):
+        cv2.setNumThreads(0)
+        worker = torch.utils.data.get_worker_info()
+        rng = np.random.default_rng([self._seed, worker.id if worker else 0])
+        while True:
+            yield tuple(torch.from_numpy(part) for part in finder_data.batch(self._frames, BATCH, rng))
 
 
-def exported(net) -> bytes:
-    """As ONNX, weights in 16 bits."""
-    weights = {name: tensor.numpy() for name, tensor in net.state_dict().items()}
-    graph = Graph("finder")
-
-    def convolved(tensor, layer, dilation=1, output=None):
-        weight = weights[layer + ".weight"]
-        return graph.add("Conv", tensor, graph.half_constant(weight), graph.constant(weights[layer + ".bias"]), output=output,
-                         kernel_shape=list(weight.shape[2:]), dilations=[dilation] * 2, pads=[weight.shape[2] // 2 * dilation] * 4)  # fmt: skip
-
-    def doubled(tensor, layer):
-        return graph.add("Relu", graph.add("ConvTranspose", tensor, graph.half_constant(weights[layer + ".weight"]),
-                                           graph.constant(weights[layer + ".bias"]), kernel_shape=[2, 2], strides=[2, 2]))  # fmt: skip
-
-    x = graph.add_input("embedding", [1, 256, "rows", "columns"])
-    y = graph.add("Relu", convolved(x, "a"))
-    for layer, dilation in (("b", 1), ("c", 2), ("d", 4)):
-        y = graph.add("Add", y, graph.add("Relu", convolved(y, layer, dilation)))
-    y = graph.add("Concat", doubled(y, "up"), doubled(x, "skip"), axis=1)
-    y = graph.add("Relu", convolved(y, "e"))
-    y = graph.add("Add", y, graph.add("Relu", convolved(y, "f")))
-    convolved(y, "o", output="things")
-    graph.add_output("things", [1, 6, "cell_rows", "cell_columns"])
-    return graph.serialised()
-
-
-def losses(found, wanted, weight):
+def cell_losses(things, wanted, weight):
     """Of depth, boxes and filled shares; the last two where the middle of a thing is near."""
-    depth = functional.binary_cross_entropy_with_logits(found[:, 0], wanted[:, 0], reduction="none")
+    depth = functional.binary_cross_entropy_with_logits(things[:, 0], wanted[:, 0], reduction="none")
     near = weight * wanted[:, 0] * (wanted[:, 5] > 0)
-    box = functional.smooth_l1_loss(found[:, 1:5], wanted[:, 1:5], reduction="none", beta=BOX_BETA).sum(1)
-    share = functional.binary_cross_entropy_with_logits(found[:, 5], wanted[:, 5], reduction="none")
+    box = functional.smooth_l1_loss(things[:, 1:5], wanted[:, 1:5], reduction="none", beta=BOX_BETA).sum(1)
+    share = functional.binary_cross_entropy_with_logits(things[:, 5], wanted[:, 5], reduction="none")
     return (depth * weight).sum() / weight.sum(), (box * near).sum() / near.sum(), (share * near).sum() / near.sum()
 
 
-def batch_of(samples, rng):
-    """Random samples, half of them mirrored, side by side at the upper left of the largest one's size."""
-    chosen = [samples[i] for i in rng.integers(0, len(samples), BATCH)]
-    rows, columns = (max(sample.embedding.shape[axis] for sample in chosen) for axis in (1, 2))
-    x = np.zeros((BATCH, 256, rows, columns), np.float32)
-    wanted, weight = np.zeros((BATCH, 6, 2 * rows, 2 * columns), np.float32), np.zeros((BATCH, 2 * rows, 2 * columns), np.float32)
-    for place, sample in enumerate(chosen):
-        step = -1 if rng.random() < 0.5 else 1
-        _, h, w = sample.embedding.shape
-        x[place, :, :h, :w] = sample.embedding[:, :, ::step]
-        wanted[place, :, : 2 * h, : 2 * w] = (sample.targets[MIRRORED] if step < 0 else sample.targets)[:, :, ::step]
-        weight[place, : 2 * h, : 2 * w] = sample.weight[:, ::step]
-    return torch.from_numpy(x), torch.from_numpy(wanted), torch.from_numpy(weight)
+def mask_losses(net, kernels, basis, asked, grid):
+    """Of the masks that the asked cells answer with, and of how good they say that these are."""
+    logits = net.masks(kernels, basis, asked[:, :3])
+    wanted = (grid[asked[:, 0]] == asked[:, 3].view(-1, 1, 1)).float()
+    sure = logits.sigmoid()
+    both = (sure * wanted).sum((1, 2))
+    dice = 1 - (2 * both + 1) / ((sure * sure).sum((1, 2)) + wanted.sum((1, 2)) + 1)
+    # A pixel of the thing's surroundings counts as much as one of the thing, however small that is.
+    pixels = functional.binary_cross_entropy_with_logits(logits, wanted, reduction="none")
+    balanced = 0.5 * ((pixels * wanted).sum((1, 2)) / (wanted.sum((1, 2)) + 1) + (pixels * (1 - wanted)).mean((1, 2)) * 4)
+    found = logits > 0
+    overlap = (found & (wanted > 0)).sum((1, 2)) / ((found | (wanted > 0)).sum((1, 2)) + 1e-6)
+    said = kernels[asked[:, 0], -1, asked[:, 1], asked[:, 2]]
+    return (dice + balanced).mean(), functional.binary_cross_entropy_with_logits(said, overlap.detach()), overlap.mean()
 
 
-def rate_at(step, steps):
-    return RATE * min(1, step / WARM_UP) * (0.5 * (1 + math.cos(math.pi * step / steps)) + 0.01)
+class Training:
+    """One finder that learns: its optimiser, and the mean of its weights over the last hundreds of steps, which is kept."""
+
+    def __init__(self, name, net, device):
+        self.name, self.net = name, net.to(device).train()
+        self._optimizer = torch.optim.AdamW(net.parameters(), lr=RATE, weight_decay=1e-3)
+        self.mean = torch.optim.swa_utils.AveragedModel(
+            net, multi_avg_fn=torch.optim.swa_utils.get_ema_multi_avg_fn(DECAY), use_buffers=True)  # fmt: skip
+        self._sums, self._steps = np.zeros(6), 0
+
+    def step(self, batch, rate):
+        embedding, wanted, weight, asked, grid = batch
+        for group in self._optimizer.param_groups:
+            group["lr"] = rate
+        device = embedding.device.type
+        with torch.autocast(device, torch.bfloat16, enabled=device == "cuda"):
+            things, kernels, basis = self.net(embedding)
+        depth, box, share = cell_losses(things.float(), wanted.float(), weight.float())
+        loss = depth + BOX_WEIGHT * box + SHARE_WEIGHT * share
+        mask = quality = overlap = torch.zeros(())
+        if basis is not None and len(asked):
+            mask, quality, overlap = mask_losses(self.net, kernels.float(), basis.float(), asked, grid)
+            loss = loss + MASK_WEIGHT * mask + QUALITY_WEIGHT * quality
+        self._optimizer.zero_grad()
+        loss.backward()
+        nn.utils.clip_grad_norm_(self.net.parameters(), 1)
+        self._optimizer.step()
+        self.mean.update_parameters(self.net)
+        self._sums += [value.item() for value in (depth, box, share, mask, quality, overlap)]
+        self._steps += 1
+
+    def report(self):
+        names = "depth", "boxes", "shares", "masks", "quality", "overlap"
+        told = f"{self.name}: " + ", ".join(f"{name} {total / max(1, self._steps):.3f}" for name, total in zip(names, self._sums))
+        self._sums[:], self._steps = 0, 0
+        return told
 
 
-def trained(samples, steps):
-    torch.manual_seed(0)
-    rng, net = np.random.default_rng(0), Finder()
-    optimizer = torch.optim.AdamW(net.parameters(), lr=RATE, weight_decay=1e-3)
-    sums = np.zeros(3)
+def rate_at(step, progress):
+    return RATE * min(1, step / WARM_UP) * (0.5 * (1 + math.cos(math.pi * min(1, progress))) + 0.01)
+
+
+def disturbed(batch, rng):
+    """As a camera never sees the same twice."""
+    embedding = batch[0] + NOISE * torch.randn_like(batch[0])
+    return (functional.dropout2d(embedding, DROPPED) if rng.random() < 0.5 else embedding, *batch[1:])
+
+
+def train(trainings, frames, encoder, device, steps, minutes, workers):
+    """Until `steps` batches were encoded or `minutes` have passed; each is learned from at once and, at random, again."""
+    loader = iter(torch.utils.data.DataLoader(Batches(frames, 0), batch_size=None, num_workers=workers, prefetch_factor=4 if workers else None))
+    rng, memory, start = np.random.default_rng(0), [], time.monotonic()
     for step in range(1, steps + 1):
-        optimizer.param_groups[0]["lr"] = rate_at(step, steps)
-        x, wanted, weight = batch_of(samples, rng)
-        x = x + NOISE * torch.randn_like(x)
-        if rng.random() < 0.5:
-            x = functional.dropout2d(x, DROPPED)
-        depth, box, share = losses(net(x), wanted, weight)
-        optimizer.zero_grad()
-        (depth + BOX_WEIGHT * box + SHARE_WEIGHT * share).backward()
-        nn.utils.clip_grad_norm_(net.parameters(), 1)
-        optimizer.step()
-        sums += depth.item(), box.item(), share.item()
-        if step % 100 == 0:
-            print(f"{step} of {steps}: depth {sums[0] / 100:.3f}, boxes {sums[1] / 100:.3f}, shares {sums[2] / 100:.3f}", flush=True)
-            sums[:] = 0
-    return net.eval()
+        progress = max(step / steps, (time.monotonic() - start) / (60 * minutes))
+        if progress > 1:
+            break
+        images, *rest = next(loader)
+        batch = (encoder(images), *(part.to(device) for part in rest))
+        batch = (*batch[:3], batch[3], batch[4].long())
+        memory.append(batch)
+        if len(memory) > MEMORY:
+            memory.pop(rng.integers(MEMORY))
+        for chosen in [batch, *(memory[i] for i in rng.integers(0, len(memory), REMEMBERED - 1))]:
+            for training in trainings:
+                training.step(disturbed(chosen, rng), rate_at(step, progress))
+        if step % 50 == 0:
+            print(f"{step} of {steps}, {time.monotonic() - start:.0f} s: " + "; ".join(training.report() for training in trainings), flush=True)
+
+
+def write(net, file):
+    data = exported(net)
+    file.write_bytes(data)
+    print(f"{file.name}: {len(data)} bytes, {hashlib.sha256(data).hexdigest()}")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("program", type=pathlib.Path)
-    parser.add_argument("model", type=pathlib.Path, help="the folder of MobileSAM, for its encoder")
-    parser.add_argument("work", type=pathlib.Path, help="folder for recordings and embeddings, 2 GB")
-    parser.add_argument("--steps", type=int, default=2000)
-    parser.add_argument("--out", type=pathlib.Path, default=HERE / "finder.onnx")
+    commands = parser.add_subparsers(required=True, dest="command")
+    command = commands.add_parser("render")
+    command.add_argument("program", type=pathlib.Path)
+    command.add_argument("folder", type=pathlib.Path, help="for recordings, 1 GB")
+    command = commands.add_parser("train")
+    command.add_argument("frames", type=pathlib.Path, nargs="+")
+    command.add_argument("--encoder", type=pathlib.Path, required=True)
+    command.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
+    command.add_argument("--workers", type=int, default=2)
+    command.add_argument("--steps", type=int, default=3000)
+    command.add_argument("--minutes", type=float, default=1e9)
+    command.add_argument("--out", type=pathlib.Path, default=HERE / "finder.onnx")
     arguments = parser.parse_args()
-    cache = arguments.work / "embedded"
-    cache.mkdir(parents=True, exist_ok=True)
-    encoder = finder_data.Encoder(arguments.model / "encoder.onnx")
-    samples = [sample for scene in finder_data.rendered(arguments.program.resolve(), arguments.work / "scenes")
-               for sample in finder_data.embedded(scene, encoder, cache)]  # fmt: skip
-    print(f"{len(samples)} frames")
-    data = exported(trained(samples, arguments.steps))
-    arguments.out.write_bytes(data)
-    print(f"finder.onnx: {hashlib.sha256(data).hexdigest()}")
+    if arguments.command == "render":
+        for name, scenes in ("frames", finder_data.scene_list()), ("kept-back", finder_data.scene_list(kept_back=True)):
+            finder_data.render(arguments.program.resolve(), arguments.folder / "scenes", scenes)
+            finder_data.pack(arguments.folder / "scenes", scenes, arguments.folder / f"{name}.npz")
+        return
+    torch.manual_seed(0)
+    frames = finder_data.unpack(arguments.frames)
+    print(f"{len(frames)} frames")
+    training = Training("finder", Finder(), arguments.device)
+    encoder = SamEncoder(arguments.encoder, arguments.device, BATCH)
+    train([training], frames, encoder, arguments.device, arguments.steps, arguments.minutes, arguments.workers)
+    write(training.mean.module.cpu().eval(), arguments.out)
 
 
 if __name__ == "__main__":
