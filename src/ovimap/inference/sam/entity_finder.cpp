@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/inference/sam/entity_finder.h"
 
+#include <algorithm>
+
 #include "ovimap/base/error.h"
 
 namespace ovimap {
@@ -9,19 +11,35 @@ namespace ovimap {
 namespace {
 
 constexpr const char* kNetwork = "finder";
+constexpr const char* kBasis = "basis";
+
 }  // namespace
 
 EntityFinder::EntityFinder(const ModelFolder& model, const RuntimeConfig& runtime)
     : file_((model.folder / model.network(kNetwork).file).string()),
       input_(model.input_of(kNetwork, "embedding")),
-      output_(model.output_of(kNetwork, "things")),
+      outputs_{model.output_of(kNetwork, "things")},
       input_size_px_(model.input.size_px),
       session_(file_, runtime) {
   session_.input(input_);
-  const TensorShape& shape = session_.output(output_).shape;
-  if (shape.size() != 4 || shape[1] != FinderMaps::kMaps)
-    throw Error(concat("model file ", file_, ": tensor '", output_, "' has shape ", to_text(shape),
-                       ", expected [1,", FinderMaps::kMaps, ",rows,columns]"));
+  const auto expect = [this](const std::string& output, std::int64_t channels) {
+    if (channels_of(output) != channels)
+      throw Error(concat("model file ", file_, ": tensor '", output, "' has shape ",
+                         to_text(session_.output(output).shape), ", expected [1,", channels,
+                         ",rows,columns]"));
+  };
+  expect(outputs_.front(), FinderMaps::kMaps);
+  if (!model.network(kNetwork).outputs.contains(kBasis)) return;
+  const std::string kernels = model.output_of(kNetwork, "kernels"),
+                    basis = model.output_of(kNetwork, kBasis);
+  expect(kernels, channels_of(basis) + FinderMaps::kPlaceTerms + 1);
+  outputs_.insert(outputs_.end(), {kernels, basis});
+}
+
+/// 0 of what is no image.
+std::int64_t EntityFinder::channels_of(const std::string& output) const {
+  const TensorShape& shape = session_.output(output).shape;
+  return shape.size() == 4 ? shape[1] : 0;
 }
 
 namespace {
@@ -52,7 +70,13 @@ FinderMaps EntityFinder::look(const FloatTensor& embedding, const InputFrame& fr
                                        cells(frame.width_px, embedding.shape[3]));
   const std::vector<TensorInput> inputs = {
       {input_, seen.shape, std::span<const float>(seen.values)}};
-  FloatTensor maps = session_.run(inputs, {&output_, 1}).front();
+  std::vector<FloatTensor> found = session_.run(inputs, outputs_);
+  FloatTensor& maps = found.front();
+  const auto expect = [this](const FloatTensor& tensor, const TensorShape& shape) {
+    if (tensor.shape != shape)
+      throw Error(concat("model file ", file_, ": ", to_text(tensor.shape), " came out, expected ",
+                         to_text(shape)));
+  };
   if (maps.shape.size() != 4 || maps.shape[1] != FinderMaps::kMaps)
     throw Error(concat("model file ", file_, ": ", to_text(maps.shape), " came out, expected [1,",
                        FinderMaps::kMaps, ",rows,columns]"));
@@ -60,8 +84,19 @@ FinderMaps EntityFinder::look(const FloatTensor& embedding, const InputFrame& fr
   // As many cells to a side of the embedding's, whatever part of it was looked at.
   const auto cell_px = static_cast<float>(input_size_px_) * static_cast<float>(seen.shape[3]) /
                        static_cast<float>(embedding.shape[3] * columns);
-  return {rows, columns, std::move(maps.values),
-          Eigen::Vector2f::Constant(cell_px).cwiseQuotient(frame.scale)};
+  FinderMaps said;
+  said.rows = rows, said.columns = columns;
+  said.values = std::move(maps.values);
+  said.image_from_cell = Eigen::Vector2f::Constant(cell_px).cwiseQuotient(frame.scale);
+  if (found.size() == 1) return said;
+  const std::int64_t images = channels_of(outputs_[2]);
+  expect(found[1], {1, images + FinderMaps::kPlaceTerms + 1, rows, columns});
+  expect(found[2], {1, images, 2 * rows, 2 * columns});
+  said.kernels = std::move(found[1].values);
+  said.basis = std::move(found[2].values);
+  said.whole_columns =
+      static_cast<int>(columns * embedding.shape[3] / std::max<std::int64_t>(1, seen.shape[3]));
+  return said;
 }
 
 }  // namespace ovimap

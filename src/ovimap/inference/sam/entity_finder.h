@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "ovimap/inference/models/image_tensor.h"
 #include "ovimap/inference/models/model_folder.h"
@@ -13,7 +15,8 @@ namespace ovimap {
 
 /// Finds things where neither depth nor a gap between masks shows one: what lies flat on a table, or
 /// is one with what it stands on. A small network reads the features that a promptable network made
-/// of the image, and says where to ask that one, and for what box. Trained on rendered rooms alone
+/// of the image, and says where to ask that one, and for what box; if it can, it gives masks as well,
+/// so that only doubtful ones are asked for (ThingMasks). Trained on rendered rooms alone
 /// (tools/models/train_finder.py); one-stage detection by centreness as in FCOS (Tian et al., ICCV
 /// 2019), where the centre is the pixel farthest from the thing's border.
 class EntityFinder {
@@ -30,7 +33,10 @@ class EntityFinder {
 
  private:
   std::string file_;  ///< for messages
-  std::string input_, output_;
+  std::int64_t channels_of(const std::string& output) const;
+
+  std::string input_;
+  std::vector<std::string> outputs_;  ///< things; where it gives masks, kernels and basis as well
   int input_size_px_ = 0;
   OnnxSession session_;
 };

@@ -51,6 +51,30 @@ TEST(EntityFinder, RefusesAnotherNumberOfMaps) {
   EXPECT_THROW(Mirror(5).finder(), Error);
 }
 
+TEST(EntityFinder, RefusesKernelsThatDoNotFitTheBasis) {
+  const auto model_with = [](int kernels) {
+    ScratchFolder scratch("entity_finder_masks");
+    OnnxGraph graph;
+    graph.input("embedding", OnnxGraph::kFloat, {1, 6, kAnySize, kAnySize})
+        .node("Identity", {"embedding"}, "things")
+        .node("Identity", {"embedding"}, "kernels")
+        .node("Identity", {"embedding"}, "basis")
+        .output("things", {1, 6, kAnySize, kAnySize})
+        .output("kernels", {1, kernels, kAnySize, kAnySize})
+        .output("basis", {1, 6, kAnySize, kAnySize});
+    scratch.write("finder.onnx", graph.file());
+    scratch.write("model.yaml",
+                  concat("kind: sam\nname: n\nlicense: l\nsource: s\n"
+                         "input: {size: 16, resize: long_side, mean: [0, 0, 0], std: [1, 1, 1]}\n"
+                         "networks:\n  finder: {file: finder.onnx, inputs: {embedding: embedding}, "
+                         "outputs: {things: things, kernels: kernels, basis: basis}}\n"
+                         "sha256:\n  finder.onnx: ",
+                         sha256_of_file(scratch.path() / "finder.onnx"), "\n"));
+    return EntityFinder(read_model_folder(scratch.path()), {});
+  };
+  EXPECT_THROW(model_with(6), Error);  // a basis of 6 images wants 12
+}
+
 TEST(EntityFinder, SeesTheGoldenMug) {
   const ModelFolder model = read_model_folder(inference_testdata() / "golden_sam" / "finder");
   ASSERT_TRUE(EntityFinder::is_in(model));
@@ -62,8 +86,8 @@ TEST(EntityFinder, SeesTheGoldenMug) {
       EntityFinder(model, {}).look(network.embedding(features), features.frame);
   const auto things = things_in(ThingCells(maps, 64, 32), {});
   ASSERT_EQ(things.size(), 1u);
-  EXPECT_EQ(things[0].interior_px, Eigen::Vector2f(21.5f, 13.5f));
-  EXPECT_NEAR(things[0].extent_px.volume(), 144, 1);
+  EXPECT_EQ(things[0].prompt.interior_px, Eigen::Vector2f(21.5f, 13.5f));
+  EXPECT_NEAR(things[0].prompt.extent_px.volume(), 144, 1);
 }
 
 }  // namespace

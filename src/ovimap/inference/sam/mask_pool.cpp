@@ -32,9 +32,10 @@ MaskPool::MaskPool(const SamConfig& config, const LogitGrid& grid,
                    std::optional<ThingCells> cells)
     : config_(config), grid_(grid), cells_(std::move(cells)) {}
 
-std::optional<AcceptedMask> MaskPool::test(const MaskProposals& proposals, int token) const {
+std::optional<AcceptedMask> MaskPool::test(const MaskProposals& proposals, int token,
+                                           float min_predicted_iou) const {
   const float predicted = proposals.predicted_iou[static_cast<std::size_t>(token)];
-  if (predicted < config_.min_predicted_iou) return std::nullopt;
+  if (predicted < min_predicted_iou) return std::nullopt;
   const std::size_t offset = static_cast<std::size_t>(token) * square(grid_.size);
   const std::span<const float> logits(proposals.logits.data() + offset, square(grid_.size));
 
@@ -66,7 +67,7 @@ std::optional<AcceptedMask> MaskPool::test(const MaskProposals& proposals, int t
 bool MaskPool::offer(const MaskProposals& proposals, const MaskPrompt* region, bool boxed) {
   std::vector<AcceptedMask> passed;
   for (int token = 0; token < proposals.tokens; ++token) {
-    std::optional<AcceptedMask> mask = test(proposals, token);
+    std::optional<AcceptedMask> mask = test(proposals, token, config_.min_predicted_iou);
     if (!mask || (boxed && share_inside(*mask, *region) < config_.part_inside_share)) continue;
     passed.push_back(std::move(*mask));
   }
@@ -80,6 +81,15 @@ bool MaskPool::offer(const MaskProposals& proposals, const MaskPrompt* region, b
   const auto region_px = static_cast<float>(region->area_px);
   return area_px >= config_.explained_share * region_px &&
          area_px <= config_.explained_ratio * region_px;
+}
+
+bool MaskPool::offer_unasked(const MaskProposals& proposal, const MaskPrompt& thing) {
+  std::optional<AcceptedMask> mask = test(proposal, 0, config_.finder.min_mask_iou);
+  if (!mask || share_inside(*mask, thing) < config_.part_inside_share || !fills(*mask, thing))
+    return false;
+  mask->own_region = true;
+  add(std::move(*mask));
+  return true;
 }
 
 std::size_t MaskPool::largest_stable(const std::vector<AcceptedMask>& passed) const {

@@ -42,6 +42,10 @@ class MaskPool {
   bool offer(const MaskProposals& proposals, const MaskPrompt* region = nullptr,
              bool boxed = false);
 
+  /// Takes the one mask that a finder made of a `thing` by itself, if it is sure enough of it. Returns
+  /// whether it is.
+  bool offer_unasked(const MaskProposals& proposal, const MaskPrompt& thing);
+
   const std::vector<AcceptedMask>& masks() const { return masks_; }
   /// What the masks explain that entities would be made of now.
   BitMask covered() const;
@@ -53,7 +57,8 @@ class MaskPool {
   Entities entities() const;
 
  private:
-  std::optional<AcceptedMask> test(const MaskProposals& proposals, int token) const;
+  std::optional<AcceptedMask> test(const MaskProposals& proposals, int token,
+                                   float min_predicted_iou) const;
   std::size_t largest_stable(const std::vector<AcceptedMask>& passed) const;
   std::size_t best_for_region(const std::vector<AcceptedMask>& passed,
                               const MaskPrompt& region) const;

@@ -203,11 +203,23 @@ TEST(MaskPool, PartsOfAHiddenMaskAreLookedAtWithoutIt) {
   EXPECT_EQ(pool.entities().scores.size(), 3u);
 }
 
+TEST(MaskPool, TakesAFindersOwnMaskThatIsLikeItsThing) {
+  const MaskPrompt thing = region_of({2, 2, 12, 12}), other = region_of({2, 2, 30, 30});
+  MaskPool pool(test_config(), test_grid());
+  EXPECT_FALSE(pool.offer_unasked(proposals_of({{{2, 2, 12, 12}, 0.5f}}), thing));  // not sure
+  EXPECT_FALSE(pool.offer_unasked(proposals_of({{{2, 2, 12, 12}, 0.8f}}), other));  // a part
+  EXPECT_FALSE(pool.offer_unasked(proposals_of({{{2, 2, 30, 12}, 0.8f}}), thing));  // reaches out
+  EXPECT_TRUE(pool.offer_unasked(proposals_of({{{2, 2, 12, 12}, 0.8f}}), thing));
+  EXPECT_EQ(pool.masks().size(), 1u);
+}
+
 /// A finder's cells of four image pixels, all of which see one box of grid pixels.
 ThingCells cells_that_see(const Box& box) {
   constexpr int kSide = 16;
   constexpr float kCellPx = 4;
-  FinderMaps maps{kSide, kSide, {}, {kCellPx, kCellPx}};
+  FinderMaps maps;
+  maps.rows = maps.columns = kSide;
+  maps.image_from_cell = {kCellPx, kCellPx};
   maps.values.assign(FinderMaps::kMaps * kSide * kSide, kSure);
   const auto set = [&](int map, int x, int y, int grid_px) {
     maps.values[static_cast<std::size_t>((map * kSide + y) * kSide + x)] =

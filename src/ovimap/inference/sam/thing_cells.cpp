@@ -91,15 +91,16 @@ float ThingCells::agreement(std::span<const Eigen::Vector2i> chosen,
   return weight > 0 ? sum / weight : 0;
 }
 
-std::vector<MaskPrompt> things_in(const ThingCells& cells, const FinderConfig& config) {
-  std::vector<MaskPrompt> things;
+std::vector<Thing> things_in(const ThingCells& cells, const FinderConfig& config) {
+  std::vector<Thing> things;
   for (const Middle& middle : middles_of(cells, config.min_depth)) {
     if (static_cast<int>(things.size()) == config.max_prompts) break;
     const MaskPrompt thing = cells.thing_at(middle.x, middle.y);
-    const bool is_new = std::none_of(things.begin(), things.end(), [&](const MaskPrompt& other) {
-      return overlap(thing.extent_px, other.extent_px) > kSameBoxIou;
+    const bool is_new = std::none_of(things.begin(), things.end(), [&](const Thing& other) {
+      return overlap(thing.extent_px, other.prompt.extent_px) > kSameBoxIou;
     });
-    if (thing.extent_px.contains(thing.interior_px) && is_new) things.push_back(thing);
+    if (thing.extent_px.contains(thing.interior_px) && is_new)
+      things.push_back({thing, {middle.x, middle.y}});
   }
   return things;
 }

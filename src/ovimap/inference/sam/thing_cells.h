@@ -18,11 +18,16 @@ namespace ovimap {
 /// deep in its thing the cell lies (1 in the thing's middle, 0 at its border), logarithms of the
 /// distances in cells to the left, upper, right and lower side of the thing's box, and the logit of
 /// the share of that box which it fills.
+/// Where it gives masks as well, its kernels are a weight of each image of the basis, kPlaceTerms
+/// terms of place and the logit of the mask's IoU, kernels x rows x columns; the basis is
+/// images x 2 rows x 2 columns (thing_masks.h).
 struct FinderMaps {
-  static constexpr int kMaps = 6;
+  static constexpr int kMaps = 6, kPlaceTerms = 5;
   int rows = 0, columns = 0;
   std::vector<float> values;  ///< kMaps x rows x columns
   Eigen::Vector2f image_from_cell = {1, 1};  ///< pixels of the image a cell is wide and high
+  std::vector<float> kernels, basis;         ///< empty: this finder gives no masks
+  int whole_columns = 0;                     ///< of cells, were the network's input filled
 };
 
 /// An image in cells, each of which says how deep it lies in its thing and where the thing's box is.
@@ -54,9 +59,15 @@ class ThingCells {
   std::vector<Eigen::AlignedBox2f> boxes_;
 };
 
+/// What a finder sees: where to ask for it, and the cell of its middle.
+struct Thing {
+  MaskPrompt prompt;
+  Eigen::Vector2i cell = {0, 0};
+};
+
 /// The things whose middles the cells show, the surest first, at most `max_prompts`: where a cell
 /// lies deeper than its neighbours and at least `min_depth` deep. Of two whose boxes are nearly the
 /// same the surer one.
-std::vector<MaskPrompt> things_in(const ThingCells& cells, const FinderConfig& config);
+std::vector<Thing> things_in(const ThingCells& cells, const FinderConfig& config);
 
 }  // namespace ovimap

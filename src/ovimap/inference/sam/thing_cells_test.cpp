@@ -28,7 +28,7 @@ class Drawn {
     for (int side = 1; side <= 4; ++side) set(side, x, y, std::log(reach_cells));
     return *this;
   }
-  std::vector<MaskPrompt> things(const FinderConfig& config = {}) const {
+  std::vector<Thing> things(const FinderConfig& config = {}) const {
     return things_in(cells(), config);
   }
   ThingCells cells() const { return {maps_, kWidth, kHeight}; }
@@ -43,17 +43,17 @@ class Drawn {
 TEST(ThingsIn, APeakIsAThingWithItsBox) {
   const auto things = Drawn().thing(3, 2, 1, 2).things();
   ASSERT_EQ(things.size(), 1u);
-  EXPECT_EQ(things[0].interior_px, Eigen::Vector2f(17, 12));
-  EXPECT_TRUE(things[0].extent_px.min().isApprox(Eigen::Vector2f(7, 2), 1e-5f));
-  EXPECT_TRUE(things[0].extent_px.max().isApprox(Eigen::Vector2f(27, 22), 1e-5f));
-  EXPECT_NEAR(things[0].area_px, 200, 1);
-  EXPECT_TRUE(things[0].known);
+  EXPECT_EQ(things[0].prompt.interior_px, Eigen::Vector2f(17, 12));
+  EXPECT_TRUE(things[0].prompt.extent_px.min().isApprox(Eigen::Vector2f(7, 2), 1e-5f));
+  EXPECT_TRUE(things[0].prompt.extent_px.max().isApprox(Eigen::Vector2f(27, 22), 1e-5f));
+  EXPECT_NEAR(things[0].prompt.area_px, 200, 1);
+  EXPECT_TRUE(things[0].prompt.known);
 }
 
 TEST(ThingsIn, BoxesEndAtTheImage) {
   const auto things = Drawn().thing(7, 5, 1, 4).things();
   ASSERT_EQ(things.size(), 1u);
-  EXPECT_EQ(things[0].extent_px.max(), Eigen::Vector2f(kWidth - 1, kHeight - 1));
+  EXPECT_EQ(things[0].prompt.extent_px.max(), Eigen::Vector2f(kWidth - 1, kHeight - 1));
 }
 
 TEST(ThingsIn, TheSurestComeFirstAndNoMoreThanAsked) {
@@ -61,8 +61,8 @@ TEST(ThingsIn, TheSurestComeFirstAndNoMoreThanAsked) {
   drawn.thing(1, 1, 0.5f, 1).thing(4, 4, 3, 1).thing(6, 1, 2, 1);
   const auto all = drawn.things();
   ASSERT_EQ(all.size(), 3u);
-  EXPECT_EQ(all[0].interior_px, Eigen::Vector2f(22, 22));
-  EXPECT_EQ(all[1].interior_px, Eigen::Vector2f(32, 7));
+  EXPECT_EQ(all[0].prompt.interior_px, Eigen::Vector2f(22, 22));
+  EXPECT_EQ(all[1].prompt.interior_px, Eigen::Vector2f(32, 7));
   EXPECT_EQ(drawn.things({.max_prompts = 2}).size(), 2u);
   EXPECT_EQ(drawn.things({.min_depth = 0.7f}).size(), 2u);
 }
@@ -72,13 +72,13 @@ TEST(ThingsIn, OfTwoWithOneBoxTheSurerCounts) {
   drawn.thing(2, 2, 2, 20).thing(5, 3, 1, 20);  // both boxes are the image
   const auto things = drawn.things();
   ASSERT_EQ(things.size(), 1u);
-  EXPECT_EQ(things[0].interior_px, Eigen::Vector2f(12, 12));
+  EXPECT_EQ(things[0].prompt.interior_px, Eigen::Vector2f(12, 12));
 }
 
 TEST(ThingsIn, AbsurdDistancesAreBounded) {
   const auto things = Drawn().thing(2, 2, 2, 1e30f).things();
   ASSERT_EQ(things.size(), 1u);
-  EXPECT_TRUE(things[0].extent_px.sizes().allFinite());
+  EXPECT_TRUE(things[0].prompt.extent_px.sizes().allFinite());
 }
 
 TEST(ThingCells, CellsAgreeWithTheBoxTheySee) {
