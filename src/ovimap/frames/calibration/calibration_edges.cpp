@@ -67,7 +67,7 @@ std::vector<DepthEdge> thinned(std::vector<DepthEdge> edges, int max_points) {
   return edges;
 }
 
-float brightness(Rgb8 pixel) {
+float luma(Rgb8 pixel) {
   return 0.299f * pixel.r + 0.587f * pixel.g + 0.114f * pixel.b;
 }
 
@@ -79,7 +79,7 @@ struct Gradient {
 Gradient gradient_of(const RgbImage& color) {
   const int width = color.width(), height = color.height();
   FloatImage bright(width, height);
-  for (std::size_t i = 0; i < color.size(); ++i) bright[i] = brightness(color[i]);
+  for (std::size_t i = 0; i < color.size(); ++i) bright[i] = luma(color[i]);
   Gradient gradient{FloatImage(width, height), FloatImage(width, height),
                     FloatImage(width, height)};
   for (int y = 1; y + 1 < height; ++y)

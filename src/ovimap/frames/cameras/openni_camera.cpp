@@ -16,7 +16,7 @@ namespace ovimap {
 
 namespace {
 
-constexpr double kTicksPerSecond = 1e6;  // of time stamps
+constexpr double kStampsPerSecond = 1e6;  // of time stamps
 constexpr int kWantedWidth_px = 640, kWantedHeight_px = 480;
 
 /// The URI that is meant: `wanted`, or that of the only camera.
@@ -152,7 +152,7 @@ class OpenNiCamera : public RgbdCamera {
   }
 
   static double time_s(const OniFrame& image) {
-    return static_cast<double>(image.timestamp) / kTicksPerSecond;
+    return static_cast<double>(image.timestamp) / kStampsPerSecond;
   }
 
   const FrameSourceConfig config_;

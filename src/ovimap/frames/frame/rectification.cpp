@@ -12,7 +12,7 @@ namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kRowsPerTask = 32;
+constexpr std::size_t kRectifiedRowsPerTask = 32;
 constexpr std::int64_t kMostPixels = std::int64_t{1} << 24;  ///< each takes 8 bytes of table
 constexpr double kLeastShown = 0.25;  ///< of the pinhole's picture
 
@@ -41,7 +41,7 @@ Rectification::Rectification(const PinholeCamera& camera, const Lens& lens, cons
                        ", which cannot be rectified; accepted are sides from 2 and up to ",
                        kMostPixels, " pixels"));
   origins_.resize(static_cast<std::size_t>(pixels));
-  parallel_for(static_cast<std::size_t>(height_), kRowsPerTask, [&](std::size_t row) {
+  parallel_for(static_cast<std::size_t>(height_), kRectifiedRowsPerTask, [&](std::size_t row) {
     for (int u = 0; u < width_; ++u) {
       const Eigen::Vector2d bent =
           lens.bend({(u - double{camera.cx}) / camera.fx,
@@ -80,7 +80,7 @@ RgbImage Rectification::color(const RgbImage& bent) const {
     return mix(mix(channel(at[0]), channel(at[1]), o.right),
                mix(channel(below[0]), channel(below[1]), o.right), o.down, kHalf);
   };
-  const std::size_t grain = kRowsPerTask * static_cast<std::size_t>(width_);
+  const std::size_t grain = kRectifiedRowsPerTask * static_cast<std::size_t>(width_);
   parallel_for(origins_.size(), grain, [&](std::size_t i) {
     const Origin& origin = origins_[i];
     const Rgb8* at = bent.data() + origin.index;
@@ -96,7 +96,7 @@ template <class Pixel>
 Image<Pixel> Rectification::nearest(const Image<Pixel>& bent) const {
   OVIMAP_ASSERT(bent.width() == width_ && bent.height() == height_);
   Image<Pixel> straight(width_, height_);
-  const std::size_t grain = kRowsPerTask * static_cast<std::size_t>(width_);
+  const std::size_t grain = kRectifiedRowsPerTask * static_cast<std::size_t>(width_);
   parallel_for(origins_.size(), grain, [&](std::size_t i) {
     const Origin& origin = origins_[i];
     if (!origin.shown) return;

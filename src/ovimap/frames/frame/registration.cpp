@@ -12,7 +12,7 @@ namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kRowsPerTask = 16;
+constexpr std::size_t kRegisteredRowsPerTask = 16;
 constexpr std::int32_t kOutside = -1;
 
 /// A colour pixel in one number, so that its column and row come back without a division.
@@ -96,7 +96,7 @@ Projected project(const Frame& frame, const DepthImage& depth) {
   const int width = depth.width(), height = depth.height();
   Projected seen{Image<std::int32_t>(width, height), Image<float>(width, height)};
   const DepthProjection projection(frame, depth);
-  parallel_for(static_cast<std::size_t>(height), kRowsPerTask, [&](std::size_t row) {
+  parallel_for(static_cast<std::size_t>(height), kRegisteredRowsPerTask, [&](std::size_t row) {
     const int v = static_cast<int>(row);
     projection.project_row(v, seen.pixel.row(v), seen.z_m.row(v));
   });
@@ -140,7 +140,8 @@ class NearestSurface {
 template <class Pixel>
 Image<Pixel> look_up(const Image<Pixel>& image, const Image<std::int32_t>& index) {
   Image<Pixel> result(index.width(), index.height());
-  parallel_for_ranges(index.size(), kRowsPerTask * static_cast<std::size_t>(index.width()),
+  parallel_for_ranges(index.size(),
+                      kRegisteredRowsPerTask * static_cast<std::size_t>(index.width()),
                       [&](std::size_t begin, std::size_t end) {
                         for (std::size_t i = begin; i < end; ++i)
                           if (index[i] >= 0) result[i] = image[static_cast<std::size_t>(index[i])];
@@ -155,7 +156,7 @@ Registration::Registration(const Frame& frame, const DepthImage& depth, float oc
       color_height_(frame.color_camera.height),
       color_index_(depth.width(), depth.height(), kNoColor) {
   OVIMAP_ASSERT(depth.same_size(frame.depth));
-  const std::size_t grain = kRowsPerTask * static_cast<std::size_t>(depth.width());
+  const std::size_t grain = kRegisteredRowsPerTask * static_cast<std::size_t>(depth.width());
   if (frame.registered()) {
     parallel_for(color_index_.size(), grain, [&](std::size_t i) {
       color_index_[i] = depth[i] > 0 ? static_cast<std::int32_t>(i) : kNoColor;

@@ -21,7 +21,7 @@ const Names kDepthIntrinsics = {
     "camera-intrinsics.txt",         "camera_intrinsics.txt", "K.txt"};
 const Names kColorIntrinsics = {"intrinsic/intrinsic_color.txt"};
 
-bool recognises(const fs::path& folder) {
+bool is_plain_folder(const fs::path& folder) {
   return !find_one(folder, kColorFolders, true).empty() &&
          !find_one(folder, kDepthFolders, true).empty();
 }
@@ -80,7 +80,7 @@ void find_poses(const fs::path& folder, const FrameSourceConfig& config,
   }
 }
 
-Recording list_frames(const fs::path& folder, const FrameSourceConfig& config) {
+Recording list_plain_folder(const fs::path& folder, const FrameSourceConfig& config) {
   Recording recording;
   recording.kind = kFolderReader.kind;
   recording.folder = folder;
@@ -108,7 +108,7 @@ Recording list_frames(const fs::path& folder, const FrameSourceConfig& config) {
 }  // namespace
 
 const Reader kFolderReader = {
-    "folder", "folders color (or rgb, images) and depth, with poses and camera.yaml", &recognises,
-    &list_frames};
+    "folder", "folders color (or rgb, images) and depth, with poses and camera.yaml",
+    &is_plain_folder, &list_plain_folder};
 
 }  // namespace ovimap

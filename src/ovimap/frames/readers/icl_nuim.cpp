@@ -15,14 +15,14 @@ namespace fs = std::filesystem;
 constexpr double kSameNumber = 0.25;  ///< the file's times are frame numbers
 
 /// "livingRoom2.gt.freiburg", "livingRoom2n.gt.freiburg" or "traj2.gt.freiburg"; empty: none.
-fs::path find_trajectory(const fs::path& folder) {
+fs::path find_ground_truth(const fs::path& folder) {
   const std::vector<fs::path> files = list_files(folder, {".freiburg"});
   return files.empty() ? fs::path() : files.front();
 }
 
-bool recognises(const fs::path& folder) {
+bool is_icl_nuim(const fs::path& folder) {
   return fs::is_directory(folder / "rgb") && fs::is_directory(folder / "depth") &&
-         !find_trajectory(folder).empty();
+         !find_ground_truth(folder).empty();
 }
 
 /// The renderer works in left-handed frames: both the world and the camera have x right, y up and z
@@ -34,14 +34,14 @@ Eigen::Matrix4d right_handed(const Eigen::Matrix4d& left_handed) {
   return turn_y_over * left_handed * turn_y_over;
 }
 
-Recording list_frames(const fs::path& folder, const FrameSourceConfig&) {
+Recording list_icl_nuim(const fs::path& folder, const FrameSourceConfig&) {
   Recording recording;
   recording.kind = kIclNuimReader.kind;
   recording.folder = folder;
   recording.rig.depth_camera =
       recording.rig.color_camera = {640, 480, 481.2f, 480.f, 319.5f, 239.5f};
   recording.rig.depth_units_per_m = 5000;
-  const Trajectory trajectory = read_trajectory(find_trajectory(folder));
+  const Trajectory trajectory = read_trajectory(find_ground_truth(folder));
   const PoseTimeline timeline(trajectory);
   for (const fs::path& color : list_files(folder / "rgb", {".png"})) {
     RecordedFrame frame;
@@ -67,6 +67,6 @@ Recording list_frames(const fs::path& folder, const FrameSourceConfig&) {
 }  // namespace
 
 const Reader kIclNuimReader = {"icl-nuim", "rgb/N.png, depth/N.png and *.gt.freiburg (ICL-NUIM)",
-                               &recognises, &list_frames};
+                               &is_icl_nuim, &list_icl_nuim};
 
 }  // namespace ovimap

@@ -5,6 +5,7 @@
 #include "ovimap/base/error.h"
 #include "ovimap/frames/frame/field_of_view.h"
 #include "ovimap/frames/readers/readers.h"
+#include "ovimap/frames/readers/stored_size.h"
 #include "ovimap/frames/recording/folder_parts.h"
 #include "ovimap/frames/recording/oni_file.h"
 #include "ovimap/frames/recording/time_pairs.h"
@@ -17,11 +18,9 @@ namespace fs = std::filesystem;
 
 /// Of OniPixelFormat.
 constexpr int kDepthMillimetres = 100, kDepthTenthMillimetres = 101, kRgb888 = 200;
-/// Of a stored image: twice its pixels as numbers, which no compression reaches, and some more.
-constexpr std::uint64_t kMostBytesAPixel = 6, kMostBytesBeside = std::uint64_t{1} << 20;
 
 /// SOURCE itself, or the one .oni file in it; empty when there is none.
-fs::path find_file(const fs::path& source) {
+fs::path find_oni(const fs::path& source) {
   if (fs::is_regular_file(source)) return source.extension() == ".oni" ? source : fs::path();
   const std::vector<fs::path> files = list_files(source, {".oni"});
   if (files.size() > 1)
@@ -30,8 +29,8 @@ fs::path find_file(const fs::path& source) {
   return files.empty() ? fs::path() : files.front();
 }
 
-bool recognises(const fs::path& source) {
-  return !find_file(source).empty();
+bool is_oni(const fs::path& source) {
+  return !find_oni(source).empty();
 }
 
 void check_stream(const fs::path& path, const OniStream& stream, const char* name) {
@@ -81,9 +80,7 @@ std::vector<double> times_of(const OniStream& stream) {
 }
 
 bool plausible_part(const FilePart& part, const OniStream& stream) {
-  const auto pixels =
-      static_cast<std::uint64_t>(stream.width) * static_cast<std::uint64_t>(stream.height);
-  return part.size <= kMostBytesAPixel * pixels + kMostBytesBeside;
+  return plausible_image_size(part.size, stream.width, stream.height);
 }
 
 RecordedFrame frame_of(const fs::path& path, const OniFile& file, std::size_t color, std::size_t depth) {
@@ -99,8 +96,8 @@ RecordedFrame frame_of(const fs::path& path, const OniFile& file, std::size_t co
   return frame;
 }
 
-Recording list_frames(const fs::path& source, const FrameSourceConfig& config) {
-  const fs::path path = find_file(source);
+Recording list_oni(const fs::path& source, const FrameSourceConfig& config) {
+  const fs::path path = find_oni(source);
   const OniFile file = list_oni_file(path);
   check_stream(path, file.depth, "depth");
   check_stream(path, file.color, "colour");
@@ -125,6 +122,6 @@ Recording list_frames(const fs::path& source, const FrameSourceConfig& config) {
 
 }  // namespace
 
-const Reader kOniReader = {"oni", "a .oni file (OpenNI)", &recognises, &list_frames};
+const Reader kOniReader = {"oni", "a .oni file (OpenNI)", &is_oni, &list_oni};
 
 }  // namespace ovimap

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 const Names kMetadata = {"metadata", "metadata.json"};
 
-bool recognises(const fs::path& folder) {
+bool is_record3d(const fs::path& folder) {
   return fs::is_directory(folder / "rgbd") && !find_one(folder, kMetadata, false).empty();
 }
 
@@ -93,7 +93,7 @@ void describe(const Metadata& metadata, std::size_t number, RecordedFrame& frame
   if (camera.valid()) frame.camera = camera;
 }
 
-Recording list_frames(const fs::path& folder, const FrameSourceConfig&) {
+Recording list_record3d(const fs::path& folder, const FrameSourceConfig&) {
   Recording recording;
   recording.kind = kRecord3dReader.kind;
   recording.folder = folder;
@@ -125,6 +125,6 @@ Recording list_frames(const fs::path& folder, const FrameSourceConfig&) {
 
 const Reader kRecord3dReader = {"record3d",
                                 "metadata with rgbd/N.jpg and N.depth (Record3D export)",
-                                &recognises, &list_frames};
+                                &is_record3d, &list_record3d};
 
 }  // namespace ovimap

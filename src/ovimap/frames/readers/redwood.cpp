@@ -19,20 +19,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const Names kColorFolders = {"color", "image", "rgb"};
+const Names kRedwoodColorFolders = {"color", "image", "rgb"};
 const Names kTrajectories = {"trajectory.log", "scene/trajectory.log"};
 const Names kIntrinsics = {"camera_intrinsic.json", "intrinsic.json"};
 
 /// trajectory.log, or the folder's only .log file; empty when there is none.
-fs::path find_trajectory(const fs::path& folder) {
+fs::path find_log(const fs::path& folder) {
   if (const fs::path named = find_one(folder, kTrajectories, false); !named.empty()) return named;
   const std::vector<fs::path> logs = list_files(folder, {".log"});
   return logs.size() == 1 ? logs.front() : fs::path();
 }
 
-bool recognises(const fs::path& folder) {
-  return !find_one(folder, kColorFolders, true).empty() && fs::is_directory(folder / "depth") &&
-         !find_trajectory(folder).empty();
+bool is_redwood(const fs::path& folder) {
+  return !find_one(folder, kRedwoodColorFolders, true).empty() &&
+         fs::is_directory(folder / "depth") && !find_log(folder).empty();
 }
 
 struct LogPose {
@@ -94,7 +94,7 @@ void assign_poses(const fs::path& file, std::vector<RecordedFrame>& frames) {
 }
 
 /// Open3D writes the matrix column by column: fx, 0, 0, 0, fy, 0, cx, cy, 1.
-PinholeCamera read_camera(const fs::path& file) {
+PinholeCamera read_redwood_camera(const fs::path& file) {
   const auto document = read_json(file, kSmallDocument);
   try {
     const auto k = document.at("intrinsic_matrix").get<std::vector<float>>();
@@ -110,15 +110,15 @@ PinholeCamera read_camera(const fs::path& file) {
   }
 }
 
-Recording list_frames(const fs::path& folder, const FrameSourceConfig&) {
+Recording list_redwood(const fs::path& folder, const FrameSourceConfig&) {
   Recording recording;
   recording.kind = kRedwoodReader.kind;
   recording.folder = folder;
   recording.rig.depth_camera = {640, 480, 525.f, 525.f, 319.5f, 239.5f};  // PrimeSense
   if (const fs::path file = find_one(folder, kIntrinsics, false); !file.empty())
-    recording.rig.depth_camera = read_camera(file);
+    recording.rig.depth_camera = read_redwood_camera(file);
   recording.rig.color_camera = recording.rig.depth_camera;
-  const fs::path color_folder = find_one(folder, kColorFolders, true);
+  const fs::path color_folder = find_one(folder, kRedwoodColorFolders, true);
   const std::vector<fs::path> colors = list_files(color_folder, {".jpg", ".jpeg", ".png"});
   if (colors.empty()) throw Error(concat(color_folder.string(), " holds no .jpg or .png image"));
   const std::vector<fs::path> depths = partner_files(colors, folder / "depth", ".png");
@@ -130,7 +130,7 @@ Recording list_frames(const fs::path& folder, const FrameSourceConfig&) {
     frame.depth = depths[i];
     recording.frames.push_back(std::move(frame));
   }
-  assign_poses(find_trajectory(folder), recording.frames);
+  assign_poses(find_log(folder), recording.frames);
   return recording;
 }
 
@@ -138,6 +138,6 @@ Recording list_frames(const fs::path& folder, const FrameSourceConfig&) {
 
 const Reader kRedwoodReader = {
     "redwood", "folders color (or image) and depth with trajectory.log (Redwood, Open3D)",
-    &recognises, &list_frames};
+    &is_redwood, &list_redwood};
 
 }  // namespace ovimap

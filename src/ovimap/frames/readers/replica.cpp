@@ -28,7 +28,7 @@ std::optional<std::int64_t> color_number(const fs::path& file) {
   return error == std::errc() && rest == end ? std::optional(number) : std::nullopt;
 }
 
-bool recognises(const fs::path& folder) {
+bool is_replica(const fs::path& folder) {
   if (!fs::is_directory(folder / "results")) return false;
   for (const auto& entry : fs::directory_iterator(folder / "results"))
     if (color_number(entry.path())) return true;
@@ -75,7 +75,7 @@ std::vector<double> read_times(const fs::path& file) {
   return std::move(*times);
 }
 
-Recording list_frames(const fs::path& folder, const FrameSourceConfig& config) {
+Recording list_replica(const fs::path& folder, const FrameSourceConfig& config) {
   Recording recording;
   recording.kind = kReplicaReader.kind;
   recording.folder = folder;
@@ -110,6 +110,6 @@ Recording list_frames(const fs::path& folder, const FrameSourceConfig& config) {
 const Reader kReplicaReader = {
     "replica",
     "results/frameNNNNNN.jpg and depthNNNNNN.png with traj.txt and cam_params.json (Replica)",
-    &recognises, &list_frames};
+    &is_replica, &list_replica};
 
 }  // namespace ovimap

@@ -11,13 +11,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool recognises(const fs::path& folder) {
+bool is_scannet(const fs::path& folder) {
   for (const char* part : {"color", "depth", "pose", "intrinsic"})
     if (!fs::is_directory(folder / part)) return false;
   return true;
 }
 
-PinholeCamera read_camera(const fs::path& file) {
+PinholeCamera read_scannet_camera(const fs::path& file) {
   if (!fs::is_regular_file(file))
     throw Error(concat(file.string(),
                        " is missing; a ScanNet export has intrinsic/intrinsic_color.txt and "
@@ -49,14 +49,14 @@ fs::path find_truth(const fs::path& folder, const std::string& name) {
   return {};
 }
 
-Recording list_frames(const fs::path& folder, const FrameSourceConfig&) {
+Recording list_scannet(const fs::path& folder, const FrameSourceConfig&) {
   Recording recording;
   recording.kind = kScanNetReader.kind;
   recording.folder = folder;
   CameraRig& rig = recording.rig;
   const fs::path cameras = folder / "intrinsic";
-  rig.depth_camera = read_camera(cameras / "intrinsic_depth.txt");
-  rig.color_camera = read_camera(cameras / "intrinsic_color.txt");
+  rig.depth_camera = read_scannet_camera(cameras / "intrinsic_depth.txt");
+  rig.color_camera = read_scannet_camera(cameras / "intrinsic_color.txt");
   // Each extrinsic leads into a frame common to both cameras: the toolkit projects a depth point
   // into the colour image by extrinsic_depth alone, with extrinsic_color the identity.
   rig.color_from_depth = read_extrinsic(cameras / "extrinsic_color.txt").inverse() *
@@ -83,6 +83,6 @@ Recording list_frames(const fs::path& folder, const FrameSourceConfig&) {
 
 const Reader kScanNetReader = {"scannet",
                                "folders color, depth, pose and intrinsic (ScanNet export)",
-                               &recognises, &list_frames};
+                               &is_scannet, &list_scannet};
 
 }  // namespace ovimap

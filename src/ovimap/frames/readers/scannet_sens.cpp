@@ -8,6 +8,7 @@
 
 #include "ovimap/base/error.h"
 #include "ovimap/frames/readers/readers.h"
+#include "ovimap/frames/readers/stored_size.h"
 #include "ovimap/frames/recording/folder_parts.h"
 #include "ovimap/image/size_limits.h"
 
@@ -22,9 +23,7 @@ static_assert(std::endian::native == std::endian::little, ".sens files are littl
 constexpr std::uint32_t kVersion = 4;
 constexpr std::uint64_t kLongestName = 4096;
 constexpr std::uint64_t kMostFrames = std::uint64_t{1} << 22;  ///< 38 hours
-/// Of a stored image: twice its pixels as numbers, which no compression reaches, and some more.
-constexpr std::uint64_t kMostBytesAPixel = 6, kMostBytesBeside = std::uint64_t{1} << 20;
-constexpr double kTicksPerSecond = 1e6;  ///< of the time stamps, which many files leave 0
+constexpr double kSensTicksPerSecond = 1e6;  ///< of the time stamps, which many files leave 0
 
 /// Numbers of the file's header.
 enum class ColorCompression : std::int32_t { kRaw = 0, kPng = 1, kJpeg = 2 };
@@ -151,9 +150,7 @@ struct FrameHeader {
 static_assert(sizeof(FrameHeader) == 96);
 
 bool plausible_part(std::uint64_t bytes, const PinholeCamera& camera) {
-  const auto pixels =
-      static_cast<std::uint64_t>(camera.width) * static_cast<std::uint64_t>(camera.height);
-  return bytes <= kMostBytesAPixel * pixels + kMostBytesBeside;
+  return plausible_image_size(bytes, camera.width, camera.height);
 }
 
 /// Notes where the frame's images lie. False when the file ends within the frame.
@@ -169,7 +166,7 @@ bool index_frame(SensFile& file, const CameraRig& rig, RecordedFrame& frame) {
   file.skip(header.depth_size);
   frame.pose = matrix_of(header.world_from_camera);
   if (header.depth_ticks > 0)
-    frame.timestamp_s = static_cast<double>(header.depth_ticks) / kTicksPerSecond;
+    frame.timestamp_s = static_cast<double>(header.depth_ticks) / kSensTicksPerSecond;
   frame.fault.clear();
   if (!plausible_part(header.color_size, rig.color_camera) ||
       !plausible_part(header.depth_size, rig.depth_camera))
@@ -178,7 +175,7 @@ bool index_frame(SensFile& file, const CameraRig& rig, RecordedFrame& frame) {
 }
 
 /// SOURCE itself, or the one .sens file in it; empty when there is none.
-fs::path find_file(const fs::path& source) {
+fs::path find_sens(const fs::path& source) {
   if (fs::is_regular_file(source)) return source.extension() == ".sens" ? source : fs::path();
   const std::vector<fs::path> files = list_files(source, {".sens"});
   if (files.size() > 1)
@@ -187,15 +184,15 @@ fs::path find_file(const fs::path& source) {
   return files.empty() ? fs::path() : files.front();
 }
 
-bool recognises(const fs::path& source) {
-  return !find_file(source).empty();
+bool is_sens(const fs::path& source) {
+  return !find_sens(source).empty();
 }
 
-Recording list_frames(const fs::path& source, const FrameSourceConfig&) {
+Recording list_sens(const fs::path& source, const FrameSourceConfig&) {
   Recording recording;
   recording.kind = kSensReader.kind;
   recording.folder = source;
-  SensFile file(find_file(source));
+  SensFile file(find_sens(source));
   read_header(file, recording);
   const auto promised = file.read<std::uint64_t>();
   bool whole = true;
@@ -216,6 +213,6 @@ Recording list_frames(const fs::path& source, const FrameSourceConfig&) {
 
 }  // namespace
 
-const Reader kSensReader = {"sens", "a .sens file (ScanNet)", &recognises, &list_frames};
+const Reader kSensReader = {"sens", "a .sens file (ScanNet)", &is_sens, &list_sens};
 
 }  // namespace ovimap

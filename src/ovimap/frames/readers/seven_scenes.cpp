@@ -25,7 +25,7 @@ std::optional<std::int64_t> frame_number(const std::string& file_name) {
   return known ? std::optional(number) : std::nullopt;
 }
 
-bool recognises(const std::filesystem::path& folder) {
+bool is_seven_scenes(const std::filesystem::path& folder) {
   for (const auto& entry : std::filesystem::directory_iterator(folder))
     if (frame_number(entry.path().filename().string())) return true;
   return false;
@@ -42,7 +42,7 @@ RecordedFrame record(const std::filesystem::path& folder, const std::string& ste
   return frame;
 }
 
-Recording list_frames(const std::filesystem::path& folder, const FrameSourceConfig&) {
+Recording list_seven_scenes(const std::filesystem::path& folder, const FrameSourceConfig&) {
   Recording recording;
   recording.kind = kSevenScenesReader.kind;
   recording.folder = folder;
@@ -71,7 +71,7 @@ Recording list_frames(const std::filesystem::path& folder, const FrameSourceConf
 }  // namespace
 
 const Reader kSevenScenesReader = {
-    "7scenes", "frame-NNNNNN.color.jpg (or .png), .depth.png and .pose.txt (7-Scenes)", &recognises,
-    &list_frames};
+    "7scenes", "frame-NNNNNN.color.jpg (or .png), .depth.png and .pose.txt (7-Scenes)",
+    &is_seven_scenes, &list_seven_scenes};
 
 }  // namespace ovimap

@@ -20,7 +20,7 @@ struct TimedImage {
   fs::path file;
 };
 
-bool recognises(const fs::path& folder) {
+bool is_tum(const fs::path& folder) {
   return fs::is_regular_file(folder / "rgb.txt") && fs::is_regular_file(folder / "depth.txt");
 }
 
@@ -47,7 +47,7 @@ std::vector<double> times_of(const std::vector<TimedImage>& images) {
   return times;
 }
 
-Recording list_frames(const fs::path& folder, const FrameSourceConfig& config) {
+Recording list_tum(const fs::path& folder, const FrameSourceConfig& config) {
   Recording recording;
   recording.kind = kTumReader.kind;
   recording.folder = folder;
@@ -81,7 +81,7 @@ Recording list_frames(const fs::path& folder, const FrameSourceConfig& config) {
 
 }  // namespace
 
-const Reader kTumReader = {"tum", "rgb.txt, depth.txt and groundtruth.txt (TUM RGB-D)", &recognises,
-                           &list_frames};
+const Reader kTumReader = {"tum", "rgb.txt, depth.txt and groundtruth.txt (TUM RGB-D)", &is_tum,
+                           &list_tum};
 
 }  // namespace ovimap

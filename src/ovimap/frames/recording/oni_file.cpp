@@ -26,7 +26,7 @@ constexpr std::string_view kFileMagic = "NI10";
 constexpr std::uint32_t kRecordMagic = 0x0052494E;  ///< "NIR"
 constexpr std::uint32_t kMostFields = 1u << 16;     ///< bytes that are read of a record's fields
 constexpr std::size_t kMostImages = std::size_t{1} << 22;
-constexpr double kTicksPerSecond = 1e6;
+constexpr double kOniTicksPerSecond = 1e6;
 
 enum RecordType : std::uint32_t {
   kNodeAddedOldest = 0x02,
@@ -151,7 +151,7 @@ void take_property(Fields fields, OniStream& stream) {
 void take_image(const Record& record, OniStream& stream) {
   const auto ticks = Fields(record.fields).value<std::uint64_t>();
   if (!ticks || stream.images.size() == kMostImages) return;
-  const double time_s = static_cast<double>(*ticks) / kTicksPerSecond;
+  const double time_s = static_cast<double>(*ticks) / kOniTicksPerSecond;
   if (!stream.images.empty() && time_s <= stream.images.back().time_s) return;
   stream.images.push_back({time_s, {record.payload, record.header.payload_size}});
 }
