@@ -6,6 +6,7 @@
 
 #include "ovimap/base/bounded_json.h"
 #include "ovimap/base/error.h"
+#include "ovimap/hub/description/refusal.h"
 
 namespace ovimap {
 
@@ -15,10 +16,6 @@ using Json = nlohmann::json;
 
 constexpr float kBrightest = 255.f;
 constexpr int kBilinear = 2, kBicubic = 3;  // as Pillow numbers its filters
-
-[[noreturn]] void fault(const std::filesystem::path& file, const std::string& what) {
-  throw Error(concat(file.string(), ": ", what, "; this model cannot be used"));
-}
 
 bool flag(const Json& processor, const char* key, bool otherwise) {
   const auto found = processor.find(key);
@@ -41,7 +38,7 @@ int square_side(const Json& size) {
 
 void read_resize(const Json& processor, const std::filesystem::path& file, ImageInputSpec& spec) {
   if (!flag(processor, "do_resize", true) || !processor.contains("size"))
-    fault(file, "it gives no size to resize to");
+    refuse_model(file, "it gives no size to resize to");
   const Json& size = processor["size"];
   const bool cropped = flag(processor, "do_center_crop", false);
   if (const int longest = edge(size, "longest_edge"); longest > 0 && !cropped) {
@@ -51,14 +48,14 @@ void read_resize(const Json& processor, const std::filesystem::path& file, Image
     spec.resize = cropped ? ResizeRule::kShortSide : ResizeRule::kStretch;
     spec.size_px = shortest;
     if (!cropped && !size.is_number_integer())
-      fault(file, "it keeps the aspect ratio without a crop, which is no square");
+      refuse_model(file, "it keeps the aspect ratio without a crop, which is no square");
   } else {
     spec.resize = ResizeRule::kStretch;
     spec.size_px = square_side(size);
   }
-  if (spec.size_px < 1) fault(file, concat("its size ", size.dump(), " is no square"));
+  if (spec.size_px < 1) refuse_model(file, concat("its size ", size.dump(), " is no square"));
   if (cropped && square_side(processor.value("crop_size", Json())) != spec.size_px)
-    fault(file, concat("it resizes to ", size.dump(), " and crops another size"));
+    refuse_model(file, concat("it resizes to ", size.dump(), " and crops another size"));
 }
 
 void read_values(const Json& processor, const std::filesystem::path& file, ImageInputSpec& spec) {
@@ -66,14 +63,14 @@ void read_values(const Json& processor, const std::filesystem::path& file, Image
   const double scale = flag(processor, "do_rescale", true)
                            ? processor.value("rescale_factor", 1. / kBrightest)
                            : 1.;
-  if (!(scale > 0)) fault(file, "'rescale_factor' must be positive");
+  if (!(scale > 0)) refuse_model(file, "'rescale_factor' must be positive");
   const bool normalised = flag(processor, "do_normalize", true);
   for (std::size_t i = 0; i < 3; ++i) {
     const double mean = normalised ? processor.at("image_mean").at(i).get<double>() : 0;
     const double deviation = normalised ? processor.at("image_std").at(i).get<double>() : 1;
     spec.mean[i] = static_cast<float>(mean / scale);
     spec.std[i] = static_cast<float>(deviation / scale);
-    if (!(spec.std[i] > 0)) fault(file, "'image_std' must be positive");
+    if (!(spec.std[i] > 0)) refuse_model(file, "'image_std' must be positive");
   }
 }
 
@@ -86,13 +83,14 @@ ImageInputSpec read_image_processor(const std::filesystem::path& file) {
     read_resize(processor, file, spec);
     const int filter = processor.at("resample").get<int>();
     if (filter != kBilinear && filter != kBicubic)
-      fault(file, concat("it resizes with filter ", filter,
-                         ", while ovimap knows bilinear (2) and bicubic (3)"));
+      refuse_model(file, concat("it resizes with filter ", filter,
+                                ", while ovimap knows bilinear (2) and bicubic (3)"));
     spec.filter = filter == kBilinear ? ResizeFilter::kBilinear : ResizeFilter::kBicubic;
     read_values(processor, file, spec);
     return spec;
   } catch (const Json::exception& error) {
-    fault(file, concat("it is not what an image processor's settings are (", error.what(), ")"));
+    refuse_model(file,
+                 concat("it is not what an image processor's settings are (", error.what(), ")"));
   }
 }
 

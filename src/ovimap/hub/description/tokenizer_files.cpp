@@ -11,6 +11,7 @@
 #include "ovimap/base/bounded_json.h"
 #include "ovimap/base/error.h"
 #include "ovimap/hub/description/piece_model.h"
+#include "ovimap/hub/description/refusal.h"
 #include "ovimap/image/codec.h"
 
 namespace ovimap {
@@ -24,10 +25,6 @@ using Json = nlohmann::json;
 constexpr const char* kPieces = "spiece.model";
 constexpr const char* kVocabulary = "vocab.json";
 constexpr const char* kMerges = "merges.txt";
-
-[[noreturn]] void fault(const fs::path& file, const std::string& what) {
-  throw Error(concat(file.string(), ": ", what, "; this model cannot be used"));
-}
 
 /// A token as settings name it: "</s>" or {"content": "</s>", ...}.
 std::string token_text(const Json& settings, const char* key) {
@@ -51,7 +48,7 @@ struct Backend {
     if (vocabulary.is_array())
       for (std::size_t i = 0; i < vocabulary.size(); ++i)
         if (vocabulary[i].at(0) == token) return static_cast<std::int64_t>(i);
-    fault(file, concat("it has no token '", token, "', which the settings name"));
+    refuse_model(file, concat("it has no token '", token, "', which the settings name"));
   }
 };
 
@@ -80,7 +77,7 @@ void read_post_processor(const Json& processor, const fs::path& file, TokenizerF
       }
       const std::string name = part.at("SpecialToken").at("id").get<std::string>();
       auto& id = before ? tokens.begin_id : tokens.end_id;
-      if (id) fault(file, "it puts more than one token before or after a text");
+      if (id) refuse_model(file, "it puts more than one token before or after a text");
       id = processor.at("special_tokens").at(name).at("ids").at(0).get<std::int64_t>();
     }
   }
@@ -111,16 +108,16 @@ void write_clip(const fs::path& folder, const Backend& backend) {
 /// SigLIP's SentencePiece model is used as it is; that it is the one of tokenizer.json is checked.
 void check_unigram(const fs::path& folder, const Backend& backend) {
   const fs::path file = folder / kPieces;
-  if (!fs::is_regular_file(file)) fault(file, "it is missing in the repository");
+  if (!fs::is_regular_file(file)) refuse_model(file, "it is missing in the repository");
   sentencepiece::SentencePieceProcessor pieces;
-  if (!pieces.Load(file.string()).ok()) fault(file, "it is no SentencePiece model");
+  if (!pieces.Load(file.string()).ok()) refuse_model(file, "it is no SentencePiece model");
   const Json& vocabulary = backend.model().at("vocab");
   for (int id = 0; id < pieces.GetPieceSize(); ++id)
     if (!pieces.IsControl(id) && !pieces.IsUnknown(id) &&
         (static_cast<std::size_t>(id) >= vocabulary.size() ||
          vocabulary[static_cast<std::size_t>(id)].at(0) != pieces.IdToPiece(id)))
-      fault(file, concat("its piece ", id, " is '", pieces.IdToPiece(id),
-                         "', while tokenizer.json has another"));
+      refuse_model(file, concat("its piece ", id, " is '", pieces.IdToPiece(id),
+                                "', while tokenizer.json has another"));
 }
 
 void read_kind(const fs::path& folder, const Backend& backend, const Json& settings,
@@ -139,9 +136,9 @@ void read_kind(const fs::path& folder, const Backend& backend, const Json& setti
     tokens.kind = "clip_bpe", tokens.text_rule = "clip", tokens.files = {kVocabulary, kMerges};
     write_clip(folder, backend);
   } else {
-    fault(backend.file, concat("its tokenizer, ", type,
-                               ", is none of SigLIP's, SigLIP 2's and "
-                               "CLIP's"));
+    refuse_model(backend.file, concat("its tokenizer, ", type,
+                                      ", is none of SigLIP's, SigLIP 2's and "
+                                      "CLIP's"));
   }
 }
 
@@ -156,11 +153,11 @@ TokenizerFiles prepare_tokenizer(const fs::path& folder) {
     read_post_processor(backend.all.value("post_processor", Json()), file, tokens);
     read_kind(folder, backend, settings, tokens);
     const std::string pad = token_text(settings, "pad_token");
-    if (pad.empty()) fault(config, "it names no 'pad_token'");
+    if (pad.empty()) refuse_model(config, "it names no 'pad_token'");
     tokens.pad_id = backend.id_of(pad);
     return tokens;
   } catch (const Json::exception& error) {
-    fault(file, concat("it is not what transformers writes (", error.what(), ")"));
+    refuse_model(file, concat("it is not what transformers writes (", error.what(), ")"));
   }
 }
 

@@ -31,7 +31,7 @@ OnnxSession open_network(const ModelFolder& model, const char* name, const Runti
   return {model.folder / model.network(name).file, runtime, use};
 }
 
-[[noreturn]] void fault(const ModelFolder& model, const std::string& what) {
+[[noreturn]] void network_fault(const ModelFolder& model, const std::string& what) {
   throw Error(concat("model ", model.folder.string(), ": ", what,
                      "; export the network again or correct model.yaml"));
 }
@@ -43,16 +43,16 @@ void check_tensor(const ModelFolder& model, const TensorInfo& tensor, TensorType
   for (std::size_t i = 0; fits && i < expected.size(); ++i)
     fits = tensor.shape[i] < 0 || expected[i] < 0 || tensor.shape[i] == expected[i];
   if (!fits || tensor.type != type)
-    fault(model, concat("tensor ", tensor.name, " has shape ", to_text(tensor.shape),
-                        tensor.type == type ? "" : " and another type", ", expected ", type_name,
-                        " ", to_text(expected)));
+    network_fault(model, concat("tensor ", tensor.name, " has shape ", to_text(tensor.shape),
+                                tensor.type == type ? "" : " and another type", ", expected ",
+                                type_name, " ", to_text(expected)));
 }
 
 /// How many items one run may take.
 std::size_t check_batch(const ModelFolder& model, const TensorInfo& input, int items_at_once) {
   if (input.shape[0] > 1)
-    fault(model, concat("tensor ", input.name, " takes exactly ", input.shape[0],
-                        " items at a time; any number, or 1, is accepted"));
+    network_fault(model, concat("tensor ", input.name, " takes exactly ", input.shape[0],
+                                " items at a time; any number, or 1, is accepted"));
   return input.shape[0] == 1 ? 1 : static_cast<std::size_t>(items_at_once);
 }
 
@@ -62,8 +62,8 @@ void check_inputs_known(const ModelFolder& model, const OnnxSession& session, co
   for (const TensorInfo& input : session.inputs())
     if (std::none_of(known.begin(), known.end(),
                      [&input](const auto& entry) { return entry.second == input.name; }))
-      fault(model, concat("network ", network, " wants an input ", input.name,
-                          ", which model.yaml does not give a role"));
+      network_fault(model, concat("network ", network, " wants an input ", input.name,
+                                  ", which model.yaml does not give a role"));
 }
 
 std::size_t check_image_network(const ModelFolder& model, const OnnxSession& session,
@@ -83,14 +83,14 @@ std::size_t check_text_network(const ModelFolder& model, const OnnxSession& sess
   check_inputs_known(model, session, kText);
   for (const auto& [role, name] : model.network(kText).inputs) {
     if (role != "ids" && role != "mask" && role != "ones" && role != "types")
-      fault(model, concat("'networks.text.inputs.", role, "' is no role; accepted is ids, mask, ",
-                          "ones or types"));
+      network_fault(model, concat("'networks.text.inputs.", role,
+                                  "' is no role; accepted is ids, mask, ", "ones or types"));
     check_tensor(model, session.input(name), TensorType::kInt64, "int64",
                  {kAnySize, spec.text.pad_to_context ? spec.text.context_length : kAnySize});
   }
   if (ids.shape[1] > 0 && !spec.text.pad_to_context)
-    fault(model, concat("tensor ", ids.name, " takes exactly ", ids.shape[1],
-                        " ids, but 'pad_to_context' is not true"));
+    network_fault(model, concat("tensor ", ids.name, " takes exactly ", ids.shape[1],
+                                " ids, but 'pad_to_context' is not true"));
   check_tensor(model, session.output(model.output_of(kText, kEmbedding)), TensorType::kFloat,
                "float32", {kAnySize, spec.dimension});
   // Without padding texts run alone, so that none changes with its neighbours: quantised networks
@@ -203,8 +203,8 @@ void DualEncoder::run(const OnnxSession& session, const std::string& network,
   const std::vector<FloatTensor> results = session.run(inputs, {&output, 1});
   const TensorShape expected = {inputs[0].shape[0], spec_.dimension};
   if (results[0].shape != expected)
-    fault(model_, concat("network ", network, " gave embeddings of shape ",
-                         to_text(results[0].shape), ", expected ", to_text(expected)));
+    network_fault(model_, concat("network ", network, " gave embeddings of shape ",
+                                 to_text(results[0].shape), ", expected ", to_text(expected)));
   std::copy(results[0].values.begin(), results[0].values.end(), rows.begin());
 }
 

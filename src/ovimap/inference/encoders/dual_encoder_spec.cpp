@@ -13,7 +13,7 @@ namespace ovimap {
 
 namespace {
 
-[[noreturn]] void fault(const ModelFolder& model, const std::string& what) {
+[[noreturn]] void spec_fault(const ModelFolder& model, const std::string& what) {
   throw Error(concat("model file ", (model.folder / "model.yaml").string(), ": ", what));
 }
 
@@ -24,7 +24,8 @@ const std::string* find_text(const ModelFolder& model, const std::string& key) {
 
 const std::string& require_text(const ModelFolder& model, const std::string& key) {
   const std::string* text = find_text(model, key);
-  if (!text) fault(model, concat("'", key, "' is missing; a model of kind dual_encoder needs it"));
+  if (!text)
+    spec_fault(model, concat("'", key, "' is missing; a model of kind dual_encoder needs it"));
   return *text;
 }
 
@@ -36,21 +37,21 @@ std::optional<Number> find_number(const ModelFolder& model, const std::string& k
   const char* end = text->data() + text->size();
   const auto [stop, fail] = std::from_chars(text->data(), end, value);
   if (fail != std::errc() || stop != end)
-    fault(model, concat("'", key, "' is '", *text, "'; a number is accepted"));
+    spec_fault(model, concat("'", key, "' is '", *text, "'; a number is accepted"));
   return value;
 }
 
 int require_count(const ModelFolder& model, const std::string& key) {
   require_text(model, key);
   const int count = *find_number<int>(model, key);
-  if (count < 1) fault(model, concat("'", key, "' is ", count, "; it must be at least 1"));
+  if (count < 1) spec_fault(model, concat("'", key, "' is ", count, "; it must be at least 1"));
   return count;
 }
 
 std::optional<std::int64_t> find_id(const ModelFolder& model, const std::string& key) {
   const auto id = find_number<std::int64_t>(model, key);
   if (id && (*id < 0 || *id > std::numeric_limits<std::int32_t>::max()))
-    fault(model, concat("'", key, "' is ", *id, "; a token's id is accepted"));
+    spec_fault(model, concat("'", key, "' is ", *id, "; a token's id is accepted"));
   return id;
 }
 
@@ -65,7 +66,7 @@ Value find_word(const ModelFolder& model, const std::string& key,
     if (word == *given) return value;
     accepted += (accepted.empty() ? "" : ", ") + word;
   }
-  fault(model, concat("'", key, "' is '", *given, "'; accepted is one of ", accepted));
+  spec_fault(model, concat("'", key, "' is '", *given, "'; accepted is one of ", accepted));
 }
 
 bool find_flag(const ModelFolder& model, const std::string& key) {
@@ -85,7 +86,7 @@ TextSpec read_text_spec(const ModelFolder& model) {
                                    {"bert", TextRule::kBert}});
   spec.lowercase = find_flag(model, "lowercase") && spec.rule == TextRule::kNone;
   if (spec.lowercase && spec.tokenizer != "sentencepiece")
-    fault(model, "'lowercase' without 'text_rule' is for the tokenizer sentencepiece only");
+    spec_fault(model, "'lowercase' without 'text_rule' is for the tokenizer sentencepiece only");
   spec.context_length = require_count(model, "context_length");
   spec.pad_to_context = find_flag(model, "pad_to_context");
   spec.pad_left = find_word<bool>(model, "pad_side", {{"right", false}, {"left", true}});
@@ -93,7 +94,7 @@ TextSpec read_text_spec(const ModelFolder& model) {
   spec.begin_id = find_id(model, "bos_id");
   spec.end_id = find_id(model, "eos_id");
   if (spec.context_length < spec.begin_id.has_value() + spec.end_id.has_value() + 1)
-    fault(model, "'context_length' leaves no room for a text between bos_id and eos_id");
+    spec_fault(model, "'context_length' leaves no room for a text between bos_id and eos_id");
   return spec;
 }
 
@@ -101,7 +102,8 @@ TextSpec read_text_spec(const ModelFolder& model) {
 std::filesystem::path tokenizer_file(const ModelFolder& model, const std::string& key) {
   const std::string& name = require_text(model, key);
   if (!model.sha256.contains(name))
-    fault(model, concat("'sha256' has no digest of ", name, ", which '", key, "' names; add it"));
+    spec_fault(model,
+               concat("'sha256' has no digest of ", name, ", which '", key, "' names; add it"));
   return model.folder / name;
 }
 
@@ -111,7 +113,8 @@ DualEncoderSpec read_dual_encoder_spec(const ModelFolder& model) {
   if (model.kind != "dual_encoder")
     throw Error(concat("model ", model.folder.string(), " is of kind '", model.kind,
                        "'; as an image-text encoder only kind dual_encoder is accepted"));
-  if (model.input.size_px < 1) fault(model, "'input' is missing; it says how images are prepared");
+  if (model.input.size_px < 1)
+    spec_fault(model, "'input' is missing; it says how images are prepared");
   DualEncoderSpec spec;
   spec.dimension = require_count(model, "embedding_dim");
   spec.text = read_text_spec(model);
@@ -121,7 +124,8 @@ DualEncoderSpec read_dual_encoder_spec(const ModelFolder& model) {
   if (scale && bias) spec.calibration = MatchCalibration{*scale, *bias};
   if (const std::string* prompt = find_text(model, "prompt_template")) {
     if (prompt->find("{}") == std::string::npos)
-      fault(model, concat("'prompt_template' is '", *prompt, "'; it needs {} where the name goes"));
+      spec_fault(model,
+                 concat("'prompt_template' is '", *prompt, "'; it needs {} where the name goes"));
     spec.prompt_template = *prompt;
   }
   return spec;

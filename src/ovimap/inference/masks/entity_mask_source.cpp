@@ -19,21 +19,13 @@ namespace ovimap {
 namespace {
 
 constexpr const char* kNetwork = "network";
-constexpr std::size_t kRowsPerTask = 16;
+constexpr std::size_t kMaskRowsPerTask = 16;
 
 struct Query {
   std::span<const float> logits;
   float class_probability = 0;
   float score = 0;
 };
-
-const ModelFolder& checked(const ModelFolder& model) {
-  if (model.kind != "entity")
-    throw Error(concat("model ", model.folder.string(), " is of kind '", model.kind,
-                       "'; as a query-based network only kind entity is accepted"));
-  verify_model_files(model);
-  return model;
-}
 
 /// The largest softmax probability but for the last class, "no object".
 float class_probability(std::span<const float> logits) {
@@ -95,7 +87,7 @@ std::vector<Query> good_queries(const FloatTensor& class_logits, const FloatTens
 
 IdImage paint(const std::vector<Query>& queries, const LogitGrid& grid, float threshold) {
   IdImage ids(grid.image_width_px, grid.image_height_px);
-  parallel_for(static_cast<std::size_t>(ids.height()), kRowsPerTask, [&](std::size_t row) {
+  parallel_for(static_cast<std::size_t>(ids.height()), kMaskRowsPerTask, [&](std::size_t row) {
     const int y = static_cast<int>(row);
     for (std::size_t k = 0; k < queries.size(); ++k) {
       const LogitRow logits(queries[k].logits, grid, y);
@@ -119,7 +111,7 @@ void list_fields(EntityConfig& config, ConfigFields& fields) {
 
 EntityMaskSource::EntityMaskSource(const ModelFolder& model, const EntityConfig& config,
                                    const RuntimeConfig& runtime)
-    : model_(checked(model)),
+    : model_(checked_model(model, "entity", "as a query-based network")),
       config_(config),
       session_(model.folder / model.network(kNetwork).file, runtime) {
   session_.input(model.input_of(kNetwork, "image"));

@@ -13,7 +13,7 @@ namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kRowsPerTask = 32;
+constexpr std::size_t kTensorRowsPerTask = 32;
 
 struct Affine {
   float scale, offset;
@@ -64,7 +64,7 @@ void write_image_tensor(const RgbImage& image, const ImageInputSpec& spec,
   const auto size = static_cast<std::size_t>(spec.size_px);
   std::fill(values.begin(), values.end(), 0.f);
   const Affine r = normalisation(spec, 0), g = normalisation(spec, 1), b = normalisation(spec, 2);
-  parallel_for(static_cast<std::size_t>(pixels.height()), kRowsPerTask, [&](std::size_t y) {
+  parallel_for(static_cast<std::size_t>(pixels.height()), kTensorRowsPerTask, [&](std::size_t y) {
     const Rgb8* from = pixels.row(static_cast<int>(y));
     float* red = values.data() + y * size;
     float* green = red + size * size;

@@ -175,6 +175,15 @@ ModelFolder read_model_folder(const fs::path& folder) {
   }
 }
 
+const ModelFolder& checked_model(const ModelFolder& model, const std::string& kind,
+                                 const std::string& use) {
+  if (model.kind != kind)
+    throw Error(concat("model ", model.folder.string(), " is of kind '", model.kind, "'; ", use,
+                       " only kind ", kind, " is accepted"));
+  verify_model_files(model);
+  return model;
+}
+
 void verify_model_files(const ModelFolder& model) {
   verify_model_files(model, [](const std::string&) { return true; });
 }

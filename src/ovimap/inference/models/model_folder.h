@@ -66,6 +66,10 @@ void verify_model_files(const ModelFolder& model);
 /// The same for those of its files whose name `wanted` accepts.
 void verify_model_files(const ModelFolder& model,
                         const std::function<bool(const std::string& file)>& wanted);
+/// The model itself when it is of `kind` and its files are verified. Throws Error otherwise; `use`
+/// says what it was wanted for: "as a promptable network".
+const ModelFolder& checked_model(const ModelFolder& model, const std::string& kind,
+                                 const std::string& use);
 
 /// Where models are looked for, in this order: `model_dirs`, the folders of $OVIMAP_MODELS
 /// (separated by colons), `.models` in the working folder and in each folder above the program, and

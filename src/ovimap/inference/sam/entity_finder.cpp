@@ -10,15 +10,15 @@ namespace ovimap {
 
 namespace {
 
-constexpr const char* kNetwork = "finder";
+constexpr const char* kFinder = "finder";
 constexpr const char* kBasis = "basis";
 
 }  // namespace
 
 EntityFinder::EntityFinder(const ModelFolder& model, const RuntimeConfig& runtime)
-    : file_((model.folder / model.network(kNetwork).file).string()),
-      input_(model.input_of(kNetwork, "embedding")),
-      outputs_{model.output_of(kNetwork, "things")},
+    : file_((model.folder / model.network(kFinder).file).string()),
+      input_(model.input_of(kFinder, "embedding")),
+      outputs_{model.output_of(kFinder, "things")},
       input_size_px_(model.input.size_px),
       session_(file_, runtime) {
   session_.input(input_);
@@ -29,9 +29,9 @@ EntityFinder::EntityFinder(const ModelFolder& model, const RuntimeConfig& runtim
                          ",rows,columns]"));
   };
   expect(outputs_.front(), FinderMaps::kMaps);
-  if (!model.network(kNetwork).outputs.contains(kBasis)) return;
-  const std::string kernels = model.output_of(kNetwork, "kernels"),
-                    basis = model.output_of(kNetwork, kBasis);
+  if (!model.network(kFinder).outputs.contains(kBasis)) return;
+  const std::string kernels = model.output_of(kFinder, "kernels"),
+                    basis = model.output_of(kFinder, kBasis);
   expect(kernels, channels_of(basis) + FinderMaps::kPlaceTerms + 1);
   outputs_.insert(outputs_.end(), {kernels, basis});
 }

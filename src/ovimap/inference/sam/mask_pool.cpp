@@ -15,7 +15,7 @@ namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kRowsPerTask = 16;
+constexpr std::size_t kPooledRowsPerTask = 16;
 
 std::size_t square(int size) {
   return static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
@@ -232,14 +232,16 @@ Entities MaskPool::entities() const {
   const std::vector<std::size_t> order = whole_of(shown_masks());
   Entities entities{IdImage(grid_.image_width_px, grid_.image_height_px), {}};
   for (const std::size_t i : order) entities.scores.push_back(masks_[i].score);
-  parallel_for(static_cast<std::size_t>(grid_.image_height_px), kRowsPerTask, [&](std::size_t row) {
-    const int y = static_cast<int>(row);
-    for (std::size_t k = 0; k < order.size(); ++k) {  // small over large
-      const LogitRow logits(masks_[order[k]].logits, grid_, y);
-      for (int x = 0; x < grid_.image_width_px; ++x)
-        if (logits.at(x) > 0) entities.ids.at(x, y) = static_cast<std::uint16_t>(k + 1);
-    }
-  });
+  parallel_for(static_cast<std::size_t>(grid_.image_height_px), kPooledRowsPerTask,
+               [&](std::size_t row) {
+                 const int y = static_cast<int>(row);
+                 for (std::size_t k = 0; k < order.size(); ++k) {  // small over large
+                   const LogitRow logits(masks_[order[k]].logits, grid_, y);
+                   for (int x = 0; x < grid_.image_width_px; ++x)
+                     if (logits.at(x) > 0)
+                       entities.ids.at(x, y) = static_cast<std::uint16_t>(k + 1);
+                 }
+               });
   return keep_visible(std::move(entities), config_.min_mask_px);
 }
 

@@ -12,7 +12,7 @@ namespace ovimap {
 namespace {
 
 // Roles of model.yaml's tensors.
-constexpr const char* kImage = "image";
+constexpr const char* kImageInput = "image";
 constexpr const char* kPoints = "points";
 constexpr const char* kLabels = "labels";
 constexpr const char* kBoxes = "boxes";
@@ -21,14 +21,6 @@ constexpr const char* kHasMaskInput = "has_mask_input";
 constexpr const char* kImageSize = "image_size";
 constexpr const char* kMasks = "masks";
 constexpr const char* kScores = "scores";
-
-const ModelFolder& checked(const ModelFolder& model) {
-  if (model.kind != "sam")
-    throw Error(concat("model ", model.folder.string(), " is of kind '", model.kind,
-                       "'; as a promptable network only kind sam is accepted"));
-  verify_model_files(model);
-  return model;
-}
 
 [[noreturn]] void wrong_shape(const std::filesystem::path& folder, const TensorInfo& tensor,
                               const std::string& expected) {
@@ -44,7 +36,7 @@ std::int64_t element_count(const TensorShape& shape) {
 }  // namespace
 
 SamNetwork::SamNetwork(const ModelFolder& model, const RuntimeConfig& runtime)
-    : folder_(checked(model).folder),
+    : folder_(checked_model(model, "sam", "as a promptable network").folder),
       input_(model.input),
       encoder_spec_(model.network("encoder")),
       decoder_spec_(model.network("decoder")),
@@ -55,7 +47,7 @@ SamNetwork::SamNetwork(const ModelFolder& model, const RuntimeConfig& runtime)
 }
 
 void SamNetwork::check_tensors(const ModelFolder& model) {
-  const TensorInfo& image = encoder_.input(model.input_of("encoder", kImage));
+  const TensorInfo& image = encoder_.input(model.input_of("encoder", kImageInput));
   const TensorShape& shape = image.shape;
   const auto fits = [this](std::int64_t size) {
     return size == kAnySize || size == input_.size_px;
@@ -124,7 +116,7 @@ std::vector<PromptPoints> SamNetwork::as_decoder_takes(
 ImageFeatures SamNetwork::encode(const RgbImage& image) const {
   const FloatTensor tensor = image_tensor(image, input_);
   const std::vector<TensorInput> inputs = {
-      {encoder_spec_.inputs.at(kImage), tensor.shape, std::span<const float>(tensor.values)}};
+      {encoder_spec_.inputs.at(kImageInput), tensor.shape, std::span<const float>(tensor.values)}};
   return {input_frame(image.width(), image.height(), input_),
           encoder_.run(inputs, feature_outputs_)};
 }

@@ -20,25 +20,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kUnknown = "<|endoftext|>";  // CLIP has no token of its own for it
+constexpr const char* kUnknownToken = "<|endoftext|>";  // CLIP has no token of its own for it
 constexpr const char* kWordEnd = "</w>";
 constexpr std::array<std::u32string_view, 7> kContractions = {U"'s", U"'t",  U"'re", U"'ve",
                                                               U"'m", U"'ll", U"'d"};
 
 using Vocabulary = std::unordered_map<std::string, std::int64_t>;
 
-[[noreturn]] void fault(const fs::path& file, const std::string& what) {
+[[noreturn]] void tokenizer_fault(const fs::path& file, const std::string& what) {
   throw Error(
       concat("tokenizer file ", file.string(), " ", what, "; fetch or export the model again"));
 }
 
 Vocabulary read_vocabulary(const fs::path& file) {
-  if (!fs::is_regular_file(file)) fault(file, "cannot be read");
+  if (!fs::is_regular_file(file)) tokenizer_fault(file, "cannot be read");
   const nlohmann::json document = read_json(file, kLargeDocument);
   try {
     return document.get<Vocabulary>();
   } catch (const nlohmann::json::exception&) {
-    fault(file, "is no JSON object of tokens and ids");
+    tokenizer_fault(file, "is no JSON object of tokens and ids");
   }
 }
 
@@ -82,9 +82,10 @@ class ClipTokenizer : public Tokenizer {
  public:
   ClipTokenizer(const fs::path& vocabulary_file, const fs::path& merges_file) {
     const Vocabulary vocabulary = read_vocabulary(vocabulary_file);
-    if (!vocabulary.contains(kUnknown)) fault(vocabulary_file, concat("has no token ", kUnknown));
+    if (!vocabulary.contains(kUnknownToken))
+      tokenizer_fault(vocabulary_file, concat("has no token ", kUnknownToken));
     for (const auto& [token, id] : vocabulary)
-      if (id < 0 || id > 0x7FFFFFFF) fault(vocabulary_file, concat("gives id ", id));
+      if (id < 0 || id > 0x7FFFFFFF) tokenizer_fault(vocabulary_file, concat("gives id ", id));
     read_bytes(vocabulary);
     read_merges(vocabulary, merges_file);
   }
@@ -118,7 +119,7 @@ class ClipTokenizer : public Tokenizer {
 
   void read_bytes(const Vocabulary& vocabulary) {
     const std::array<std::string, 256> names = byte_names();
-    const std::int64_t unknown = vocabulary.at(kUnknown);
+    const std::int64_t unknown = vocabulary.at(kUnknownToken);
     const auto id_of = [&](const std::string& token) {
       const auto found = vocabulary.find(token);
       return found == vocabulary.end() ? unknown : found->second;
@@ -131,7 +132,7 @@ class ClipTokenizer : public Tokenizer {
 
   void read_merges(const Vocabulary& vocabulary, const fs::path& file) {
     std::ifstream in(file);
-    if (!in) fault(file, "cannot be read");
+    if (!in) tokenizer_fault(file, "cannot be read");
     std::int64_t rank = 0;
     for (std::string line; std::getline(in, line);) {
       if (line.starts_with("#version") || line.empty() || line == "\r") continue;
@@ -141,7 +142,7 @@ class ClipTokenizer : public Tokenizer {
       const auto l = vocabulary.find(left), r = vocabulary.find(right),
                  joined = vocabulary.find(left + right);
       if (l == vocabulary.end() || r == vocabulary.end() || joined == vocabulary.end())
-        fault(file, concat("joins '", line, "', which the vocabulary does not know"));
+        tokenizer_fault(file, concat("joins '", line, "', which the vocabulary does not know"));
       merges_.try_emplace(pair_key(l->second, r->second), Merge{rank++, joined->second});
     }
   }

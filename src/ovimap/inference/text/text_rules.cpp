@@ -11,7 +11,6 @@ namespace ovimap {
 namespace {
 
 constexpr char32_t kSpaceSymbol = 0x2581;  // how SentencePiece writes a space
-constexpr char32_t kReplacement = 0xFFFD;
 
 /// Each run of what `is_blank` accepts becomes one space.
 template <class IsBlank>
@@ -50,7 +49,7 @@ std::u32string bert_rule(std::u32string_view text) {
   for (const char32_t c : text) {
     if (c == U'\t' || c == U'\n' || c == U'\r')
       clean += U' ';
-    else if (is_invisible(c) || c == kReplacement)
+    else if (is_invisible(c) || c == kReplacementCharacter)
       continue;
     else if (is_space(c))
       clean += U' ';

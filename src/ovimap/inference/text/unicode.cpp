@@ -14,7 +14,6 @@ namespace ovimap {
 
 namespace {
 
-constexpr char32_t kReplacement = 0xFFFD;
 constexpr char32_t kCapitalSigma = 0x3A3, kFinalSigma = 0x3C2;
 constexpr char32_t kCapitalDottedI = 0x130, kDotAbove = 0x307;
 
@@ -80,7 +79,7 @@ std::u32string decode_utf8(std::string_view utf8) {
     utf8proc_int32_t c = 0;
     const utf8proc_ssize_t used =
         utf8proc_iterate(bytes + at, static_cast<utf8proc_ssize_t>(utf8.size() - at), &c);
-    text += used > 0 ? static_cast<char32_t>(c) : kReplacement;
+    text += used > 0 ? static_cast<char32_t>(c) : kReplacementCharacter;
     at += used > 0 ? static_cast<std::size_t>(used) : 1;
   }
   return text;

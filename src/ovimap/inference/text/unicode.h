@@ -7,6 +7,9 @@
 
 namespace ovimap {
 
+/// U+FFFD, which stands where a character cannot be told.
+inline constexpr char32_t kReplacementCharacter = 0xFFFD;
+
 /// The characters of `utf8`; each byte that belongs to no valid character becomes U+FFFD.
 std::u32string decode_utf8(std::string_view utf8);
 std::string encode_utf8(std::u32string_view text);

@@ -17,13 +17,10 @@ namespace {
 constexpr float kLeastOverlap = 0.5f;  // of a box that is taken for the object's
 constexpr Eigen::Index kCorners = 4;
 
-const ModelFolder& checked(const ModelFolder& model) {
-  if (model.kind != "detector")
-    throw Error(concat("model ", model.folder.string(), " is of kind '", model.kind,
-                       "'; to recognize things only kind detector is accepted"));
+const ModelFolder& checked_detector(const ModelFolder& model) {
+  checked_model(model, "detector", "to recognize things");
   if (model.input.size_px == 0)
     throw Error(concat("model ", model.folder.string(), ": model.yaml has no 'input'"));
-  verify_model_files(model);
   return model;
 }
 
@@ -60,7 +57,7 @@ float ScoreRatio::log_ratio(float score, float background) const {
 }
 
 ThingDetector::ThingDetector(const ModelFolder& model, const RuntimeConfig& runtime)
-    : name_(checked(model).name),
+    : name_(checked_detector(model).name),
       input_spec_(model.input),
       network_(model.folder / model.network("detector").file, runtime),
       input_(model.input_of("detector", "image")),

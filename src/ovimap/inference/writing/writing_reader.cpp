@@ -20,14 +20,6 @@ constexpr int kShortestLinePx = 16;     // of what the speller sees
 constexpr float kSureEnough = 0.9f;     // a line read so well is not read upside down as well
 constexpr const char* kCharacters = "character";  // key of the speller's own list
 
-const ModelFolder& checked(const ModelFolder& model) {
-  if (model.kind != "writing")
-    throw Error(concat("model ", model.folder.string(), " is of kind '", model.kind,
-                       "'; to read writing only kind writing is accepted"));
-  verify_model_files(model);
-  return model;
-}
-
 float number_of(const ModelFolder& model, const char* key, float least, float most) {
   const auto found = model.extras.find(key);
   const std::string text = found == model.extras.end() ? "" : found->second;
@@ -122,7 +114,7 @@ Eigen::AlignedBox2i box_of(const TextArea& area, const RgbImage& image) {
 }  // namespace
 
 WritingReader::WritingReader(const ModelFolder& model, const RuntimeConfig& runtime)
-    : folder_(checked(model).folder),
+    : folder_(checked_model(model, "writing", "to read writing").folder),
       name_(model.name),
       detector_(folder_ / model.network("detector").file, runtime),
       speller_(folder_ / model.network("speller").file, runtime),
