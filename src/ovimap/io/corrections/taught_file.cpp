@@ -24,17 +24,17 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr int kFormat = 1;
-constexpr float kSteps = 127.f;  // of the largest number of a look
-constexpr std::size_t kMostNumbers = 1 << 16, kLongestName = 1000;
+constexpr float kLookSteps = 127.f;  // of the largest number of a look
+constexpr std::size_t kMostNumbers = 1 << 16, kLongestTaughtName = 1000;
 
-[[noreturn]] void fail_to_write(const fs::path& file, int error) {
+[[noreturn]] void fail_to_keep(const fs::path& file, int error) {
   throw Error(concat("cannot keep what was taught in '", file.string(),
                      "': ", std::generic_category().message(error),
                      "; name another file with --teach FILE"));
 }
 
 json json_of(const TaughtThing& thing) {
-  const float step = thing.look.cwiseAbs().maxCoeff() / kSteps;
+  const float step = thing.look.cwiseAbs().maxCoeff() / kLookSteps;
   json numbers = json::array();
   for (const float number : thing.look)
     numbers.push_back(step > 0.f ? static_cast<int>(std::lround(number / step)) : 0);
@@ -53,7 +53,7 @@ TaughtThing thing_of(const json& line) {
   thing.encoder.name = line.at("encoder").at("name").get<std::string>();
   thing.encoder.digest = line.at("encoder").at("digest").get<std::string>();
   const auto numbers = line.at("look").get<std::vector<int>>();
-  if (thing.name.empty() || thing.name.size() > kLongestName || numbers.empty() ||
+  if (thing.name.empty() || thing.name.size() > kLongestTaughtName || numbers.empty() ||
       numbers.size() > kMostNumbers)
     throw Error("a thing without a name or a look");
   thing.encoder.dimension = static_cast<int>(numbers.size());
@@ -70,12 +70,12 @@ class WriteLock {
  public:
   explicit WriteLock(const fs::path& file)
       : descriptor_(::open(concat(file.string(), ".lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0600)) {
-    if (descriptor_ < 0) fail_to_write(file, errno);
+    if (descriptor_ < 0) fail_to_keep(file, errno);
     while (::flock(descriptor_, LOCK_EX) != 0)
       if (errno != EINTR) {
         const int error = errno;
         ::close(descriptor_);
-        fail_to_write(file, error);
+        fail_to_keep(file, error);
       }
   }
   ~WriteLock() { ::close(descriptor_); }
@@ -98,7 +98,7 @@ void write_whole(const fs::path& file, const std::string& text) {
   if (!fault) return;
   std::error_code ignored;
   fs::remove(partial, ignored);
-  fail_to_write(file, fault.value());
+  fail_to_keep(file, fault.value());
 }
 
 }  // namespace
@@ -123,7 +123,7 @@ void replace_taught_things(const fs::path& file, const std::string& map,
                            const std::vector<TaughtThing>& things) {
   std::error_code fault;
   if (file.has_parent_path()) fs::create_directories(file.parent_path(), fault);
-  if (fault) fail_to_write(file, fault.value());
+  if (fault) fail_to_keep(file, fault.value());
   const WriteLock lock(file);
   json lines = json::array();
   for (const TaughtThing& known : read_taught_file(file))

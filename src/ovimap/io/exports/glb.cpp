@@ -22,7 +22,7 @@ using Json = nlohmann::ordered_json;
 // Numbers of the glTF 2.0 specification.
 constexpr int kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126;
 constexpr int kVertices = 34962, kIndices = 34963;  // targets of buffer views
-constexpr std::uint32_t kMagic = 0x46546C67, kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
+constexpr std::uint32_t kGlbMagic = 0x46546C67, kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
 
 void append(Bytes& bytes, std::uint32_t word, int count = 4) {
   for (int i = 0; i < count; ++i) bytes.push_back(static_cast<std::uint8_t>(word >> 8 * i));
@@ -168,7 +168,7 @@ class GlbBuilder {
           "the map is too large for one GLB, which ends at 4 GiB; export .ply or a folder instead");
     Bytes file;
     file.reserve(size);
-    for (const std::uint32_t word : {kMagic, std::uint32_t{2}, static_cast<std::uint32_t>(size),
+    for (const std::uint32_t word : {kGlbMagic, std::uint32_t{2}, static_cast<std::uint32_t>(size),
                                      static_cast<std::uint32_t>(text.size()), kJsonChunk})
       append(file, word);
     file.insert(file.end(), text.begin(), text.end());

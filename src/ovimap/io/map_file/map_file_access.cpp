@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view kApplication = "OVIM";
 constexpr int kApplicationId =
     kApplication[0] << 24 | kApplication[1] << 16 | kApplication[2] << 8 | kApplication[3];
-constexpr std::string_view kMagic("SQLite format 3\0", 16);
+constexpr std::string_view kSqliteMagic("SQLite format 3\0", 16);
 constexpr std::size_t kApplicationIdAt = 68;  // bytes from the start of a SQLite file
 constexpr std::size_t kReadVersionAt = 19;
 constexpr char kReadVersionOfLogs = 2;  // a write-ahead log belongs to the file
@@ -208,7 +208,7 @@ bool check_file(const fs::path& path) {
     throw Error(
         concat("'", path.string(), "' is not a file; give a map file that `ovimap run` wrote"));
   const std::string head = head_of(path);
-  if (!head.starts_with(kMagic))
+  if (!head.starts_with(kSqliteMagic))
     throw Error(concat("'", path.string(),
                        "' is not an ovimap map; give a map file that `ovimap run` wrote"));
   return head[kReadVersionAt] == kReadVersionOfLogs;
@@ -233,7 +233,8 @@ bool check_file(const fs::path& path) {
 /// Whether a file holds something that is not a map, which saving must not take away.
 bool is_something_else(const fs::path& path) {
   const std::string head = head_of(path);
-  return fs::file_size(path) != 0 && (!head.starts_with(kMagic) || !head.ends_with(kApplication));
+  return fs::file_size(path) != 0 &&
+         (!head.starts_with(kSqliteMagic) || !head.ends_with(kApplication));
 }
 
 /// The file that saving to `path` replaces: through a link, what it points to. Devices and pipes

@@ -9,6 +9,7 @@
 #include <zstd.h>
 
 #include "ovimap/base/error.h"
+#include "ovimap/io/map_tables/row_words.h"
 
 namespace ovimap {
 
@@ -119,10 +120,6 @@ Planes<std::uint16_t> support_planes(std::uint8_t* body, const BodyLayout& at) {
   return Planes<std::uint16_t>({body + at.support, body + at.support + at.supports});
 }
 
-void append(Bytes& bytes, std::uint32_t value, int count) {
-  for (int i = 0; i < count; ++i) bytes.push_back(static_cast<std::uint8_t>(value >> 8 * i));
-}
-
 bool stored(const VoxelBlock& block, std::size_t v) {
   std::uint32_t any =
       static_cast<std::uint16_t>(block.tsdf[v]) | std::bit_cast<std::uint32_t>(block.weight[v]);
@@ -138,11 +135,11 @@ using LoadedPlace = Place<VoxelBlock>;
 /// voxels.
 std::vector<SavedPlace> put_heads(std::span<const VoxelBlock* const> blocks, Bytes& body) {
   std::vector<SavedPlace> places;
-  for (const VoxelBlock* block : blocks) append(body, block->forest_epoch, 4);
+  for (const VoxelBlock* block : blocks) append_word(body, block->forest_epoch);
   for (const VoxelBlock* block : blocks)
-    append(body, static_cast<std::uint32_t>(block->palette.size()), 2);
+    append_word(body, static_cast<std::uint16_t>(block->palette.size()));
   for (const VoxelBlock* block : blocks)
-    for (Label label : block->palette) append(body, label, 4);
+    for (Label label : block->palette) append_word(body, label);
   for (const VoxelBlock* block : blocks) {
     const std::size_t mask = body.size();
     body.resize(mask + kMaskBytes);

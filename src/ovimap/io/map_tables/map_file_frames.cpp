@@ -5,6 +5,7 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 
 #include "ovimap/io/map_tables/map_file_rows.h"
+#include "ovimap/io/map_tables/row_words.h"
 
 namespace ovimap {
 
@@ -12,13 +13,6 @@ namespace {
 
 using map_tables::kKeptFrames;
 using map_tables::kLiveSteps;
-
-Bytes label_bytes(const std::vector<Label>& labels) {
-  Bytes bytes;
-  for (const Label label : labels)
-    for (int i = 0; i < 4; ++i) bytes.push_back(static_cast<std::uint8_t>(label >> 8 * i));
-  return bytes;
-}
 
 std::vector<Label> take_labels(RowReader& rows, const LabelForest& forest) {
   const std::span<const std::uint8_t> bytes = rows.blob();

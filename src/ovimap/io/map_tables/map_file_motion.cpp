@@ -19,7 +19,7 @@ using map_tables::kMovers;
 using map_tables::kSeenFree;
 using map_tables::kSuspectSpace;
 
-constexpr int kCompressionLevel = 1;
+constexpr int kSpaceCompressionLevel = 1;
 constexpr std::size_t kRegionBytes = 2 * std::tuple_size_v<SpaceRegion>;
 
 /// The looks of all cells, then for how long each is taken.
@@ -29,7 +29,7 @@ Bytes region_bytes(const SpaceRegion& region) {
   for (const SpaceCell& cell : region) bytes.push_back(cell.taken);
   Bytes packed(ZSTD_compressBound(bytes.size()));
   const std::size_t size = ZSTD_compress(packed.data(), packed.size(), bytes.data(), bytes.size(),
-                                         kCompressionLevel);
+                                         kSpaceCompressionLevel);
   if (ZSTD_isError(size)) throw Error("the compressor ran out of memory; close other programs");
   packed.resize(size);
   return packed;

@@ -17,12 +17,6 @@ namespace {
 using map_tables::kObjectParts;
 using map_tables::kPartEmbeddings;
 
-Bytes label_bytes(std::span<const Label> labels) {
-  Bytes bytes;
-  for (const Label label : labels) append_word(bytes, label);
-  return bytes;
-}
-
 ObjectPart take_part(RowReader& rows) {
   ObjectPart part;
   part.id = rows.integer<InstanceId>();

@@ -90,7 +90,7 @@ void write_things(SQLite::Database& database, const SemanticRecord& semantics) {
   rows.finish();
 }
 
-constexpr float kSteps = 65535.f;
+constexpr float kPointSteps = 65535.f;
 constexpr std::size_t kPointBytes = 6;
 
 }  // namespace
@@ -100,7 +100,7 @@ Bytes surface_bytes(const std::vector<Eigen::Vector3f>& points) {
   for (const Eigen::Vector3f& point : points) box.extend(point);
   Bytes bytes;
   append_box(bytes, box);
-  const Eigen::Array3f scale = kSteps / box.sizes().array().max(1e-6f);
+  const Eigen::Array3f scale = kPointSteps / box.sizes().array().max(1e-6f);
   for (const Eigen::Vector3f& point : points)
     for (const float value : (point - box.min()).array() * scale + 0.5f)
       append_word(bytes, static_cast<std::uint16_t>(value));
@@ -115,7 +115,7 @@ std::vector<Eigen::Vector3f> take_surface(RowReader& rows) {
   if (!box.min().allFinite() || !box.sizes().allFinite())
     rows.fail("has a surface that is not finite");
   const auto steps = words_of<std::uint16_t>(bytes.subspan(kBoxBytes), rows);
-  const Eigen::Array3f scale = box.sizes().array().max(1e-6f) / kSteps;
+  const Eigen::Array3f scale = box.sizes().array().max(1e-6f) / kPointSteps;
   std::vector<Eigen::Vector3f> points(steps.size() / 3);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Array3f step(steps[3 * i], steps[3 * i + 1], steps[3 * i + 2]);

@@ -22,6 +22,12 @@ void append_word(Bytes& bytes, Word word) {
     bytes.push_back(static_cast<std::uint8_t>(word >> 8 * i));
 }
 
+inline Bytes label_bytes(std::span<const Label> labels) {
+  Bytes bytes;
+  for (const Label label : labels) append_word(bytes, label);
+  return bytes;
+}
+
 inline void append_float(Bytes& bytes, float value) {
   append_word(bytes, std::bit_cast<std::uint32_t>(value));
 }

@@ -288,7 +288,7 @@ class PlyReader {
 };
 
 template <class Number>
-void append(Bytes& bytes, Number value) {
+void append_number(Bytes& bytes, Number value) {
   if constexpr (std::endian::native == std::endian::big) value = swapped(value);
   const auto* begin = reinterpret_cast<const std::uint8_t*>(&value);
   bytes.insert(bytes.end(), begin, begin + sizeof(Number));
@@ -321,16 +321,16 @@ Bytes encode_ply(const Mesh& mesh) {
   bytes.reserve(header.size() + mesh.vertices.size() * kMostVertexBytes +
                 mesh.triangles.size() * kFaceBytes);
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    for (const float value : mesh.vertices[i]) append(bytes, value);
+    for (const float value : mesh.vertices[i]) append_number(bytes, value);
     if (!mesh.normals.empty())
-      for (const float value : mesh.normals[i]) append(bytes, value);
+      for (const float value : mesh.normals[i]) append_number(bytes, value);
     if (!mesh.colors.empty())
       bytes.insert(bytes.end(), mesh.colors[i].begin(), mesh.colors[i].end());
-    if (!mesh.labels.empty()) append(bytes, mesh.labels[i]);
+    if (!mesh.labels.empty()) append_number(bytes, mesh.labels[i]);
   }
   for (const auto& triangle : mesh.triangles) {
     bytes.push_back(3);
-    for (const std::uint32_t index : triangle) append(bytes, index);
+    for (const std::uint32_t index : triangle) append_number(bytes, index);
   }
   return bytes;
 }

@@ -22,13 +22,13 @@ Eigen::AlignedBox3f box_from(const nlohmann::json& box) {
   return {point_from(box.at("min")), point_from(box.at("max"))};
 }
 
-TrueChange change_from(const nlohmann::json& json, std::size_t visits) {
+TrueChange change_from(const nlohmann::json& entry, std::size_t visits) {
   TrueChange change;
-  change.visit = json.at("visit").get<int>();
-  change.object = json.at("object").get<std::int32_t>();
-  change.kind = json.at("kind").get<std::string>();
-  change.from = box_from(json.at("from"));
-  change.to = box_from(json.at("to"));
+  change.visit = entry.at("visit").get<int>();
+  change.object = entry.at("object").get<std::int32_t>();
+  change.kind = entry.at("kind").get<std::string>();
+  change.from = box_from(entry.at("from"));
+  change.to = box_from(entry.at("to"));
   const bool known = change.kind == "moved" || change.kind == "removed" || change.kind == "added";
   if (!known) throw Error(concat("has a change of kind '", change.kind, "'"));
   if (change.visit < 2 || static_cast<std::size_t>(change.visit) > visits)
@@ -40,8 +40,8 @@ TrueChange change_from(const nlohmann::json& json, std::size_t visits) {
   return change;
 }
 
-TrueMover mover_from(const nlohmann::json& json, std::size_t visits) {
-  const TrueMover mover{json.at("visit").get<int>(), json.at("object").get<std::int32_t>()};
+TrueMover mover_from(const nlohmann::json& entry, std::size_t visits) {
+  const TrueMover mover{entry.at("visit").get<int>(), entry.at("object").get<std::int32_t>()};
   if (mover.visit < 1 || static_cast<std::size_t>(mover.visit) > visits)
     throw Error(concat("has something that moves in visit ", mover.visit, ", and there are ", visits));
   return mover;

@@ -119,8 +119,8 @@ std::optional<HttpReply> RequestDesk::misfit(const HttpRequest& head, BodyType b
   const std::string type = head.header("content-type");
   if (body == BodyType::kFrame && !type.starts_with("multipart/form-data"))
     return fault(415, "send a frame as Content-Type: multipart/form-data");
-  const bool json = body == BodyType::kJson || (body == BodyType::kNone && bytes > 0);
-  if (json && !type.starts_with("application/json"))
+  const bool sends_json = body == BodyType::kJson || (body == BodyType::kNone && bytes > 0);
+  if (sends_json && !type.starts_with("application/json"))
     return fault(415, "send the body as Content-Type: application/json");
   return std::nullopt;
 }
