@@ -8,12 +8,12 @@
 
 #include "ovimap/base/parallel.h"
 #include "ovimap/base/vectorize.h"
+#include "ovimap/segment/task_rows.h"
 
 namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kRowsPerTask = 32;
 
 /// Least 1 - cos(angle) that counts as a fold, by depth: a table, as it is asked for every pixel.
 class FoldThreshold {
@@ -137,7 +137,7 @@ class RowFolds {
 FoldImages measure_folds(const DepthSurface& surface, const FoldMeasure& fold) {
   const int width = surface.breaks.width(), height = surface.breaks.height();
   FoldImages folds{Image<float>(width, height), Image<float>(width, height)};
-  parallel_for_ranges(static_cast<std::size_t>(height), kRowsPerTask,
+  parallel_for_ranges(static_cast<std::size_t>(height), kPixelRowsPerTask,
                       [&](std::size_t begin, std::size_t end) {
                         RowFolds row(surface, fold);
                         for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
@@ -164,7 +164,7 @@ Image<std::uint8_t> find_concave_edges(const DepthSurface& surface, const Pinhol
         return false;
     return true;
   };
-  parallel_for(static_cast<std::size_t>(height), kRowsPerTask, [&](std::size_t row) {
+  parallel_for(static_cast<std::size_t>(height), kPixelRowsPerTask, [&](std::size_t row) {
     const int y = static_cast<int>(row);
     const float *across = folds.across.row(y), *down = folds.down.row(y);
     std::uint8_t* edge = edges.row(y);

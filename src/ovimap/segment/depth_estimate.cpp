@@ -8,12 +8,12 @@
 
 #include "ovimap/base/config.h"
 #include "ovimap/base/parallel.h"
+#include "ovimap/segment/task_rows.h"
 
 namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kRowsPerTask = 60;  // each sums up the rows of a radius above it as well
 constexpr float kMostSquares = 25.f;      // squared sigmas; what lies further off tells no more
 constexpr float kStepsPerSquare = 256.f;  // of a residual as a whole number
 
@@ -36,14 +36,14 @@ class Estimator {
 
   DepthEstimate estimate() {
     const auto height = static_cast<std::size_t>(depth_.height());
-    parallel_for_ranges(height, kRowsPerTask, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(height, kWindowRowsPerTask, [&](std::size_t begin, std::size_t end) {
       std::vector<Residual> residuals(width_);
       for (std::size_t y = begin; y < end; ++y) {
         measure_row(static_cast<int>(y), residuals);
         sum_row(residuals, row_sums_.row(static_cast<int>(y)));
       }
     });
-    parallel_for_ranges(height, kRowsPerTask, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(height, kWindowRowsPerTask, [&](std::size_t begin, std::size_t end) {
       filter_rows(static_cast<int>(begin), static_cast<int>(end));
     });
     return std::move(estimate_);

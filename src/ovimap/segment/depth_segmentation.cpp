@@ -11,12 +11,12 @@
 #include "ovimap/segment/concave_edges.h"
 #include "ovimap/segment/connected_regions.h"
 #include "ovimap/segment/region_growth.h"
+#include "ovimap/segment/task_rows.h"
 
 namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kRowsPerTask = 32;
 
 /// The rows that say whether regions grow from the pixels of one row.
 struct InteriorRows {
@@ -41,7 +41,7 @@ OVIMAP_VECTORIZE void mark_interior(const InteriorRows& rows, int width, std::ui
 Image<std::uint8_t> find_interior(const DepthSurface& surface, const Image<std::uint8_t>& concave) {
   const int width = concave.width(), height = concave.height();
   Image<std::uint8_t> interior(width, height);
-  parallel_for(static_cast<std::size_t>(std::max(0, height - 2)), kRowsPerTask,
+  parallel_for(static_cast<std::size_t>(std::max(0, height - 2)), kPixelRowsPerTask,
                [&](std::size_t row) {
                  const int y = static_cast<int>(row) + 1;
                  mark_interior({concave.row(y - 1), concave.row(y), concave.row(y + 1),
@@ -84,7 +84,7 @@ DepthRegions pack(const Image<std::uint32_t>& labels, int min_region_px) {
     result.regions.push_back(components[label]);
     id_of[label] = static_cast<std::uint16_t>(result.regions.size());
   }
-  parallel_for(labels.size(), kRowsPerTask * 640,
+  parallel_for(labels.size(), kPixelRowsPerTask * 640,
                [&](std::size_t i) { result.ids[i] = id_of[labels[i]]; });
   return result;
 }

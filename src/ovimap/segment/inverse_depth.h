@@ -4,6 +4,7 @@
 
 #include "ovimap/base/parallel.h"
 #include "ovimap/image/image.h"
+#include "ovimap/segment/task_rows.h"
 
 namespace ovimap {
 
@@ -13,7 +14,7 @@ class InverseDepth {
  public:
   explicit InverseDepth(const DepthImage& depth)
       : padded_(depth.width() + 2 * kBorder, depth.height() + 2 * kBorder) {
-    parallel_for(static_cast<std::size_t>(depth.height()), kRowsPerTask, [&](std::size_t y) {
+    parallel_for(static_cast<std::size_t>(depth.height()), kPixelRowsPerTask, [&](std::size_t y) {
       const float* in = depth.row(static_cast<int>(y));
       float* out = padded_.row(static_cast<int>(y) + kBorder) + kBorder;
       for (int x = 0; x < depth.width(); ++x) out[x] = in[x] > 0.f ? 1.f / in[x] : 0.f;
@@ -26,7 +27,6 @@ class InverseDepth {
 
  private:
   static constexpr int kBorder = 2;
-  static constexpr std::size_t kRowsPerTask = 32;
   Image<float> padded_;
 };
 

@@ -9,13 +9,11 @@
 
 #include "ovimap/base/parallel.h"
 #include "ovimap/base/vectorize.h"
+#include "ovimap/segment/task_rows.h"
 
 namespace ovimap {
 
 namespace {
-
-// Each task sums up the rows of a radius above and below it as well; the taller, the less of that.
-constexpr std::size_t kRowsPerTask = 60;
 
 /// Sums over the window of every pixel of a row: of 1, u, u^2, q, q u, and of 1, u, q times the
 /// image row y, and of y^2; u relative to the pixel, q in units.
@@ -244,7 +242,7 @@ float inverse_depth_unit(int radius_px) {
 
 void fit_planes(const InverseDepth& inverse, const PinholeCamera& camera, DepthSurface& surface) {
   parallel_for_ranges(
-      static_cast<std::size_t>(inverse.height()), kRowsPerTask,
+      static_cast<std::size_t>(inverse.height()), kWindowRowsPerTask,
       [&](std::size_t begin, std::size_t end) {
         RowFitter(inverse, camera, surface).fit(static_cast<int>(begin), static_cast<int>(end));
       });

@@ -7,12 +7,12 @@
 
 #include "ovimap/base/parallel.h"
 #include "ovimap/base/vectorize.h"
+#include "ovimap/segment/task_rows.h"
 
 namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kRowsPerTask = 32;
 constexpr std::uint32_t kNoSeed = std::numeric_limits<std::uint32_t>::max();
 
 /// What may still change at a pixel.
@@ -44,25 +44,26 @@ class Growth {
         labels_(labels),
         seeds_(labels.width(), labels.height()),
         states_(labels.width() + 2, labels.height() + 2) {
-    parallel_for(static_cast<std::size_t>(labels.height()), kRowsPerTask, [&](std::size_t row) {
-      const int y = static_cast<int>(row);
-      const std::uint32_t* label = labels_.row(y);
-      std::uint32_t* seed = seeds_.row(y);
-      std::uint8_t* state = states_.row(y + 1) + 1;
-      for (int x = 0; x < labels_.width(); ++x) {
-        seed[x] = label[x] ? static_cast<std::uint32_t>(y * labels_.width() + x) : kNoSeed;
-        state[x] = label[x] ? kFresh : depth_.at(x, y) > 0.f ? kOpen : kClosed;
-      }
-    });
+    parallel_for(
+        static_cast<std::size_t>(labels.height()), kPixelRowsPerTask, [&](std::size_t row) {
+          const int y = static_cast<int>(row);
+          const std::uint32_t* label = labels_.row(y);
+          std::uint32_t* seed = seeds_.row(y);
+          std::uint8_t* state = states_.row(y + 1) + 1;
+          for (int x = 0; x < labels_.width(); ++x) {
+            seed[x] = label[x] ? static_cast<std::uint32_t>(y * labels_.width() + x) : kNoSeed;
+            state[x] = label[x] ? kFresh : depth_.at(x, y) > 0.f ? kOpen : kClosed;
+          }
+        });
   }
 
   /// One ring further; returns whether anything grew.
   bool grow() {
     const auto rows = static_cast<std::size_t>(labels_.height());
-    std::vector<std::vector<Grown>> grown((rows + kRowsPerTask - 1) / kRowsPerTask);
-    parallel_for_ranges(rows, kRowsPerTask, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::vector<Grown>> grown((rows + kPixelRowsPerTask - 1) / kPixelRowsPerTask);
+    parallel_for_ranges(rows, kPixelRowsPerTask, [&](std::size_t begin, std::size_t end) {
       for (std::size_t y = begin; y < end; ++y)
-        grow_row(static_cast<int>(y), grown[begin / kRowsPerTask]);
+        grow_row(static_cast<int>(y), grown[begin / kPixelRowsPerTask]);
     });
     close_fresh();
     last_ring_.clear();
@@ -90,7 +91,7 @@ class Growth {
   /// Fresh pixels have given what they had.
   void close_fresh() {
     if (last_ring_.empty())  // before the first ring all interior pixels are fresh
-      parallel_for(states_.size(), kRowsPerTask * 1024,
+      parallel_for(states_.size(), kPixelRowsPerTask * 1024,
                    [&](std::size_t i) { states_[i] &= kOpen; });
     for (const Grown& last : last_ring_) state(last.pixel) = kClosed;
   }

@@ -8,12 +8,12 @@
 
 #include "ovimap/base/parallel.h"
 #include "ovimap/base/vectorize.h"
+#include "ovimap/segment/task_rows.h"
 
 namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kRowsPerTask = 32;
 
 /// Sets `bit` where the surface breaks between q1[x] and q2[x], neighbours in a line q0 q1 q2 q3 of
 /// inverse depths. On a plane the second differences of inverse depth vanish, so the step counts
@@ -92,7 +92,7 @@ void find_breaks(const InverseDepth& inverse, const DepthSurfaceConfig& config,
                  DepthSurface& surface) {
   const int width = inverse.width();
   const auto rows = static_cast<std::size_t>(inverse.height());
-  parallel_for(rows, kRowsPerTask, [&](std::size_t row) {
+  parallel_for(rows, kPixelRowsPerTask, [&](std::size_t row) {
     const int y = static_cast<int>(row);
     const float* q = inverse.row(y);
     std::uint8_t* breaks = surface.breaks.row(y);
@@ -102,7 +102,7 @@ void find_breaks(const InverseDepth& inverse, const DepthSurfaceConfig& config,
     find_row_arms(breaks, width, surface.radius_px, surface.left_px.row(y),
                   surface.right_px.row(y));
   });
-  parallel_for_ranges(rows, kRowsPerTask, [&](std::size_t begin, std::size_t end) {
+  parallel_for_ranges(rows, kPixelRowsPerTask, [&](std::size_t begin, std::size_t end) {
     find_column_arms(surface, static_cast<int>(begin), static_cast<int>(end));
   });
 }

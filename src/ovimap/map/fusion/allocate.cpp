@@ -15,7 +15,7 @@ namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kRowsPerTask = 32;
+constexpr std::size_t kDepthRowsPerTask = 32;
 
 void sort_unique(std::vector<std::uint64_t>& keys) {
   std::sort(keys.begin(), keys.end());
@@ -129,15 +129,15 @@ std::vector<std::uint32_t> allocate_blocks(VoxelMap& map, const Observation& obs
   check_reach(map.config(), observation.world_from_camera);
   const BandBlocks band(map.config(), observation.camera, observation.world_from_camera);
   const auto rows = static_cast<std::size_t>(depth.height());
-  const std::size_t parts = (rows + kRowsPerTask - 1) / kRowsPerTask;
+  const std::size_t parts = (rows + kDepthRowsPerTask - 1) / kDepthRowsPerTask;
   FrameKeys needed(parts), reached(parts);
-  parallel_for_ranges(rows, kRowsPerTask, [&](std::size_t begin, std::size_t end) {
+  parallel_for_ranges(rows, kDepthRowsPerTask, [&](std::size_t begin, std::size_t end) {
     KeyCollector needed_here, reached_here;
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
       band.add_row(depth.row(y), observation.sigma_m ? observation.sigma_m->row(y) : nullptr, y,
                    depth.width(), needed_here, reached_here);
-    needed.put(begin / kRowsPerTask, needed_here);
-    reached.put(begin / kRowsPerTask, reached_here);
+    needed.put(begin / kDepthRowsPerTask, needed_here);
+    reached.put(begin / kDepthRowsPerTask, reached_here);
   });
   const std::vector<std::uint64_t> to_create = needed.all(), to_find = reached.all();
   std::vector<std::uint64_t> keys;

@@ -10,7 +10,7 @@ namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kRowsPerTask = 8;  // of cells
+constexpr std::size_t kCellRowsPerTask = 8;  // of cells
 
 /// What the pixels of a cell say together.
 struct Cell {
@@ -76,12 +76,12 @@ Image<float> free_depth(const VoxelMapConfig& map, const Observation& observatio
             side = config.guard_px;
   const CellMaker maker(map, observation, config);
   Image<Cell> cells((width + side - 1) / side, (height + side - 1) / side);
-  parallel_for(static_cast<std::size_t>(cells.height()), kRowsPerTask, [&](std::size_t row) {
+  parallel_for(static_cast<std::size_t>(cells.height()), kCellRowsPerTask, [&](std::size_t row) {
     for (int x = 0; x < cells.width(); ++x)
       cells.at(x, static_cast<int>(row)) = maker.cell(x, static_cast<int>(row));
   });
   Image<float> result(width, height);
-  parallel_for(static_cast<std::size_t>(cells.height()), kRowsPerTask, [&](std::size_t i) {
+  parallel_for(static_cast<std::size_t>(cells.height()), kCellRowsPerTask, [&](std::size_t i) {
     const int row = static_cast<int>(i), end = std::min((row + 1) * side, height);
     for (int x = 0; x < cells.width(); ++x)
       std::fill_n(result.row(row * side) + x * side, std::min(side, width - x * side),

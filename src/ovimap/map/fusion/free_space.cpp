@@ -17,7 +17,7 @@ namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kBlocksPerTask = 16;
+constexpr std::size_t kClearedBlocksPerTask = 16;
 
 #pragma GCC diagnostic ignored "-Wpsabi"
 
@@ -118,7 +118,7 @@ ClearedSpace clear_free_space(VoxelMap& map, const Observation& observation,
   const FusionView view(map.config(), observation);
   const std::vector<BlockAhead> ahead = blocks_ahead(map, observation, free_m);
   std::vector<Doubted> doubted(ahead.size());
-  parallel_for(ahead.size(), kBlocksPerTask, [&](std::size_t i) {
+  parallel_for(ahead.size(), kClearedBlocksPerTask, [&](std::size_t i) {
     find_doubted(view, free_m, ahead[i].free_m, map.block(ahead[i].slot), doubted[i]);
   });
   double contradicted_px = 0;
@@ -128,7 +128,7 @@ ClearedSpace clear_free_space(VoxelMap& map, const Observation& observation,
     return result;
   }
   std::vector<std::size_t> gone(ahead.size());
-  parallel_for(ahead.size(), kBlocksPerTask, [&](std::size_t i) {
+  parallel_for(ahead.size(), kClearedBlocksPerTask, [&](std::size_t i) {
     if (doubted[i].voxels > 0)
       gone[i] = doubt(doubted[i], config.frames, map.writable_block(ahead[i].slot));
   });
@@ -147,7 +147,7 @@ std::vector<std::uint32_t> clear_blocks(VoxelMap& map, const Observation& observ
   const FusionView view(map.config(), observation);
   const float furthest_m = *std::max_element(free_m.begin(), free_m.end());
   std::vector<Doubted> doubted(slots.size());
-  parallel_for(slots.size(), kBlocksPerTask, [&](std::size_t i) {
+  parallel_for(slots.size(), kClearedBlocksPerTask, [&](std::size_t i) {
     find_doubted(view, free_m, furthest_m, map.block(slots[i]), doubted[i]);
     if (doubted[i].voxels > 0) doubt(doubted[i], 1, map.writable_block(slots[i]));
   });

@@ -10,14 +10,14 @@ namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kBlocksPerTask = 16;
+constexpr std::size_t kUpdatedBlocksPerTask = 16;
 
 template <class Update>
 std::vector<std::uint32_t> update_blocks(VoxelMap& map, const Observation& observation,
                                          const Update& update) {
   std::vector<std::uint32_t> slots = allocate_blocks(map, observation);
   const FusionView view(map.config(), observation);
-  parallel_for(slots.size(), kBlocksPerTask, [&](std::size_t i) {
+  parallel_for(slots.size(), kUpdatedBlocksPerTask, [&](std::size_t i) {
     VoxelBlock& block = map.writable_block(slots[i]);
     resolve_labels(block, map.labels());
     update(view, block);

@@ -17,7 +17,7 @@ namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kBlocksPerTask = 8;
+constexpr std::size_t kFusedBlocksPerTask = 8;
 
 /// What a map says of a place.
 struct Sample {
@@ -202,7 +202,7 @@ void fuse_map(VoxelMap& map, const VoxelMap& other, const Pose& map_from_other,
               Label label_offset) {
   const std::vector<BlockIndex> reached = reached_blocks(map, other, map_from_other);
   std::vector<std::uint8_t> wanted(reached.size(), 0);
-  parallel_for_ranges(reached.size(), kBlocksPerTask, [&](std::size_t begin, std::size_t end) {
+  parallel_for_ranges(reached.size(), kFusedBlocksPerTask, [&](std::size_t begin, std::size_t end) {
     Sampler sampler(map, other, map_from_other);
     for (std::size_t i = begin; i < end; ++i)
       for (int v = 0; v < kBlockVoxels && wanted[i] == 0; ++v)
@@ -211,7 +211,7 @@ void fuse_map(VoxelMap& map, const VoxelMap& other, const Pose& map_from_other,
   std::vector<std::uint32_t> slots;
   for (std::size_t i = 0; i < reached.size(); ++i)
     if (wanted[i] != 0) slots.push_back(map.find_or_create(reached[i]));
-  parallel_for_ranges(slots.size(), kBlocksPerTask, [&](std::size_t begin, std::size_t end) {
+  parallel_for_ranges(slots.size(), kFusedBlocksPerTask, [&](std::size_t begin, std::size_t end) {
     Sampler sampler(map, other, map_from_other);
     for (std::size_t i = begin; i < end; ++i) {
       VoxelBlock& block = map.writable_block(slots[i]);

@@ -16,8 +16,7 @@ namespace {
 constexpr int kTile_px = 8;           // blocks are held against these
 constexpr int kTilesOfRegionTile = 4;  // and regions against so many at once, each way
 constexpr int kSampleStep_px = 8;
-constexpr float kHalfDiagonal = 0.8660254f;  // of a unit cube
-constexpr float kNearPlane_m = 0.05f;
+constexpr float kBeside_m = 0.05f;
 
 /// The most of each square of values.
 Image<float> most_of_squares(const Image<float>& values, int side) {
@@ -45,7 +44,7 @@ class FreeTiles {
   float furthest(const Eigen::Vector3f& center, float radius) const {
     const float near_m = center.z() - radius, far_m = center.z() + radius;
     if (far_m <= 0.f || near_m >= most_m_) return 0.f;
-    if (near_m < kNearPlane_m)  // around the camera, or beside it
+    if (near_m < kBeside_m)  // around the camera, or beside it
       return beyond_view(camera_, center, radius) ? 0.f : most_m_;
     const auto [left, right] = span(center.x(), radius, near_m, far_m, camera_.fx, camera_.cx);
     const auto [top, bottom] = span(center.y(), radius, near_m, far_m, camera_.fy, camera_.cy);
@@ -89,7 +88,7 @@ std::vector<BlockAhead> blocks_ahead(const VoxelMap& map, const Observation& obs
     const Eigen::Vector3d center = (index.cast<double>() + Eigen::Vector3d::Constant(0.5)) * size_m;
     return (camera_from_world * center).cast<float>();
   };
-  const float radius = static_cast<float>(block_m) * kHalfDiagonal;
+  const float radius = static_cast<float>(block_m) * kCubeHalfDiagonal;
   std::vector<BlockAhead> ahead;
   map.for_each_region([&](const BlockRegion& region) {
     const Eigen::Vector3f center = middle(region.index, region_m);

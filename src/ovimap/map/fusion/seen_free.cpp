@@ -13,7 +13,6 @@ namespace ovimap {
 
 namespace {
 
-constexpr float kHalfDiagonal = 0.8660254f;  // of a unit cube
 constexpr std::size_t kRegionsPerTask = 4;
 
 /// The cells of one region that a frame looks through.
@@ -30,7 +29,7 @@ class Looker {
       : camera_from_world_(world_from_camera.inverse()),
         tiles_(camera, free_m),
         cell_m_(static_cast<double>(cell_m)),
-        radius_m_(cell_m * kHalfDiagonal) {}
+        radius_m_(cell_m * kCubeHalfDiagonal) {}
 
   /// Regions that the view reaches, in no particular order.
   std::vector<RegionLook> regions() const {

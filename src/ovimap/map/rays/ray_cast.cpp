@@ -17,7 +17,7 @@ namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kRowsPerTask = 8;
+constexpr std::size_t kCastRowsPerTask = 8;
 
 /// Marches one ray after another; one per thread.
 class RayMarcher {
@@ -181,7 +181,7 @@ OVIMAP_VECTORIZE void cast_row(const View& view, int y, int width, RayMarcher& m
 
 /// Fills what is still empty in `result`.
 void cast(const View& view, Projection& result) {
-  parallel_for_ranges(static_cast<std::size_t>(result.depth.height()), kRowsPerTask,
+  parallel_for_ranges(static_cast<std::size_t>(result.depth.height()), kCastRowsPerTask,
                       [&](std::size_t begin, std::size_t end) {
                         RayMarcher marcher(view.map, view.origin);
                         for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
@@ -205,7 +205,7 @@ Projection cast_rays_with_depth(const VoxelMap& map, const DepthImage& sensor_de
                                 const Pose& world_from_camera, float max_range_m) {
   Projection result{DepthImage(camera.width, camera.height),
                     Image<Label>(camera.width, camera.height)};
-  parallel_for(surface.size(), kRowsPerTask * 640, [&](std::size_t i) {
+  parallel_for(surface.size(), kCastRowsPerTask * 640, [&](std::size_t i) {
     if (!surface[i]) return;
     result.depth[i] = sensor_depth[i];
     result.labels[i] = map.label(surface[i]);

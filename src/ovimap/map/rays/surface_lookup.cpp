@@ -12,7 +12,7 @@ namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kRowsPerTask = 16;
+constexpr std::size_t kLookupRowsPerTask = 16;
 
 /// The voxels that hold the points of one image row, in global voxel coordinates.
 struct RowVoxels {
@@ -60,7 +60,7 @@ Image<VoxelRef> surface_voxels(const VoxelMap& map, const DepthImage& depth,
   const PixelRays rays(camera, world_from_camera.linear().cast<float>());
   const Eigen::Vector3f origin = world_from_camera.translation().cast<float>();
   const float inverse_voxel_size = 1.f / map.config().voxel_size_m;
-  parallel_for_ranges(static_cast<std::size_t>(depth.height()), kRowsPerTask,
+  parallel_for_ranges(static_cast<std::size_t>(depth.height()), kLookupRowsPerTask,
                       [&](std::size_t begin, std::size_t end) {
                         VoxelFinder finder(map);
                         RowVoxels voxels(width);

@@ -16,7 +16,7 @@ namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kBlocksPerTask = 16;
+constexpr std::size_t kPatchesPerTask = 16;
 constexpr int kSide = CellRows::kSide;
 
 /// Extracts the patches of one block after another; one per task.
@@ -112,7 +112,7 @@ std::vector<std::uint32_t> IncrementalMesh::update(const VoxelMap& map,
   patches_.resize(map.block_count());
   touched_in_.resize(map.block_count(), 0);
   std::vector<std::uint32_t> slots = touched(map, visited);
-  parallel_for_ranges(slots.size(), kBlocksPerTask, [&](std::size_t begin, std::size_t end) {
+  parallel_for_ranges(slots.size(), kPatchesPerTask, [&](std::size_t begin, std::size_t end) {
     PatchMesher mesher(map);
     for (std::size_t i = begin; i < end; ++i) {
       Mesh mesh = mesher.extract(slots[i]);

@@ -15,8 +15,8 @@ namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kBlocksPerTask = 8;
-constexpr int kSide = kBlockSide + 1;  // a block's cells reach one voxel into its neighbours
+constexpr std::size_t kMeshedBlocksPerTask = 8;
+constexpr int kCellSide = kBlockSide + 1;  // a block's cells reach one voxel into its neighbours
 constexpr int kEdges = kBlockVoxels * 3;
 constexpr std::uint16_t kNoVertex = 0xffff;
 
@@ -29,9 +29,9 @@ class Neighbourhood {
       blocks_[i] = i == 0 ? &map.block(slot) : map.find(map.block_index(slot) + offset);
     }
     const float min_weight = map.config().min_mesh_weight;
-    for (int z = 0, n = 0; z < kSide; ++z)
-      for (int y = 0; y < kSide; ++y)
-        for (int x = 0; x < kSide; ++x, ++n) {
+    for (int z = 0, n = 0; z < kCellSide; ++z)
+      for (int y = 0; y < kCellSide; ++y)
+        for (int x = 0; x < kCellSide; ++x, ++n) {
           const VoxelBlock* block = blocks_[which(x, y, z)];
           const auto v = static_cast<std::size_t>(voxel_offset(x & 7, y & 7, z & 7));
           observed_[n] = block && block->weight[v] > min_weight;
@@ -44,14 +44,14 @@ class Neighbourhood {
   const VoxelBlock& block(int x, int y, int z) const { return *blocks_[which(x, y, z)]; }
 
  private:
-  static int at(int x, int y, int z) { return x + kSide * (y + kSide * z); }
+  static int at(int x, int y, int z) { return x + kCellSide * (y + kCellSide * z); }
   static int which(int x, int y, int z) {
     return x / kBlockSide + 2 * (y / kBlockSide) + 4 * (z / kBlockSide);
   }
 
   const VoxelBlock* blocks_[8];
-  bool observed_[kSide * kSide * kSide];
-  VoxelBlock::Tsdf tsdf_[kSide * kSide * kSide];
+  bool observed_[kCellSide * kCellSide * kCellSide];
+  VoxelBlock::Tsdf tsdf_[kCellSide * kCellSide * kCellSide];
 };
 
 /// The part of the mesh that one block owns: vertices on the edges that start in it, triangles of
@@ -186,7 +186,7 @@ Mesh extract_mesh(const VoxelMap& map) {
   const std::vector<std::uint32_t> slots = map.ordered_slots();
   std::vector<BlockMesh> meshes(slots.size());
   const BlockMesher mesher(map, meshes, slots);
-  parallel_for(slots.size(), kBlocksPerTask, [&](std::size_t i) { mesher.add_vertices(i); });
+  parallel_for(slots.size(), kMeshedBlocksPerTask, [&](std::size_t i) { mesher.add_vertices(i); });
   std::uint32_t vertex_count = 0;
   std::vector<std::uint32_t> mesh_of_slot(slots.size());
   for (std::size_t i = 0; i < slots.size(); ++i) {
@@ -194,7 +194,7 @@ Mesh extract_mesh(const VoxelMap& map) {
     meshes[i].first_vertex = vertex_count;
     vertex_count += static_cast<std::uint32_t>(meshes[i].part.vertices.size());
   }
-  parallel_for(slots.size(), kBlocksPerTask,
+  parallel_for(slots.size(), kMeshedBlocksPerTask,
                [&](std::size_t i) { mesher.add_triangles(i, mesh_of_slot); });
   return join(meshes, vertex_count);
 }

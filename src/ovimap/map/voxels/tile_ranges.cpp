@@ -10,7 +10,6 @@ namespace ovimap {
 
 namespace {
 constexpr float kNearPlane_m = 0.05f;
-constexpr float kHalfDiagonal = 0.8660254f;  // of a unit cube
 }  // namespace
 
 TileRanges::TileRanges(const VoxelMap& map, const PinholeCamera& camera,
@@ -22,7 +21,7 @@ TileRanges::TileRanges(const VoxelMap& map, const PinholeCamera& camera,
   const Pose camera_from_world = world_from_camera.inverse();
   const double block = map.config().block_size_m();
   const double region = block * kRegionBlocks;
-  const auto region_radius = static_cast<float>(region * kHalfDiagonal);
+  const auto region_radius = static_cast<float>(region * kCubeHalfDiagonal);
   // A sphere is out of view when it lies behind one of the image's side planes.
   const float corner =
       std::max({camera.cx + 0.5f, static_cast<float>(camera.width) - camera.cx}) / camera.fx;
@@ -42,14 +41,14 @@ TileRanges::TileRanges(const VoxelMap& map, const PinholeCamera& camera,
       const Eigen::Vector3d middle =
           (map.block_index(slot).cast<double>() + Eigen::Vector3d::Constant(0.5)) * block;
       const Eigen::Vector3f c = (camera_from_world * middle).cast<float>();
-      if (in_view(c, static_cast<float>(block) * kHalfDiagonal))
+      if (in_view(c, static_cast<float>(block) * kCubeHalfDiagonal))
         add_block(c, static_cast<float>(block) / 2);
     }
   });
 }
 
 void TileRanges::add_block(const Eigen::Vector3f& center, float half_side) {
-  const float radius = half_side * 2.f * kHalfDiagonal;
+  const float radius = half_side * 2.f * kCubeHalfDiagonal;
   const float near_m = std::max(center.z() - radius, 0.f), far_m = center.z() + radius;
   if (near_m < kNearPlane_m)  // around the camera: it may cover any pixel
     return widen(0, 0, static_cast<float>(camera_.width), static_cast<float>(camera_.height),

@@ -20,6 +20,7 @@ inline constexpr int kBlockVoxels = kBlockSide * kBlockSide * kBlockSide;
 inline constexpr int kLabelSlots = 4;
 inline constexpr int kRegionBlocks =
     8;  ///< a region is a cube of 8^3 blocks, for leaping over empty space
+inline constexpr float kCubeHalfDiagonal = 0.8660254f;  ///< of a cube with sides of 1
 
 /// Block coordinates: a block covers [index * 8, index * 8 + 8) voxels along each axis.
 using BlockIndex = Eigen::Vector3i;
