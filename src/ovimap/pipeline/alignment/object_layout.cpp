@@ -104,9 +104,9 @@ struct UprightPose {
     return Eigen::Vector3d(c * p.x() - s * p.y(), s * p.x() + c * p.y(), p.z()) + shift;
   }
   bool near(const UprightPose& other, const Eigen::Vector3d& somewhere) const {
-    constexpr double kSameShift_m = 0.25, kSameYaw_rad = 0.15;
+    constexpr double kSamePlace_m = 0.25, kSameYaw_rad = 0.15;
     return std::fabs(std::remainder(yaw - other.yaw, 2 * M_PI)) < kSameYaw_rad &&
-           ((*this)(somewhere)-other(somewhere)).norm() < kSameShift_m;
+           ((*this)(somewhere)-other(somewhere)).norm() < kSamePlace_m;
   }
   Pose pose() const {
     Pose result(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()));

@@ -7,12 +7,12 @@
 
 #include "ovimap/base/config.h"
 #include "ovimap/map/rays/ray_cast.h"
+#include "ovimap/pipeline/alignment/surface_fit.h"
 
 namespace ovimap {
 
 namespace {
 
-constexpr float kAlike = 0.6f;    // cosine of the normals of one surface in two maps
 constexpr float kLevel = 0.8f;    // cosine to the vertical of what counts as level
 constexpr float kBreak = 0.1f;    // depths of neighbours that differ by a larger share are two surfaces
 constexpr float kFewTelling = 0.05f;  // share of pixels that must not be level
@@ -119,7 +119,7 @@ PlaceAgreement agreement(const PlaceView& view, const VoxelMap& map, const Pose&
       const Eigen::Vector3f& plane = view.normals.row(y)[x];
       const Eigen::Vector3f normal = normal_at(model, view.camera, x, y);
       if (std::fabs((there - here) * plane.dot(ray)) < config.tolerance_m &&
-          (normal == Eigen::Vector3f::Zero() || normal.dot(plane) > kAlike))
+          (normal == Eigen::Vector3f::Zero() || normal.dot(plane) > kSameSurfaceCosine))
         ++result.meeting;
       else if (nearest_around(view.depth, x, y) - there > config.tolerance_m * ray.norm())
         ++result.seen_through;

@@ -14,8 +14,6 @@ namespace {
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
-constexpr float kAlike = 0.6f;  // cosine of the normals of one surface in two maps
-
 Pose motion(const Vector6d& turn_and_shift) {
   Pose result = Pose::Identity();
   const Eigen::Vector3d turn = turn_and_shift.head<3>();
@@ -59,7 +57,7 @@ Pose SurfaceFit::step(const Pose& a_from_b, float reach_m) const {
   for (std::size_t i = 0; i < moved.size(); ++i) {
     if (!found[i]) continue;
     const Eigen::Vector3f& plane = a_.normals[found[i]->index];
-    if (plane.dot(pose.linear() * b_.normals[i]) < kAlike) continue;
+    if (plane.dot(pose.linear() * b_.normals[i]) < kSameSurfaceCosine) continue;
     const Eigen::Vector3d p = moved[i].cast<double>(), n = plane.cast<double>();
     Vector6d row;
     row << p.cross(n), n;

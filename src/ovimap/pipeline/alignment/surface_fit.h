@@ -11,6 +11,9 @@
 
 namespace ovimap {
 
+/// Least cosine between the normals of one surface in two maps.
+inline constexpr float kSameSurfaceCosine = 0.6f;
+
 /// Points of a map's surface with unit normals that look out of it. World frame, metres.
 struct SurfacePoints {
   std::vector<Eigen::Vector3f> points, normals;

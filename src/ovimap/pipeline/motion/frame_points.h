@@ -7,6 +7,9 @@
 
 namespace ovimap {
 
+/// A point that lies no further from the map's surface is of it.
+inline constexpr float kOnSurface_voxels = 2.f;
+
 /// A frame's points in the world, metres. The observation must stay.
 class FramePoints {
  public:

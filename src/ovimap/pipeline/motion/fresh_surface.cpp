@@ -13,7 +13,6 @@ namespace ovimap {
 namespace {
 
 constexpr int kSampleStep_px = 4;
-constexpr float kOnSurface_voxels = 2.f;
 
 /// A cell and whether the map has surface there.
 struct CellSeen {

@@ -19,7 +19,6 @@ namespace {
 constexpr std::size_t kRowsPerTask = 16;
 constexpr float kUnknownSlope = 0.5f;  // of a plane that does not fit, as FreeSpaceConfig takes it
 constexpr float kLeastSlope = 0.1f;
-constexpr float kOnSurface_voxels = 2.f;
 constexpr std::uint16_t kMostPatches = MovingPixels::kTakenOut - 1;
 
 /// Patches grown from the pixels that contradict, one after another in the order of their first.

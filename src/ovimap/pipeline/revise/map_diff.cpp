@@ -289,11 +289,11 @@ class MapComparison {
   std::vector<ObjectChange> changes_;
 };
 
-using Color = std::array<std::uint8_t, 3>;
-constexpr Color kNewColor{40, 170, 70}, kMovedColor{40, 90, 220}, kOldPlaceColor{140, 190, 250},
-    kRemovedColor{215, 45, 45};
+using ChangeColor = std::array<std::uint8_t, 3>;
+constexpr ChangeColor kNewColor{40, 170, 70}, kMovedColor{40, 90, 220},
+    kOldPlaceColor{140, 190, 250}, kRemovedColor{215, 45, 45};
 
-void append(Mesh& mesh, const Mesh& piece, const Color& color) {
+void append(Mesh& mesh, const Mesh& piece, const ChangeColor& color) {
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
   mesh.vertices.insert(mesh.vertices.end(), piece.vertices.begin(), piece.vertices.end());
   mesh.normals.insert(mesh.normals.end(), piece.normals.begin(), piece.normals.end());
@@ -306,7 +306,7 @@ void append(Mesh& mesh, const Mesh& piece, const Color& color) {
 }
 
 /// Half-way to a light grey, so that changes stand out.
-Color faded(const Color& color) {
+ChangeColor faded(const ChangeColor& color) {
   const int grey = (2 * color[0] + 5 * color[1] + color[2]) / 8;
   const auto level = static_cast<std::uint8_t>(110 + grey / 2);
   return {level, level, level};
@@ -340,7 +340,7 @@ std::vector<ObjectChange> diff_maps(const MapDocument& before, const MapDocument
 
 Mesh diff_mesh(const MapDocument& before, const MapDocument& after, const Pose& before_from_after,
                const std::vector<ObjectChange>& changes) {
-  std::map<InstanceId, Color> in_before, in_after;
+  std::map<InstanceId, ChangeColor> in_before, in_after;
   for (const ObjectChange& change : changes) {
     if (change.kind == ChangeKind::kNew) in_after[change.after] = kNewColor;
     if (change.kind == ChangeKind::kRemoved) in_before[change.before] = kRemovedColor;

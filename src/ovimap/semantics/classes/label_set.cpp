@@ -18,7 +18,7 @@ namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kObjectsPerBlock = 256;
+constexpr std::size_t kGuessedObjectsPerTask = 256;
 
 /// "93 wall" -> {93, "wall"}
 ClassLabel numbered_label(const std::string& entry) {
@@ -104,7 +104,7 @@ std::vector<std::vector<ClassGuess>> project_classes(const SearchIndex& index,
                            "encoder '" + encoder.identity().name + "'");
   const Embeddings classes = encode_labels(encoder, set, prompts);
   std::vector<std::vector<ClassGuess>> guesses(index.size());
-  parallel_for(index.size(), kObjectsPerBlock, [&](std::size_t i) {
+  parallel_for(index.size(), kGuessedObjectsPerTask, [&](std::size_t i) {
     if (!index.has_embedding(i)) return;
     const auto row = index.embeddings().row(static_cast<Eigen::Index>(i));
     guesses[i] = best_guesses(classes * row.transpose(), top);

@@ -8,6 +8,7 @@
 
 #include "ovimap/base/ascii.h"
 #include "ovimap/semantics/query/query_words.h"
+#include "ovimap/semantics/words/one_of.h"
 
 namespace ovimap {
 
@@ -40,10 +41,6 @@ constexpr std::array kChangeWords{
 // What may stand before a word of change: "what has been moved", "chairs that are gone".
 constexpr std::array<std::string_view, 8> kBeforeChange{"has", "have", "is",   "are",
                                                         "was", "were", "been", "went"};
-
-bool is_one_of(const std::string& word, std::span<const std::string_view> list) {
-  return std::find(list.begin(), list.end(), lower_case(word)) != list.end();
-}
 
 /// Whether words name a time without "on" or "since" before it, and could be nothing else.
 bool names_time_alone(Words words) {
@@ -81,7 +78,7 @@ std::optional<AskedChange> take_change(Words& words) {
   for (const ChangeWord& known : kChangeWords) {
     if (lower_case(words.back()) != known.word) continue;
     words = words.first(words.size() - 1);
-    while (!words.empty() && is_one_of(words.back(), kBeforeChange))
+    while (!words.empty() && is_one_of(lower_case(words.back()), kBeforeChange))
       words = words.first(words.size() - 1);
     return known.change;
   }
@@ -94,8 +91,8 @@ bool take_changed_things(Words& words, HistoryPhrase& phrase) {
   const auto change = take_change(rest);
   if (!change || rest.empty()) return false;
   constexpr std::array<std::string_view, 2> kAsking{"what", "which"}, kLinking{"that", "which"};
-  const bool asking = is_one_of(rest.front(), kAsking),
-             linking = rest.size() > 1 && is_one_of(rest.back(), kLinking);
+  const bool asking = is_one_of(lower_case(rest.front()), kAsking),
+             linking = rest.size() > 1 && is_one_of(lower_case(rest.back()), kLinking);
   if (!asking && !linking) return false;
   words = asking ? rest.subspan(1) : rest.first(rest.size() - 1);
   phrase.change = change;

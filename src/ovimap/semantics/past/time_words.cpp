@@ -32,8 +32,8 @@ struct Unit {
   std::string_view word;
   double seconds;
 };
-constexpr std::array kUnits{Unit{"minute", 60}, Unit{"hour", 3600}, Unit{"day", kDay_s},
-                            Unit{"week", kDaysOfWeek * kDay_s}};
+constexpr std::array kTimeUnits{Unit{"minute", 60}, Unit{"hour", 3600}, Unit{"day", kDay_s},
+                                Unit{"week", kDaysOfWeek * kDay_s}};
 
 std::tm local_time(double time_s) {
   const auto seconds = static_cast<std::time_t>(std::floor(time_s));
@@ -132,7 +132,7 @@ std::optional<TimeAsked> parse_ago(Words words, double now_s) {
   const bool one = plays(words[0], WordRole::kArticle) || words[0] == "1";
   const int count = one ? 1 : number_of(words[0]);
   const std::string unit = lower_case(words[1]);
-  for (const Unit& known : kUnits) {
+  for (const Unit& known : kTimeUnits) {
     if (count == 0 || !unit.starts_with(known.word) || unit.size() > known.word.size() + 1) continue;
     const double then_s = now_s - count * known.seconds;
     if (known.seconds < kDay_s) return TimeAsked{0, then_s, then_s + known.seconds};

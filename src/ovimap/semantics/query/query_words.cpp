@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "ovimap/base/ascii.h"
+#include "ovimap/semantics/words/one_of.h"
 
 namespace ovimap {
 
@@ -108,11 +109,11 @@ struct UnitWord {
   std::string_view word;
   float metres;
 };
-constexpr std::array kUnits{
-    UnitWord{"m", 1.f},         UnitWord{"metre", 1.f},    UnitWord{"metres", 1.f},
-    UnitWord{"meter", 1.f},     UnitWord{"meters", 1.f},   UnitWord{"cm", 0.01f},
-    UnitWord{"mm", 0.001f},     UnitWord{"inch", 0.0254f}, UnitWord{"inches", 0.0254f},
-    UnitWord{"foot", 0.3048f},  UnitWord{"feet", 0.3048f}};
+constexpr std::array kLengthUnits{
+    UnitWord{"m", 1.f},        UnitWord{"metre", 1.f},    UnitWord{"metres", 1.f},
+    UnitWord{"meter", 1.f},    UnitWord{"meters", 1.f},   UnitWord{"cm", 0.01f},
+    UnitWord{"mm", 0.001f},    UnitWord{"inch", 0.0254f}, UnitWord{"inches", 0.0254f},
+    UnitWord{"foot", 0.3048f}, UnitWord{"feet", 0.3048f}};
 
 constexpr std::array<std::string_view, 9> kNumbers{"two",   "three", "four", "five", "six",
                                                    "seven", "eight", "nine", "ten"};
@@ -120,10 +121,6 @@ constexpr int kFirstNumber = 2, kMostCount = 1000;
 constexpr std::array<std::string_view, 5> kShades{"dark", "light", "bright", "pale", "deep"};
 // What may follow the thing in "how many chairs are there in the room".
 constexpr std::array<std::string_view, 5> kCountFillers{"are", "is", "there", "here", "visible"};
-
-bool is_one_of(std::string_view word, std::span<const std::string_view> list) {
-  return std::find(list.begin(), list.end(), word) != list.end();
-}
 
 /// "1.5 m", "150cm", in metres.
 std::optional<float> parse_length(Words words) {
@@ -134,7 +131,7 @@ std::optional<float> parse_length(Words words) {
       words.size() == 2 && *rest == 0 ? lower_case(words[1]) : lower_case(rest);
   if (rest == words[0].c_str() || !(number > 0.f) || (words.size() == 2 && *rest != 0))
     return std::nullopt;
-  for (const UnitWord& known : kUnits)
+  for (const UnitWord& known : kLengthUnits)
     if (unit == known.word) return number * known.metres;
   return std::nullopt;
 }

@@ -21,7 +21,7 @@ constexpr float kSmallestShare = 1e-3f;                // of a text among the th
 constexpr float kLeastLikelihood = 1e-4f;
 constexpr float kLeastRivals = 1e-3f;                  // share of all words that always competes
 constexpr float kPersonsWord = 20.f;  // log likelihood ratio that nothing seen outweighs
-constexpr std::size_t kObjectsPerTask = 64;
+constexpr std::size_t kSizedObjectsPerTask = 64;
 
 const std::vector<ThingSize>& builtin_sizes() {
   static const auto sizes = read_thing_sizes(list_entries(builtin_word_list("thing_sizes")));
@@ -110,7 +110,7 @@ TextEvidence::TextEvidence(std::span<const ObjectMeasures> objects, const SeenTh
   for (const ThingSize& thing : things) structures_.push_back(is_structure(thing));
   sizes_.resize(static_cast<Eigen::Index>(objects.size()),
                 objects.empty() ? 0 : static_cast<Eigen::Index>(things.size()));
-  parallel_for(objects.size(), kObjectsPerTask, [&](std::size_t i) {
+  parallel_for(objects.size(), kSizedObjectsPerTask, [&](std::size_t i) {
     for (Eigen::Index k = 0; k < sizes_.cols(); ++k)
       sizes_(static_cast<Eigen::Index>(i), k) =
           size_likelihood(objects[i], things[static_cast<std::size_t>(k)]);

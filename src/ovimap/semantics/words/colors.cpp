@@ -18,17 +18,17 @@ struct ColorWord {
   std::string_view word;
   Color color;
 };
-constexpr std::array kWords{
-    ColorWord{"black", Color::kBlack},         ColorWord{"grey", Color::kGrey},
-    ColorWord{"white", Color::kWhite},         ColorWord{"red", Color::kRed},
-    ColorWord{"orange", Color::kOrange},       ColorWord{"yellow", Color::kYellow},
-    ColorWord{"green", Color::kGreen},         ColorWord{"turquoise", Color::kTurquoise},
-    ColorWord{"blue", Color::kBlue},           ColorWord{"purple", Color::kPurple},
-    ColorWord{"pink", Color::kPink},           ColorWord{"brown", Color::kBrown},
-    ColorWord{"beige", Color::kBeige},         ColorWord{"gray", Color::kGrey},
-    ColorWord{"silver", Color::kGrey},         ColorWord{"violet", Color::kPurple},
-    ColorWord{"teal", Color::kTurquoise},      ColorWord{"cyan", Color::kTurquoise},
-    ColorWord{"magenta", Color::kPink},        ColorWord{"cream", Color::kBeige}};
+constexpr std::array kColorWords{
+    ColorWord{"black", Color::kBlack},    ColorWord{"grey", Color::kGrey},
+    ColorWord{"white", Color::kWhite},    ColorWord{"red", Color::kRed},
+    ColorWord{"orange", Color::kOrange},  ColorWord{"yellow", Color::kYellow},
+    ColorWord{"green", Color::kGreen},    ColorWord{"turquoise", Color::kTurquoise},
+    ColorWord{"blue", Color::kBlue},      ColorWord{"purple", Color::kPurple},
+    ColorWord{"pink", Color::kPink},      ColorWord{"brown", Color::kBrown},
+    ColorWord{"beige", Color::kBeige},    ColorWord{"gray", Color::kGrey},
+    ColorWord{"silver", Color::kGrey},    ColorWord{"violet", Color::kPurple},
+    ColorWord{"teal", Color::kTurquoise}, ColorWord{"cyan", Color::kTurquoise},
+    ColorWord{"magenta", Color::kPink},   ColorWord{"cream", Color::kBeige}};
 
 struct FocalColor {
   Color color;
@@ -56,7 +56,7 @@ constexpr int kMostSamples = 400;        // of one object
 constexpr float kGreyNorm = 6.f;
 constexpr float kMostTint = 1.6f;        // of the light, between channels
 constexpr float kBright = 0.75f, kLeastExposure = 0.8f, kMostExposure = 3.f;
-constexpr std::size_t kObjectsPerTask = 4;
+constexpr std::size_t kCropsPerTask = 4;
 
 float linear(std::uint8_t value) {
   const float v = static_cast<float>(value) / 255.f;
@@ -120,11 +120,11 @@ Eigen::Array3f light_gain(std::span<const std::vector<Eigen::Vector3f>> objects)
 }  // namespace
 
 const char* color_name(Color color) {
-  return kWords[static_cast<std::size_t>(color)].word.data();  // the first are in their order
+  return kColorWords[static_cast<std::size_t>(color)].word.data();  // the first are in their order
 }
 
 std::optional<Color> color_of_word(std::string_view word) {
-  for (const ColorWord& known : kWords)
+  for (const ColorWord& known : kColorWords)
     if (known.word == word) return known.color;
   return std::nullopt;
 }
@@ -165,11 +165,11 @@ const std::vector<ColorShares>& ObjectColors::shares() const {
   std::call_once(once_, [&] {
     const std::vector<StoredCrop> crops = crops_();
     std::vector<std::vector<Eigen::Vector3f>> samples(crops.size());
-    parallel_for(crops.size(), kObjectsPerTask,
+    parallel_for(crops.size(), kCropsPerTask,
                  [&](std::size_t i) { samples[i] = samples_of(crops[i]); });
     const Eigen::Array3f gain = light_gain(samples);
     shares_.resize(crops.size());
-    parallel_for(crops.size(), kObjectsPerTask, [&](std::size_t i) {
+    parallel_for(crops.size(), kCropsPerTask, [&](std::size_t i) {
       for (Eigen::Vector3f& sample : samples[i])
         sample = (sample.array() * gain).min(1.f).matrix();
       shares_[i] = name_colors(samples[i]);

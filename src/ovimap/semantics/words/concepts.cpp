@@ -14,7 +14,7 @@ namespace ovimap {
 namespace {
 
 /// What follows tells more of a thing that is named before it.
-constexpr std::array kAfterThing = {" of ", " with ", " for ", " from ", " to ", " without "};
+constexpr std::array kBeforeDetails = {" of ", " with ", " for ", " from ", " to ", " without "};
 
 std::vector<std::string> parts_of(const std::string& text, char separator) {
   std::vector<std::string> parts;
@@ -82,7 +82,7 @@ bool Concepts::knows(std::string_view text) const {
 std::vector<Concepts::Kind> Concepts::find(std::string_view text, Senses senses) const {
   std::string words = lower_case(text);
   if (auto whole = known(words, senses); !whole.empty()) return whole;
-  for (const std::string_view separator : kAfterThing)
+  for (const std::string_view separator : kBeforeDetails)
     if (const std::size_t at = words.find(separator); at != std::string::npos) words.resize(at);
   while (!words.empty()) {
     if (auto kinds = known(words, senses); !kinds.empty()) return kinds;

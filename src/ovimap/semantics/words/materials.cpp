@@ -8,25 +8,22 @@
 #include <sstream>
 
 #include "ovimap/base/ascii.h"
+#include "ovimap/semantics/words/one_of.h"
 
 namespace ovimap {
 
 namespace {
 
 // "Paper" is left out: a paper bin is for paper.
-constexpr std::array<std::string_view, 40> kWords{
-    "wood",      "wooden",   "oak",      "pine",     "beech",     "walnut",    "metal",
-    "metallic",  "steel",    "iron",     "aluminium", "aluminum", "chrome",    "brass",
-    "copper",    "glass",    "plastic",  "rubber",   "ceramic",   "porcelain", "clay",
-    "stone",     "marble",   "granite",  "concrete", "leather",   "cloth",     "fabric",
-    "woollen",   "velvet",   "wicker",   "rattan",   "bamboo",    "cardboard", "striped",
-    "checked",   "checkered", "dotted",  "spotted",  "patterned"};
+constexpr std::array<std::string_view, 40> kMaterialWords{
+    "wood",     "wooden",    "oak",     "pine",      "beech",    "walnut",    "metal",
+    "metallic", "steel",     "iron",    "aluminium", "aluminum", "chrome",    "brass",
+    "copper",   "glass",     "plastic", "rubber",    "ceramic",  "porcelain", "clay",
+    "stone",    "marble",    "granite", "concrete",  "leather",  "cloth",     "fabric",
+    "woollen",  "velvet",    "wicker",  "rattan",    "bamboo",   "cardboard", "striped",
+    "checked",  "checkered", "dotted",  "spotted",   "patterned"};
 
 constexpr std::array<std::string_view, 6> kAfterThing{"of", "with", "without", "for", "full", "to"};
-
-bool is_one_of(std::string_view word, std::span<const std::string_view> words) {
-  return std::find(words.begin(), words.end(), word) != words.end();
-}
 
 struct Reading {
   std::vector<std::string> materials;
@@ -45,7 +42,7 @@ Reading read(std::string_view text, const Concepts& concepts) {
     const std::string word = lower_case(words[i]);
     const bool named = i + 1 == words.size() || is_one_of(lower_case(words[i + 1]), kAfterThing) ||
                        concepts.knows(from_here);
-    if (named || !is_one_of(word, kWords))
+    if (named || !is_one_of(word, kMaterialWords))
       reading.rest += (reading.rest.empty() ? "" : " ") + (named ? from_here : words[i]);
     else
       reading.materials.push_back(word);
