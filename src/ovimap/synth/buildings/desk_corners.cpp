@@ -4,31 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "ovimap/base/error.h"
+#include "ovimap/synth/buildings/made_requests.h"
+#include "ovimap/synth/shapes/angles.h"
 
 namespace ovimap {
 namespace {
 
 using enum Placement;
-using Names = std::vector<std::string>;
 
 constexpr int kMoments = 32;
 constexpr float kNearest_m = 0.3f, kFarther_m = 0.3f;  // from the front edge
 constexpr float kShelfFarther_m = 0.55f;               // the more before what stands upright
-constexpr float kTurn_rad = 2 * std::numbers::pi_v<float>;
-
-FurnitureRequest made(const std::string& class_name, const std::string& kind, Placement placement,
-                      int count = 1, const Names& at = {}, std::optional<float> bottom_m = {}) {
-  return {class_name, placement, count, at, made_id(kind), bottom_m};
-}
-
-Names all_made(const Names& kinds) {
-  Names ids;
-  for (const std::string& kind : kinds) ids.push_back(made_id(kind));
-  return ids;
-}
 
 RoomSpec corner(const char* name, Split split, const RoomLight& light) {
   const bool tuned = split == Split::kTuned;

@@ -3,29 +3,15 @@
 #include "ovimap/synth/buildings/flat_rooms.h"
 
 #include "ovimap/base/error.h"
+#include "ovimap/synth/buildings/made_requests.h"
 
 namespace ovimap {
 namespace {
 
 using enum Placement;
-using Names = std::vector<std::string>;
 
-constexpr float kHeight_m = 2.55f, kRadiator_m = 0.12f, kWallCabinet_m = 1.45f, kShelf_m = 1.35f;
-
-FurnitureRequest made(const std::string& class_name, const std::string& kind, Placement placement,
-                      int count = 1, const Names& at = {}, std::optional<float> bottom_m = {}) {
-  return {class_name, placement, count, at, made_id(kind), bottom_m};
-}
-FurnitureRequest made(const std::string& kind, Placement placement, int count = 1,
-                      const Names& at = {}, std::optional<float> bottom_m = {}) {
-  return made(kind, kind, placement, count, at, bottom_m);
-}
-
-Names all_made(const Names& kinds) {
-  Names ids;
-  for (const std::string& kind : kinds) ids.push_back(made_id(kind));
-  return ids;
-}
+constexpr float kFlatHeight_m = 2.55f, kRadiatorBottom_m = 0.12f, kWallCabinetBottom_m = 1.45f,
+                kShelfBottom_m = 1.35f;
 
 /// Models of the furniture library: those of one split are in no room of the other, and no unseen
 /// one is in a room that parameters are tuned on, of any benchmark.
@@ -57,8 +43,8 @@ void living_room(RoomSpec& spec) {
       made("lamp", "table lamp", kOnTop, 1, {"cabinet"}),
       made("picture", "leaning picture", kAgainstWall),
       made("curtain", kOnWall, 2, {}, 0.03f),
-      made("radiator", kOnWall, 1, {}, kRadiator_m),
-      made("shelf", "wall shelf", kOnWall, 1, {}, kShelf_m),
+      made("radiator", kOnWall, 1, {}, kRadiatorBottom_m),
+      made("shelf", "wall shelf", kOnWall, 1, {}, kShelfBottom_m),
       made("picture", kOnWall, 4),
       made("rug", kRug),
       made("ceiling lamp", kOnCeiling, 2)};
@@ -87,12 +73,12 @@ void kitchen(RoomSpec& spec) {
                     made("kitchen cabinet", "kitchen counter", kAgainstWall, 2),
                     made("table", kInMiddle),
                     made("chair", kAround, 4, {"table"}),
-                    made("wall cabinet", kOnWall, 2, {}, kWallCabinet_m),
+                    made("wall cabinet", kOnWall, 2, {}, kWallCabinetBottom_m),
                     from_library(spec.split, "trash can", "KatorLegaz/bullet-trash-can",
                                  "BlendSwap-CC-0/dustbin", kOnFloor),
-                    made("shelf", "wall shelf", kOnWall, 1, {}, kShelf_m),
+                    made("shelf", "wall shelf", kOnWall, 1, {}, kShelfBottom_m),
                     made("picture", kOnWall, 2),
-                    made("radiator", kOnWall, 1, {}, kRadiator_m),
+                    made("radiator", kOnWall, 1, {}, kRadiatorBottom_m),
                     made("ceiling lamp", kOnCeiling)};
   const Names dishes = {"mug", "plate", "bowl", "glass", "bottle", "cutlery"};
   spec.clutter = {{counter,
@@ -122,7 +108,7 @@ void bedroom(RoomSpec& spec) {
                     from_library(spec.split, "suitcase", "BlendSwap-CC-BY/suitcase",
                                  "Scopia/cardboard-box", kOnFloor),
                     made("curtain", kOnWall, 2, {}, 0.03f),
-                    made("radiator", kOnWall, 1, {}, kRadiator_m),
+                    made("radiator", kOnWall, 1, {}, kRadiatorBottom_m),
                     made("picture", kOnWall, 3),
                     made("rug", kRug),
                     made("ceiling lamp", kOnCeiling)};
@@ -154,7 +140,7 @@ void study(RoomSpec& spec) {
                     made("picture", "leaning picture", kAgainstWall),
                     made("box", kOnFloor, 2),
                     made("plant", kInCorner),
-                    made("radiator", kOnWall, 1, {}, kRadiator_m),
+                    made("radiator", kOnWall, 1, {}, kRadiatorBottom_m),
                     made("picture", kOnWall, 2),
                     made("rug", kRug),
                     made("ceiling lamp", kOnCeiling)};
@@ -198,11 +184,13 @@ void child_room(RoomSpec& spec) {
 }
 
 void hall(RoomSpec& spec) {
-  spec.furniture = {
-      made("cabinet", kAgainstWall),      made("stool", kOnFloor),
-      made("shoes", kOnFloor, 3),         made("plant", kInCorner),
-      made("picture", kOnWall, 4),        made("shelf", "wall shelf", kOnWall, 1, {}, kShelf_m),
-      made("ceiling lamp", kOnCeiling, 2)};
+  spec.furniture = {made("cabinet", kAgainstWall),
+                    made("stool", kOnFloor),
+                    made("shoes", kOnFloor, 3),
+                    made("plant", kInCorner),
+                    made("picture", kOnWall, 4),
+                    made("shelf", "wall shelf", kOnWall, 1, {}, kShelfBottom_m),
+                    made("ceiling lamp", kOnCeiling, 2)};
   spec.clutter = {
       {{"cabinet"},
        all_made({"keys", "envelope", "bowl", "photo stand", "glasses", "phone", "vase"}),
@@ -232,7 +220,7 @@ RoomSpec flat_room(const std::string& kind, Split split, const Eigen::Vector2f& 
   RoomSpec spec;
   spec.name = kind;
   spec.split = split;
-  spec.size_m = {floor_m.x(), floor_m.y(), kHeight_m};
+  spec.size_m = {floor_m.x(), floor_m.y(), kFlatHeight_m};
   decorate(spec, kind);
   if (kind == "living-room")
     living_room(spec);

@@ -22,7 +22,7 @@ namespace {
 constexpr std::uint64_t kRoomStream = 7001;
 constexpr int kFurnishings = 30;   // ways to furnish a room that are tried
 constexpr float kInside_m = 0.5f;  // of a doorway: where one stands who came through it
-constexpr float kFrameWidth_m = 0.03f, kFrameProud_m = 0.01f;
+constexpr float kDoorFrame_m = 0.03f, kFrameProud_m = 0.01f;
 constexpr float kThreshold_m = 0.004f;
 constexpr float kLeafThickness_m = 0.045f, kLeafGap_m = 0.006f;
 constexpr float kLeafOpen_rad[] = {1.35f, 1.55f};
@@ -110,7 +110,7 @@ void move(SynthRoom& room, const Eigen::Vector2f& by) {
 /// The lining of an opening through both walls, with its threshold.
 RoomObject door_frame(const PlanRoom& room, const Doorway& doorway) {
   const OrientedBox box = doorway_box(room.spec, doorway, -kPlanWall_m);
-  const float x = box.half_m.x(), y = box.half_m.y() + kFrameProud_m, w = kFrameWidth_m;
+  const float x = box.half_m.x(), y = box.half_m.y() + kFrameProud_m, w = kDoorFrame_m;
   const float z = doorway.height_m;
   TexturedMesh mesh;
   SurfaceMaterial wood;
@@ -135,15 +135,15 @@ RoomObject door_frame(const PlanRoom& room, const Doorway& doorway) {
 /// A leaf that stands open in the room, beside its doorway: a thing of its own, with handles.
 RoomObject door_leaf(const PlanRoom& room, const Doorway& doorway, std::uint64_t seed) {
   Random random(seed);
-  const float width = doorway.width_m - 2 * kFrameWidth_m - kLeafGap_m;
-  const float height = doorway.height_m - kFrameWidth_m - kLeafGap_m;
+  const float width = doorway.width_m - 2 * kDoorFrame_m - kLeafGap_m;
+  const float height = doorway.height_m - kDoorFrame_m - kLeafGap_m;
   RoomObject object;
   object.name = object.class_name = "door";
   object.room = room.spec.name;
   MadeModel model = make_model("door leaf", room.spec.split, random);
   OrientedBox place = doorway_box(room.spec, doorway, 0);
   const Eigen::Vector2f hinge =
-      place.world_from_box({-place.half_m.x() + kFrameWidth_m + kLeafThickness_m, -kFrameProud_m});
+      place.world_from_box({-place.half_m.x() + kDoorFrame_m + kLeafThickness_m, -kFrameProud_m});
   place.yaw_rad -= random.uniform(kLeafOpen_rad[0], kLeafOpen_rad[1]);
   place.half_m = {width / 2, kLeafThickness_m / 2};
   place.center_m = hinge + room.origin_m;
@@ -164,8 +164,8 @@ std::vector<OrientedBox> walls_of(const PlanRoom& room) {
     std::vector<std::array<float, 2>> gaps = {{lines[i].length_m, lines[i].length_m}};
     for (const Doorway& doorway : room.spec.doorways)
       if (doorway.wall == i)
-        gaps.push_back({doorway.center_m - doorway.width_m / 2 + kFrameWidth_m,
-                        doorway.center_m + doorway.width_m / 2 - kFrameWidth_m});
+        gaps.push_back({doorway.center_m - doorway.width_m / 2 + kDoorFrame_m,
+                        doorway.center_m + doorway.width_m / 2 - kDoorFrame_m});
     std::sort(gaps.begin(), gaps.end());
     float from_m = 0;
     for (const auto& [begin_m, end_m] : gaps) {

@@ -16,7 +16,7 @@ namespace {
 using enum Placement;
 using Classes = std::vector<std::string>;
 
-constexpr float kHeight_m = 2.5f;
+constexpr float kPlanHeight_m = 2.5f;
 
 /// Doors are the plan's own; these would stand in the way.
 const std::set<std::string>& left_out() {
@@ -77,7 +77,7 @@ RoomSpec lived_in(const std::string& kind) {
 }
 
 PlanRoom at(const std::string& kind, float x, float y, float width, float depth) {
-  return {plan_room(kind, {width, depth, kHeight_m}), {x, y}};
+  return {plan_room(kind, {width, depth, kPlanHeight_m}), {x, y}};
 }
 
 /// Rooms north and south of a corridor.

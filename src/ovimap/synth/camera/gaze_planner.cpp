@@ -12,7 +12,6 @@
 namespace ovimap {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr int kSides = 24;           // directions from which a thing counts as seen anew
 constexpr double kNewSide = 0.8;     // worth of each further side, against the one before
 constexpr double kSeenAgain = 0.03;  // worth of a view from a side already seen
@@ -29,7 +28,7 @@ constexpr double kBeyondReach = 1e3;  // cost of a turn by more than that
 constexpr int kSweeps = 12;
 
 double wrapped(double angle) {
-  return std::remainder(angle, 2 * kPi);
+  return std::remainder(angle, 2 * std::numbers::pi);
 }
 
 /// Something worth looking at.
@@ -85,7 +84,8 @@ std::vector<Glimpse> glimpses_from(const Eigen::Vector3d& eye, const std::vector
     const double distance = direction.norm();
     if (distance < kLeastDistance_m || !visible(sights[i], scene, eye, direction)) continue;
     const double yaw = std::atan2(direction.y(), direction.x());
-    const int side = static_cast<int>((yaw + kPi) / (2 * kPi) * kSides) % kSides;
+    const int side =
+        static_cast<int>((yaw + std::numbers::pi) / (2 * std::numbers::pi) * kSides) % kSides;
     glimpses.push_back({i, yaw, std::atan2(direction.z(), std::hypot(direction.x(), direction.y())),
                         std::min(1.0, kBestDistance_m / distance), side});
   }
@@ -119,7 +119,7 @@ class Plan {
     return worth;
   }
 
-  static double yaw_of(const Choice& choice) { return 2 * kPi * choice.yaw / kYaws; }
+  static double yaw_of(const Choice& choice) { return 2 * std::numbers::pi * choice.yaw / kYaws; }
   static double pitch_of(const Choice& choice) {
     return kPitches_rad[static_cast<std::size_t>(choice.pitch)];
   }
@@ -188,15 +188,15 @@ std::vector<Choice> guess(const SynthRoom& room, std::span<const Eigen::Vector3d
                           double offset_rad, double reach_rad) {
   std::vector<Choice> choices;
   const Eigen::Vector2d middle = room.size_m.head<2>().cast<double>() / 2;
-  const int reach = std::max(1, static_cast<int>(reach_rad / (2 * kPi) * kYaws));
+  const int reach = std::max(1, static_cast<int>(reach_rad / (2 * std::numbers::pi) * kYaws));
   for (const Eigen::Vector3d& eye : eyes) {
     const Eigen::Vector2d direction = middle - eye.head<2>();
     const double wanted = std::atan2(direction.y(), direction.x()) + offset_rad;
     Choice choice;
-    choice.yaw = static_cast<int>(std::lround(wanted / (2 * kPi) * kYaws));
+    choice.yaw = static_cast<int>(std::lround(wanted / (2 * std::numbers::pi) * kYaws));
     if (!choices.empty()) {
       const double turn = wrapped(wanted - Plan::yaw_of(choices.back()));
-      const int steps = static_cast<int>(std::lround(turn / (2 * kPi) * kYaws));
+      const int steps = static_cast<int>(std::lround(turn / (2 * std::numbers::pi) * kYaws));
       choice.yaw = choices.back().yaw + std::clamp(steps, -reach, reach);
     }
     choices.push_back(choice);
@@ -212,7 +212,8 @@ std::vector<Gaze> plan_gazes(const SynthRoom& room, const RayScene& scene,
   Plan plan(room, scene, camera, eyes_m, reach_rad);
   std::vector<Choice> best;
   double best_worth = -1;
-  for (const double offset : {0.0, 0.5 * kPi, -0.5 * kPi, kPi}) {
+  for (const double offset :
+       {0.0, 0.5 * std::numbers::pi, -0.5 * std::numbers::pi, std::numbers::pi}) {
     std::vector<Choice> choices = guess(room, eyes_m, offset, reach_rad);
     const double worth = plan.improve(choices);
     if (worth > best_worth) best = std::move(choices), best_worth = worth;

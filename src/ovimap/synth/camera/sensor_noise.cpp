@@ -14,7 +14,7 @@
 namespace ovimap {
 namespace {
 
-constexpr std::size_t kRowsPerTask = 8;
+constexpr std::size_t kNoisyRowsPerTask = 8;
 enum NoiseStream : std::uint64_t {
   kDepthStream = 1ull << 40,
   kColorStream = 2ull << 40,
@@ -123,7 +123,7 @@ float measured(const RenderedView& view, const SensorNoiseConfig& config,
 template <class Body>
 void for_each_pixel(int width, int height, std::uint64_t seed, std::uint64_t stream,
                     const Body& body) {
-  parallel_for(static_cast<std::size_t>(height), kRowsPerTask, [&](std::size_t row) {
+  parallel_for(static_cast<std::size_t>(height), kNoisyRowsPerTask, [&](std::size_t row) {
     for (int x = 0; x < width; ++x) {
       Random random(seed,
                     stream + row * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));

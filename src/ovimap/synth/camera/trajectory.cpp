@@ -15,7 +15,6 @@
 namespace ovimap {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr std::uint64_t kSwayStream = 5001;
 constexpr int kKeyframes = 24;  // gaze decisions a lap
 constexpr double kSway_rad = 0.02;
@@ -27,8 +26,9 @@ class Sway {
     for (double& phase : phases_) phase = random.uniform(0, 6.2831853f);
   }
   double at(double lap) const {
-    return (std::sin(2 * kPi * lap + phases_[0]) + std::sin(2 * kPi * 2 * lap + phases_[1]) +
-            std::sin(2 * kPi * 3 * lap + phases_[2])) /
+    return (std::sin(2 * std::numbers::pi * lap + phases_[0]) +
+            std::sin(2 * std::numbers::pi * 2 * lap + phases_[1]) +
+            std::sin(2 * std::numbers::pi * 3 * lap + phases_[2])) /
            3;
   }
 

@@ -16,7 +16,7 @@
 namespace ovimap {
 namespace {
 
-constexpr double kTurn_rad = 2 * std::numbers::pi;
+constexpr double kRevolution_rad = 2 * std::numbers::pi;
 constexpr std::uint64_t kWalkStream = 6001;
 constexpr double kPathSpacing_s = 0.25;  // between control points of the way
 constexpr double kGazeSpacing_s = 1;     // between decisions where to look
@@ -34,8 +34,8 @@ constexpr double kWhipPeriod_s = 4, kWhip_s = 1.5;  // of one pan aside and back
 /// the speed of its phase.
 double whip_rad(double time_s, double fastest_rad_s) {
   const double count = std::floor(time_s / kWhipPeriod_s), since = time_s - count * kWhipPeriod_s;
-  const double phase = kTurn_rad * std::min(since / kWhip_s, 1.0);
-  const double height = fastest_rad_s * kWhip_s / kTurn_rad * 8 / (3 * std::numbers::sqrt3);
+  const double phase = kRevolution_rad * std::min(since / kWhip_s, 1.0);
+  const double height = fastest_rad_s * kWhip_s / kRevolution_rad * 8 / (3 * std::numbers::sqrt3);
   const double pulse = (1 - std::cos(phase)) / 2;
   return (std::fmod(count, 2) == 0 ? height : -height) * pulse * pulse;
 }
@@ -56,7 +56,7 @@ void add_corners(const WalkMap& map, const Eigen::AlignedBox2f& floor, const Eig
   const Eigen::Vector2f middle = floor.center(), half = floor.sizes() / 2;
   const double first = std::atan2(from.y() - middle.y(), from.x() - middle.x());
   for (int i = 0; i < kCornersPerRoom; ++i) {
-    const double angle = first + kTurn_rad * i / kCornersPerRoom;
+    const double angle = first + kRevolution_rad * i / kCornersPerRoom;
     const Eigen::Vector2f direction(static_cast<float>(std::cos(angle)),
                                     static_cast<float>(std::sin(angle)));
     const float reach = (half.array() / direction.array().abs().max(1e-6f)).minCoeff();
@@ -93,8 +93,8 @@ void list_fields(WalkConfig& config, ConfigFields& fields) {
 
 Wobble::Wobble(Random& random, float lowest_hz, float highest_hz) {
   for (std::size_t i = 0; i < kWaves; ++i) {
-    speed_rad_s_[i] = kTurn_rad * random.uniform(lowest_hz, highest_hz);
-    phase_rad_[i] = kTurn_rad * random.uniform();
+    speed_rad_s_[i] = kRevolution_rad * random.uniform(lowest_hz, highest_hz);
+    phase_rad_[i] = kRevolution_rad * random.uniform();
   }
 }
 
@@ -109,7 +109,7 @@ Walk::Walk(PlaneSpline path, PlaneSpline gaze, double seconds, std::uint64_t see
            const WalkConfig& config)
     : path_(std::move(path)), gaze_(std::move(gaze)), seconds_(seconds), config_(config) {
   Random random(seed, kWalkStream);
-  step_phase_rad_ = kTurn_rad * random.uniform();
+  step_phase_rad_ = kRevolution_rad * random.uniform();
   constexpr int kAxes = 6;
   for (int axis = 0; axis < kAxes; ++axis) {
     drift_.emplace_back(random, kDrift_hz[0], kDrift_hz[1]);
@@ -121,7 +121,7 @@ Pose Walk::at(double time_s) const {
   const auto hand = [&](std::size_t axis, double drift, double tremor) {
     return drift * drift_[axis].at(time_s) + tremor * tremor_[axis].at(time_s);
   };
-  const double step = kTurn_rad * config_.steps_per_s * time_s + step_phase_rad_;
+  const double step = kRevolution_rad * config_.steps_per_s * time_s + step_phase_rad_;
   const Eigen::Vector2d body = path_.at(time_s), gaze = gaze_.at(time_s);
   const Eigen::Vector2d right(std::sin(gaze.x()), -std::cos(gaze.x()));
   Eigen::Vector3d eye;
@@ -178,7 +178,8 @@ Walk surveying(const SynthRoom& room, const WalkConfig& config) {
   for (const SurveyMoment& moment : room.survey) {
     const Eigen::Vector2d ahead = (moment.target_m - moment.eye_m).cast<double>();
     double yaw = std::atan2(ahead.y(), ahead.x());
-    if (!gazes.empty()) yaw = gazes.back().x() + std::remainder(yaw - gazes.back().x(), kTurn_rad);
+    if (!gazes.empty())
+      yaw = gazes.back().x() + std::remainder(yaw - gazes.back().x(), kRevolution_rad);
     places.push_back(moment.eye_m.cast<double>());
     gazes.emplace_back(yaw, std::atan2(moment.target_height_m - config.eye_m, ahead.norm()));
   }

@@ -2,17 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "ovimap/synth/procedural/makers.h"
 #include "ovimap/synth/procedural/prints.h"
+#include "ovimap/synth/shapes/angles.h"
 
 namespace ovimap {
 namespace {
 
 using Points = std::vector<Eigen::Vector3f>;
 using Profile = std::vector<Eigen::Vector2f>;
-constexpr float kTurn_rad = 2 * std::numbers::pi_v<float>;
 
 void keyboard(Craft& craft, MadeModel& model) {
   TexturedMesh& mesh = model.mesh;

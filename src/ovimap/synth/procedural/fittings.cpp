@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "ovimap/synth/procedural/makers.h"
 #include "ovimap/synth/procedural/prints.h"
+#include "ovimap/synth/shapes/angles.h"
 
 namespace ovimap {
 namespace {
@@ -14,7 +14,6 @@ namespace {
 using Points = std::vector<Eigen::Vector3f>;
 using Profile = std::vector<Eigen::Vector2f>;
 constexpr float kShadeGlow = 1.1f, kSkyGlow = 1.7f;
-constexpr float kTurn_rad = 2 * std::numbers::pi_v<float>;
 
 void add_shade(Craft& craft, TexturedMesh& mesh, const Eigen::Vector3f& base, float radius,
                float height) {

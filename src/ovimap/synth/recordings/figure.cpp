@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::uint64_t kFigureStream = 14001;
 constexpr int kPostures = 8, kCorners = 6;
-constexpr float kSpacing_m = 0.05f, kLeastWay_m = 1.f;
+constexpr float kWaySpacing_m = 0.05f, kLeastWay_m = 1.f;
 constexpr float kSwing_rad = 0.45f;
 // Of a figure one metre tall: places of joints and radii of limbs.
 constexpr float kHip = 0.52f, kKnee = 0.27f, kShoulder = 0.82f, kElbow = 0.66f, kHead = 0.93f;
@@ -92,8 +92,8 @@ std::vector<Eigen::Vector2f> plan_way(const SynthRoom& room, const FigureConfig&
     const Eigen::Vector2f point(random.uniform(0, room.size_m.x()), random.uniform(0, room.size_m.y()));
     if (const auto free = map.nearest_free(point)) corners.push_back(*free);
   }
-  auto way = corners.empty() ? corners : even_loop(map, corners, kSpacing_m);
-  if (static_cast<float>(way.size()) * kSpacing_m < kLeastWay_m)
+  auto way = corners.empty() ? corners : even_loop(map, corners, kWaySpacing_m);
+  if (static_cast<float>(way.size()) * kWaySpacing_m < kLeastWay_m)
     throw Error(concat("room '", room.name, "' has no floor on which a figure could walk; leave "
                        "--figure away, or give another --room or --seed"));
   return way;

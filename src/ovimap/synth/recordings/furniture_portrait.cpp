@@ -5,26 +5,25 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "ovimap/base/config.h"
 #include "ovimap/synth/camera/sensor_noise.h"
 #include "ovimap/synth/camera/trajectory.h"
 #include "ovimap/synth/render/renderer.h"
+#include "ovimap/synth/shapes/angles.h"
 #include "ovimap/synth/shapes/mesh_parts.h"
 #include "ovimap/synth/shapes/random.h"
 
 namespace ovimap {
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kFreeSpace_m = 2.2f;   // of the room beyond the object
 constexpr float kHangingTop_m = 2.1f;  // what reaches higher hangs from the ceiling
 constexpr float kWallGap_m = 0.02f;
 constexpr float kEyeMargin_m = 0.12f;  // between the camera and the room's surfaces
-constexpr float kLampHalf_m = 0.3f;
-constexpr float kMiddleShare = 0.4f;  // of rooms where the object stands free
+constexpr float kStudioLampHalf_m = 0.3f;
+constexpr float kFreeStandingShare = 0.4f;  // of rooms where the object stands free
 constexpr int kMostNeighbours = 3;
 constexpr std::uint64_t kPatternStream = ~0ull;
 constexpr const char* kSubject = "subject";
@@ -49,12 +48,6 @@ Rgb8 pale_color(Random& random) {
   return {channel(), channel(), channel()};
 }
 
-SurfaceMaterial textured(const SurfacePattern& pattern) {
-  SurfaceMaterial material;
-  material.texture = pattern.texture;
-  return material;
-}
-
 SurfaceMaterial random_material(const Patterns& patterns, Random& random) {
   SurfaceMaterial material;
   if (random.uniform() < 0.5f) material = textured(pick(patterns.floors, random));
@@ -76,7 +69,7 @@ Place place_of(const FurnitureEntry& entry, const Eigen::Vector3f& size, Random&
   if (entry.elevation_m + size.z() > kHangingTop_m && !entry.door_or_window) return Place::kHanging;
   if (entry.elevation_m > 0 || entry.door_or_window) return Place::kOnWall;
   if (size.maxCoeff() <= config.small_m) return Place::kOnTable;
-  return random.uniform() < kMiddleShare ? Place::kOnFloor : Place::kAtWall;
+  return random.uniform() < kFreeStandingShare ? Place::kOnFloor : Place::kAtWall;
 }
 
 /// One room with the object in it.
@@ -192,8 +185,11 @@ class PortraitRoom {
     color *= random_.uniform(0.15f, 0.35f) * room.x() * room.y();
     const Eigen::Vector3f center(random_.uniform(0.2f, 0.8f) * room.x(),
                                  random_.uniform(0.2f, 0.8f) * room.y(), room.z() - 0.02f);
-    room_.lights.push_back(
-        {center, {kLampHalf_m, 0, 0}, {0, kLampHalf_m, 0}, -Eigen::Vector3f::UnitZ(), color});
+    room_.lights.push_back({center,
+                            {kStudioLampHalf_m, 0, 0},
+                            {0, kStudioLampHalf_m, 0},
+                            -Eigen::Vector3f::UnitZ(),
+                            color});
     if (random_.uniform() < 0.5f) {  // daylight from the wall at x = 0
       const Eigen::Vector3f window(0.02f, random_.uniform(0.3f, 0.7f) * room.y(), 1.4f);
       room_.lights.push_back({window,

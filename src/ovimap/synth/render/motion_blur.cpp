@@ -11,7 +11,7 @@
 namespace ovimap {
 namespace {
 
-constexpr std::size_t kRowsPerTask = 8;
+constexpr std::size_t kBlurredRowsPerTask = 8;
 constexpr float kFarAway_m = 1e3f;
 
 /// Between the four pixels around (u, v); outside, the nearest of the border.
@@ -36,22 +36,23 @@ Image<Eigen::Vector3f> blurred(const Image<Eigen::Vector3f>& picture, const Dept
   for (const Pose& pose : world_from_poses)
     camera_from_poses.emplace_back((world_from_camera.inverse() * pose).cast<float>());
   Image<Eigen::Vector3f> average(picture.width(), picture.height(), Eigen::Vector3f::Zero());
-  parallel_for(static_cast<std::size_t>(picture.height()), kRowsPerTask, [&](std::size_t row) {
-    const int y = static_cast<int>(row);
-    for (int x = 0; x < picture.width(); ++x) {
-      const float z = depth.at(x, y) > 0 ? depth.at(x, y) : kFarAway_m;
-      const Eigen::Vector3f point =
-          camera.unproject(static_cast<float>(x), static_cast<float>(y), z);
-      Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-      for (const Eigen::Isometry3f& camera_from_pose : camera_from_poses) {
-        const Eigen::Vector3f p = camera_from_pose * point;
-        const float near = std::max(p.z(), 1e-3f);
-        sum += sampled(picture, camera.fx * p.x() / near + camera.cx,
-                       camera.fy * p.y() / near + camera.cy);
-      }
-      average.at(x, y) = sum / static_cast<float>(camera_from_poses.size());
-    }
-  });
+  parallel_for(static_cast<std::size_t>(picture.height()), kBlurredRowsPerTask,
+               [&](std::size_t row) {
+                 const int y = static_cast<int>(row);
+                 for (int x = 0; x < picture.width(); ++x) {
+                   const float z = depth.at(x, y) > 0 ? depth.at(x, y) : kFarAway_m;
+                   const Eigen::Vector3f point =
+                       camera.unproject(static_cast<float>(x), static_cast<float>(y), z);
+                   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+                   for (const Eigen::Isometry3f& camera_from_pose : camera_from_poses) {
+                     const Eigen::Vector3f p = camera_from_pose * point;
+                     const float near = std::max(p.z(), 1e-3f);
+                     sum += sampled(picture, camera.fx * p.x() / near + camera.cx,
+                                    camera.fy * p.y() / near + camera.cy);
+                   }
+                   average.at(x, y) = sum / static_cast<float>(camera_from_poses.size());
+                 }
+               });
   return average;
 }
 

@@ -15,7 +15,7 @@
 namespace ovimap {
 namespace {
 
-constexpr std::size_t kRowsPerTask = 4;
+constexpr std::size_t kRenderedRowsPerTask = 4;
 constexpr float kEdgeDepthRatio =
     0.02f;  // neighbours farther apart than this share of depth: an edge
 constexpr float kEdgeNormal = 0.9f;
@@ -25,7 +25,7 @@ constexpr std::array<std::array<double, 2>, 4> kSubPixels = {
 
 template <class Body>
 void for_each_pixel(int width, int height, const Body& body) {
-  parallel_for(static_cast<std::size_t>(height), kRowsPerTask, [&](std::size_t row) {
+  parallel_for(static_cast<std::size_t>(height), kRenderedRowsPerTask, [&](std::size_t row) {
     for (int x = 0; x < width; ++x) body(x, static_cast<int>(row));
   });
 }

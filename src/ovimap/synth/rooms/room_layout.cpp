@@ -4,14 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "ovimap/base/config.h"
+#include "ovimap/synth/shapes/angles.h"
 
 namespace ovimap {
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kRestGap_m = 5e-4f;       // things stand this far above what carries them
 constexpr float kSink_m = 0.03f;          // soft things go this deep into it
 constexpr float kMiddleShare = 0.5f;      // of the room, where middle pieces have their centre

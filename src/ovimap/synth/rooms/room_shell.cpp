@@ -13,7 +13,7 @@ namespace ovimap {
 namespace {
 
 constexpr float kSkirtingHeight_m = 0.08f, kSkirtingDepth_m = 0.012f;
-constexpr float kFrameWidth_m = 0.03f;
+constexpr float kPictureFrame_m = 0.03f;
 constexpr float kOutdoorGlow = 1.6f;
 const Eigen::Vector3f kSkirtingColor(0.75f, 0.73f, 0.69f);
 const Eigen::Vector3f kCeilingColor(0.82f, 0.81f, 0.79f);
@@ -22,12 +22,6 @@ enum ShellStream : std::uint64_t { kFloorStream = 101, kWallStream = 102 };
 
 Eigen::Vector3f at_height(const Eigen::Vector2f& plan, float z) {
   return {plan.x(), plan.y(), z};
-}
-
-SurfaceMaterial textured(const SurfacePattern& pattern) {
-  SurfaceMaterial material;
-  material.texture = pattern.texture;
-  return material;
 }
 
 RoomObject shell_object(const std::string& name, const std::string& class_name, TexturedMesh mesh) {
@@ -132,7 +126,7 @@ TexturedMesh picture_model(const Eigen::Vector3f& size, std::uint64_t seed) {
   SurfaceMaterial wood;
   wood.albedo = Eigen::Vector3f(0.08f, 0.05f, 0.03f) * (1 + 4 * Random(seed).uniform());
   const auto frame = add_material(mesh, wood);
-  const float x = size.x() / 2, y = size.y() / 2, w = kFrameWidth_m;
+  const float x = size.x() / 2, y = size.y() / 2, w = kPictureFrame_m;
   add_box(mesh, {-x, -y, 0}, {-x + w, y, size.z()}, frame);
   add_box(mesh, {x - w, -y, 0}, {x, y, size.z()}, frame);
   add_box(mesh, {-x + w, -y, 0}, {x - w, y, w}, frame);

@@ -9,7 +9,7 @@
 namespace ovimap {
 namespace {
 
-constexpr std::size_t kRowsPerTask = 16;
+constexpr std::size_t kPaintedRowsPerTask = 16;
 constexpr int kRepeatSide_px = 1024;
 constexpr float kRepeatSide_m = 2.56f;
 constexpr float kPictureResolution_px_m = 400;
@@ -38,7 +38,7 @@ float LatticeNoise::at(float x, float y, int period_x, int period_y) const {
 
 std::shared_ptr<const Texture> painted(int width, int height, const Paint& color_at) {
   RgbImage image(width, height);
-  parallel_for(static_cast<std::size_t>(height), kRowsPerTask, [&](std::size_t row) {
+  parallel_for(static_cast<std::size_t>(height), kPaintedRowsPerTask, [&](std::size_t row) {
     const int y = static_cast<int>(row);
     for (int x = 0; x < width; ++x) {
       const PaintColor color =

@@ -14,7 +14,7 @@
 namespace ovimap {
 namespace {
 
-constexpr int kCells = 24;  // of the grid across each side
+constexpr int kGridCells = 24;  // of the grid across each side
 constexpr std::array<const char*, 3> kCloths = {"plaster", "stripes", "dots"};
 constexpr float kFoldShare = 0.35f;  // of a blanket's thickness
 
@@ -31,7 +31,7 @@ SurfaceMaterial cloth(Random& random) {
 }
 
 float coordinate(int cell) {
-  return 2.f * static_cast<float>(cell) / kCells - 1;
+  return 2.f * static_cast<float>(cell) / kGridCells - 1;
 }
 
 /// One side of a soft thing; `up` says which way it faces.
@@ -41,9 +41,9 @@ void add_sheet(TexturedMesh& mesh, const Eigen::Vector3f& size, const SheetHeigh
   const auto point = [&](float u, float v) {
     return Eigen::Vector3f(u * size.x() / 2, v * size.y() / 2, height(u, v));
   };
-  constexpr float kStep = 0.5f / kCells;
-  for (int j = 0; j <= kCells; ++j)
-    for (int i = 0; i <= kCells; ++i) {
+  constexpr float kStep = 0.5f / kGridCells;
+  for (int j = 0; j <= kGridCells; ++j)
+    for (int i = 0; i <= kGridCells; ++i) {
       const float u = coordinate(i), v = coordinate(j);
       const Eigen::Vector3f along = point(u + kStep, v) - point(u - kStep, v);
       const Eigen::Vector3f across = point(u, v + kStep) - point(u, v - kStep);
@@ -51,10 +51,10 @@ void add_sheet(TexturedMesh& mesh, const Eigen::Vector3f& size, const SheetHeigh
       mesh.normals.push_back(along.cross(across).normalized() * (up ? 1.f : -1.f));
       mesh.uvs.push_back({(u + 1) / 2, (v + 1) / 2});
     }
-  for (int j = 0; j < kCells; ++j)
-    for (int i = 0; i < kCells; ++i) {
-      const auto a = first + static_cast<std::uint32_t>(j * (kCells + 1) + i);
-      const std::uint32_t b = a + 1, c = a + kCells + 1, d = c + 1;
+  for (int j = 0; j < kGridCells; ++j)
+    for (int i = 0; i < kGridCells; ++i) {
+      const auto a = first + static_cast<std::uint32_t>(j * (kGridCells + 1) + i);
+      const std::uint32_t b = a + 1, c = a + kGridCells + 1, d = c + 1;
       mesh.triangles.push_back({a, b, d});
       mesh.triangles.push_back({a, d, c});
       mesh.triangle_materials.insert(mesh.triangle_materials.end(), 2, material);

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "ovimap/synth/shapes/angles.h"
 #include "ovimap/synth/shapes/mesh_parts.h"
 
 namespace ovimap {
@@ -14,7 +14,6 @@ namespace {
 
 constexpr int kTurnedSides = 28, kBarSides = 8;
 constexpr std::array kRoundSteps = {0.f, 0.25f, 0.6f, 1.f};  // of the radius, from the edge inwards
-constexpr float kTurn_rad = 2 * std::numbers::pi_v<float>;
 
 /// A grid of quads between `columns` x `rows` vertices that were appended row by row.
 void add_grid(TexturedMesh& mesh, std::uint32_t first, std::uint32_t columns, std::uint32_t rows,

@@ -16,6 +16,13 @@ struct SurfacePattern {
   float width_m = 1, height_m = 1;
 };
 
+/// What a surface that shows the pattern is made of.
+inline SurfaceMaterial textured(const SurfacePattern& pattern) {
+  SurfaceMaterial material;
+  material.texture = pattern.texture;
+  return material;
+}
+
 /// The same seed gives the same pixels. Repeating ones join without a seam.
 /// `style` is one of "oak", "walnut", "pine", "tiles", "carpet", or one of those
 /// that only unseen scenes have: "ash", "parquet", "mosaic".
