@@ -35,7 +35,7 @@ struct AblateOptions {
 };
 
 /// A part of a file name: letters, digits and single dashes.
-std::string slug(const std::string& text) {
+std::string file_slug(const std::string& text) {
   std::string result;
   for (const char c : text) {
     const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0;
@@ -47,7 +47,7 @@ std::string slug(const std::string& text) {
 
 std::string scene_name(const std::string& scene) {
   const fs::path path = fs::absolute(scene).lexically_normal();
-  return slug((path.has_filename() ? path : path.parent_path()).filename().string());
+  return file_slug((path.has_filename() ? path : path.parent_path()).filename().string());
 }
 
 double rate_of(const MappingOptions& mapping) {
@@ -109,7 +109,7 @@ MapDocument embed_truth(const MappingOptions& mapping, const std::string& title)
 /// the same for all variants of an ablation. What is timed is not taken from a folder.
 fs::path mask_folder(const AblateOptions& options, const MappingOptions& mapping) {
   if (mapping.masks == "none" || mapping.masks == "gt" || options.name == kTiming) return {};
-  return options.out / "masks" / (scene_name(mapping.source) + "-" + slug(mapping.masks));
+  return options.out / "masks" / (scene_name(mapping.source) + "-" + file_slug(mapping.masks));
 }
 
 void stop_if_interrupted() {
@@ -122,7 +122,7 @@ fs::path map_of(const AblateOptions& options, const AblationVariant& variant,
                 const std::string& scene) {
   const fs::path folder = options.out / "maps" / options.name;
   make_folder(folder);
-  const fs::path map = folder / (scene_name(scene) + "-" + slug(variant.name) + ".ovimap");
+  const fs::path map = folder / (scene_name(scene) + "-" + file_slug(variant.name) + ".ovimap");
   if (fs::exists(map)) return map;
   const MappingOptions mapping = options_of(options, variant, scene);
   const std::string title = concat(options.name, " '", variant.name, "', ", scene_name(scene));

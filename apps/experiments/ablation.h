@@ -65,6 +65,11 @@ struct AblationResult {
   EvalFigures figures;
 };
 
+/// By the standard protocol; 0 where the scenes give none.
+inline double value_of(const AblationColumn& column, const AblationResult& result) {
+  return column.figure(result.figures, Protocol::kStandard).value_or(0);
+}
+
 std::string ablation_markdown(const Ablation& ablation, const std::vector<AblationResult>& results,
                               const std::string& heading);
 /// The paper's stages, as maps remember what they took (supplement, timing table).

@@ -12,7 +12,8 @@ namespace {
 /// Panels stand in rows of four; the scale is to the left of each, the frames below.
 constexpr int kPanelsInRow = 4;
 constexpr double kPanelWidth = 190, kPanelHeight = 160;
-constexpr double kLeft = 34, kRight = 10, kTop = 26, kBottom = 30, kLegendHeight = 24;
+constexpr double kPanelLeft = 34, kPanelRight = 10, kPanelTop = 26, kPanelBottom = 30,
+                 kLegendHeight = 24;
 
 /// Where a panel's plot begins, and what its scale ends with.
 struct Panel {
@@ -20,15 +21,11 @@ struct Panel {
   double most_frames = 1, most = 1;
 
   Point at(double frames, double value) const {
-    return {corner.x + kLeft + (kPanelWidth - kLeft - kRight) * frames / most_frames,
-            corner.y + kPanelHeight - kBottom -
-                (kPanelHeight - kTop - kBottom) * value / most};
+    return {corner.x + kPanelLeft + (kPanelWidth - kPanelLeft - kPanelRight) * frames / most_frames,
+            corner.y + kPanelHeight - kPanelBottom -
+                (kPanelHeight - kPanelTop - kPanelBottom) * value / most};
   }
 };
-
-double value_of(const AblationColumn& column, const AblationResult& result) {
-  return column.figure(result.figures, Protocol::kStandard).value_or(0);
-}
 
 std::vector<std::string> curves_of(const std::vector<AblationResult>& results) {
   std::vector<std::string> curves;
@@ -72,7 +69,7 @@ std::string ablation_curves(const Ablation& ablation, const std::vector<Ablation
   std::string svg;
   for (std::size_t k = 0; k < curves.size(); ++k)
     svg += concat("<g fill=\"", kSvgColors[k % kSvgColors.size()], "\">",
-                  svg_text({kLeft + 120.0 * static_cast<double>(k), 16}, curves[k], "start"),
+                  svg_text({kPanelLeft + 120.0 * static_cast<double>(k), 16}, curves[k], "start"),
                   "</g>\n");
   for (std::size_t c = 0; c < ablation.columns.size(); ++c) {
     const AblationColumn& column = ablation.columns[c];

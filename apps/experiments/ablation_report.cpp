@@ -68,10 +68,6 @@ std::vector<AblationColumn> percentages(const Ablation& ablation) {
   return columns;
 }
 
-double value_of(const AblationColumn& column, const AblationResult& result) {
-  return column.figure(result.figures, Protocol::kStandard).value_or(0);
-}
-
 std::string bars(const std::vector<AblationColumn>& columns,
                  const std::vector<AblationResult>& results, double most) {
   std::string svg;

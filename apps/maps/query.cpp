@@ -117,7 +117,7 @@ void print_answer(const Answered& answered, const Approaches& approaches) {
 }
 
 /// The query as part of a file name: "mug on the table" becomes "mug-on-the-table".
-std::string slug(const std::string& query) {
+std::string query_slug(const std::string& query) {
   constexpr std::size_t kLongest = 40;
   std::string result;
   for (const char letter : query) {
@@ -134,7 +134,7 @@ std::filesystem::path heat_map_path(const std::filesystem::path& out, std::size_
                                     std::size_t count, const std::string& query) {
   if (count == 1) return out;
   return out.parent_path() /
-         concat(out.stem().string(), "-", number, "-", slug(query), out.extension().string());
+         concat(out.stem().string(), "-", number, "-", query_slug(query), out.extension().string());
 }
 
 void write_heat_maps(const QueryOptions& options, const Eigen::Vector3f& up,

@@ -63,7 +63,7 @@ WrittenRoom write_sequence(
   return {(out / scene).string(), sequence.size(), pack.instances.size(), sequence.moving()};
 }
 
-nlohmann::ordered_json box_json(const Eigen::AlignedBox3f& box) {
+nlohmann::ordered_json truth_box_json(const Eigen::AlignedBox3f& box) {
   if (box.isEmpty()) return nullptr;
   const auto point = [](const Eigen::Vector3f& p) {
     return nlohmann::ordered_json{p.x(), p.y(), p.z()};
@@ -79,8 +79,8 @@ nlohmann::ordered_json change_json(std::size_t visit, const RoomChange& change,
                                  {"name", object.name},
                                  {"class", object.class_name},
                                  {"kind", kKinds[static_cast<int>(change.kind)]},
-                                 {"from", box_json(change.from)},
-                                 {"to", box_json(change.to)}};
+                                 {"from", truth_box_json(change.from)},
+                                 {"to", truth_box_json(change.to)}};
   if (change.kind != RoomChangeKind::kMoved) return json;
   for (int row = 0; row < 4; ++row)
     for (int column = 0; column < 4; ++column)

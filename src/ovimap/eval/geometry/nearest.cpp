@@ -13,7 +13,7 @@
 namespace ovimap {
 
 namespace {
-constexpr std::size_t kLeafSize = 12;  // below this a scan is faster than a descent
+constexpr std::size_t kPointsOfLeaf = 12;  // below this a scan is faster than a descent
 constexpr std::size_t kQueriesPerTask = 512;
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 }  // namespace
@@ -40,7 +40,7 @@ NearestPoints::NearestPoints(std::span<const Eigen::Vector3f> points) : split_ax
 }
 
 void NearestPoints::build(std::size_t begin, std::size_t end) {
-  if (end - begin <= kLeafSize) return;
+  if (end - begin <= kPointsOfLeaf) return;
   Eigen::AlignedBox3f box;
   for (std::size_t i = begin; i < end; ++i) box.extend(entries_[i].point);
   int axis = 0;
@@ -60,7 +60,7 @@ void NearestPoints::build(std::size_t begin, std::size_t end) {
 // Rounding is monotone, so a point behind the split plane is never nearer than the plane in floats
 // either: pruning with "farther than the best" loses no point and no tie.
 void NearestPoints::search(std::size_t begin, std::size_t end, Best& best) const {
-  if (end - begin <= kLeafSize) {
+  if (end - begin <= kPointsOfLeaf) {
     for (std::size_t i = begin; i < end; ++i) best.offer(entries_[i]);
     return;
   }

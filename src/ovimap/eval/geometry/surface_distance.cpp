@@ -10,7 +10,7 @@ namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kLeafSize = 4;
+constexpr std::size_t kTrianglesOfLeaf = 4;
 
 double squared_distance_to_edge(const Eigen::Vector3d& point, const Eigen::Vector3d& a,
                                 const Eigen::Vector3d& b) {
@@ -45,8 +45,10 @@ SurfaceDistance::SurfaceDistance(const Mesh& mesh) {
     for (const Eigen::Vector3f& vertex : mesh.vertices)
       triangles_.push_back({vertex, vertex, vertex});
   if (triangles_.empty()) return;
-  // Halving n triangles down to leaves of kLeafSize takes ceil(log2(n / kLeafSize)) levels.
-  const std::size_t leaves = std::bit_ceil((triangles_.size() + kLeafSize - 1) / kLeafSize);
+  // Halving n triangles down to leaves of kTrianglesOfLeaf takes ceil(log2(n / kTrianglesOfLeaf))
+  // levels.
+  const std::size_t leaves =
+      std::bit_ceil((triangles_.size() + kTrianglesOfLeaf - 1) / kTrianglesOfLeaf);
   boxes_.resize(2 * leaves - 1);
   build(0, {0, triangles_.size()});
 }
@@ -59,7 +61,7 @@ void SurfaceDistance::build(std::size_t node, Range range) {
     centers.extend((t.a + t.b + t.c) / 3);
   }
   boxes_[node] = box;
-  if (range.end - range.begin <= kLeafSize) return;
+  if (range.end - range.begin <= kTrianglesOfLeaf) return;
   int axis = 0;
   centers.sizes().maxCoeff(&axis);
   const std::size_t middle = range.begin + (range.end - range.begin) / 2;
@@ -76,7 +78,7 @@ void SurfaceDistance::build(std::size_t node, Range range) {
 
 void SurfaceDistance::search(std::size_t node, Range range, const Eigen::Vector3f& point,
                              double& best) const {
-  if (range.end - range.begin <= kLeafSize) {
+  if (range.end - range.begin <= kTrianglesOfLeaf) {
     const Eigen::Vector3d p = point.cast<double>();
     for (std::size_t i = range.begin; i < range.end; ++i) {
       const Triangle& t = triangles_[i];

@@ -78,9 +78,10 @@ Evidence evidence_between(const Cluster& a, const Cluster& b) {
 /// How often two clusters met is counted when their edge comes first in the queue. Until then the
 /// edge knows of fewer meetings and speaks more for joining than it will. So a cluster that takes in
 /// a hundred super-points does not count anew, each time, how often it met each neighbour.
-class Contraction {
+class EdgeContraction {
  public:
-  Contraction(std::span<const Label> roots, const EntitySightings& sightings, double apart_weight)
+  EdgeContraction(std::span<const Label> roots, const EntitySightings& sightings,
+                  double apart_weight)
       : apart_weight_(apart_weight), roots_(roots) {
     for (const Label root : roots_) {
       Cluster& cluster = clusters_.emplace_back();
@@ -238,7 +239,7 @@ class Contraction {
 
 std::map<Label, Label> contract_edges(std::span<const Label> roots,
                                       const EntitySightings& sightings, double apart_weight) {
-  Contraction graph(roots, sightings, apart_weight);
+  EdgeContraction graph(roots, sightings, apart_weight);
   graph.run();
   return graph.objects();
 }

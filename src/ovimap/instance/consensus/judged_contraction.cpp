@@ -26,11 +26,15 @@ class LearnedJudge : public PairJudge {
 };
 
 /// A cluster goes by its oldest node.
-class Contraction {
+class JudgedContraction {
  public:
-  Contraction(std::span<const Label> roots, const EntitySightings& sightings,
-              const SuperPointShapes& shapes, double apart_weight, PairJudge& judge)
-      : roots_(roots), apart_weight_(apart_weight), judge_(judge), borders_of_(roots.size()), version_(roots.size(), 0) {
+  JudgedContraction(std::span<const Label> roots, const EntitySightings& sightings,
+                    const SuperPointShapes& shapes, double apart_weight, PairJudge& judge)
+      : roots_(roots),
+        apart_weight_(apart_weight),
+        judge_(judge),
+        borders_of_(roots.size()),
+        version_(roots.size(), 0) {
     into_.resize(roots_.size());
     std::iota(into_.begin(), into_.end(), Node{0});
     for (const Label root : roots_) clusters_.push_back(cluster_of(root, sightings, shapes));
@@ -189,7 +193,7 @@ std::map<Label, Label> contract_by_judge(std::span<const Label> roots,
                                          const EntitySightings& sightings,
                                          const SuperPointShapes& shapes, double apart_weight,
                                          PairJudge& judge) {
-  Contraction contraction(roots, sightings, shapes, apart_weight, judge);
+  JudgedContraction contraction(roots, sightings, shapes, apart_weight, judge);
   contraction.run();
   return contraction.objects();
 }

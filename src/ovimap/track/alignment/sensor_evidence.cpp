@@ -13,7 +13,7 @@ namespace ovimap {
 namespace {
 
 constexpr std::size_t kFewestFrames = 5;  // whose scatter says anything
-constexpr double kFreedom = 5;            // degrees of freedom of Student's t, as of residuals
+constexpr double kSensorFreedom = 5;      // degrees of freedom of Student's t, as of residuals
 
 constexpr int kFocal = 6, kDelay = 7;  // after the six unknowns of the pose
 using Row = Eigen::Matrix<double, 8, 1>;
@@ -23,7 +23,7 @@ struct Sums {
   Eigen::Matrix<double, 8, 8> h = Eigen::Matrix<double, 8, 8>::Zero();
   Row b = Row::Zero();
   void add(const Row& j, double residual, double emphasis) {
-    const double weight = emphasis * (kFreedom + 1) / (kFreedom + residual * residual);
+    const double weight = emphasis * (kSensorFreedom + 1) / (kSensorFreedom + residual * residual);
     h += weight * j * j.transpose();
     b -= weight * residual * j;
   }
