@@ -11,7 +11,7 @@ namespace ovimap {
 namespace {
 
 /// The message of the Error for `text`; empty: none.
-std::string fault_of(const std::string& text, std::size_t most_bytes = kSmallDocument) {
+std::string yaml_fault(const std::string& text, std::size_t most_bytes = kSmallDocument) {
   try {
     parse_yaml(text, "calibration.yaml", most_bytes);
     return {};
@@ -20,7 +20,7 @@ std::string fault_of(const std::string& text, std::size_t most_bytes = kSmallDoc
   }
 }
 
-std::string repeated(const std::string& piece, std::size_t times) {
+std::string copies_of(const std::string& piece, std::size_t times) {
   std::string text;
   for (std::size_t i = 0; i < times; ++i) text += piece;
   return text;
@@ -38,32 +38,32 @@ TEST(BoundedYaml, ReadsWhatPeopleWrite) {
 
 TEST(BoundedYaml, EndsAtADepth) {
   const auto nested = [](std::size_t levels) {
-    return repeated("[", levels) + repeated("]", levels);
+    return copies_of("[", levels) + copies_of("]", levels);
   };
-  EXPECT_EQ(fault_of(nested(kDeepestDocument)), "");
-  EXPECT_NE(fault_of(nested(kDeepestDocument + 1)).find("nested more than 32 levels"),
+  EXPECT_EQ(yaml_fault(nested(kDeepestDocument)), "");
+  EXPECT_NE(yaml_fault(nested(kDeepestDocument + 1)).find("nested more than 32 levels"),
             std::string::npos);
   for (const char* opening : {"[", "{", "- ", "? ", "{a: ", "[{a: ", "&a [", "!a {"})
-    EXPECT_NE(fault_of(repeated(opening, 40'000)), "") << opening;
+    EXPECT_NE(yaml_fault(copies_of(opening, 40'000)), "") << opening;
 }
 
 TEST(BoundedYaml, RefusesWhatHasNoOneMeaning) {
-  EXPECT_NE(fault_of("a: 1\nb: 2\na: 3\n").find("line 3"), std::string::npos);
-  EXPECT_NE(fault_of("a: 1\n---\nb: 2\n").find("second document"), std::string::npos);
-  EXPECT_NE(fault_of("[a]: 1\n").find("a key must be a text"), std::string::npos);
-  EXPECT_NE(fault_of("~: 1\n").find("a key must be a text"), std::string::npos);
-  EXPECT_EQ(fault_of("a: {x: 1}\nb: {x: 1}\n"), "") << "maps of their own";
+  EXPECT_NE(yaml_fault("a: 1\nb: 2\na: 3\n").find("line 3"), std::string::npos);
+  EXPECT_NE(yaml_fault("a: 1\n---\nb: 2\n").find("second document"), std::string::npos);
+  EXPECT_NE(yaml_fault("[a]: 1\n").find("a key must be a text"), std::string::npos);
+  EXPECT_NE(yaml_fault("~: 1\n").find("a key must be a text"), std::string::npos);
+  EXPECT_EQ(yaml_fault("a: {x: 1}\nb: {x: 1}\n"), "") << "maps of their own";
 }
 
 TEST(BoundedYaml, RefusesAliases) {
-  EXPECT_NE(fault_of("a: &a\n  b: *a\n").find("aliases"), std::string::npos) << "contains itself";
-  EXPECT_NE(fault_of("a: &a 1\nb: *a\n").find("line 2"), std::string::npos);
+  EXPECT_NE(yaml_fault("a: &a\n  b: *a\n").find("aliases"), std::string::npos) << "contains itself";
+  EXPECT_NE(yaml_fault("a: &a 1\nb: *a\n").find("line 2"), std::string::npos);
 }
 
 TEST(BoundedYaml, SaysWhereItGoesWrong) {
-  EXPECT_NE(fault_of("a: 1\nb: [1, 2\nc: }").find("calibration.yaml: line 3"), std::string::npos);
-  EXPECT_NE(fault_of("a: 1", 3).find("larger than 3 bytes"), std::string::npos);
-  EXPECT_NE(fault_of(std::string("a: 1\0b", 6)).find("NUL"), std::string::npos);
+  EXPECT_NE(yaml_fault("a: 1\nb: [1, 2\nc: }").find("calibration.yaml: line 3"), std::string::npos);
+  EXPECT_NE(yaml_fault("a: 1", 3).find("larger than 3 bytes"), std::string::npos);
+  EXPECT_NE(yaml_fault(std::string("a: 1\0b", 6)).find("NUL"), std::string::npos);
   EXPECT_THROW(read_yaml("/dev/zero", kSmallDocument), Error);
 }
 

@@ -13,7 +13,7 @@
 namespace ovimap {
 namespace {
 
-RgbImage random_rgb(int width, int height) {
+RgbImage noise_image(int width, int height) {
   std::mt19937 random(5);
   RgbImage image(width, height);
   for (Rgb8& pixel : image)
@@ -49,7 +49,7 @@ double naive_red(const RgbImage& image, int width, int height, int x, int y,
 }
 
 TEST(Resize, AgreesWithTheDefinition) {
-  RgbImage image = random_rgb(41, 23);
+  RgbImage image = noise_image(41, 23);
   for (Rgb8& pixel : image) pixel.r = static_cast<std::uint8_t>(64 + pixel.r / 2);  // no clipping
   for (const auto& [width, height] :
        {std::pair{13, 9}, {80, 47}, {41, 7}, {3, 40}, {1, 1}, {41, 23}}) {
@@ -165,19 +165,19 @@ TEST(ResizeBilinear, HandComputedHalving) {
 }
 
 TEST(ResizeBilinear, SameSizeIsTheSameImage) {
-  const RgbImage image = random_rgb(30, 20);
+  const RgbImage image = noise_image(30, 20);
   EXPECT_EQ(resize_bilinear(image, 30, 20), image);
 }
 
 TEST(ResizeBilinear, ThreadsDoNotChangeTheBits) {
-  const RgbImage image = random_rgb(200, 150);
+  const RgbImage image = noise_image(200, 150);
   const RgbImage many = resize_bilinear(image, 64, 90);
   const ThreadLimit one(1);
   EXPECT_EQ(resize_bilinear(image, 64, 90), many);
 }
 
 TEST(Resize, AWindowIsAPartOfTheWhole) {
-  const RgbImage image = random_rgb(61, 47);
+  const RgbImage image = noise_image(61, 47);
   for (const auto& [width, height] : {std::pair{20, 90}, {133, 31}}) {
     const RgbImage whole = resize_filtered(image, width, height, ResizeFilter::kBicubic);
     const ImageWindow window = {width - 13, 3, 13, height - 4};
@@ -193,8 +193,8 @@ TEST(Resize, AWindowIsAPartOfTheWhole) {
 TEST(Resize, ImpossibleSizesAreRefused) {
   for (const ImageWindow& window :
        {ImageWindow{-1, 0, 2, 2}, {0, 0, 5, 2}, {3, 0, 2, 2}, {0, 0, 0, 2}, {0, 3, 1, 2}})
-    EXPECT_THROW(resize_window(random_rgb(4, 4), 4, 4, window, ResizeFilter::kBilinear), Error);
-  EXPECT_THROW(resize_bilinear(random_rgb(4, 4), 0, 3), Error);
+    EXPECT_THROW(resize_window(noise_image(4, 4), 4, 4, window, ResizeFilter::kBilinear), Error);
+  EXPECT_THROW(resize_bilinear(noise_image(4, 4), 0, 3), Error);
   EXPECT_THROW(resize_bilinear(RgbImage(), 3, 3), Error);
   EXPECT_THROW(resize_nearest(IdImage(4, 4), 3, -1), Error);
   EXPECT_THROW(resize_nearest(IdImage(), 3, 3), Error);

@@ -14,12 +14,13 @@
 namespace ovimap {
 namespace {
 
-const PinholeCamera kCamera{320, 240, 290.f, 290.f, 159.5f, 119.5f};
+const PinholeCamera kQvgaCamera{320, 240, 290.f, 290.f, 159.5f, 119.5f};
 
 /// A table top seen at an angle with a box standing on it: nearest of three analytic surfaces.
 struct TableScene {
-  DepthImage depth{kCamera.width, kCamera.height};
-  IdImage truth{kCamera.width, kCamera.height};  // 1 table, 2 top of the box, 3 front of the box
+  DepthImage depth{kQvgaCamera.width, kQvgaCamera.height};
+  IdImage truth{kQvgaCamera.width,
+                kQvgaCamera.height};  // 1 table, 2 top of the box, 3 front of the box
   explicit TableScene(float noise = 0.f, unsigned seed = 1) {
     std::mt19937 random(seed);
     std::normal_distribution<float> gauss(0.f, 1.f);
@@ -36,7 +37,7 @@ struct TableScene {
   /// World: table at height 0, camera 0.8 m above looking 45 degrees down along +y.
   void set(int x, int y) {
     const Eigen::Vector3f ray =
-        kCamera.unproject(static_cast<float>(x), static_cast<float>(y), 1.f);
+        kQvgaCamera.unproject(static_cast<float>(x), static_cast<float>(y), 1.f);
     const float c = std::sqrt(0.5f);
     const Eigen::Vector3f d(ray.x(), c * ray.z() - c * ray.y(), -c * ray.z() - c * ray.y());
     const Eigen::Vector3f eye(0.f, 0.f, 0.8f);
@@ -78,7 +79,7 @@ double share(const DepthRegions& regions, const IdImage& truth, std::uint16_t id
 TEST(SegmentDepth, SeparatesABoxFromItsTableAndKeepsTheBoxWhole) {
   for (const float noise : {0.f, 1.f}) {
     const TableScene scene(noise);
-    const DepthRegions regions = segment_depth(scene.depth, kCamera, {});
+    const DepthRegions regions = segment_depth(scene.depth, kQvgaCamera, {});
     const std::uint16_t table = majority(regions, scene.truth, 1),
                         top = majority(regions, scene.truth, 2);
     const std::uint16_t front = majority(regions, scene.truth, 3);
@@ -94,7 +95,7 @@ TEST(SegmentDepth, TheReferencePresetKeepsAQuantisedPlaneWhole) {
   TableScene scene;
   for (float& depth : scene.depth) depth = std::round(depth * 1000.f) / 1000.f;
   const DepthRegions regions =
-      segment_depth(scene.depth, kCamera, reference_segment_depth_config());
+      segment_depth(scene.depth, kQvgaCamera, reference_segment_depth_config());
   const std::uint16_t table = majority(regions, scene.truth, 1);
   EXPECT_NE(table, 0);
   EXPECT_GT(share(regions, scene.truth, 1, table), 0.8);
@@ -105,14 +106,14 @@ TEST(SegmentDepth, SameBitsForOneAndTwoThreads) {
   const TableScene scene(1.f, 3);
   const auto run = [&](int threads) {
     ThreadLimit limit(threads);
-    return segment_depth(scene.depth, kCamera, {}).ids;
+    return segment_depth(scene.depth, kQvgaCamera, {}).ids;
   };
   EXPECT_EQ(run(1), run(2));
 }
 
 TEST(SegmentDepth, DescribesItsRegions) {
   const TableScene scene;
-  const DepthRegions regions = segment_depth(scene.depth, kCamera, {});
+  const DepthRegions regions = segment_depth(scene.depth, kQvgaCamera, {});
   std::vector<int> area(regions.regions.size() + 1, 0);
   for (std::uint16_t id : regions.ids) ++area[id];
   const std::vector<Eigen::Vector2i> deepest = deepest_pixels(regions);
@@ -134,9 +135,9 @@ TEST(SegmentDepth, EqualsThePlainSegmentation) {
       if (random() % 200 == 0) depth = 0.f;
     for (const SegmentDepthConfig& config :
          {SegmentDepthConfig{}, reference_segment_depth_config()}) {
-      const DepthSurface surface = fit_depth_surface(scene.depth, kCamera, config.surface);
-      const DepthRegions regions = segment_depth(surface, kCamera, config);
-      EXPECT_EQ(regions.ids, plain::segment(surface, kCamera, config)) << "noise " << noise;
+      const DepthSurface surface = fit_depth_surface(scene.depth, kQvgaCamera, config.surface);
+      const DepthRegions regions = segment_depth(surface, kQvgaCamera, config);
+      EXPECT_EQ(regions.ids, plain::segment(surface, kQvgaCamera, config)) << "noise " << noise;
       regions_compared += regions.regions.size();
     }
   }
@@ -144,8 +145,8 @@ TEST(SegmentDepth, EqualsThePlainSegmentation) {
 }
 
 TEST(SegmentDepth, EmptyDepthHasNoRegions) {
-  EXPECT_TRUE(segment_depth(DepthImage(64, 48), kCamera, {}).regions.empty());
-  EXPECT_TRUE(segment_depth(DepthImage(1, 1, 1.f), kCamera, {}).regions.empty());
+  EXPECT_TRUE(segment_depth(DepthImage(64, 48), kQvgaCamera, {}).regions.empty());
+  EXPECT_TRUE(segment_depth(DepthImage(1, 1, 1.f), kQvgaCamera, {}).regions.empty());
 }
 
 TEST(ConnectedRegions, MatchesFloodFillOnRandomMasks) {

@@ -12,20 +12,20 @@
 namespace ovimap {
 namespace {
 
-const PinholeCamera kCamera{640, 480, 570.f, 570.f, 319.5f, 239.5f};
+const PinholeCamera kVgaCamera{640, 480, 570.f, 570.f, 319.5f, 239.5f};
 constexpr float kDepth_m = 2.f;
 
 /// A wall at a slant whose errors are those of cells of so many pixels; between them, what lies there.
 DepthImage wall(float cell_px, float times, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<float> normal;
-  Image<float> cells(kCamera.width + 2, kCamera.height + 2);
+  Image<float> cells(kVgaCamera.width + 2, kVgaCamera.height + 2);
   for (float& cell : cells) cell = normal(random);
-  DepthImage depth(kCamera.width, kCamera.height);
+  DepthImage depth(kVgaCamera.width, kVgaCamera.height);
   for (int y = 0; y < depth.height(); ++y)
     for (int x = 0; x < depth.width(); ++x) {
       const Eigen::Vector3f ray =
-          kCamera.unproject(static_cast<float>(x), static_cast<float>(y), 1.f);
+          kVgaCamera.unproject(static_cast<float>(x), static_cast<float>(y), 1.f);
       const float z = kDepth_m / Eigen::Vector3f(0.1f, 0.05f, 1.f).dot(ray);
       const float u = static_cast<float>(x) / cell_px, v = static_cast<float>(y) / cell_px;
       const int left = static_cast<int>(u), top = static_cast<int>(v);
@@ -43,7 +43,7 @@ DepthImage wall(float cell_px, float times, unsigned seed) {
 }
 
 FrameNoise noise_of(const DepthImage& depth) {
-  return fit_depth_surface(depth, kCamera, {}).noise;
+  return fit_depth_surface(depth, kVgaCamera, {}).noise;
 }
 
 TEST(FrameNoise, PlanesAverageErrorsThatPixelsDoNotShare) {

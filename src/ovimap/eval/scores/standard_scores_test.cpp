@@ -13,7 +13,7 @@ namespace ovimap {
 namespace {
 
 /// Appends `count` vertices of one truth and one predicted id.
-void add(LabelledScene& scene, int count, std::int32_t truth, std::uint32_t predicted) {
+void put(LabelledScene& scene, int count, std::int32_t truth, std::uint32_t predicted) {
   scene.truth.insert(scene.truth.end(), static_cast<std::size_t>(count), truth);
   scene.predicted.insert(scene.predicted.end(), static_cast<std::size_t>(count), predicted);
 }
@@ -22,9 +22,9 @@ void add(LabelledScene& scene, int count, std::int32_t truth, std::uint32_t pred
 /// 3 5/10.
 LabelledScene three_things() {
   LabelledScene scene;
-  add(scene, 8, 1, 11), add(scene, 2, 1, 0);
-  add(scene, 2, 2, 11), add(scene, 8, 2, 12);
-  add(scene, 4, 3, 13), add(scene, 5, 3, 14), add(scene, 1, 3, 0);
+  put(scene, 8, 1, 11), put(scene, 2, 1, 0);
+  put(scene, 2, 2, 11), put(scene, 8, 2, 12);
+  put(scene, 4, 3, 13), put(scene, 5, 3, 14), put(scene, 1, 3, 0);
   scene.confidence = {{11, 0.8f}, {12, 0.6f}, {13, 0.9f}, {14, 0.7f}};
   return scene;
 }
@@ -52,7 +52,7 @@ TEST(StandardScores, AreAsComputedByHand) {
 
 TEST(StandardScores, APerfectPredictionScoresOne) {
   LabelledScene scene;
-  add(scene, 1, 1, 9), add(scene, 50, 2, 8), add(scene, 7, 3, 7);
+  put(scene, 1, 1, 9), put(scene, 50, 2, 8), put(scene, 7, 3, 7);
   const StandardScores scores = scores_of(scene);
   for (const double figure : {scores.miou, scores.ap25, scores.ap50, scores.ap75, scores.ap,
                               scores.recall25, scores.recall50, scores.recall75})
@@ -61,8 +61,8 @@ TEST(StandardScores, APerfectPredictionScoresOne) {
 
 TEST(StandardScores, NothingPredictedOrNothingTrueScoresZero) {
   LabelledScene unpredicted, untrue;
-  add(unpredicted, 10, 1, 0);
-  add(untrue, 10, 0, 4);
+  put(unpredicted, 10, 1, 0);
+  put(untrue, 10, 0, 4);
   for (const LabelledScene& scene : {unpredicted, untrue, LabelledScene{}}) {
     const StandardScores scores = scores_of(scene);
     for (const double figure : {scores.miou, scores.ap25, scores.ap50, scores.ap75, scores.ap,
@@ -74,7 +74,7 @@ TEST(StandardScores, NothingPredictedOrNothingTrueScoresZero) {
 
 TEST(StandardScores, EveryTruthIdCounts) {
   LabelledScene scene;
-  add(scene, 30, 1, 5), add(scene, 10, 2, 0);
+  put(scene, 30, 1, 5), put(scene, 10, 2, 0);
   EXPECT_EQ(scores_of(scene).truth_instances, 2);
   EXPECT_EQ(scores_of(scene).miou, 0.5);
 }
@@ -82,7 +82,7 @@ TEST(StandardScores, EveryTruthIdCounts) {
 // Prediction 1 lies with 6 of 10 vertices where the truth says nothing.
 TEST(StandardScores, APredictionOnUnlabelledTruthIsIgnoredWhereItReachesNothing) {
   LabelledScene scene;
-  add(scene, 6, 0, 1), add(scene, 4, 1, 1), add(scene, 6, 1, 2);
+  put(scene, 6, 0, 1), put(scene, 4, 1, 1), put(scene, 6, 1, 2);
   scene.confidence = {{1, 0.9f}, {2, 0.1f}};
   const StandardScores scores = scores_of(scene);
   EXPECT_EQ(scores.ap25, 1);  // it reaches 4/16 and takes the thing
@@ -98,7 +98,7 @@ TEST(StandardScores, APredictionOnUnlabelledTruthIsIgnoredWhereItReachesNothing)
 
 TEST(StandardScores, WithoutConfidencesTheLargerRanksFirst) {
   LabelledScene scene;
-  add(scene, 20, 1, 1), add(scene, 10, 2, 2), add(scene, 25, 2, 0), add(scene, 2, 0, 3);
+  put(scene, 20, 1, 1), put(scene, 10, 2, 2), put(scene, 25, 2, 0), put(scene, 2, 0, 3);
   EXPECT_DOUBLE_EQ(scores_of(scene).ap50, 0.5);  // 1 right, then 2 wrong
   scene.confidence = {{2, 0.5f}};                // an instance that is not named ranks last
   EXPECT_DOUBLE_EQ(scores_of(scene).ap50, 0.25);
@@ -106,8 +106,8 @@ TEST(StandardScores, WithoutConfidencesTheLargerRanksFirst) {
 
 TEST(StandardScores, ScenesArePooledInOneRanking) {
   LabelledScene good, bad;
-  add(good, 10, 1, 1);
-  add(bad, 10, 1, 1), add(bad, 90, 1, 0);
+  put(good, 10, 1, 1);
+  put(bad, 10, 1, 1), put(bad, 90, 1, 0);
   good.confidence = {{1, 0.4f}};
   bad.confidence = {{1, 0.6f}};
   const std::vector<LabelledScene> scenes = {good, bad};
@@ -121,7 +121,7 @@ LabelledScene random_scene(unsigned seed) {
   LabelledScene scene;
   // Runs of vertices, so that overlaps of every size come up.
   for (int run = 0; run < 60; ++run)
-    add(scene, 1 + static_cast<int>(random() % 40), static_cast<std::int32_t>(random() % 9),
+    put(scene, 1 + static_cast<int>(random() % 40), static_cast<std::int32_t>(random() % 9),
         random() % 3 ? static_cast<std::uint32_t>(scene.truth.empty() ? 1 : scene.truth.back() + 1)
                      : static_cast<std::uint32_t>(random() % 12));
   for (std::uint32_t id = 1; id < 12; ++id)

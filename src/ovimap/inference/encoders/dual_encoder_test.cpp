@@ -41,7 +41,7 @@ OnnxGraph text_network(std::int64_t batch, std::int64_t length) {
   return graph;
 }
 
-constexpr const char* kYaml = R"(kind: dual_encoder
+constexpr const char* kEncoderYaml = R"(kind: dual_encoder
 name: tiny
 license: Apache-2.0
 source: a test
@@ -89,7 +89,7 @@ class EncoderFolder {
 
  private:
   ScratchFolder scratch_;
-  std::string yaml_ = kYaml;
+  std::string yaml_ = kEncoderYaml;
 };
 
 void expect_row(const Embeddings& rows, Eigen::Index row, Eigen::Vector3f direction) {

@@ -10,7 +10,7 @@
 namespace ovimap {
 namespace {
 
-constexpr int kGrid = 32;
+constexpr int kPoolGrid = 32;
 constexpr float kSure = 8.f;
 
 struct Box {
@@ -18,10 +18,10 @@ struct Box {
 };
 
 /// A 64 x 64 image on a 32 x 32 grid: two image pixels a grid pixel.
-LogitGrid test_grid() {
+LogitGrid pool_grid() {
   ImageInputSpec spec;
   spec.size_px = 128;
-  return logit_grid(input_frame(64, 64, spec), 128, kGrid, 64, 64);
+  return logit_grid(input_frame(64, 64, spec), 128, kPoolGrid, 64, 64);
 }
 
 SamConfig test_config() {
@@ -39,11 +39,11 @@ struct Proposal {
 };
 
 MaskProposals proposals_of(const std::vector<Proposal>& list) {
-  MaskProposals proposals{static_cast<int>(list.size()), kGrid, {}, {}};
+  MaskProposals proposals{static_cast<int>(list.size()), kPoolGrid, {}, {}};
   for (const Proposal& proposal : list) {
     const Box& box = proposal.box;
-    for (int y = 0; y < kGrid; ++y)
-      for (int x = 0; x < kGrid; ++x) {
+    for (int y = 0; y < kPoolGrid; ++y)
+      for (int x = 0; x < kPoolGrid; ++x) {
         const bool inside = x >= box.x0 && x < box.x1 && y >= box.y0 && y < box.y1;
         const bool sure = x >= box.x0 + proposal.unsure;
         proposals.logits.push_back(inside ? (sure ? kSure : 0.5f) : -kSure);
@@ -65,7 +65,7 @@ MaskPrompt region_of(const Box& box) {
 }
 
 TEST(MaskPool, DropsWhatTheNetworkDoubts) {
-  MaskPool pool(test_config(), test_grid());
+  MaskPool pool(test_config(), pool_grid());
   EXPECT_FALSE(pool.offer(proposals_of({{{4, 4, 12, 12}, 0.8f}})));
   EXPECT_FALSE(pool.offer(proposals_of({{{4, 4, 12, 12}, 0.9f, 4}})));  // stability 0.5
   EXPECT_FALSE(pool.offer(proposals_of({{{4, 4, 5, 5}, 0.9f}})));       // 4 pixels of the image
@@ -75,7 +75,7 @@ TEST(MaskPool, DropsWhatTheNetworkDoubts) {
 }
 
 TEST(MaskPool, ScoreIsPredictedIouTimesStability) {
-  MaskPool pool(test_config(), test_grid());
+  MaskPool pool(test_config(), pool_grid());
   EXPECT_TRUE(pool.offer(proposals_of({{{4, 4, 14, 12}, 0.9f, 1}})));
   ASSERT_EQ(pool.masks().size(), 1u);
   EXPECT_EQ(pool.masks()[0].area, 80);
@@ -85,7 +85,7 @@ TEST(MaskPool, ScoreIsPredictedIouTimesStability) {
 }
 
 TEST(MaskPool, WithoutRegionTakesTheLargestStable) {
-  MaskPool pool(test_config(), test_grid());
+  MaskPool pool(test_config(), pool_grid());
   pool.offer(
       proposals_of({{{8, 8, 12, 12}, 0.99f}, {{4, 4, 20, 20}, 0.85f}, {{2, 2, 26, 26}, 0.95f, 5}}));
   ASSERT_EQ(pool.masks().size(), 1u);
@@ -93,7 +93,7 @@ TEST(MaskPool, WithoutRegionTakesTheLargestStable) {
 }
 
 TEST(MaskPool, WithRegionTakesTheOneOfItsSize) {
-  MaskPool pool(test_config(), test_grid());
+  MaskPool pool(test_config(), pool_grid());
   const MaskPrompt region = region_of({8, 8, 16, 16});
   EXPECT_TRUE(pool.offer(proposals_of({{{8, 8, 16, 16}, 0.9f}, {{0, 0, 30, 30}, 0.92f}}), &region));
   ASSERT_EQ(pool.masks().size(), 1u);
@@ -103,16 +103,16 @@ TEST(MaskPool, WithRegionTakesTheOneOfItsSize) {
 
 TEST(MaskPool, TellsWhenTheRegionIsNotExplained) {
   const MaskPrompt region = region_of({8, 8, 16, 16});
-  MaskPool small(test_config(), test_grid());
+  MaskPool small(test_config(), pool_grid());
   EXPECT_FALSE(small.offer(proposals_of({{{8, 8, 12, 12}}}), &region));
   EXPECT_EQ(small.masks().size(), 1u);  // kept all the same
-  MaskPool large(test_config(), test_grid());
+  MaskPool large(test_config(), pool_grid());
   EXPECT_FALSE(large.offer(proposals_of({{{0, 0, 24, 24}}}), &region));
   EXPECT_FALSE(large.masks()[0].own_region);
 }
 
 TEST(MaskPool, BoxPromptsAcceptOnlyMasksInTheBox) {
-  MaskPool pool(test_config(), test_grid());
+  MaskPool pool(test_config(), pool_grid());
   const MaskPrompt region = region_of({8, 8, 16, 16});
   EXPECT_FALSE(pool.offer(proposals_of({{{0, 0, 24, 24}, 0.95f}}), &region, true));
   EXPECT_TRUE(pool.masks().empty());
@@ -122,7 +122,7 @@ TEST(MaskPool, BoxPromptsAcceptOnlyMasksInTheBox) {
 }
 
 TEST(MaskPool, KeepsTheBetterOfDuplicates) {
-  MaskPool pool(test_config(), test_grid());
+  MaskPool pool(test_config(), pool_grid());
   pool.offer(proposals_of({{{4, 4, 20, 20}, 0.85f}}));
   pool.offer(proposals_of({{{4, 4, 20, 19}, 0.95f}}));
   pool.offer(proposals_of({{{4, 4, 20, 18}, 0.90f}}));
@@ -131,7 +131,7 @@ TEST(MaskPool, KeepsTheBetterOfDuplicates) {
 }
 
 TEST(MaskPool, PaintsAtFullSizeSmallOverLarge) {
-  MaskPool pool(test_config(), test_grid());
+  MaskPool pool(test_config(), pool_grid());
   pool.offer(proposals_of({{{16, 16, 28, 28}}}));  // half of it lies on the next
   pool.offer(proposals_of({{{0, 0, 22, 32}, 0.95f}}));
   const Entities entities = pool.entities();
@@ -147,7 +147,7 @@ TEST(MaskPool, PaintsAtFullSizeSmallOverLarge) {
 }
 
 TEST(MaskPool, DropsParts) {
-  MaskPool pool(test_config(), test_grid());
+  MaskPool pool(test_config(), pool_grid());
   pool.offer(proposals_of({{{8, 8, 12, 12}, 0.93f}}));
   pool.offer(proposals_of({{{0, 0, 20, 20}, 0.90f}}));
   EXPECT_EQ(pool.entities().scores.size(), 1u);
@@ -155,7 +155,7 @@ TEST(MaskPool, DropsParts) {
 }
 
 TEST(MaskPool, KeepsAMuchBetterMaskInAPoorOne) {
-  MaskPool pool(test_config(), test_grid());
+  MaskPool pool(test_config(), pool_grid());
   pool.offer(proposals_of({{{8, 8, 12, 12}, 0.99f}}));
   pool.offer(proposals_of({{{0, 0, 20, 20}, 0.83f}}));
   EXPECT_EQ(pool.entities().scores.size(), 2u);
@@ -163,7 +163,7 @@ TEST(MaskPool, KeepsAMuchBetterMaskInAPoorOne) {
 
 // A mug on a table whose mask has no hole: geometry says that it is a thing of its own.
 TEST(MaskPool, KeepsAThingOnItsSupport) {
-  MaskPool pool(test_config(), test_grid());
+  MaskPool pool(test_config(), pool_grid());
   const MaskPrompt mug = region_of({8, 8, 12, 12});
   pool.offer(proposals_of({{{0, 0, 28, 28}, 0.94f}}));
   pool.offer(proposals_of({{{8, 8, 12, 12}, 0.90f}}), &mug, true);
@@ -178,7 +178,7 @@ TEST(MaskPool, KeepsAThingOnItsSupport) {
 TEST(MaskPool, AMaskThatOthersHideIsNoEntityAndExplainsNothing) {
   SamConfig config = test_config();
   config.min_shown_share = 0.5f;
-  MaskPool pool(config, test_grid());
+  MaskPool pool(config, pool_grid());
   const MaskPrompt wall = region_of({2, 2, 26, 12}), desk = region_of({2, 14, 26, 28});
   pool.offer(proposals_of({{{0, 0, 28, 30}, 0.90f}}));
   EXPECT_EQ(pool.covered().count(), 28 * 30);
@@ -194,7 +194,7 @@ TEST(MaskPool, AMaskThatOthersHideIsNoEntityAndExplainsNothing) {
 TEST(MaskPool, PartsOfAHiddenMaskAreLookedAtWithoutIt) {
   SamConfig config = test_config();
   config.min_shown_share = 0.5f;
-  MaskPool pool(config, test_grid());
+  MaskPool pool(config, pool_grid());
   const MaskPrompt wall = region_of({2, 2, 26, 12}), desk = region_of({2, 14, 26, 28});
   pool.offer(proposals_of({{{0, 0, 28, 30}, 0.90f}}));
   pool.offer(proposals_of({{{2, 2, 26, 12}, 0.90f}}), &wall);
@@ -205,7 +205,7 @@ TEST(MaskPool, PartsOfAHiddenMaskAreLookedAtWithoutIt) {
 
 TEST(MaskPool, TakesAFindersOwnMaskThatIsLikeItsThing) {
   const MaskPrompt thing = region_of({2, 2, 12, 12}), other = region_of({2, 2, 30, 30});
-  MaskPool pool(test_config(), test_grid());
+  MaskPool pool(test_config(), pool_grid());
   EXPECT_FALSE(pool.offer_unasked(proposals_of({{{2, 2, 12, 12}, 0.5f}}), thing));  // not sure
   EXPECT_FALSE(pool.offer_unasked(proposals_of({{{2, 2, 12, 12}, 0.8f}}), other));  // a part
   EXPECT_FALSE(pool.offer_unasked(proposals_of({{{2, 2, 30, 12}, 0.8f}}), thing));  // reaches out
@@ -238,7 +238,7 @@ ThingCells cells_that_see(const Box& box) {
 TEST(MaskPool, AFinderTellsAPartFromAThing) {
   const Box small = {8, 8, 12, 12}, large = {0, 0, 20, 20};
   for (const bool is_thing : {true, false}) {
-    MaskPool pool(test_config(), test_grid(), cells_that_see(is_thing ? small : large));
+    MaskPool pool(test_config(), pool_grid(), cells_that_see(is_thing ? small : large));
     pool.offer(proposals_of({{small, 0.90f}}));
     pool.offer(proposals_of({{large, 0.90f}}));
     EXPECT_EQ(pool.entities().scores.size(), is_thing ? 2u : 1u);
@@ -247,14 +247,14 @@ TEST(MaskPool, AFinderTellsAPartFromAThing) {
 
 TEST(MaskPool, WhereAFinderHasNoCellScoresDecide) {
   const Box sliver = {8, 0, 9, 20}, large = {0, 0, 20, 20};  // no cell's middle lies in it
-  MaskPool pool(test_config(), test_grid(), cells_that_see(sliver));
+  MaskPool pool(test_config(), pool_grid(), cells_that_see(sliver));
   pool.offer(proposals_of({{sliver, 0.90f}}));
   pool.offer(proposals_of({{large, 0.90f}}));
   EXPECT_EQ(pool.entities().scores.size(), 1u);
 }
 
 TEST(MaskPool, OfAKnownObjectOnlyALikeMaskIsTaken) {
-  MaskPool pool(test_config(), test_grid());
+  MaskPool pool(test_config(), pool_grid());
   MaskPrompt object = region_of({8, 8, 16, 16});
   object.known = true;
   EXPECT_FALSE(pool.offer(proposals_of({{{8, 8, 11, 16}, 0.95f}}), &object, true));

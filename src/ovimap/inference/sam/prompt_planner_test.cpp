@@ -17,13 +17,13 @@ TEST(GridPrompts, LieInTheMiddleOfEqualCells) {
   EXPECT_EQ(prompts[3].front().label, PointLabel::kForeground);
 }
 
-constexpr int kGrid = 64;
+constexpr int kPlanGrid = 64;
 
 /// A 256 x 256 image on a 64 x 64 grid: four image pixels a grid pixel.
-LogitGrid test_grid() {
+LogitGrid plan_grid() {
   ImageInputSpec spec;
   spec.size_px = 256;
-  return logit_grid(input_frame(256, 256, spec), 256, kGrid, 256, 256);
+  return logit_grid(input_frame(256, 256, spec), 256, kPlanGrid, 256, 256);
 }
 
 MaskPrompt region_at(float x, float y, int area_px) {
@@ -36,9 +36,10 @@ MaskPrompt region_at(float x, float y, int area_px) {
 
 /// Adds a mask over grid pixels x0..x1-1, y0..y1-1.
 void cover(MaskPool& pool, int x0, int y0, int x1, int y1) {
-  MaskProposals proposals{1, kGrid, std::vector<float>(kGrid * kGrid, -8.f), {0.95f}};
+  MaskProposals proposals{1, kPlanGrid, std::vector<float>(kPlanGrid * kPlanGrid, -8.f), {0.95f}};
   for (int y = y0; y < y1; ++y)
-    for (int x = x0; x < x1; ++x) proposals.logits[static_cast<std::size_t>(y * kGrid + x)] = 8.f;
+    for (int x = x0; x < x1; ++x)
+      proposals.logits[static_cast<std::size_t>(y * kPlanGrid + x)] = 8.f;
   ASSERT_TRUE(pool.offer(proposals));
 }
 
@@ -55,10 +56,10 @@ std::vector<PlannedPrompt> ask_all(PromptPlanner& planner, const MaskPool& pool,
 
 TEST(PromptPlanner, AsksUncoveredRegionsLargestFirst) {
   const SamConfig config;
-  const MaskPool pool(config, test_grid());
+  const MaskPool pool(config, plan_grid());
   const std::vector<MaskPrompt> regions = {region_at(50, 50, 600), region_at(150, 60, 9000),
                                            region_at(60, 200, 5000), region_at(200, 200, 100)};
-  PromptPlanner planner(config, test_grid(), regions);
+  PromptPlanner planner(config, plan_grid(), regions);
   std::vector<int> areas;
   for (const PlannedPrompt& prompt : ask_all(planner, pool, 100))
     if (const MaskPrompt* region = planner.region_of(prompt)) areas.push_back(region->area_px);
@@ -68,11 +69,11 @@ TEST(PromptPlanner, AsksUncoveredRegionsLargestFirst) {
 TEST(PromptPlanner, AsksKnownObjectsFirstByTheirBoxes) {
   SamConfig config;
   config.min_hole_radius_px = 1000;  // regions alone
-  const MaskPool pool(config, test_grid());
+  const MaskPool pool(config, plan_grid());
   std::vector<MaskPrompt> regions = {region_at(150, 60, 9000), region_at(60, 200, 200),
                                      region_at(200, 200, 400), region_at(30, 30, 100)};
   for (std::size_t i = 1; i < 4; ++i) regions[i].known = true;
-  PromptPlanner planner(config, test_grid(), regions);
+  PromptPlanner planner(config, plan_grid(), regions);
   const std::vector<PlannedPrompt> asked = ask_all(planner, pool, 3);
   ASSERT_EQ(asked.size(), 3u);
   EXPECT_EQ(planner.region_of(asked[0])->area_px, 400);
@@ -85,9 +86,9 @@ TEST(PromptPlanner, AsksKnownObjectsFirstByTheirBoxes) {
 TEST(PromptPlanner, PointPromptsCarryAPaddingPoint) {
   SamConfig config;
   config.min_hole_radius_px = 1000;  // regions alone
-  const MaskPool pool(config, test_grid());
+  const MaskPool pool(config, plan_grid());
   const std::vector<MaskPrompt> regions = {region_at(50, 60, 9000)};
-  PromptPlanner planner(config, test_grid(), regions);
+  PromptPlanner planner(config, plan_grid(), regions);
   const auto batch = planner.next(pool, 1);
   ASSERT_EQ(batch.size(), 1u);
   ASSERT_EQ(batch[0].points.size(), 2u);
@@ -98,20 +99,20 @@ TEST(PromptPlanner, PointPromptsCarryAPaddingPoint) {
 
 TEST(PromptPlanner, SkipsAnExplainedRegion) {
   const SamConfig config;
-  MaskPool pool(config, test_grid());
+  MaskPool pool(config, plan_grid());
   cover(pool, 0, 0, 64, 32);
   const std::vector<MaskPrompt> regions = {region_at(128, 60, 30000)};  // the mask is 32768 pixels
-  PromptPlanner planner(config, test_grid(), regions);
+  PromptPlanner planner(config, plan_grid(), regions);
   for (const PlannedPrompt& prompt : ask_all(planner, pool, 100)) EXPECT_LT(prompt.region, 0);
 }
 
 TEST(PromptPlanner, AsksAThingOnASupportByItsBox) {
   SamConfig config;
   config.min_hole_radius_px = 1000;
-  MaskPool pool(config, test_grid());
+  MaskPool pool(config, plan_grid());
   cover(pool, 0, 0, 64, 56);
   const std::vector<MaskPrompt> regions = {region_at(128, 60, 900)};
-  PromptPlanner planner(config, test_grid(), regions);
+  PromptPlanner planner(config, plan_grid(), regions);
   const auto batch = planner.next(pool, 4);
   ASSERT_EQ(batch.size(), 1u);
   EXPECT_TRUE(batch[0].boxed);
@@ -126,9 +127,9 @@ TEST(PromptPlanner, AsksAThingOnASupportByItsBox) {
 TEST(PromptPlanner, RetriesAFailedPointByTheBoxOnce) {
   SamConfig config;
   config.min_hole_radius_px = 1000;  // regions alone
-  const MaskPool pool(config, test_grid());
+  const MaskPool pool(config, plan_grid());
   const std::vector<MaskPrompt> regions = {region_at(50, 60, 9000)};
-  PromptPlanner planner(config, test_grid(), regions);
+  PromptPlanner planner(config, plan_grid(), regions);
   const auto point = planner.next(pool, 4);
   ASSERT_EQ(point.size(), 1u);
   planner.failed(point[0]);
@@ -142,12 +143,12 @@ TEST(PromptPlanner, RetriesAFailedPointByTheBoxOnce) {
 // Everything but a square is covered: its centre is asked, and not again when nothing came of it.
 TEST(PromptPlanner, AsksTheMiddleOfAHole) {
   const SamConfig config;
-  MaskPool pool(config, test_grid());
+  MaskPool pool(config, plan_grid());
   cover(pool, 0, 0, 64, 20);
   cover(pool, 0, 20, 30, 64);
   cover(pool, 41, 20, 64, 64);
   cover(pool, 30, 31, 41, 64);
-  PromptPlanner planner(config, test_grid(), {});
+  PromptPlanner planner(config, plan_grid(), {});
   const auto asked = ask_all(planner, pool, 100);
   ASSERT_GE(asked.size(), 1u);
   // Grid pixel (35, 25) covers image pixels 140..143 and 100..103.
@@ -157,8 +158,8 @@ TEST(PromptPlanner, AsksTheMiddleOfAHole) {
 
 TEST(PromptPlanner, HolesOfABatchAreApart) {
   const SamConfig config;
-  const MaskPool pool(config, test_grid());
-  PromptPlanner planner(config, test_grid(), {});
+  const MaskPool pool(config, plan_grid());
+  PromptPlanner planner(config, plan_grid(), {});
   const auto batch = planner.next(pool, 4);
   ASSERT_EQ(batch.size(), 4u);
   for (std::size_t i = 0; i < batch.size(); ++i)
@@ -168,11 +169,11 @@ TEST(PromptPlanner, HolesOfABatchAreApart) {
 
 TEST(PromptPlanner, ABatchHasOneNumberOfPoints) {
   const SamConfig config;
-  MaskPool pool(config, test_grid());
+  MaskPool pool(config, plan_grid());
   cover(pool, 0, 0, 64, 32);
   const std::vector<MaskPrompt> regions = {region_at(60, 60, 4000), region_at(60, 200, 4000),
                                            region_at(180, 60, 2000), region_at(180, 200, 2000)};
-  PromptPlanner planner(config, test_grid(), regions);
+  PromptPlanner planner(config, plan_grid(), regions);
   int boxed = 0;
   for (auto batch = planner.next(pool, 3); !batch.empty(); batch = planner.next(pool, 3))
     for (const PlannedPrompt& prompt : batch) {
@@ -185,9 +186,9 @@ TEST(PromptPlanner, ABatchHasOneNumberOfPoints) {
 TEST(PromptPlanner, IgnoresRegionsOutsideTheImage) {
   SamConfig config;
   config.min_hole_radius_px = 1000;
-  const MaskPool pool(config, test_grid());
+  const MaskPool pool(config, plan_grid());
   const std::vector<MaskPrompt> regions = {region_at(-20, 60, 4000), region_at(60, 256, 4000)};
-  PromptPlanner planner(config, test_grid(), regions);
+  PromptPlanner planner(config, plan_grid(), regions);
   EXPECT_TRUE(planner.next(pool, 4).empty());
 }
 

@@ -10,13 +10,13 @@ namespace ovimap {
 namespace {
 
 using sam_fixture::kSide;
-constexpr int kGrid = 2;
+constexpr int kNetworkGrid = 2;
 
 /// A network with the inputs of transformers' exports, whose score is the sum of all labels.
 class LabelSum {
  public:
   explicit LabelSum(const std::string& keys) : scratch_("sam_network") {
-    OnnxGraph decoder = sam_fixture::decoder(kGrid);
+    OnnxGraph decoder = sam_fixture::decoder(kNetworkGrid);
     decoder.node("Cast", {"input_labels"}, "labels", {OnnxGraph::number_attribute("to", 1)})
         .node("ReduceSum", {"labels"}, "sum", {OnnxGraph::number_attribute("keepdims", 0)})
         .node("ReduceSum", {"input_boxes"}, "boxes", {OnnxGraph::number_attribute("keepdims", 0)})
@@ -24,8 +24,8 @@ class LabelSum {
         .node("ReduceMax", {"image_embeddings"}, "pred_masks",
               {OnnxGraph::list_attribute("axes", {1}), OnnxGraph::number_attribute("keepdims", 0)})
         .output("iou_scores", {})
-        .output("pred_masks", {1, kGrid, kGrid});
-    sam_fixture::write_model(scratch_, kGrid, decoder, 0, keys);
+        .output("pred_masks", {1, kNetworkGrid, kNetworkGrid});
+    sam_fixture::write_model(scratch_, kNetworkGrid, decoder, 0, keys);
   }
 
   float score(const PromptPoints& prompt) const {

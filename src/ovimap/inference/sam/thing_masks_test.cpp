@@ -9,27 +9,28 @@
 namespace ovimap {
 namespace {
 
-constexpr int kRows = 2, kColumns = 3, kImages = 2, kGridPx = 6;
+constexpr int kBasisRows = 2, kBasisColumns = 3, kImages = 2, kGridPx = 6;
 constexpr int kKernels = kImages + FinderMaps::kPlaceTerms + 1;
 
 /// Two images over the view: one of ones, one that counts columns.
 FinderMaps drawn_maps() {
   FinderMaps maps;
-  maps.rows = kRows, maps.columns = kColumns, maps.whole_columns = kColumns;
-  maps.kernels.assign(kKernels * kRows * kColumns, 0.f);
+  maps.rows = kBasisRows, maps.columns = kBasisColumns, maps.whole_columns = kBasisColumns;
+  maps.kernels.assign(kKernels * kBasisRows * kBasisColumns, 0.f);
   for (int image = 0; image < kImages; ++image)
-    for (int i = 0; i < 2 * kRows * 2 * kColumns; ++i)
-      maps.basis.push_back(image == 0 ? 1.f : static_cast<float>(i % (2 * kColumns)));
+    for (int i = 0; i < 2 * kBasisRows * 2 * kBasisColumns; ++i)
+      maps.basis.push_back(image == 0 ? 1.f : static_cast<float>(i % (2 * kBasisColumns)));
   return maps;
 }
 
 void set(FinderMaps& maps, int term, const Eigen::Vector2i& cell, float value) {
-  maps.kernels[static_cast<std::size_t>((term * kRows + cell.y()) * kColumns + cell.x())] = value;
+  maps.kernels[static_cast<std::size_t>((term * kBasisRows + cell.y()) * kBasisColumns +
+                                        cell.x())] = value;
 }
 
 LogitGrid grid() {
   LogitGrid grid;
-  grid.size = kGridPx, grid.width = 2 * kColumns, grid.height = 2 * kRows;
+  grid.size = kGridPx, grid.width = 2 * kBasisColumns, grid.height = 2 * kBasisRows;
   return grid;
 }
 

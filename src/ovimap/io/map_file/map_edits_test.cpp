@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-MapEdit rename(InstanceId id, const std::string& name) {
+MapEdit renamed(InstanceId id, const std::string& name) {
   MapEdit edit;
   edit.instances = {id};
   edit.name = name;
@@ -76,7 +76,7 @@ class MapEditing : public MapFolder {
 };
 
 TEST_F(MapEditing, TheMapIsSeenCorrectedAndStaysAsFound) {
-  const MapEdit first = edit_map(path_, rename(1, "cup"));
+  const MapEdit first = edit_map(path_, renamed(1, "cup"));
   EXPECT_EQ(first.id, 1);
   EXPECT_GT(first.time_s, 1.6e9);
   EXPECT_EQ(read_map_info(path_).names.at(1), "cup");
@@ -112,7 +112,7 @@ TEST_F(MapEditing, APartTakenOffHasAnIdOfItsOwn) {
 }
 
 TEST_F(MapEditing, NothingIsForgotten) {
-  edit_map(path_, rename(1, "cup"));
+  edit_map(path_, renamed(1, "cup"));
   edit_map(path_, simple(EditAction::kDelete, {3}));
   const MapEdit undone = edit_map(path_, simple(EditAction::kUndo));
   EXPECT_EQ(undone.undoes, 2);
@@ -139,7 +139,7 @@ TEST_F(MapEditing, UndoingEverythingLeavesWhatWasFound) {
 
 TEST_F(MapEditing, TheLogSurvivesSavingAndMapping) {
   split(1, {4});
-  edit_map(path_, rename(4, "lid"));
+  edit_map(path_, renamed(4, "lid"));
   edit_map(path_, simple(EditAction::kLock, {3}));
   const MapEdits log = read_edits(path_);
   MapDocument document = load_map(path_);
@@ -155,10 +155,10 @@ TEST_F(MapEditing, TheLogSurvivesSavingAndMapping) {
 }
 
 TEST_F(MapEditing, RefusesWhatMakesNoSense) {
-  refuse(rename(9, "x"), "no object 9");
-  refuse(rename(1, "a\nb"), "one line");
-  refuse(rename(1, "\xff"), "UTF-8");
-  refuse(rename(1, std::string(300, 'x')), "too long");
+  refuse(renamed(9, "x"), "no object 9");
+  refuse(renamed(1, "a\nb"), "one line");
+  refuse(renamed(1, "\xff"), "UTF-8");
+  refuse(renamed(1, std::string(300, 'x')), "too long");
   refuse(simple(EditAction::kDelete), "needs an object");
   refuse(simple(EditAction::kMerge, {1}), "two objects");
   refuse(simple(EditAction::kMerge, {1, 2}), "named twice");  // 2 is an old id of 1
@@ -176,7 +176,7 @@ TEST_F(MapEditing, RefusesWhatMakesNoSense) {
 
 TEST_F(MapEditing, ALockIsOneAgainstPeopleToo) {
   edit_map(path_, simple(EditAction::kLock, {1}));
-  refuse(rename(1, "x"), "undo 1");
+  refuse(renamed(1, "x"), "undo 1");
   refuse(simple(EditAction::kMerge, {3, 1}), "locked");
   refuse(simple(EditAction::kDelete, {1}), "locked");
   edit_map(path_, simple(EditAction::kHide, {1}));
@@ -184,7 +184,7 @@ TEST_F(MapEditing, ALockIsOneAgainstPeopleToo) {
   MapEdit unlock = simple(EditAction::kUndo);
   unlock.undoes = 1;
   edit_map(path_, unlock);
-  edit_map(path_, rename(1, "free"));
+  edit_map(path_, renamed(1, "free"));
   refuse(unlock, "undone already");
 }
 
@@ -195,7 +195,7 @@ TEST_F(MapEditing, OldMapsCanBeCorrected) {
                   fs::copy_options::overwrite_existing);
     fs::permissions(path_, fs::perms::owner_all);
     const InstanceId id = read_map_info(path_).instances.at(0).id;
-    edit_map(path_, rename(id, "old thing"));
+    edit_map(path_, renamed(id, "old thing"));
     EXPECT_EQ(read_map_info(path_).names.at(id), "old thing");
     EXPECT_EQ(load_corrected_map(path_).names.at(id), "old thing");
   }
@@ -204,7 +204,7 @@ TEST_F(MapEditing, OldMapsCanBeCorrected) {
 TEST_F(MapEditing, OneAtATime) {
   SQLite::Database other(path_.string(), SQLite::OPEN_READWRITE);
   SQLite::Transaction transaction(other, SQLite::TransactionBehavior::IMMEDIATE);
-  refuse(rename(1, "x"), "another program is using it");
+  refuse(renamed(1, "x"), "another program is using it");
   EXPECT_EQ(read_map_info(path_).names, saved_.names);  // reading goes on meanwhile
 }
 
@@ -231,7 +231,7 @@ TEST_F(MapEditing, AMapBeingMappedIsLeftAlone) {
   const fs::path partial = root_ / "a.ovimap.partial";
   fs::copy_file(path_, partial);
   std::ofstream(root_ / "a.ovimap.partial-wal") << "";
-  EXPECT_NE(fault_of([&] { edit_map(partial, rename(1, "x")); }).find("being mapped"),
+  EXPECT_NE(fault_of([&] { edit_map(partial, renamed(1, "x")); }).find("being mapped"),
             std::string::npos);
 }
 
@@ -257,9 +257,9 @@ TEST_F(MapEditing, ReadingLeavesTheLocksOfAChangeAlone) {
 
 TEST_F(MapEditing, AMapWithALogBesideItIsLeftAlone) {
   std::ofstream(root_ / "a.ovimap-wal") << "";
-  refuse(rename(1, "x"), "`ovimap info --recover ");
+  refuse(renamed(1, "x"), "`ovimap info --recover ");
   EXPECT_TRUE(recover_map(path_));
-  edit_map(path_, rename(1, "x"));
+  edit_map(path_, renamed(1, "x"));
   EXPECT_EQ(files_in_root(), 1u);
 }
 
@@ -271,7 +271,7 @@ TEST_F(MapEditing, SaysThatItCannotBeWritten) {
       fs::permissions(path_,
                       fs::perms::owner_read | fs::perms::group_read | fs::perms::others_read);
       if (::setuid(65534) != 0) ::_exit(2);
-      const std::string fault = fault_of([&] { edit_map(path_, rename(1, "x")); });
+      const std::string fault = fault_of([&] { edit_map(path_, renamed(1, "x")); });
       ::_exit(fault.find("copy it into a folder that you can write to") != std::string::npos ? 0
                                                                                              : 1);
     }
@@ -280,7 +280,7 @@ TEST_F(MapEditing, SaysThatItCannotBeWritten) {
     EXPECT_EQ(WEXITSTATUS(status), 0);
   } else {
     fs::permissions(path_, fs::perms::owner_read);
-    refuse(rename(1, "x"), "copy it into a folder that you can write to");
+    refuse(renamed(1, "x"), "copy it into a folder that you can write to");
   }
 }
 
@@ -291,7 +291,7 @@ TEST_F(MapEditing, AKilledEditLeavesTheOldMapOrTheNewOne) {
   for (unsigned round = 0; round < 25 || (round < 500 && (interrupted == 0 || edited == 0)); ++round) {
     const pid_t child = ::fork();
     if (child == 0) {
-      for (int i = 0;; ++i) edit_map(path_, rename(1, "name " + std::to_string(i)));
+      for (int i = 0;; ++i) edit_map(path_, renamed(1, "name " + std::to_string(i)));
     }
     ::usleep(static_cast<useconds_t>(2000 + random() % (20000 + 1000 * round)));
     ::kill(child, SIGKILL);
@@ -312,7 +312,7 @@ TEST_F(MapEditing, AKilledEditLeavesTheOldMapOrTheNewOne) {
   }
   EXPECT_GT(interrupted, 0u);
   EXPECT_GT(edited, 0u);
-  edit_map(path_, rename(1, "last"));
+  edit_map(path_, renamed(1, "last"));
   EXPECT_EQ(files_in_root(), 1u);
   MapDocument found = load_map(path_);
   found.edits.clear();

@@ -27,7 +27,7 @@ void add_quad(Mesh& mesh, std::uint32_t label, const Vector3f& corner, float wid
 }
 
 /// A floor of 4 x 2 m (1), a box of 1 x 1 m on it (2) and a table over that (3).
-Mesh room() {
+Mesh stacked_room() {
   Mesh mesh;
   add_quad(mesh, 1, {0, 0, 0}, 4, 2);
   add_quad(mesh, 2, {0.5f, 0.5f, 0.3f}, 1, 1);
@@ -42,24 +42,24 @@ double red_share(const RgbImage& image) {
 }
 
 TEST(PlacePicture, ShowsAnObjectThatStandsUnderAnother) {
-  const RgbImage image = place_picture(room(), 2, Vector3f::UnitZ());
+  const RgbImage image = place_picture(stacked_room(), 2, Vector3f::UnitZ());
   EXPECT_EQ(std::max(image.width(), image.height()), 720);
   EXPECT_NEAR(red_share(image), 1.0 / (4.3 * 2.3), 0.02);
 }
 
 TEST(PlacePicture, ShowsWhatIsLowerBesideTheObject) {
-  const RgbImage image = place_picture(room(), 3, Vector3f::UnitZ());
+  const RgbImage image = place_picture(stacked_room(), 3, Vector3f::UnitZ());
   EXPECT_NEAR(red_share(image), 1.5 * 1.5 / (4.3 * 2.3), 0.03);
 }
 
 TEST(PlacePicture, DoesWithoutColours) {
-  Mesh mesh = room();
+  Mesh mesh = stacked_room();
   mesh.colors.clear();
   EXPECT_GT(red_share(place_picture(mesh, 2, Vector3f::UnitZ())), 0.05);
 }
 
 TEST(PlacePicture, RefusesWhatIsNotThere) {
-  EXPECT_THROW(place_picture(room(), 7, Vector3f::UnitZ()), Error);
+  EXPECT_THROW(place_picture(stacked_room(), 7, Vector3f::UnitZ()), Error);
   EXPECT_THROW(place_picture({}, 1, Vector3f::UnitZ()), Error);
 }
 

@@ -23,9 +23,9 @@ void add_quad(Mesh& mesh, const Vector3f& corner, const Vector3f& u, const Vecto
   mesh.triangles.push_back({first, first + 2, first + 3});
 }
 
-/// Floor, ceiling and walls of a 4 x 3 x 2.5 m room seen from inside, z up, and a slanted roof
+/// Floor, ceiling and walls of a 4 x 3 x 2.5 m attic seen from inside, z up, and a slanted roof
 /// light.
-Mesh room() {
+Mesh attic() {
   Mesh mesh;
   add_quad(mesh, {0, 0, 0}, {4, 0, 0}, {0, 3, 0});
   add_quad(mesh, {0, 0, 2.5f}, {0, 3, 0}, {4, 0, 0});
@@ -59,7 +59,7 @@ TEST(GuessUp, FindsTheFloorInAWorldTurnedAnyWay) {
   for (int round = 0; round < 20; ++round) {
     const Eigen::Quaterniond turn =
         Eigen::Quaterniond(real(random), real(random), real(random), real(random)).normalized();
-    Mesh mesh = room();
+    Mesh mesh = attic();
     for (Vector3f& vertex : mesh.vertices) vertex = turn.cast<float>() * vertex;
     std::vector<Pose> cameras = cameras_pitched_by(35);
     for (Pose& pose : cameras) pose = turn * pose;
@@ -88,13 +88,13 @@ TEST(GuessUp, TakesTheCamerasWordWhereNoSurfaceHelps) {
   Mesh wall;
   add_quad(wall, {0, 0, 0}, {0, 3, 0}, {0, 0, 2.5f});
   EXPECT_TRUE(guess_up(wall, level).isApprox(Vector3f::UnitZ(), 1e-5f));
-  EXPECT_EQ(guess_up(room(), {}), Vector3f::UnitZ());
+  EXPECT_EQ(guess_up(attic(), {}), Vector3f::UnitZ());
 }
 
 TEST(GuessWallDirection, LiesAlongTheWalls) {
   for (const float degrees : {0.f, 10.f, 44.f, 80.f}) {
-    Mesh mesh = room();
-    add_quad(mesh, {1, 1, 0}, {0.7f, 0.5f, 0}, {0, 0, 1});  // a screen across the room
+    Mesh mesh = attic();
+    add_quad(mesh, {1, 1, 0}, {0.7f, 0.5f, 0}, {0, 0, 1});  // a screen across the attic
     const Eigen::AngleAxisf turn(degrees * static_cast<float>(EIGEN_PI) / 180, Vector3f::UnitZ());
     for (Vector3f& vertex : mesh.vertices) vertex = turn * vertex;
     const Vector3f direction = guess_wall_direction(mesh, Vector3f::UnitZ());
@@ -112,7 +112,7 @@ TEST(SceneAxesConfig, ListsItsFields) {
   list_fields(config, fields);
   fields.set("cone_deg", "30");
   // The tilted mean up of the cameras is now farther from the floor's normal than the cone.
-  EXPECT_LT(guess_up(room(), cameras_pitched_by(35), config).z(), 0.99f);
+  EXPECT_LT(guess_up(attic(), cameras_pitched_by(35), config).z(), 0.99f);
 }
 
 }  // namespace

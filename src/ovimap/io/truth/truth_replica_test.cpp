@@ -15,7 +15,7 @@ namespace ovimap {
 namespace {
 
 namespace fs = std::filesystem;
-using Ids = std::vector<std::int32_t>;
+using TrueIds = std::vector<std::int32_t>;
 
 /// ROOT/room0 without labels of its own, and Replica's annotation of it in ROOT/room_0/habitat: two
 /// quads of object 4 and one of object 9, which touch along an edge, and one that is unlabelled.
@@ -66,8 +66,8 @@ TEST_F(ReplicaTruth, VerticesTakeTheObjectOfMostTriangles) {
   EXPECT_EQ(truth.mesh.triangles.size(), 8u);  // two for each quad
   // Quads are cut from their first corner: vertex 2 has one triangle of object 4 and two of object
   // 9; vertex 3 one of object 9 and two of object 0; 7 and 8 have two and one.
-  EXPECT_EQ(truth.instances, (Ids{4, 4, 9, 0, 0, 4, 4, 4, 9, 0}));
-  EXPECT_EQ(truth.classes, (Ids{93, 93, 76, 0, 0, 93, 93, 93, 76, 0}));
+  EXPECT_EQ(truth.instances, (TrueIds{4, 4, 9, 0, 0, 4, 4, 4, 9, 0}));
+  EXPECT_EQ(truth.classes, (TrueIds{93, 93, 76, 0, 0, 93, 93, 93, 76, 0}));
   EXPECT_EQ(truth.class_names.at(76), "sofa");
   EXPECT_EQ(truth.instance_names.at(9), "sofa");
 }
@@ -88,8 +88,8 @@ TEST_F(ReplicaTruth, PublishedLabelsOfThePackGoFirst) {
   write("replica_gt_instances/instance_labels_room0.txt", "1 1 1 1 1 2 2 2 2 2");
   write("replica_gt_semantics/semantic_labels_room0.txt", "93 93 93 93 93 76 76 76 256 -1");
   const Truth truth = load_truth(root_ / "room0");
-  EXPECT_EQ(truth.instances, (Ids{1, 1, 1, 1, 1, 2, 2, 2, 2, 2}));
-  EXPECT_EQ(truth.classes, (Ids{93, 93, 93, 93, 93, 76, 76, 76, 0, -1})) << "256 is no class";
+  EXPECT_EQ(truth.instances, (TrueIds{1, 1, 1, 1, 1, 2, 2, 2, 2, 2}));
+  EXPECT_EQ(truth.classes, (TrueIds{93, 93, 93, 93, 93, 76, 76, 76, 0, -1})) << "256 is no class";
   EXPECT_EQ(truth.class_names.at(93), "wall");
 }
 

@@ -16,7 +16,7 @@ namespace ovimap {
 namespace {
 
 namespace fs = std::filesystem;
-using Ids = std::vector<std::int32_t>;
+using TrueIds = std::vector<std::int32_t>;
 
 /// ROOT/scans/scene0001_00 with a mesh of six vertices, and the table in ROOT.
 class ScanNetTruth : public ::testing::Test {
@@ -66,7 +66,7 @@ TEST_F(ScanNetTruth, InstancesAreObjectsCountedFromOne) {
   const Truth truth = load_truth(scene_);
   EXPECT_EQ(truth.mesh.vertices.size(), 6u);
   EXPECT_TRUE(truth.mesh.labels.empty());
-  EXPECT_EQ(truth.instances, (Ids{1, 1, 2, 2, 5, 0}));
+  EXPECT_EQ(truth.instances, (TrueIds{1, 1, 2, 2, 5, 0}));
   EXPECT_EQ(truth.instance_names.size(), 3u);
   EXPECT_EQ(truth.instance_names.at(1), "office chair");
   EXPECT_EQ(truth.instance_names.at(5), "odd thing");
@@ -74,35 +74,35 @@ TEST_F(ScanNetTruth, InstancesAreObjectsCountedFromOne) {
 
 TEST_F(ScanNetTruth, ThreeNumberingsOfClasses) {
   const Truth benchmark = load_truth(scene_, ScanNetClasses::kScanNet200);
-  EXPECT_EQ(benchmark.classes, (Ids{10, 10, 1, 1, 0, 0}));
+  EXPECT_EQ(benchmark.classes, (TrueIds{10, 10, 1, 1, 0, 0}));
   EXPECT_EQ(benchmark.class_names,
             (std::map<std::int32_t, std::string>{{1, "wall"}, {10, "office chair"}}));
   const Truth nyu40 = load_truth(scene_, ScanNetClasses::kNyu40);
-  EXPECT_EQ(nyu40.classes, (Ids{5, 5, 1, 1, 40, 0}));
+  EXPECT_EQ(nyu40.classes, (TrueIds{5, 5, 1, 1, 40, 0}));
   EXPECT_EQ(nyu40.class_names.at(5), "chair");
   EXPECT_EQ(nyu40.class_names.at(40), "otherprop");
   const Truth raw = load_truth(scene_, ScanNetClasses::kRaw);
-  EXPECT_EQ(raw.classes, (Ids{10, 10, 1, 1, 1299, 0}));
+  EXPECT_EQ(raw.classes, (TrueIds{10, 10, 1, 1, 1299, 0}));
   EXPECT_EQ(raw.class_names.at(1299), "odd thing");
 }
 
 TEST_F(ScanNetTruth, IsFoundFromAnExportedFolderAndASensFile) {
   fs::create_directories(scene_ / "exported");
-  EXPECT_EQ(load_truth(scene_ / "exported").instances, (Ids{1, 1, 2, 2, 5, 0}));
+  EXPECT_EQ(load_truth(scene_ / "exported").instances, (TrueIds{1, 1, 2, 2, 5, 0}));
   write("scene0001_00.sens", "");
-  EXPECT_EQ(load_truth(scene_ / "scene0001_00.sens").instances, (Ids{1, 1, 2, 2, 5, 0}));
+  EXPECT_EQ(load_truth(scene_ / "scene0001_00.sens").instances, (TrueIds{1, 1, 2, 2, 5, 0}));
 }
 
 TEST_F(ScanNetTruth, MeshWithoutLabelsWillDo) {
   fs::rename(scene_ / "scene0001_00_vh_clean_2.labels.ply", scene_ / "scene0001_00_vh_clean_2.ply");
-  EXPECT_EQ(load_truth(scene_, ScanNetClasses::kNyu40).classes, (Ids{5, 5, 1, 1, 40, 0}));
+  EXPECT_EQ(load_truth(scene_, ScanNetClasses::kNyu40).classes, (TrueIds{5, 5, 1, 1, 40, 0}));
 }
 
 TEST_F(ScanNetTruth, LaterObjectHasASharedSegment) {
   write("scene0001_00.aggregation.json", R"({"segGroups": [
       {"objectId": 0, "segments": [70, 3], "label": "wall"},
       {"objectId": 1, "segments": [3], "label": "office chair"}]})");
-  EXPECT_EQ(load_truth(scene_).instances, (Ids{1, 1, 2, 0, 0, 0}));
+  EXPECT_EQ(load_truth(scene_).instances, (TrueIds{1, 1, 2, 0, 0, 0}));
 }
 
 TEST_F(ScanNetTruth, WhatIsMissingIsNamed) {

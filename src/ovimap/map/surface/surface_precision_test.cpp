@@ -11,17 +11,17 @@
 namespace ovimap {
 namespace {
 
-const PinholeCamera kCamera{64, 48, 60.f, 60.f, 31.5f, 23.5f};
+const PinholeCamera kSmallCamera{64, 48, 60.f, 60.f, 31.5f, 23.5f};
 
 /// A wall at a metre, seen so often by a sensor that errs so much.
 VoxelMap wall_map(int frames, float sigma_m) {
   VoxelMap map;
-  const DepthImage depth(kCamera.width, kCamera.height, 1.f);
-  const Image<float> slope(kCamera.width, kCamera.height, 1.f),
-      sigma(kCamera.width, kCamera.height, sigma_m);
+  const DepthImage depth(kSmallCamera.width, kSmallCamera.height, 1.f);
+  const Image<float> slope(kSmallCamera.width, kSmallCamera.height, 1.f),
+      sigma(kSmallCamera.width, kSmallCamera.height, sigma_m);
   for (int i = 0; i < frames; ++i)
     integrate(map, {.depth = depth,
-                    .camera = kCamera,
+                    .camera = kSmallCamera,
                     .world_from_camera = Pose::Identity(),
                     .plane_slope = &slope,
                     .sigma_m = &sigma});

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-MapperConfig small_views() {
+MapperConfig checkpointed_config() {
   MapperConfig config;
   config.view_interval = 1;
   config.mask_interval = 2;
@@ -41,7 +41,7 @@ class CheckpointerTest : public ::testing::Test {
   Mapper mapper() const {
     const std::shared_ptr<DeskMasks> masks(slow_ ? new SlowDeskMasks : new DeskMasks);
     masks->masked_every = masked_every_;
-    MapperConfig config = small_views();
+    MapperConfig config = checkpointed_config();
     if (slow_) config.mask_interval = 0;
     config.mask_motion = 0.4f;  // the desk's frames are far apart
     return Mapper(config, masks, std::make_shared<ColorEncoder>());

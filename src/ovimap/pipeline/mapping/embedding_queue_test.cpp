@@ -13,7 +13,7 @@ namespace ovimap {
 namespace {
 
 /// Answers only when told to, however long that takes.
-class PatientEncoder : public ColorEncoder {
+class HeldEncoder : public ColorEncoder {
  public:
   Embeddings encode_images(std::span<const RgbImage> images) override {
     {
@@ -51,7 +51,7 @@ std::vector<EmbeddingRequest> one(std::int64_t frame, const RgbImage& image) {
 }
 
 TEST(EmbeddingQueue, SlowEncodersSeeTheFrameTheyWereAskedAbout) {
-  auto encoder = std::make_shared<PatientEncoder>();
+  auto encoder = std::make_shared<HeldEncoder>();
   EmbeddingQueue queue({}, {}, encoder);
   RgbImage camera_buffer(8, 8, {250, 0, 0});  // a camera reuses its buffer for the next frame
   queue.submit(one(1, camera_buffer));
@@ -133,7 +133,7 @@ TEST(EmbeddingQueue, ABrokenRecognizerCostsNoEmbedding) {
 }
 
 TEST(EmbeddingQueue, AFullQueueMakesTheMapperWait) {
-  auto encoder = std::make_shared<PatientEncoder>();
+  auto encoder = std::make_shared<HeldEncoder>();
   EmbeddingQueue queue({.capacity = 2, .batch = 1}, {}, encoder);
   std::atomic<int> submitted = 0;
   std::thread mapper([&] {
@@ -170,7 +170,7 @@ TEST(EmbeddingQueue, KeepsNoCropsWhenToldSo) {
 }
 
 TEST(EmbeddingQueue, PassesOnWhatTheEncoderThrows) {
-  auto encoder = std::make_shared<PatientEncoder>();
+  auto encoder = std::make_shared<HeldEncoder>();
   encoder->fails = true;
   encoder->open();
   EmbeddingQueue queue({}, {}, encoder);
@@ -183,7 +183,7 @@ TEST(EmbeddingQueue, PassesOnWhatTheEncoderThrows) {
 }
 
 TEST(EmbeddingQueue, GoesOnAfterAFailure) {
-  auto encoder = std::make_shared<PatientEncoder>();
+  auto encoder = std::make_shared<HeldEncoder>();
   encoder->fails = true;
   encoder->open();
   EmbeddingQueue queue({.capacity = 1, .batch = 1}, {}, encoder);
@@ -201,7 +201,7 @@ TEST(EmbeddingQueue, GoesOnAfterAFailure) {
 }
 
 TEST(EmbeddingQueue, CanBeLeftInTheMiddle) {
-  auto encoder = std::make_shared<PatientEncoder>();
+  auto encoder = std::make_shared<HeldEncoder>();
   {
     EmbeddingQueue queue({.capacity = 10, .batch = 1}, {}, encoder);
     for (std::uint64_t i = 0; i < 5; ++i) queue.submit(one(i, RgbImage(4, 4, {1, 1, 1})));

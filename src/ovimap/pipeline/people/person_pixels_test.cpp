@@ -24,13 +24,13 @@ Frame somebody() {
   return frame;
 }
 
-const Eigen::AlignedBox2f kBox(Eigen::Vector2f(15, 5), Eigen::Vector2f(45, 75));
+const Eigen::AlignedBox2f kPersonBox(Eigen::Vector2f(15, 5), Eigen::Vector2f(45, 75));
 
 TEST(PixelsByDepth, AreTheBodyAndWhatHasNoDepth) {
   Frame frame = somebody();
   fill_box(frame.depth, 25, 10, 32, 16, 0.f);  // hair gives none
   fill_box(frame.depth, 44, 5, 46, 20, 0.f);   // nor does something beside, half of it in the box
-  const PeopleMask mask = pixels_by_depth(frame, color_places(frame), kBox, {});
+  const PeopleMask mask = pixels_by_depth(frame, color_places(frame), kPersonBox, {});
   EXPECT_EQ(mask.at(30, 40), 1);
   EXPECT_EQ(mask.at(20, 69), 1);
   EXPECT_EQ(mask.at(28, 12), 1) << "hair";
@@ -45,7 +45,7 @@ TEST(PixelsByDepth, ABodyGoesOnOverSmallStepsAndEndsAtLargeOnes) {
   for (int v = 55; v < 70; ++v)  // knees of somebody who sits
     for (int u = 20; u < 40; ++u) frame.depth.at(u, v) = 2.f - 0.03f * static_cast<float>(v - 54);
   fill_box(frame.depth, 40, 20, 44, 60, 2.3f);  // a cupboard beside, 30 cm behind
-  const PeopleMask mask = pixels_by_depth(frame, color_places(frame), kBox, {});
+  const PeopleMask mask = pixels_by_depth(frame, color_places(frame), kPersonBox, {});
   EXPECT_EQ(mask.at(30, 69), 1) << "knees";
   EXPECT_EQ(mask.at(42, 40), 0) << "cupboard";
 }
@@ -53,7 +53,7 @@ TEST(PixelsByDepth, ABodyGoesOnOverSmallStepsAndEndsAtLargeOnes) {
 TEST(PixelsByDepth, WithoutAnyDepthItIsTheBox) {
   Frame frame = somebody();
   frame.depth.fill(0.f);
-  const PeopleMask mask = pixels_by_depth(frame, color_places(frame), kBox, {});
+  const PeopleMask mask = pixels_by_depth(frame, color_places(frame), kPersonBox, {});
   EXPECT_EQ(mask.at(15, 5), 1);
   EXPECT_EQ(mask.at(45, 75), 1);
   EXPECT_EQ(mask.at(46, 75), 0);

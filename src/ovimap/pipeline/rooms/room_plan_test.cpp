@@ -7,16 +7,16 @@
 namespace ovimap {
 namespace {
 
-constexpr float kCell_m = 0.1f;
+constexpr float kPlanCell_m = 0.1f;
 
 /// Two rooms of 3 x 3 m side by side with a wall of 0.2 m between them, 2.5 m high, cells of 0.1 m;
 /// the corner of the first lies at (0, 0).
 class TwoRooms {
  public:
   TwoRooms() {
-    grid.cell_m = kCell_m;
+    grid.cell_m = kPlanCell_m;
     grid.size = {64, 32, 26};
-    grid.origin = {-kCell_m, -kCell_m, 0.f};
+    grid.origin = {-kPlanCell_m, -kPlanCell_m, 0.f};
     grid.cells.assign(64 * 32 * 26, CellState::kUnknown);
     fill({0.f, 0.f, 0.f}, {6.2f, 3.f, 2.5f}, CellState::kFree);
     fill({0.f, 0.f, 2.5f}, {6.2f, 3.f, 2.6f}, CellState::kOccupied);  // ceiling
@@ -24,7 +24,7 @@ class TwoRooms {
   }
   void fill(const Eigen::Vector3f& low, const Eigen::Vector3f& high, CellState state) {
     const auto cell = [&](const Eigen::Vector3f& point) {
-      return ((point - grid.origin) / kCell_m).array().round().cast<int>().eval();
+      return ((point - grid.origin) / kPlanCell_m).array().round().cast<int>().eval();
     };
     const auto first = cell(low), last = cell(high);
     for (int z = first.z(); z < last.z(); ++z)

@@ -20,7 +20,7 @@ Mesh desk_mesh() {
   return extract_instance_mesh(document.map, document.instances);
 }
 
-GeometryEmbeddingConfig small_views() {
+GeometryEmbeddingConfig geometry_config() {
   GeometryEmbeddingConfig config;
   config.semantics.views.min_mask_px = 60;
   config.semantics.views.min_first_depth_px = 40;
@@ -33,7 +33,7 @@ TEST(EmbedGeometry, FindsTheObjectsOfAGivenMesh) {
   const DeskScene scene;
   SequenceResult sequence;
   const MapDocument document =
-      embed_geometry(mesh, scene, positions({}, scene.size()), small_views(),
+      embed_geometry(mesh, scene, positions({}, scene.size()), geometry_config(),
                      std::make_shared<ColorEncoder>(), sequence);
   ASSERT_EQ(document.instances.size(), 3u);
   EXPECT_EQ(document.semantics.encoder.name, "colours");
@@ -57,8 +57,8 @@ TEST(EmbedGeometry, DoesNotSeeThroughWhatIsMeasuredInFront) {
   for (Eigen::Vector3f& vertex : mesh.vertices) vertex.z() -= 1.f;  // all below the real table
   const DeskScene scene;
   SequenceResult sequence;
-  const MapDocument document =
-      embed_geometry(mesh, scene, positions({}, scene.size()), small_views(), nullptr, sequence);
+  const MapDocument document = embed_geometry(mesh, scene, positions({}, scene.size()),
+                                              geometry_config(), nullptr, sequence);
   EXPECT_TRUE(document.semantics.looks.empty());
 }
 

@@ -11,7 +11,7 @@ namespace ovimap {
 namespace {
 
 /// The desk with poses that drift away, ten frames a second.
-class DriftingDesk : public DeskScene {
+class SlidingDesk : public DeskScene {
  public:
   FrameRead read(std::int64_t position) const override {
     FrameRead read = DeskScene::read(position);
@@ -21,7 +21,7 @@ class DriftingDesk : public DeskScene {
   }
 };
 
-MapperConfig keeping() {
+MapperConfig keeping_frames() {
   MapperConfig config;
   config.frame_store.max_mb = 100;
   return config;
@@ -49,8 +49,8 @@ class MovedFrames : public ::testing::Test {
         .norm();
   }
 
-  const DriftingDesk desk_;
-  Mapper mapper_{keeping(), std::make_shared<DeskMasks>()};
+  const SlidingDesk desk_;
+  Mapper mapper_{keeping_frames(), std::make_shared<DeskMasks>()};
   SequenceResult done_;
 };
 

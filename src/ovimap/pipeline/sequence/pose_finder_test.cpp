@@ -36,7 +36,7 @@ class RoundInARoom : public FrameSource {
   fixture::RoomCamera camera_;
 };
 
-MapperConfig keeping() {
+MapperConfig finely_keeping() {
   MapperConfig config;
   config.map.voxel_size_m = 0.02f;
   config.frame_store.max_mb = 100;
@@ -54,7 +54,7 @@ LoopConfig eager() {
 }
 
 struct RoundTrip {
-  explicit RoundTrip(const LoopConfig& loops, const MapperConfig& config = keeping())
+  explicit RoundTrip(const LoopConfig& loops, const MapperConfig& config = finely_keeping())
       : mapper(config), finder(Tracker(TrackConfig{}), loops) {
     const RoundInARoom source;
     done = run_sequence(source, positions({}, source.size()), mapper, nullptr, {}, nullptr, &finder);
@@ -107,7 +107,7 @@ TEST(PoseFinder, ClosesTheLastLoopsAfterTheLastFrame) {
 }
 
 TEST(PoseFinder, WithoutKeptFramesLoopsStayOpen) {
-  MapperConfig config = keeping();
+  MapperConfig config = finely_keeping();
   config.frame_store.max_mb = 0;
   EXPECT_EQ(RoundTrip(eager(), config).finder.corrections().times, 0u);
 }

@@ -21,14 +21,14 @@ double local(int year, int month, int day, int hour = 0, int minute = 0, int sec
 }
 
 // A Wednesday.
-const double kNow = local(2026, 3, 18, 15, 20);
+const double kWednesday = local(2026, 3, 18, 15, 20);
 
-std::optional<TimeAsked> read(const std::string& text) {
-  return parse_time(words_of(text), kNow);
+std::optional<TimeAsked> read_time(const std::string& text) {
+  return parse_time(words_of(text), kWednesday);
 }
 
 void expect_span(const std::string& text, double begin_s, double end_s) {
-  const auto time = read(text);
+  const auto time = read_time(text);
   ASSERT_TRUE(time) << text;
   EXPECT_EQ(time->visit, 0) << text;
   EXPECT_EQ(time->begin_s, begin_s) << text;
@@ -36,9 +36,9 @@ void expect_span(const std::string& text, double begin_s, double end_s) {
 }
 
 TEST(TimeWords, NamesVisits) {
-  EXPECT_EQ(read("visit 2"), (TimeAsked{2, 0, 0}));
-  EXPECT_EQ(read("the first visit"), (TimeAsked{1, 0, 0}));
-  EXPECT_EQ(read("Last Visit"), (TimeAsked{TimeAsked::kLastVisit, 0, 0}));
+  EXPECT_EQ(read_time("visit 2"), (TimeAsked{2, 0, 0}));
+  EXPECT_EQ(read_time("the first visit"), (TimeAsked{1, 0, 0}));
+  EXPECT_EQ(read_time("Last Visit"), (TimeAsked{TimeAsked::kLastVisit, 0, 0}));
 }
 
 TEST(TimeWords, NamesDatesAndHours) {
@@ -48,7 +48,7 @@ TEST(TimeWords, NamesDatesAndHours) {
     expect_span(text, local(2026, 3, 14, 9, 30), local(2026, 3, 14, 9, 31));
   expect_span("2026-03-14T09:30:15", local(2026, 3, 14, 9, 30, 15), local(2026, 3, 14, 9, 30, 16));
   expect_span("9:30", local(2026, 3, 18, 9, 30), local(2026, 3, 18, 9, 31));
-  expect_span("now", kNow, kNow);
+  expect_span("now", kWednesday, kWednesday);
 }
 
 TEST(TimeWords, NamesDaysAsPeopleDo) {
@@ -61,8 +61,8 @@ TEST(TimeWords, NamesDaysAsPeopleDo) {
   expect_span("yesterday evening", local(2026, 3, 17, 18), local(2026, 3, 18));
   expect_span("this morning", local(2026, 3, 18, 5), local(2026, 3, 18, 12));
   expect_span("last Monday 9:30", local(2026, 3, 16, 9, 30), local(2026, 3, 16, 9, 31));
-  expect_span("two hours ago", kNow - 7200, kNow - 3600);
-  expect_span("an hour ago", kNow - 3600, kNow);
+  expect_span("two hours ago", kWednesday - 7200, kWednesday - 3600);
+  expect_span("an hour ago", kWednesday - 3600, kWednesday);
   expect_span("3 days ago", local(2026, 3, 15), local(2026, 3, 16));
   expect_span("a week ago", local(2026, 3, 11), local(2026, 3, 12));
 }
@@ -73,13 +73,13 @@ TEST(TimeWords, OtherWordsAreNoTimes) {
         "2026-13-01", "2026-02-31", "2026-03-14T", "2026-03-14T25:00", "2026-03-14 9:3", "9:60",
         "25:00", "last", "last mug", "this", "this mug", "Monday mug", "Monday Tuesday", "days ago",
         "two mugs ago", "evening", "2026-03-14x", "visit 99999999999"})
-    EXPECT_FALSE(read(text)) << text;
+    EXPECT_FALSE(read_time(text)) << text;
 }
 
 TEST(TimeWords, SaysWhatATimeIs) {
-  EXPECT_EQ(time_of_text("visit 3", kNow).visit, 3);
+  EXPECT_EQ(time_of_text("visit 3", kWednesday).visit, 3);
   try {
-    time_of_text("some day", kNow);
+    time_of_text("some day", kWednesday);
     FAIL() << "that is no time";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("'some day' is no time; give a visit"),
@@ -88,7 +88,7 @@ TEST(TimeWords, SaysWhatATimeIs) {
 }
 
 TEST(TimeWords, DatesAreLocal) {
-  EXPECT_EQ(date_text(kNow), "2026-03-18 15:20");
+  EXPECT_EQ(date_text(kWednesday), "2026-03-18 15:20");
 }
 
 }  // namespace

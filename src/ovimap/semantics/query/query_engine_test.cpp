@@ -14,9 +14,9 @@
 namespace ovimap {
 namespace {
 
-const std::vector<std::string> kThings{"table", "red chair", "blue chair", "mug",
-                                       "sofa",  "armchair",  "",           "television",
-                                       "lamp",  "red book",  "blue book",  "plate"};
+const std::vector<std::string> kRoomThings{"table", "red chair", "blue chair", "mug",
+                                           "sofa",  "armchair",  "",           "television",
+                                           "lamp",  "red book",  "blue book",  "plate"};
 
 class QueryEngineTest : public ::testing::Test {
  protected:
@@ -31,7 +31,7 @@ class QueryEngineTest : public ::testing::Test {
   }
 
   WordEncoder encoder_;
-  SearchIndex index_ = map_of(kThings);
+  SearchIndex index_ = map_of(kRoomThings);
 };
 
 TEST_F(QueryEngineTest, FindsWhatIsThereAndSaysWhatIsNot) {
@@ -39,7 +39,7 @@ TEST_F(QueryEngineTest, FindsWhatIsThereAndSaysWhatIsNot) {
   for (const char* text : {"table", "mug", "television", "red chair", "sofa"}) {
     const QueryAnswer answer = engine.find({text, {}});
     EXPECT_EQ(answer.verdict, Verdict::kFound) << text;
-    EXPECT_EQ(kThings[answer.matches[0].position], text);
+    EXPECT_EQ(kRoomThings[answer.matches[0].position], text);
     EXPECT_GT(*answer.matches[0].probability, 0.7);
     EXPECT_GT(answer.matches[0].score, 0.5f);
     EXPECT_LE(*answer.matches[0].p_value, 0.05);
@@ -64,11 +64,11 @@ TEST_F(QueryEngineTest, SaysThatMaterialsAreNotJudged) {
 TEST_F(QueryEngineTest, OnlySomeMayBeTheAnswer) {
   const QueryEngine engine(index_, &encoder_);
   Query query{"red chair", {}};
-  query.among.assign(kThings.size(), true);
+  query.among.assign(kRoomThings.size(), true);
   query.among[1] = false;
   const QueryAnswer other = engine.find(query);
   for (const InstanceId id : ids(other)) EXPECT_NE(id, 2u) << "it may not be";
-  query.among.assign(kThings.size(), false);
+  query.among.assign(kRoomThings.size(), false);
   query.among[1] = query.among[3] = true;
   EXPECT_EQ(engine.find(query).verdict, Verdict::kFound);
   EXPECT_EQ(engine.find(query).matches.size(), 2u);
@@ -76,7 +76,7 @@ TEST_F(QueryEngineTest, OnlySomeMayBeTheAnswer) {
   EXPECT_EQ(engine.find(query).matches.front().id, 2u) << "of those that may be";
   query.text = "object near the sofa";  // which may be any
   for (const QueryMatch& match : engine.find(query).matches) EXPECT_TRUE(query.among[match.position]);
-  query.among.assign(kThings.size(), false);
+  query.among.assign(kRoomThings.size(), false);
   for (const char* text : {"mug", "largest mug", "lowest thing"}) {
     query.text = text;
     EXPECT_EQ(engine.find(query).verdict, Verdict::kNotInMap) << text;
@@ -110,7 +110,7 @@ TEST_F(QueryEngineTest, ObjectsWithoutEmbeddingNeverAppear) {
   config.top_k = 100;
   const QueryEngine engine(index_, &encoder_, config);
   const QueryAnswer answer = engine.find({"mug", {}, true});
-  EXPECT_EQ(answer.matches.size(), kThings.size() - 1);
+  EXPECT_EQ(answer.matches.size(), kRoomThings.size() - 1);
   for (const QueryMatch& match : answer.matches) EXPECT_NE(match.position, 6u);
   ASSERT_EQ(answer.relevance.size(), 12);
   EXPECT_EQ(answer.relevance[6], 0.f);
@@ -153,7 +153,7 @@ TEST_F(QueryEngineTest, NegativesExcludeOrLower) {
   const QueryEngine lower(index_, &encoder_, config);
   const QueryAnswer lowered = lower.find({"chair", {"red chair"}});
   EXPECT_EQ(lowered.matches[0].id, 3u);
-  EXPECT_EQ(lowered.matches.size(), kThings.size() - 1);
+  EXPECT_EQ(lowered.matches.size(), kRoomThings.size() - 1);
 }
 
 TEST_F(QueryEngineTest, UsesTheModelsOwnProbability) {

@@ -22,7 +22,7 @@ Eigen::AlignedBox3f box(float x, float y, float z, float dx, float dy, float dz)
 }
 
 // A room of 6 x 5 m, z up, in metres.
-const std::vector<Thing> kRoom{
+const std::vector<Thing> kThingsOfRoom{
     {"floor", box(0, 0, -0.1f, 6, 5, 0.1f)},               // 1
     {"table", box(1, 1, 0, 1.6f, 0.8f, 0.75f)},            // 2
     {"mug", box(1.3f, 1.3f, 0.76f, 0.1f, 0.1f, 0.1f)},     // 3: on the table
@@ -49,7 +49,7 @@ class QuerySceneTest : public ::testing::Test {
   QuerySceneTest() {
     std::vector<std::string> names;
     std::vector<Eigen::AlignedBox3f> boxes;
-    for (const Thing& thing : kRoom) {
+    for (const Thing& thing : kThingsOfRoom) {
       names.push_back(thing.name);
       boxes.push_back(thing.box);
     }
@@ -162,7 +162,7 @@ SearchIndex map_with_lookalike(int other_words) {
   std::vector<Eigen::AlignedBox3f> boxes = {box(5, 5, 0, 0.1f, 0.1f, 0.1f),
                                             box(1.2f, 1.2f, 0.51f, 0.1f, 0.1f, 0.1f),
                                             box(1, 1, 0, 1, 1, 0.5f)};
-  for (const Thing& thing : kRoom)
+  for (const Thing& thing : kThingsOfRoom)
     if (thing.name != "mug") names.push_back(thing.name), boxes.push_back(thing.box);
   return map_of(names, boxes);
 }

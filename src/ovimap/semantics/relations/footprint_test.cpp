@@ -11,16 +11,17 @@
 namespace ovimap {
 namespace {
 
-using Point = Eigen::Vector2f;
+using PlanPoint = Eigen::Vector2f;
 
 Footprint rectangle(float x0, float y0, float x1, float y1) {
   return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
 }
 
-Footprint random_hull(std::mt19937& engine, const Point& center) {
+Footprint random_hull(std::mt19937& engine, const PlanPoint& center) {
   std::uniform_real_distribution<float> uniform(-1.f, 1.f);
-  std::vector<Point> points;
-  for (int i = 0; i < 12; ++i) points.push_back(center + Point(uniform(engine), uniform(engine)));
+  std::vector<PlanPoint> points;
+  for (int i = 0; i < 12; ++i)
+    points.push_back(center + PlanPoint(uniform(engine), uniform(engine)));
   return convex_hull(points);
 }
 
@@ -34,17 +35,17 @@ TEST(Footprint, HullOfASquareWithPointsInsideAndOnItsEdges) {
 }
 
 TEST(Footprint, SmallestWidthOfATurnedRectangle) {
-  std::vector<Point> corners = rectangle(0, 0, 3, 0.2f);
+  std::vector<PlanPoint> corners = rectangle(0, 0, 3, 0.2f);
   const Eigen::Rotation2Df turned(0.7f);
-  for (Point& corner : corners) corner = turned * corner;
+  for (PlanPoint& corner : corners) corner = turned * corner;
   EXPECT_NEAR(smallest_width_m(convex_hull(corners)), 0.2f, 1e-5f);
 }
 
 TEST(Footprint, DistancesByHand) {
   const Footprint a = rectangle(0, 0, 1, 1);
-  EXPECT_FLOAT_EQ(distance_m(a, Point(0.5f, 0.5f)), 0.f);
-  EXPECT_FLOAT_EQ(distance_m(a, Point(3.f, 0.5f)), 2.f);
-  EXPECT_FLOAT_EQ(distance_m(a, Point(4.f, 5.f)), 5.f);
+  EXPECT_FLOAT_EQ(distance_m(a, PlanPoint(0.5f, 0.5f)), 0.f);
+  EXPECT_FLOAT_EQ(distance_m(a, PlanPoint(3.f, 0.5f)), 2.f);
+  EXPECT_FLOAT_EQ(distance_m(a, PlanPoint(4.f, 5.f)), 5.f);
   EXPECT_FLOAT_EQ(distance_m(a, rectangle(1.5f, 0, 2, 1)), 0.5f);
   EXPECT_FLOAT_EQ(distance_m(a, rectangle(0.2f, 0.2f, 0.4f, 0.4f)), 0.f);
   EXPECT_FLOAT_EQ(distance_m(a, rectangle(-1, 0.4f, 2, 0.6f)), 0.f);  // a cross: no corner inside
@@ -60,7 +61,7 @@ TEST(Footprint, OverlapAgreesWithSampling) {
     int inside = 0;
     constexpr int kSamples = 20000;
     for (int i = 0; i < kSamples; ++i) {
-      const Point point(uniform(engine), uniform(engine));
+      const PlanPoint point(uniform(engine), uniform(engine));
       inside += distance_m(a, point) == 0.f && distance_m(b, point) == 0.f;
     }
     EXPECT_NEAR(overlap_m2(a, b), 4.f * static_cast<float>(inside) / kSamples, 0.06f);
@@ -75,7 +76,8 @@ TEST(Footprint, DistanceAgreesWithSamplingTheEdges) {
     float smallest = 1e9f;
     for (std::size_t i = 0; i < b.size(); ++i)
       for (int step = 0; step < 200; ++step) {
-        const Point p = b[i] + static_cast<float>(step) / 200.f * (b[(i + 1) % b.size()] - b[i]);
+        const PlanPoint p =
+            b[i] + static_cast<float>(step) / 200.f * (b[(i + 1) % b.size()] - b[i]);
         smallest = std::min(smallest, distance_m(a, p));
       }
     EXPECT_NEAR(distance_m(a, b), smallest, 0.01f);

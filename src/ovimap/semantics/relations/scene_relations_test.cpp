@@ -11,17 +11,17 @@ namespace {
 
 using Point = Eigen::Vector3f;
 
-ObjectShape box(const Point& low, const Point& high) {
+ObjectShape box_shape(const Point& low, const Point& high) {
   const Eigen::AlignedBox3f bounds(low, high);
   return shape_of_box(Eigen::Matrix3f::Identity(), bounds, bounds.center());
 }
 
 const std::vector<InstanceId> kIds = {3, 5, 8, 9};
 const std::vector<ObjectShape> kRoom = {
-    box({0, 0, 0}, {1.6f, 0.8f, 0.75f}),            // 3: a table
-    box({0.3f, 0.3f, 0.76f}, {0.4f, 0.4f, 0.86f}),  // 5: a mug on it
-    box({0.4f, -0.7f, 0}, {0.8f, -0.3f, 0.9f}),     // 8: a chair beside it
-    box({9, 9, 0}, {9.5f, 9.5f, 1}),                // 9: far away
+    box_shape({0, 0, 0}, {1.6f, 0.8f, 0.75f}),            // 3: a table
+    box_shape({0.3f, 0.3f, 0.76f}, {0.4f, 0.4f, 0.86f}),  // 5: a mug on it
+    box_shape({0.4f, -0.7f, 0}, {0.8f, -0.3f, 0.9f}),     // 8: a chair beside it
+    box_shape({9, 9, 0}, {9.5f, 9.5f, 1}),                // 9: far away
 };
 
 std::vector<std::string> said(const std::vector<ObjectRelation>& relations) {

@@ -12,7 +12,7 @@
 namespace ovimap {
 namespace {
 
-const ChunkGrid kGrid{0.01f};
+const ChunkGrid kMeshGrid{0.01f};
 
 std::size_t triangles_of(const std::vector<MeshChunk>& chunks) {
   std::size_t count = 0;
@@ -23,7 +23,7 @@ std::size_t triangles_of(const std::vector<MeshChunk>& chunks) {
 
 TEST(MeshChunksTest, EveryTriangleIsInOnePatchNearIt) {
   const Mesh mesh = fixture::wavy_sheet(120, 0.02f);
-  const std::vector<MeshChunk> chunks = cut_into_chunks(mesh, kGrid, 7);
+  const std::vector<MeshChunk> chunks = cut_into_chunks(mesh, kMeshGrid, 7);
   EXPECT_GT(chunks.size(), 3u);
   EXPECT_EQ(triangles_of(chunks), mesh.triangles.size());
   for (const MeshChunk& chunk : chunks) {
@@ -35,14 +35,14 @@ TEST(MeshChunksTest, EveryTriangleIsInOnePatchNearIt) {
       for (const auto& [a, b, c] : patch.mesh->triangles) {
         const Eigen::Vector3f center =
             (patch.mesh->vertices[a] + patch.mesh->vertices[b] + patch.mesh->vertices[c]) / 3.f;
-        EXPECT_EQ(kGrid.block_of(center), patch.block);
+        EXPECT_EQ(kMeshGrid.block_of(center), patch.block);
       }
     }
   }
 }
 
 TEST(MeshChunksTest, ChunksAreOrderedAndFoundByIndex) {
-  MeshStore store(kGrid);
+  MeshStore store(kMeshGrid);
   EXPECT_EQ(store.version(), 0u);
   store.replace(fixture::wavy_sheet(200, 0.02f));
   EXPECT_EQ(store.version(), 1u);
@@ -61,13 +61,13 @@ TEST(MeshChunksTest, ChunksAreOrderedAndFoundByIndex) {
 }
 
 TEST(MeshChunksTest, PatchesKnowHowWellTheirBlockIsKnown) {
-  MeshStore store(kGrid);
+  MeshStore store(kMeshGrid);
   EXPECT_TRUE(store.errors().empty());
   const Mesh mesh = fixture::wavy_sheet(20, 0.02f);
-  const BlockIndex block = kGrid.block_of(
-      (mesh.vertices[mesh.triangles[0][0]] + mesh.vertices[mesh.triangles[0][1]] +
-       mesh.vertices[mesh.triangles[0][2]]) /
-      3.f);
+  const BlockIndex block = kMeshGrid.block_of((mesh.vertices[mesh.triangles[0][0]] +
+                                               mesh.vertices[mesh.triangles[0][1]] +
+                                               mesh.vertices[mesh.triangles[0][2]]) /
+                                              3.f);
   const BlockErrors errors{{pack_index(block), 7}};
   store.replace(mesh, errors);
   EXPECT_EQ(store.errors(), errors);
@@ -77,7 +77,7 @@ TEST(MeshChunksTest, PatchesKnowHowWellTheirBlockIsKnown) {
 
 TEST(MeshChunksTest, TheCoarseLevelIsSmallAndNear) {
   const Mesh mesh = fixture::wavy_sheet(120, 0.01f);
-  for (const MeshChunk& chunk : cut_into_chunks(mesh, kGrid, 1)) {
+  for (const MeshChunk& chunk : cut_into_chunks(mesh, kMeshGrid, 1)) {
     const std::size_t before = triangles_of({chunk});
     if (before < 2000) continue;
     const MeshChunk coarse = coarser_chunk(chunk, 0.1f, 0.03f);
@@ -91,7 +91,7 @@ TEST(MeshChunksTest, TheCoarseLevelIsSmallAndNear) {
 
 TEST(MeshChunksTest, WeldingUndoesTheCut) {
   const Mesh mesh = fixture::wavy_sheet(40, 0.01f);
-  const std::vector<MeshChunk> chunks = cut_into_chunks(mesh, kGrid, 1);
+  const std::vector<MeshChunk> chunks = cut_into_chunks(mesh, kMeshGrid, 1);
   ASSERT_EQ(chunks.size(), 1u);
   std::size_t apart = 0;
   for (const SurfacePatch& patch : chunks[0].patches) apart += patch.mesh->vertices.size();
@@ -102,7 +102,7 @@ TEST(MeshChunksTest, WeldingUndoesTheCut) {
 }
 
 TEST(MeshChunksTest, AnEmptyMapHasNoChunks) {
-  MeshStore store(kGrid);
+  MeshStore store(kMeshGrid);
   store.replace({});
   EXPECT_EQ(store.version(), 1u);
   EXPECT_TRUE(store.list(1).empty());

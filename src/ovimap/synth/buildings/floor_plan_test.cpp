@@ -8,13 +8,14 @@
 #include <gtest/gtest.h>
 
 #include "ovimap/base/error.h"
+#include "ovimap/synth/camera/small_camera_fixture.h"
 #include "ovimap/synth/furniture/furniture_palette.h"
 #include "ovimap/synth/recordings/sequence.h"
 
 namespace ovimap {
 namespace {
 
-const PinholeCamera kSmall{64, 48, 48, 48, 31.5f, 23.5f};
+using fixture::kSmallCamera;
 
 PlanRoom empty_room(const std::string& name, const Eigen::Vector2f& origin) {
   PlanRoom room;
@@ -56,7 +57,7 @@ TEST(FloorPlanTest, OneSeesAndWalksThroughItsDoors) {
 TEST(FloorPlanTest, NoRayLeavesIt) {
   VideoConfig video;
   video.walk.fps = 2;
-  const SynthSequence sequence(build_plan(two_rooms()), kSmall, video);
+  const SynthSequence sequence(build_plan(two_rooms()), kSmallCamera, video);
   ASSERT_GT(sequence.size(), 20);
   std::set<std::string> seen;
   for (std::int64_t i = 0; i < sequence.size(); ++i) {

@@ -8,12 +8,13 @@
 
 #include "ovimap/base/parallel.h"
 #include "ovimap/synth/buildings/room_builder.h"
+#include "ovimap/synth/camera/small_camera_fixture.h"
 #include "ovimap/synth/recordings/sequence.h"
 
 namespace ovimap {
 namespace {
 
-const PinholeCamera kSmall{64, 48, 48, 48, 31.5f, 23.5f};
+using fixture::kSmallCamera;
 
 WalkConfig motionless() {
   WalkConfig config;
@@ -45,18 +46,18 @@ double sharpness(const RgbImage& image) {
 }
 
 TEST(ShutterPoses, AreNoneWhenStillAndAPixelApartWhenNot) {
-  EXPECT_TRUE(shutter_poses(turning(0), kSmall, 2, {}).empty());
+  EXPECT_TRUE(shutter_poses(turning(0), kSmallCamera, 2, {}).empty());
   VideoCameraConfig config;
   config.shutter_s = 0.1f;
-  const auto poses = shutter_poses(turning(0.5), kSmall, 2, config);
+  const auto poses = shutter_poses(turning(0.5), kSmallCamera, 2, config);
   EXPECT_EQ(poses.size(), 4u);  // 0.05 rad of 48 px: 2.4 px
   const Pose middle = turning(0.5).at(2);
   EXPECT_TRUE(poses[1].isApprox(turning(0.5).at(2 - 0.0125), 1e-9));
   EXPECT_FALSE(poses[0].isApprox(middle, 1e-3));
   config.max_subframes = 2;
-  EXPECT_EQ(shutter_poses(turning(0.5), kSmall, 2, config).size(), 2u);
+  EXPECT_EQ(shutter_poses(turning(0.5), kSmallCamera, 2, config).size(), 2u);
   config.shutter_s = 0;
-  EXPECT_TRUE(shutter_poses(turning(0.5), kSmall, 2, config).empty());
+  EXPECT_TRUE(shutter_poses(turning(0.5), kSmallCamera, 2, config).empty());
 }
 
 TEST(Shutter, BlurSmearsAlongTheMotionAndKeepsBrightness) {
@@ -66,16 +67,16 @@ TEST(Shutter, BlurSmearsAlongTheMotionAndKeepsBrightness) {
   VideoCameraConfig config;
   config.shutter_s = 0.15f;
   const Pose pose = walk.at(2);
-  const RenderedView sharp = renderer.render(kSmall, pose, Shutter{});
+  const RenderedView sharp = renderer.render(kSmallCamera, pose, Shutter{});
   const RenderedView blurred =
-      renderer.render(kSmall, pose, Shutter{shutter_poses(walk, kSmall, 2, config)});
-  EXPECT_EQ(sharp.color, renderer.render(kSmall, pose).color);
+      renderer.render(kSmallCamera, pose, Shutter{shutter_poses(walk, kSmallCamera, 2, config)});
+  EXPECT_EQ(sharp.color, renderer.render(kSmallCamera, pose).color);
   EXPECT_EQ(sharp.depth, blurred.depth);
   EXPECT_EQ(sharp.ids, blurred.ids);
   EXPECT_LT(sharpness(blurred.color), 0.8 * sharpness(sharp.color));
   EXPECT_NEAR(mean_of(blurred.color), mean_of(sharp.color), 3);
   // Pictures of one and the same place are that place's picture, edges apart.
-  const RenderedView still = renderer.render(kSmall, pose, Shutter{{pose, pose, pose, pose}});
+  const RenderedView still = renderer.render(kSmallCamera, pose, Shutter{{pose, pose, pose, pose}});
   double worst = 0;
   for (std::size_t i = 0; i < still.color.size(); ++i)
     worst += std::abs(still.color[i].g - sharp.color[i].g);
@@ -88,9 +89,9 @@ TEST(AutoExposureTest, AimsAtItsBrightnessAndFollowsLate) {
     const Renderer renderer(lit);
     const Walk walk = turning(0);
     Shutter shutter;
-    shutter.exposure = AutoExposure(renderer, kSmall, walk, config).at(1);
+    shutter.exposure = AutoExposure(renderer, kSmallCamera, walk, config).at(1);
     double sum = 0;
-    const RgbImage color = renderer.render(kSmall, walk.at(1), shutter).color;
+    const RgbImage color = renderer.render(kSmallCamera, walk.at(1), shutter).color;
     for (const Rgb8& pixel : color) sum += std::pow(pixel.g / 255., 2.2);
     return sum / static_cast<double>(color.size());
   };
@@ -106,7 +107,8 @@ TEST(AutoExposureTest, AimsAtItsBrightnessAndFollowsLate) {
   VideoCameraConfig slow = wide;
   slow.response_s = 5;
   const Walk walk = turning(0.6);
-  const AutoExposure quick(renderer, kSmall, walk, wide), late(renderer, kSmall, walk, slow);
+  const AutoExposure quick(renderer, kSmallCamera, walk, wide),
+      late(renderer, kSmallCamera, walk, slow);
   double quick_changes = 0, late_changes = 0;
   for (double t = 0.1; t < 5; t += 0.1) {
     quick_changes += std::abs(quick.at(t) - quick.at(t - 0.1));
@@ -120,7 +122,7 @@ TEST(Video, HasAsManyFramesAsItsSecondsHold) {
   for (const auto& [seconds, frames] : {std::pair{0.2f, 6}, {0.7f, 21}, {1.f, 30}}) {
     VideoConfig video;
     video.walk.seconds = seconds;
-    EXPECT_EQ(SynthSequence(build_room(room_spec("bare")), kSmall, video).size(), frames);
+    EXPECT_EQ(SynthSequence(build_room(room_spec("bare")), kSmallCamera, video).size(), frames);
   }
 }
 
@@ -131,14 +133,14 @@ TEST(Video, IsTheSameForAnyNumberOfThreadsAndInAnyOrder) {
   video.walk.seconds = 0.5f;
   video.walk.fps = 10;
   video.walk.max_turn_rad_s = 2;
-  const SynthSequence whole(build_room(room_spec("bare")), kSmall, video, config);
+  const SynthSequence whole(build_room(room_spec("bare")), kSmallCamera, video, config);
   ASSERT_EQ(whole.size(), 5);
   EXPECT_TRUE(whole.is_video());
   const Frame frame = *whole.read(3).frame;
   EXPECT_NEAR(frame.timestamp_s, 0.3, 1e-12);
   for (const int threads : {1, 3}) {
     const ThreadLimit limit(threads);
-    const SynthSequence again(build_room(room_spec("bare")), kSmall, video, config);
+    const SynthSequence again(build_room(room_spec("bare")), kSmallCamera, video, config);
     const Frame same = *again.read(3).frame;
     EXPECT_EQ(same.color, frame.color);
     EXPECT_EQ(same.depth, frame.depth);

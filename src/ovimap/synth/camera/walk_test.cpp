@@ -11,17 +11,18 @@
 #include "ovimap/base/error.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/synth/buildings/room_builder.h"
+#include "ovimap/synth/camera/small_camera_fixture.h"
 #include "ovimap/synth/furniture/furniture_catalog.h"
 
 namespace ovimap {
 namespace {
 
-const PinholeCamera kSmall{64, 48, 48, 48, 31.5f, 23.5f};
+using fixture::kSmallCamera;
 constexpr double kStep_s = 1. / 240;  // much shorter than a tremor
 
 Walk walk_in(const SynthRoom& room, const WalkConfig& config = {}) {
   const RayScene scene(room.objects);
-  return plan_walk(room, scene, kSmall, config);
+  return plan_walk(room, scene, kSmallCamera, config);
 }
 
 double turn_between(const Pose& a, const Pose& b) {

@@ -10,7 +10,7 @@
 namespace ovimap {
 namespace {
 
-const PinholeCamera kSmall{80, 60, 60, 60, 39.5f, 29.5f};
+const PinholeCamera kFigureCamera{80, 60, 60, 60, 39.5f, 29.5f};
 
 SynthSequenceConfig with_figure() {
   SynthSequenceConfig config;
@@ -34,8 +34,8 @@ TEST(FigureTest, WalksOnTheFloorAtItsPaceAndFacesWhereItGoes) {
 }
 
 TEST(FigureTest, IsInDepthAndIdsAloneWhereItStands) {
-  const SynthSequence still(build_room(room_spec("bare")), kSmall, 12),
-      lived(build_room(room_spec("bare")), kSmall, 12, with_figure());
+  const SynthSequence still(build_room(room_spec("bare")), kFigureCamera, 12),
+      lived(build_room(room_spec("bare")), kFigureCamera, 12, with_figure());
   const std::vector<std::uint32_t> moving = lived.moving();
   ASSERT_EQ(moving.size(), 2u);
   EXPECT_TRUE(still.moving().empty());
@@ -56,8 +56,8 @@ TEST(FigureTest, IsInDepthAndIdsAloneWhereItStands) {
 }
 
 TEST(FigureTest, TruthKnowsItAndItsSurfaceIsNoneOfTheRoom) {
-  const SynthSequence still(build_room(room_spec("bare")), kSmall, 3),
-      lived(build_room(room_spec("bare")), kSmall, 3, with_figure());
+  const SynthSequence still(build_room(room_spec("bare")), kFigureCamera, 3),
+      lived(build_room(room_spec("bare")), kFigureCamera, 3, with_figure());
   EXPECT_EQ(lived.instances().size(), still.instances().size() + 2);
   EXPECT_EQ(lived.instances()[lived.instances().size() - 2].class_name, "person");
   EXPECT_EQ(lived.truth_mesh().vertices, still.truth_mesh().vertices);

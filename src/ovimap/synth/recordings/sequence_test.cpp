@@ -10,12 +10,13 @@
 
 #include "ovimap/base/error.h"
 #include "ovimap/synth/buildings/room_builder.h"
+#include "ovimap/synth/camera/small_camera_fixture.h"
 #include "ovimap/synth/furniture/furniture_palette.h"
 
 namespace ovimap {
 namespace {
 
-const PinholeCamera kSmall{64, 48, 48, 48, 31.5f, 23.5f};
+using fixture::kSmallCamera;
 
 bool furniture_installed() {
   return std::filesystem::is_directory(default_furniture_folder());
@@ -41,7 +42,7 @@ TEST(RoomSpecTest, UnknownRoomsAndMissingFurnitureAreSaid) {
 }
 
 TEST(SynthSequenceTest, BareRoomIsWalkedSmoothly) {
-  const SynthSequence sequence(build_room(room_spec("bare")), kSmall, 40);
+  const SynthSequence sequence(build_room(room_spec("bare")), kSmallCamera, 40);
   ASSERT_EQ(sequence.size(), 40);
   const auto& poses = sequence.true_poses();
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -62,8 +63,8 @@ TEST(SynthSequenceTest, BareRoomIsWalkedSmoothly) {
 TEST(SynthSequenceTest, FramesAreTheSameInAnyOrderAndRun) {
   SynthSequenceConfig config;
   config.noise = true;
-  const SynthSequence first(build_room(room_spec("bare")), kSmall, 6, config);
-  const SynthSequence second(build_room(room_spec("bare")), kSmall, 6, config);
+  const SynthSequence first(build_room(room_spec("bare")), kSmallCamera, 6, config);
+  const SynthSequence second(build_room(room_spec("bare")), kSmallCamera, 6, config);
   const Frame late = *first.read(5).frame, early = *first.read(2).frame;
   const Frame again = *second.read(2).frame;
   EXPECT_EQ(early.color, again.color);
@@ -79,8 +80,8 @@ TEST(SynthSequenceTest, FramesAreTheSameInAnyOrderAndRun) {
 TEST(SynthSequenceTest, NoiseMovesDepthButNotItsMean) {
   SynthSequenceConfig noisy;
   noisy.noise = true;
-  const SynthSequence exact(build_room(room_spec("bare")), kSmall, 2);
-  const SynthSequence sensed(build_room(room_spec("bare")), kSmall, 2, noisy);
+  const SynthSequence exact(build_room(room_spec("bare")), kSmallCamera, 2);
+  const SynthSequence sensed(build_room(room_spec("bare")), kSmallCamera, 2, noisy);
   const DepthImage truth = exact.read(1).frame->depth, depth = sensed.read(1).frame->depth;
   double sum = 0, valid = 0;
   for (std::size_t i = 0; i < truth.size(); ++i)
@@ -94,7 +95,8 @@ TEST(SynthSequenceTest, SettingsTellSequencesApart) {
   SynthSequenceConfig noisy;
   noisy.noise = true;
   const auto settings = [](std::uint64_t seed, int frames, const SynthSequenceConfig& config) {
-    return SynthSequence(build_room(room_spec("bare", seed)), kSmall, frames, config).settings();
+    return SynthSequence(build_room(room_spec("bare", seed)), kSmallCamera, frames, config)
+        .settings();
   };
   const std::string plain = settings(1, 2, {});
   EXPECT_NE(plain.find("room: bare\nseed: 1\nframes: 2\n"), std::string::npos);
@@ -110,7 +112,7 @@ class TinyRoom : public testing::Test {
     if (!furniture_installed())
       GTEST_SKIP() << "the Debian package sweethome3d-furniture is not installed";
     static const SynthSequence* shared =
-        new SynthSequence(build_room(room_spec("tiny")), kSmall, 40);
+        new SynthSequence(build_room(room_spec("tiny")), kSmallCamera, 40);
     sequence_ = shared;
   }
   const SynthSequence* sequence_ = nullptr;
@@ -188,9 +190,10 @@ TEST_F(TinyRoom, TheCameraKeepsClearOfTallFurniture) {
 TEST_F(TinyRoom, IdsAgreeWithGeometry) {
   const Frame frame = *sequence_->read(7).frame;
   const IdImage ids = *sequence_->truth_ids(7);
-  for (int y = 0; y < kSmall.height; ++y)
-    for (int x = 0; x < kSmall.width; ++x) {
-      const Eigen::Vector3d ray((x - kSmall.cx) / kSmall.fx, (y - kSmall.cy) / kSmall.fy, 1);
+  for (int y = 0; y < kSmallCamera.height; ++y)
+    for (int x = 0; x < kSmallCamera.width; ++x) {
+      const Eigen::Vector3d ray((x - kSmallCamera.cx) / kSmallCamera.fx,
+                                (y - kSmallCamera.cy) / kSmallCamera.fy, 1);
       const Eigen::Vector3f p =
           (frame.world_from_camera * (static_cast<double>(frame.depth.at(x, y)) * ray))
               .cast<float>();

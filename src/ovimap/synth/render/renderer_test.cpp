@@ -15,7 +15,7 @@
 namespace ovimap {
 namespace {
 
-const PinholeCamera kCamera{80, 60, 60, 60, 39.5f, 29.5f};
+const PinholeCamera kViewCamera{80, 60, 60, 60, 39.5f, 29.5f};
 
 /// The bare room with a box floating in it, half a metre a side.
 SynthRoom room_with_box() {
@@ -37,12 +37,13 @@ class RendererTest : public testing::Test {
 };
 
 TEST_F(RendererTest, DepthIsExactOnEveryPlane) {
-  const RenderedView view = renderer_.render(kCamera, pose_, false);
+  const RenderedView view = renderer_.render(kViewCamera, pose_, false);
   std::array<int, 9> pixels{};
-  for (int y = 0; y < kCamera.height; ++y)
-    for (int x = 0; x < kCamera.width; ++x) {
+  for (int y = 0; y < kViewCamera.height; ++y)
+    for (int x = 0; x < kViewCamera.width; ++x) {
       const std::uint16_t id = view.ids.at(x, y);
-      const Eigen::Vector3d ray((x - kCamera.cx) / kCamera.fx, (y - kCamera.cy) / kCamera.fy, 1);
+      const Eigen::Vector3d ray((x - kViewCamera.cx) / kViewCamera.fx,
+                                (y - kViewCamera.cy) / kViewCamera.fy, 1);
       const Eigen::Vector3d p = pose_ * (static_cast<double>(view.depth.at(x, y)) * ray);
       const RoomObject& object = room_.objects.at(id - 1u);
       ++pixels.at(id);
@@ -68,7 +69,7 @@ TEST_F(RendererTest, DepthIsExactOnEveryPlane) {
 
 TEST_F(RendererTest, IncidenceIsTheAngleToTheSurface) {
   const RenderedView view =
-      renderer_.render(kCamera, looking({1.8, 0.6, 2}, 0, -1.5707963, 0), false);
+      renderer_.render(kViewCamera, looking({1.8, 0.6, 2}, 0, -1.5707963, 0), false);
   EXPECT_NEAR(view.incidence_cos.at(39, 29), 1, 1e-3);
   const double slant = std::hypot(39.5 / 60, 29.5 / 60);
   EXPECT_EQ(view.ids.at(0, 0), 1);
@@ -76,9 +77,9 @@ TEST_F(RendererTest, IncidenceIsTheAngleToTheSurface) {
 }
 
 TEST_F(RendererTest, ThreadsDoNotChangeAnything) {
-  const RenderedView many = renderer_.render(kCamera, pose_);
+  const RenderedView many = renderer_.render(kViewCamera, pose_);
   const ThreadLimit limit(1);
-  const RenderedView one = Renderer(room_).render(kCamera, pose_);
+  const RenderedView one = Renderer(room_).render(kViewCamera, pose_);
   EXPECT_EQ(many.color, one.color);
   EXPECT_EQ(many.depth, one.depth);
   EXPECT_EQ(many.ids, one.ids);
@@ -87,14 +88,15 @@ TEST_F(RendererTest, ThreadsDoNotChangeAnything) {
 TEST_F(RendererTest, TheBoxThrowsAShadow) {
   // The lamp hangs in the middle of the ceiling: the floor below the box is darker than beside it.
   const auto brightness = [&](const Eigen::Vector3d& eye) {
-    const Rgb8 color = renderer_.render(kCamera, looking(eye, 0, -1.5707963, 0)).color.at(39, 29);
+    const Rgb8 color =
+        renderer_.render(kViewCamera, looking(eye, 0, -1.5707963, 0)).color.at(39, 29);
     return color.r + color.g + color.b;
   };
   EXPECT_LT(brightness({1.75, 1.45, 0.5}), 0.8 * brightness({0.7, 0.7, 0.5}));
 }
 
 TEST_F(RendererTest, RaysThatLeaveTheRoomSeeNothing) {
-  const RenderedView view = renderer_.render(kCamera, looking({9, 9, 1}, 0.8, 0, 0));
+  const RenderedView view = renderer_.render(kViewCamera, looking({9, 9, 1}, 0.8, 0, 0));
   EXPECT_EQ(view.ids, IdImage(80, 60, 0));
   EXPECT_EQ(view.depth, DepthImage(80, 60, 0.f));
   EXPECT_EQ(view.color, RgbImage(80, 60));

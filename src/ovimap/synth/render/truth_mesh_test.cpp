@@ -13,7 +13,7 @@
 namespace ovimap {
 namespace {
 
-const PinholeCamera kCamera{80, 60, 60, 60, 39.5f, 29.5f};
+const PinholeCamera kScanCamera{80, 60, 60, 60, 39.5f, 29.5f};
 
 /// A floor of 2 x 2 m with a plate of 1 x 1 m half a metre above its middle.
 SynthRoom floor_and_plate() {
@@ -56,7 +56,7 @@ TEST(TruthMesh, OnlyWhatACameraSeesIsKept) {
   const RayScene scene(room.objects);
   // From straight above at 1.5 m, the plate hides the middle 1.5 m of the floor.
   const std::vector<Pose> above = {looking({0, 0, 1.5}, 0, -1.5707963, 0)};
-  const Mesh mesh = surface_mesh(room), seen = seen_part(mesh, scene, kCamera, above);
+  const Mesh mesh = surface_mesh(room), seen = seen_part(mesh, scene, kScanCamera, above);
   ASSERT_GT(seen.vertices.size(), 100u);
   bool floor_seen = false;
   for (std::size_t i = 0; i < seen.vertices.size(); ++i) {
@@ -69,7 +69,7 @@ TEST(TruthMesh, OnlyWhatACameraSeesIsKept) {
   EXPECT_TRUE(floor_seen);
   // A second camera from the side adds floor below the plate.
   const std::vector<Pose> both = {above[0], looking({-1.5, 0, 0.3}, 0, -0.15, 0)};
-  EXPECT_GT(seen_part(mesh, scene, kCamera, both).vertices.size(), seen.vertices.size() + 100);
+  EXPECT_GT(seen_part(mesh, scene, kScanCamera, both).vertices.size(), seen.vertices.size() + 100);
   for (const auto& triangle : seen.triangles)
     for (const std::uint32_t index : triangle) ASSERT_LT(index, seen.vertices.size());
 }
