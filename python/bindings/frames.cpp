@@ -14,7 +14,7 @@ namespace {
 using ColorView = nb::ndarray<nb::numpy, const std::uint8_t, nb::shape<-1, -1, 3>>;
 using DepthView = nb::ndarray<nb::numpy, const float, nb::ndim<2>>;
 
-std::string to_text(const PinholeCamera& camera) {
+std::string camera_text(const PinholeCamera& camera) {
   return concat("PinholeCamera(width=", camera.width, ", height=", camera.height,
                 ", fx=", camera.fx, ", fy=", camera.fy, ", cx=", camera.cx, ", cy=", camera.cy,
                 ")");
@@ -35,7 +35,7 @@ void require_valid(const PinholeCamera& camera, const char* name) {
     throw nb::value_error(concat(name,
                                  " must have a size and focal lengths above 0, all finite; "
                                  "came ",
-                                 to_text(camera))
+                                 camera_text(camera))
                               .c_str());
 }
 
@@ -94,7 +94,7 @@ void bind_camera(nb::module_& module) {
            [](const PinholeCamera& a, nb::handle b) {
              return nb::isinstance<PinholeCamera>(b) && a == nb::cast<const PinholeCamera&>(b);
            })
-      .def("__repr__", &to_text);
+      .def("__repr__", &camera_text);
 }
 
 constexpr const char* kFrameText = R"(One posed RGB-D observation.

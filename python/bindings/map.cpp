@@ -179,7 +179,7 @@ std::string counted(std::size_t count, const char* thing) {
 }
 
 /// Map('room.ovimap': 12 objects from 60 frames, embeddings of 'default-encoder'; 2 skipped: ...).
-std::string to_text(const SavedMap& map) {
+std::string map_text(const SavedMap& map) {
   const std::string& encoder = map.info().encoder.name;
   std::string text = concat("Map('", map.path().string(), "': ",
                             counted(map.index().size(), "object"), " from ",
@@ -222,7 +222,7 @@ std::shared_ptr<SavedMap> open_map(const nb::object& path, const nb::object& enc
 void bind_properties(nb::class_<SavedMap>& map) {
   map.def_prop_ro("path", [](const SavedMap& self) { return self.path().string(); })
       .def("__len__", [](const SavedMap& self) { return self.index().size(); })
-      .def("__repr__", &to_text)
+      .def("__repr__", &map_text)
       .def_prop_ro(
           "frames", [](const SavedMap& self) { return self.info().frames; }, "frames in the map")
       .def_prop_ro("skipped", &skipped_by_reason,
