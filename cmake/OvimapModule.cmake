@@ -1,11 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
 
-# ovimap_module(NAME SOURCES a.cpp... [PUBLIC targets...] [PRIVATE targets...] [TESTS a_test.cpp...])
+# ovimap_module(NAME SOURCES a.cpp... [PUBLIC targets...] [PRIVATE targets...] [TESTS a_test.cpp...] [ALONE b.cpp...])
 # One static library ovimap_NAME (alias ovimap::NAME), and one test program for its tests.
-# Sources of a module are listed without their folder.
+# Sources of a module are listed without their folder. CMAKE_UNITY_BUILD compiles several of them as one, but for those
+# that are ALONE as well: file-local names of the others must differ.
 function(ovimap_module NAME)
-  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE;TESTS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE;TESTS;ALONE" ${ARGN})
+  if(ARG_ALONE)
+    set_source_files_properties(${ARG_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  endif()
   set(target ovimap_${NAME})
   add_library(${target} STATIC ${ARG_SOURCES})
   add_library(ovimap::${NAME} ALIAS ${target})
