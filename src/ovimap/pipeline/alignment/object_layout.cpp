@@ -45,7 +45,9 @@ class Looks {
     for (const ObjectLayout* layout : {&a, &b})
       for (const Landmark& landmark : layout->landmarks) {
         if (landmark.look.size() == 0) continue;
-        if (mean_.size() == 0) mean_ = Eigen::VectorXf::Zero(landmark.look.size());
+        // Made apart and moved: GCC 12 takes a resizing here for a use of freed memory.
+        if (mean_.size() == 0)
+          mean_ = Eigen::VectorXf(Eigen::VectorXf::Zero(landmark.look.size()));
         mean_ += landmark.look, ++count_;
       }
     if (count_ > 0) mean_ /= static_cast<float>(count_);
