@@ -36,7 +36,7 @@ constexpr std::pair<int, int> kSwitches[] = {{SQLITE_DBCONFIG_DEFENSIVE, 1},
 
 constexpr std::uint64_t kRoomForStatements = std::uint64_t{1} << 20;
 
-fs::path beside(fs::path file, const char* ending) {
+fs::path with_ending(fs::path file, const char* ending) {
   return file += ending;
 }
 
@@ -89,7 +89,7 @@ std::unique_ptr<SQLite::Database> open_guarded(const std::string& name, int flag
 }
 
 std::uint64_t longest_value_in(const fs::path& file) {
-  return size_of(file) + size_of(beside(file, "-wal")) + kRoomForStatements;
+  return size_of(file) + size_of(with_ending(file, "-wal")) + kRoomForStatements;
 }
 
 void check_schema(SQLite::Database& database) {
@@ -105,11 +105,11 @@ void check_schema(SQLite::Database& database) {
 }
 
 bool has_journal(const fs::path& file) {
-  return fs::exists(beside(file, "-journal"));
+  return fs::exists(with_ending(file, "-journal"));
 }
 
 bool has_wal(const fs::path& file) {
-  return fs::exists(beside(file, "-wal"));
+  return fs::exists(with_ending(file, "-wal"));
 }
 
 void check_journal(const fs::path& file) {
@@ -118,7 +118,7 @@ void check_journal(const fs::path& file) {
   constexpr std::array<char, 8> kNamesAnother = {'\xd9', '\xd5', '\x05', '\xf9',
                                                  '\x20', '\xa1', '\x63', '\xd7'};
   std::array<char, 8> end{};
-  std::ifstream journal(beside(file, "-journal"), std::ios::binary);
+  std::ifstream journal(with_ending(file, "-journal"), std::ios::binary);
   journal.seekg(-static_cast<std::streamoff>(end.size()), std::ios::end);
   journal.read(end.data(), end.size());
   if (journal && end == kNamesAnother)

@@ -54,7 +54,7 @@ std::string scene_of(const fs::path& mesh) {
   return name.substr(0, name.find("_vh_clean_2"));
 }
 
-fs::path beside(const fs::path& mesh, const std::string& ending) {
+fs::path scene_file(const fs::path& mesh, const std::string& ending) {
   const fs::path file = mesh.parent_path() / (scene_of(mesh) + ending);
   if (!fs::exists(file))
     throw Error(concat("the truth of '", mesh.string(), "' lacks the file '", file.string(),
@@ -240,8 +240,8 @@ Truth load_scannet_truth(const fs::path& mesh, ScanNetClasses classes) {
   Truth truth;
   truth.mesh = read_ply(mesh);
   truth.mesh.labels.clear();  // NYU40 ids, which the table gives as well
-  const fs::path segment_file = beside(mesh, "_vh_clean_2.0.010000.segs.json");
-  const fs::path annotation_file = beside(mesh, ".aggregation.json");
+  const fs::path segment_file = scene_file(mesh, "_vh_clean_2.0.010000.segs.json");
+  const fs::path annotation_file = scene_file(mesh, ".aggregation.json");
   const std::vector<std::int64_t> segments = read_segments(segment_file);
   if (segments.size() != truth.mesh.vertices.size() || segments.empty())
     throw Error(concat("'", segment_file.string(), "' has ", segments.size(),

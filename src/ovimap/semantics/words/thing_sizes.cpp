@@ -32,7 +32,7 @@ float log_term(float object_m, float usual_m) {
   return -std::min(0.5f * deviations * deviations, kMostPenalty);
 }
 
-float quantile(std::vector<float>& values, float share) {
+float quantile_in_place(std::vector<float>& values, float share) {
   const auto at = values.begin() +
                   static_cast<std::ptrdiff_t>(share * static_cast<float>(values.size() - 1));
   std::nth_element(values.begin(), at, values.end());
@@ -45,7 +45,7 @@ float floor_height(std::span<const ObjectShape> shapes) {
     for (const Eigen::Vector3f& point : shape.surface) heights.push_back(point.z());
     if (shape.surface.empty()) heights.insert(heights.end(), {shape.bottom_m, shape.top_m});
   }
-  return heights.empty() ? 0.f : quantile(heights, kFloorShare);
+  return heights.empty() ? 0.f : quantile_in_place(heights, kFloorShare);
 }
 
 /// Direction of the longer side of the smallest rectangle around a footprint.
@@ -69,7 +69,7 @@ Range range_along(const ObjectShape& shape, const Eigen::Vector3f& direction) {
       for (const float height : {shape.bottom_m, shape.top_m})
         places.push_back(direction.dot(Eigen::Vector3f(corner.x(), corner.y(), height)));
   const float stray = known ? kStrayShare : 0.f;
-  return {quantile(places, stray), quantile(places, 1.f - stray)};
+  return {quantile_in_place(places, stray), quantile_in_place(places, 1.f - stray)};
 }
 
 }  // namespace
