@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 #include <random>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -30,7 +31,7 @@ Embeddings random_rows(Eigen::Index count, Eigen::Index dimension, unsigned seed
 TEST(SearchIndex, ScalesRowsAndGivesCosines) {
   Embeddings rows(3, 2);
   rows << 3, 4, 0, 0, 0, -2;
-  const SearchIndex index(numbered_objects(3), rows);
+  const SearchIndex index(numbered_objects(3), std::move(rows));
   EXPECT_EQ(index.dimension(), 2);
   EXPECT_EQ(index.embedded(), 2u);
   EXPECT_FALSE(index.has_embedding(1));
