@@ -52,7 +52,7 @@ float mean_mask_probability(const Query& query, const LogitGrid& grid, float thr
     for (int x = 0; x < grid.image_width_px; ++x) {
       const float logit = row.at(x);
       if (logit <= threshold) continue;
-      sum += 1.f / (1.f + std::exp(-logit));
+      sum += logistic(logit);
       ++count;
     }
   }

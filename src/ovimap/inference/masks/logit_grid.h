@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <span>
 
 #include <Eigen/Core>
@@ -9,6 +10,11 @@
 #include "ovimap/inference/models/image_tensor.h"
 
 namespace ovimap {
+
+/// The probability that a network's logit says.
+inline float logistic(float logit) {
+  return 1.f / (1.f + std::exp(-logit));
+}
 
 /// A network's square grid of mask logits over one image: grid pixel (gx, gy) has its centre at
 /// image pixel (gx + 0.5) / scale - 0.5.

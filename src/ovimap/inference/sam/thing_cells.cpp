@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "ovimap/geometry/box_overlap.h"
+#include "ovimap/inference/masks/logit_grid.h"
 
 namespace ovimap {
 
@@ -15,8 +16,6 @@ constexpr float kSameBoxIou = 0.6f;  // the usual threshold of suppressing lesse
 constexpr float kMostLogCells = 6;   // e^6 cells are more than any image has
 
 enum Map { kDepth, kLeft, kUpper, kRight, kLower, kFilled };
-
-float logistic(float logit) { return 1 / (1 + std::exp(-logit)); }
 
 bool is_peak(const ThingCells& cells, int x, int y) {
   const float here = cells.depth(x, y);

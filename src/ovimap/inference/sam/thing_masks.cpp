@@ -3,7 +3,7 @@
 #include "ovimap/inference/sam/thing_masks.h"
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
 #include "ovimap/base/error.h"
 
@@ -58,8 +58,7 @@ MaskProposals ThingMasks::mask_at(const Eigen::Vector2i& cell, const LogitGrid& 
           sums[y * columns + x] + of_row + u * (place(kX) + u * place(kXX));
     }
   }
-  const float said = kernel(count + FinderMaps::kPlaceTerms, cell);
-  found.predicted_iou.push_back(1 / (1 + std::exp(-said)));
+  found.predicted_iou.push_back(logistic(kernel(count + FinderMaps::kPlaceTerms, cell)));
   return found;
 }
 
