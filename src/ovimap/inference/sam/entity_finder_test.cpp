@@ -13,6 +13,18 @@
 namespace ovimap {
 namespace {
 
+/// The model folder of a finder alone. outputs: as model.yaml lists them.
+void write_model(const ScratchFolder& scratch, const std::string& network,
+                 const std::string& outputs) {
+  scratch.write("finder.onnx", network);
+  scratch.write("model.yaml",
+                concat("kind: sam\nname: n\nlicense: l\nsource: s\n"
+                       "input: {size: 16, resize: long_side, mean: [0, 0, 0], std: [1, 1, 1]}\n"
+                       "networks:\n  finder: {file: finder.onnx, inputs: {embedding: embedding}, "
+                       "outputs: {", outputs, "}}\nsha256:\n  finder.onnx: ",
+                       sha256_of_file(scratch.path() / "finder.onnx"), "\n"));
+}
+
 /// A model whose finder gives its embedding back.
 class Mirror {
  public:
@@ -21,13 +33,7 @@ class Mirror {
     graph.input("embedding", OnnxGraph::kFloat, {1, maps, kAnySize, kAnySize})
         .node("Identity", {"embedding"}, "things")
         .output("things", {1, maps, kAnySize, kAnySize});
-    scratch_.write("finder.onnx", graph.file());
-    scratch_.write("model.yaml",
-                   concat("kind: sam\nname: n\nlicense: l\nsource: s\n"
-                          "input: {size: 16, resize: long_side, mean: [0, 0, 0], std: [1, 1, 1]}\n"
-                          "networks:\n  finder: {file: finder.onnx, inputs: {embedding: embedding}, "
-                          "outputs: {things: things}}\nsha256:\n  finder.onnx: ",
-                          sha256_of_file(scratch_.path() / "finder.onnx"), "\n"));
+    write_model(scratch_, graph.file(), "things: things");
   }
   EntityFinder finder() const { return {read_model_folder(scratch_.path()), {}}; }
 
@@ -62,14 +68,7 @@ TEST(EntityFinder, RefusesKernelsThatDoNotFitTheBasis) {
         .output("things", {1, 6, kAnySize, kAnySize})
         .output("kernels", {1, kernels, kAnySize, kAnySize})
         .output("basis", {1, 6, kAnySize, kAnySize});
-    scratch.write("finder.onnx", graph.file());
-    scratch.write("model.yaml",
-                  concat("kind: sam\nname: n\nlicense: l\nsource: s\n"
-                         "input: {size: 16, resize: long_side, mean: [0, 0, 0], std: [1, 1, 1]}\n"
-                         "networks:\n  finder: {file: finder.onnx, inputs: {embedding: embedding}, "
-                         "outputs: {things: things, kernels: kernels, basis: basis}}\n"
-                         "sha256:\n  finder.onnx: ",
-                         sha256_of_file(scratch.path() / "finder.onnx"), "\n"));
+    write_model(scratch, graph.file(), "things: things, kernels: kernels, basis: basis");
     return EntityFinder(read_model_folder(scratch.path()), {});
   };
   EXPECT_THROW(model_with(6), Error);  // a basis of 6 images wants 12

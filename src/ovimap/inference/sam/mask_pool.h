@@ -42,8 +42,8 @@ class MaskPool {
   bool offer(const MaskProposals& proposals, const MaskPrompt* region = nullptr,
              bool boxed = false);
 
-  /// Takes the one mask that a finder made of a `thing` by itself, if it is sure enough of it. Returns
-  /// whether it is.
+  /// Takes the one mask that a finder made of a `thing` by itself, if it is sure enough of it.
+  /// Returns whether it is.
   bool offer_unasked(const MaskProposals& proposal, const MaskPrompt& thing);
 
   const std::vector<AcceptedMask>& masks() const { return masks_; }

@@ -12,7 +12,8 @@ void list_fields(FinderConfig& config, ConfigFields& fields) {
   fields.add("min_depth", config.min_depth, 0.f, 1.f,
              "how sure the finder is of a thing's middle at least");
   fields.add("min_mask_iou", config.min_mask_iou, 0.f, 2.f,
-             "how good the finder believes a mask of its own to be that is taken without asking; 2: none");
+             "how good the finder believes a mask of its own to be that is taken without asking; "
+             "2: none");
 }
 
 void list_fields(SamConfig& config, ConfigFields& fields) {

@@ -15,7 +15,7 @@ enum class Prompting {
 struct FinderConfig {
   int max_prompts = 30;     ///< a frame; 0: no finder is asked
   float min_depth = 0.3f;   ///< of a thing's middle, from 0 at a border to 1; lower peaks are none
-  float min_mask_iou = 0.75f;  ///< as the finder rates its own mask; of a lesser one the network is asked
+  float min_mask_iou = 0.75f;  ///< as a finder rates its own mask; of a lesser one SAM is asked
 };
 
 /// Settings of prompting a SAM-type network (method section 2).

@@ -20,23 +20,19 @@ std::optional<Entities> SamMaskSource::entities(const Frame& frame,
   const ImageFeatures features = network_.encode(frame.color);
   const LogitGrid grid = logit_grid(features.frame, network_.input_size_px(), network_.grid_size(),
                                     frame.color.width(), frame.color.height());
-  std::vector<Thing> things;
+  FinderMaps maps;
   std::optional<ThingCells> cells;
-  ThingMasks masks({}, grid.size);
   if (finder_) {
-    FinderMaps maps = finder_->look(network_.embedding(features), features.frame);
+    maps = finder_->look(network_.embedding(features), features.frame);
     cells.emplace(maps, frame.color.width(), frame.color.height());
-    things = things_in(*cells, config_.finder);
-    masks = ThingMasks(std::move(maps), grid.size);
   }
-  MaskPool pool(config_, grid, std::move(cells));
-  if (config_.prompting == Prompting::kGrid) {
+  const ThingMasks masks(std::move(maps), grid.size);
+  MaskPool pool(config_, grid, cells);
+  if (config_.prompting == Prompting::kGrid)
     ask_on_grid(features, pool);
-    return pool.entities();
-  }
-  std::vector<MaskPrompt> open = things_to_ask(things, masks, pool);
-  const auto spared = static_cast<int>(things.size() - open.size());
-  ask_where_expected(features, std::move(open), spared, prompts, pool);
+  else
+    ask_where_expected(features, cells ? things_in(*cells, config_.finder) : std::vector<Thing>(),
+                       masks, prompts, pool);
   return pool.entities();
 }
 
@@ -44,24 +40,25 @@ std::vector<MaskPrompt> SamMaskSource::things_to_ask(const std::vector<Thing>& t
                                                      const ThingMasks& masks,
                                                      MaskPool& pool) const {
   std::vector<MaskPrompt> open;
-  for (const Thing& thing : things) {
+  for (const Thing& thing : things)
     if (masks.empty() ||
         !pool.offer_unasked(masks.mask_at(thing.cell, pool.grid()), thing.prompt))
       open.push_back(thing.prompt);
-  }
   return open;
 }
 
 void SamMaskSource::ask_where_expected(const ImageFeatures& features,
-                                       std::vector<MaskPrompt> things, int spared,
+                                       const std::vector<Thing>& things, const ThingMasks& masks,
                                        std::span<const MaskPrompt> prompts, MaskPool& pool) const {
+  std::vector<MaskPrompt> open = things_to_ask(things, masks, pool);
+  const auto spared = static_cast<int>(things.size() - open.size());
   // Objects of a map have as many prompts of their own: new ones are to be found beside them.
   const auto objects = static_cast<int>(std::count_if(
       prompts.begin(), prompts.end(), [](const MaskPrompt& prompt) { return prompt.known; }));
   const int allowed =
       config_.max_decoder_prompts - spared + std::min(objects, config_.max_decoder_prompts);
-  things.insert(things.end(), prompts.begin(), prompts.end());
-  ask_where_unexplained(features, things, allowed, pool);
+  open.insert(open.end(), prompts.begin(), prompts.end());
+  ask_where_unexplained(features, open, allowed, pool);
 }
 
 void SamMaskSource::ask_where_unexplained(const ImageFeatures& features,

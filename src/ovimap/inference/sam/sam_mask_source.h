@@ -15,8 +15,8 @@ namespace ovimap {
 
 /// Entities from a promptable network (method section 2), prompted adaptively: at geometric regions
 /// first, then wherever no accepted mask covers the image yet; before both at the things that the
-/// model's own finder sees, if it has one, and whose masks it is not sure enough of. Or on a dense grid, which takes
-/// several times as long and is what the former is measured against.
+/// model's own finder sees, if it has one, and whose masks it is not sure enough of. Or on a dense
+/// grid, which takes several times as long and is what the former is measured against.
 class SamMaskSource : public MaskSource {
  public:
   SamMaskSource(const ModelFolder& model, const SamConfig& config, const RuntimeConfig& runtime);
@@ -26,8 +26,9 @@ class SamMaskSource : public MaskSource {
                                    std::span<const MaskPrompt> prompts) override;
 
  private:
-  void ask_where_expected(const ImageFeatures& features, std::vector<MaskPrompt> things,
-                          int spared, std::span<const MaskPrompt> prompts, MaskPool& pool) const;
+  void ask_where_expected(const ImageFeatures& features, const std::vector<Thing>& things,
+                          const ThingMasks& masks, std::span<const MaskPrompt> prompts,
+                          MaskPool& pool) const;
   void ask_where_unexplained(const ImageFeatures& features, std::span<const MaskPrompt> regions,
                              int prompts_allowed, MaskPool& pool) const;
   /// Offers the finder's own masks to the pool; the things of which it is not sure are returned.
