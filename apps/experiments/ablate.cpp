@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cctype>
 #include <cstdio>
 #include <ctime>
 #include <set>
 
 #include "ablation.h"
 #include "ablation_schedule.h"
+#include "apps/command/file_slug.h"
 #include "apps/command/kept_settings.h"
 #include "apps/mapping/mapping_run.h"
 #include "ovimap/base/parallel.h"
@@ -33,17 +33,6 @@ struct AblateOptions {
   std::string classes = "auto";
   bool json = false;
 };
-
-/// A part of a file name: letters, digits and single dashes.
-std::string file_slug(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0;
-    if (plain || (!result.empty() && result.back() != '-')) result += plain ? c : '-';
-  }
-  while (!result.empty() && result.back() == '-') result.pop_back();
-  return result;
-}
 
 std::string scene_name(const std::string& scene) {
   const fs::path path = fs::absolute(scene).lexically_normal();

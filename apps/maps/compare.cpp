@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "apps/command/command.h"
+#include "apps/command/box_json.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/frames/recording/number_text.h"
 #include "ovimap/image/codec.h"
@@ -111,14 +112,6 @@ void print_changes(const std::vector<ObjectChange>& changes, const MapDocument& 
   std::printf("%zu objects are where they were; of %zu nothing can be said\n", same, unseen);
 }
 
-nlohmann::json box_json(const Eigen::AlignedBox3f& box) {
-  if (box.isEmpty()) return nullptr;
-  const auto corner = [](const Eigen::Vector3f& at) {
-    return nlohmann::json{at.x(), at.y(), at.z()};
-  };
-  return {{"min", corner(box.min())}, {"max", corner(box.max())}};
-}
-
 nlohmann::json change_json(const HistoryChange& change, const MapHistory& history,
                            const HistoryDates& dates) {
   const ObjectEvent &first = history.events[change.first], &last = history.events[change.last];
@@ -130,8 +123,8 @@ nlohmann::json change_json(const HistoryChange& change, const MapHistory& histor
                                         : ChangeKind::kMoved)},
           {"before", came ? nlohmann::json() : nlohmann::json(change.instance)},
           {"after", went ? nlohmann::json() : nlohmann::json(change.instance)},
-          {"box_before", box_json(first.before)},
-          {"box_after", box_json(last.after)},
+          {"box_before", box_json<nlohmann::json>(first.before)},
+          {"box_after", box_json<nlohmann::json>(last.after)},
           {"visit", last.visit},
           {"time_s", date ? nlohmann::json(*date) : nlohmann::json()},
           {"evidence", change_text(change, history, dates)}};

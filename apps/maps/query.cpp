@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
-#include <cctype>
 #include <cstdio>
 
 #include "apps/command/command.h"
+#include "apps/command/file_slug.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/image/codec.h"
 #include "ovimap/instance/instance_mesh.h"
@@ -116,25 +116,15 @@ void print_answer(const Answered& answered, const Approaches& approaches) {
   }
 }
 
-/// The query as part of a file name: "mug on the table" becomes "mug-on-the-table".
-std::string query_slug(const std::string& query) {
-  constexpr std::size_t kLongest = 40;
-  std::string result;
-  for (const char letter : query) {
-    const bool plain = std::isalnum(static_cast<unsigned char>(letter)) != 0;
-    if (plain || (!result.empty() && result.back() != '-')) result += plain ? letter : '-';
-    if (result.size() == kLongest) break;
-  }
-  while (!result.empty() && result.back() == '-') result.pop_back();
-  return result.empty() ? "query" : result;
-}
-
 /// OUT.png for one query; OUT-1-mug.png, OUT-2-chair.png ... for several.
 std::filesystem::path heat_map_path(const std::filesystem::path& out, std::size_t number,
                                     std::size_t count, const std::string& query) {
   if (count == 1) return out;
+  constexpr std::size_t kLongest = 40;
+  const std::string slug = file_slug(query, kLongest);
   return out.parent_path() /
-         concat(out.stem().string(), "-", number, "-", query_slug(query), out.extension().string());
+         concat(out.stem().string(), "-", number, "-", slug.empty() ? "query" : slug,
+                out.extension().string());
 }
 
 void write_heat_maps(const QueryOptions& options, const Eigen::Vector3f& up,

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "apps/command/box_json.h"
 #include "ovimap/image/codec.h"
 #include "ovimap/io/truth/replica_pack.h"
 #include "ovimap/synth/buildings/benchmark_scenes.h"
@@ -63,14 +64,6 @@ WrittenRoom write_sequence(
   return {(out / scene).string(), sequence.size(), pack.instances.size(), sequence.moving()};
 }
 
-nlohmann::ordered_json truth_box_json(const Eigen::AlignedBox3f& box) {
-  if (box.isEmpty()) return nullptr;
-  const auto point = [](const Eigen::Vector3f& p) {
-    return nlohmann::ordered_json{p.x(), p.y(), p.z()};
-  };
-  return {{"min", point(box.min())}, {"max", point(box.max())}};
-}
-
 nlohmann::ordered_json change_json(std::size_t visit, const RoomChange& change,
                                    const RoomObject& object) {
   constexpr const char* kKinds[] = {"moved", "removed", "added"};
@@ -79,8 +72,8 @@ nlohmann::ordered_json change_json(std::size_t visit, const RoomChange& change,
                                  {"name", object.name},
                                  {"class", object.class_name},
                                  {"kind", kKinds[static_cast<int>(change.kind)]},
-                                 {"from", truth_box_json(change.from)},
-                                 {"to", truth_box_json(change.to)}};
+                                 {"from", box_json<nlohmann::ordered_json>(change.from)},
+                                 {"to", box_json<nlohmann::ordered_json>(change.to)}};
   if (change.kind != RoomChangeKind::kMoved) return json;
   for (int row = 0; row < 4; ++row)
     for (int column = 0; column < 4; ++column)
