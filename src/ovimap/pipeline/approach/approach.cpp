@@ -155,7 +155,7 @@ std::vector<ApproachPose> chosen_poses(const StandingSpace& space,
   return poses;
 }
 
-std::string whole_percent(float share) {
+std::string percent(float share) {
   return concat(std::lround(100.f * share), " %");
 }
 
@@ -208,7 +208,7 @@ Approach find_approach(const StandingSpace& space, InstanceId object, const Appr
   std::erase_if(candidates, [&](const Candidate& c) { return c.seen < config.least_seen; });
   if (candidates.empty())
     return none(most == 0.f ? concat("something hides #", object, " from every free place near it")
-                            : concat("no more than ", whole_percent(most), " of #", object,
+                            : concat("no more than ", percent(most), " of #", object,
                                      " can be seen from one free place near it"));
   const GroundWays ways(cells, *start);
   std::erase_if(candidates, [&](const Candidate& c) { return !ways.reaches(c.cell); });

@@ -13,6 +13,7 @@
 #include "ovimap/map/rays/surface_lookup.h"
 #include "ovimap/pipeline/alignment/object_layout.h"
 #include "ovimap/pipeline/revise/object_overlap.h"
+#include "ovimap/pipeline/revise/percent_text.h"
 
 namespace ovimap {
 
@@ -73,12 +74,6 @@ std::vector<Eigen::Vector3f> surface_of(const MapRecord& map, InstanceId id) {
 const InstanceSummary& instance_of(const MapRecord& map, InstanceId id) {
   return *std::find_if(map.instances.begin(), map.instances.end(),
                        [&](const InstanceSummary& instance) { return instance.id == id; });
-}
-
-std::string percent(float share) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%.0f %%", 100. * double{share});
-  return text;
 }
 
 std::string metres(float value) {
@@ -251,7 +246,7 @@ class MapComparison {
   }
 
   static void explain(ObjectChange& change) {
-    const std::string through = percent(change.seen_through), there = percent(change.surface_there);
+    const std::string through = percent_text(change.seen_through), there = percent_text(change.surface_there);
     const std::string look = change.cosine ? concat(", looks alike with a cosine of ",
                                                     metres(*change.cosine).substr(0, 4))
                                            : "";
@@ -259,7 +254,7 @@ class MapComparison {
       case ChangeKind::kSame:
         change.evidence =
             change.before != 0 && change.after != 0
-                ? concat("overlap ", percent(change.overlap), look)
+                ? concat("overlap ", percent_text(change.overlap), look)
                 : concat("surface at ", there, " of its place, as part of other things");
         return;
       case ChangeKind::kMoved:

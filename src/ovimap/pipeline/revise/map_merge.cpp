@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 
 #include "ovimap/base/config.h"
 #include "ovimap/io/corrections/map_corrections.h"
@@ -12,6 +11,7 @@
 #include "ovimap/map/fusion/map_fusion.h"
 #include "ovimap/pipeline/alignment/object_layout.h"
 #include "ovimap/pipeline/revise/object_overlap.h"
+#include "ovimap/pipeline/revise/percent_text.h"
 
 namespace ovimap {
 
@@ -178,7 +178,7 @@ class Matchmaker {
       const auto taken = partner.count(pair.a) ? pair.a : pair.b;
       if (partner.contains(taken)) {
         conflicts.push_back({pair.a, pair.b,
-                             concat("they overlap by ", percent(pair.overlap), ", but object ",
+                             concat("they overlap by ", percent_text(pair.overlap), ", but object ",
                                     taken, " is one with ", partner.at(taken), " already")});
         continue;
       }
@@ -210,10 +210,10 @@ class Matchmaker {
 
   std::string refusal(const MergedPair& pair) const {
     if (a_.locked.contains(pair.a) || b_.locked.contains(pair.b - offset_))
-      return concat("they overlap by ", percent(pair.overlap), ", but one is locked");
+      return concat("they overlap by ", percent_text(pair.overlap), ", but one is locked");
     if (pair.cosine && *pair.cosine < config_.unlike)
-      return concat("they overlap by ", percent(pair.overlap), ", but look different (cosine ",
-                    percent(*pair.cosine), ")");
+      return concat("they overlap by ", percent_text(pair.overlap), ", but look different (cosine ",
+                    percent_text(*pair.cosine), ")");
     return {};
   }
 
@@ -221,12 +221,6 @@ class Matchmaker {
     const auto mine = a_.names.find(pair.a), theirs = b_.names.find(pair.b - offset_);
     return {mine == a_.names.end() ? "" : mine->second,
             theirs == b_.names.end() ? "" : theirs->second};
-  }
-
-  static std::string percent(float share) {
-    char text[16];
-    std::snprintf(text, sizeof text, "%.0f %%", 100. * double{share});
-    return text;
   }
 
   const MapRecord &a_, &b_;
