@@ -14,7 +14,6 @@ namespace ovimap {
 
 namespace {
 
-
 /// Least 1 - cos(angle) that counts as a fold, by depth: a table, as it is asked for every pixel.
 class FoldThreshold {
  public:

@@ -17,7 +17,6 @@ namespace ovimap {
 
 namespace {
 
-
 /// The rows that say whether regions grow from the pixels of one row.
 struct InteriorRows {
   const std::uint8_t *folds_above, *folds, *folds_below;

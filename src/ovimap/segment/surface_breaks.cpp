@@ -14,7 +14,6 @@ namespace ovimap {
 
 namespace {
 
-
 /// Sets `bit` where the surface breaks between q1[x] and q2[x], neighbours in a line q0 q1 q2 q3 of
 /// inverse depths. On a plane the second differences of inverse depth vanish, so the step counts
 /// only when it agrees with the slope on neither side.
