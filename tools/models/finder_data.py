@@ -26,19 +26,17 @@ SCENES = [
     (["courtyard"], [*range(101, 109), *range(111, 127)], [*WALK, "12"]),
     (PLANS, [*range(101, 109), *range(111, 127)], [*WALK, "12"]),
 ]
-KEPT_BACK = [109, 110]
 
 
-def scene_list(kept_back=False):
+def scene_list():
     """(kind, seed, options), seed by seed, so that a rendering that is broken off holds every kind."""
-    all_scenes = [(kind, seed, options) for kinds, seeds, options in SCENES
-                  for kind in kinds for seed in (KEPT_BACK if kept_back else seeds)]  # fmt: skip
-    return sorted(all_scenes, key=lambda scene: scene[1])
+    every = [(kind, seed, options) for kinds, seeds, options in SCENES for kind in kinds for seed in seeds]
+    return sorted(every, key=lambda scene: scene[1])
 
 
-def render(program: pathlib.Path, folder: pathlib.Path, scenes):
-    """The recordings of `scenes`, unless they are there."""
-    for kind, seed, options in scenes:
+def render(program: pathlib.Path, folder: pathlib.Path):
+    """The recordings of SCENES, unless they are there."""
+    for kind, seed, options in scene_list():
         scene = folder / f"{kind}-{seed}"
         if not (scene / "done").exists():
             which = "--plan" if kind in PLANS else "--room"
@@ -46,10 +44,10 @@ def render(program: pathlib.Path, folder: pathlib.Path, scenes):
             (scene / "done").touch()
 
 
-def pack(folder: pathlib.Path, scenes, file: pathlib.Path):
+def pack(folder: pathlib.Path, file: pathlib.Path):
     """One file of all frames of the recordings in `folder` that are there: JPEG and PNG bytes in turn."""
     frames = []
-    for kind, seed, _ in scenes:
+    for kind, seed, _ in scene_list():
         for frame in sorted((folder / f"{kind}-{seed}").glob("*/results/frame*.jpg")):
             rgb = cv2.imread(str(frame))
             ids = cv2.imread(str(frame.with_name(frame.stem.replace("frame", "instance") + ".png")), cv2.IMREAD_UNCHANGED)
@@ -216,10 +214,7 @@ def sample(frames, size, rng):
     if rng.random() < 0.35:
         rgb = printed(rgb, ids, other_rgb, rng)
     rgb = relit(rgb, rng)
-    return seen(rgb, ids, view(rng, ids.shape[1], ids.shape[0], size), size, rng)
-
-
-def seen(rgb, ids, source_from_network, size, rng):
+    source_from_network = view(rng, ids.shape[1], ids.shape[0], size)
     flat = ids.astype(np.float32)  # OpenCV warps no 32-bit integers
     half, grid = (warped(flat, source_from_network, size, px, cv2.INTER_NEAREST).astype(np.int32) for px in (2, GRID_PX))
     things, depth = things_in(half)
@@ -228,23 +223,10 @@ def seen(rgb, ids, source_from_network, size, rng):
     return image, wanted, weight, asked_cells(things, wanted[0], number, rng), grid
 
 
-def whole(frame):
-    """A frame as it is, as `sample` gives it."""
-    rgb, ids = decoded(frame)
-    scale = max(ids.shape) / INPUT_PX
-    size = round(ids.shape[1] / scale), round(ids.shape[0] / scale)
-    return seen(rgb, ids, np.array([[scale, 0, 0], [0, scale, 0]], np.float64), size, np.random.default_rng(0))
-
-
 def batch(frames, count, rng):
     """`count` samples of one size, stacked; the asked cells with the number of their sample in front."""
     size = ASPECTS[rng.integers(len(ASPECTS))]
-    samples = [sample(frames, size, rng) for _ in range(count)]
-    return stacked(samples)
-
-
-def stacked(samples):
-    images, wanted, weights, asked, grids = zip(*samples)
+    images, wanted, weights, asked, grids = zip(*(sample(frames, size, rng) for _ in range(count)))
     numbered = [np.column_stack([np.full(len(cells), place), cells]) for place, cells in enumerate(asked)]
     return (np.stack(images), np.stack(wanted).astype(np.float16), np.stack(weights).astype(np.float16), np.concatenate(numbered),
             np.stack(grids).astype(np.int16))  # fmt: skip

@@ -8,9 +8,10 @@ import onnx2torch
 import torch
 from onnx import numpy_helper
 
+from finder_data import EMBEDDED_PX, INPUT_PX
+
 MEAN = torch.tensor([123.675, 116.28, 103.53]).view(1, 3, 1, 1)
 STD = torch.tensor([58.395, 57.12, 57.375]).view(1, 3, 1, 1)
-INPUT_PX, EMBEDDED_PX = 1024, 16
 
 
 class SamEncoder:

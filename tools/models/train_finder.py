@@ -2,13 +2,13 @@
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
 """Trains the entity finder of the default mask model and writes finder.onnx: from MobileSAM's embedding of an image, where its things
-are and which pixels are theirs (src/ovimap/inference/sam/entity_finder.h). First `render` and `pack` what it learns from, which no
+are and which pixels are theirs (src/ovimap/inference/sam/entity_finder.h). First `render` what it learns from, which no
 benchmark's unseen half shares anything with; a rendering that was broken off goes on where it stopped. `train` takes minutes on a
 GPU, a night on two cores.
 
     pip install -r tools/models/requirements-finder.txt  # in an environment of its own
     python3 tools/models/train_finder.py render build/release/bin/ovimap FRAMES_FOLDER
-    python3 tools/models/train_finder.py train FRAMES_FOLDER/*.npz --encoder .models/mobilesam/encoder.onnx
+    python3 tools/models/train_finder.py train FRAMES_FOLDER/frames.npz --encoder .models/mobilesam/encoder.onnx
 
 Then the digest that it prints goes into mobilesam.yaml.
 """
@@ -130,9 +130,8 @@ def train(trainings, frames, encoder, device, steps, minutes, workers):
         progress = max(step / steps, (time.monotonic() - start) / (60 * minutes))
         if progress > 1:
             break
-        images, *rest = next(loader)
-        batch = (encoder(images), *(part.to(device) for part in rest))
-        batch = (*batch[:3], batch[3], batch[4].long())
+        images, wanted, weights, asked, grids = next(loader)
+        batch = (encoder(images), *(part.to(device) for part in (wanted, weights, asked, grids.long())))
         memory.append(batch)
         if len(memory) > MEMORY:
             memory.pop(rng.integers(MEMORY))
@@ -165,9 +164,8 @@ def main():
     command.add_argument("--out", type=pathlib.Path, default=HERE / "finder.onnx")
     arguments = parser.parse_args()
     if arguments.command == "render":
-        for name, scenes in ("frames", finder_data.scene_list()), ("kept-back", finder_data.scene_list(kept_back=True)):
-            finder_data.render(arguments.program.resolve(), arguments.folder / "scenes", scenes)
-            finder_data.pack(arguments.folder / "scenes", scenes, arguments.folder / f"{name}.npz")
+        finder_data.render(arguments.program.resolve(), arguments.folder / "scenes")
+        finder_data.pack(arguments.folder / "scenes", arguments.folder / "frames.npz")
         return
     torch.manual_seed(0)
     frames = finder_data.unpack(arguments.frames)
