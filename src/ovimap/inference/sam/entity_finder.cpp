@@ -5,13 +5,16 @@
 #include <algorithm>
 
 #include "ovimap/base/error.h"
+#include "ovimap/inference/sam/depth_view.h"
 
 namespace ovimap {
 
 namespace {
 
 constexpr const char* kFinder = "finder";
+constexpr const char* kGeometry = "geometry";
 constexpr const char* kBasis = "basis";
+constexpr int kGridPxPerEmbedded = 4;  ///< of the grid on which depth is shown
 
 }  // namespace
 
@@ -22,12 +25,18 @@ EntityFinder::EntityFinder(const ModelFolder& model, const RuntimeConfig& runtim
       input_size_px_(model.input.size_px),
       session_(file_, runtime) {
   session_.input(input_);
-  const auto expect = [this](const std::string& output, std::int64_t channels) {
-    if (channels_of(output) != channels)
-      throw Error(concat("model file ", file_, ": tensor '", output, "' has shape ",
-                         to_text(session_.output(output).shape), ", expected [1,", channels,
-                         ",rows,columns]"));
+  const auto require = [this](const TensorInfo& tensor, std::int64_t channels) {
+    if (tensor.shape.size() != 4 || tensor.shape[1] != channels)
+      throw Error(concat("model file ", file_, ": tensor '", tensor.name, "' has shape ",
+                         to_text(tensor.shape), ", expected [1,", channels, ",rows,columns]"));
   };
+  const auto expect = [&](const std::string& output, std::int64_t channels) {
+    require(session_.output(output), channels);
+  };
+  if (model.network(kFinder).inputs.contains(kGeometry)) {
+    depth_input_ = model.input_of(kFinder, kGeometry);
+    require(session_.input(depth_input_), kDepthMaps);
+  }
   expect(outputs_.front(), FinderMaps::kMaps);
   if (!model.network(kFinder).outputs.contains(kBasis)) return;
   const std::string kernels = model.output_of(kFinder, "kernels"),
@@ -59,7 +68,8 @@ FloatTensor filled_part(const FloatTensor& whole, std::int64_t rows, std::int64_
 
 }  // namespace
 
-FinderMaps EntityFinder::look(const FloatTensor& embedding, const InputFrame& frame) const {
+FinderMaps EntityFinder::look(const FloatTensor& embedding, const InputFrame& frame,
+                              const Frame& source) const {
   if (embedding.shape.size() != 4)
     throw Error(concat("model file ", file_, ": an embedding of shape ", to_text(embedding.shape),
                        ", expected [1,channels,rows,columns]"));
@@ -68,8 +78,15 @@ FinderMaps EntityFinder::look(const FloatTensor& embedding, const InputFrame& fr
   };
   const FloatTensor seen = filled_part(embedding, cells(frame.height_px, embedding.shape[2]),
                                        cells(frame.width_px, embedding.shape[3]));
-  const std::vector<TensorInput> inputs = {
-      {input_, seen.shape, std::span<const float>(seen.values)}};
+  std::vector<TensorInput> inputs = {{input_, seen.shape, std::span<const float>(seen.values)}};
+  FloatTensor depth;
+  if (!depth_input_.empty()) {
+    const auto grid_px = static_cast<float>(kGridPxPerEmbedded * embedding.shape[3]) /
+                         static_cast<float>(input_size_px_);
+    depth = depth_view(source, frame.scale * grid_px, kGridPxPerEmbedded * static_cast<int>(seen.shape[2]),
+                       kGridPxPerEmbedded * static_cast<int>(seen.shape[3]));
+    inputs.push_back({depth_input_, depth.shape, std::span<const float>(depth.values)});
+  }
   std::vector<FloatTensor> found = session_.run(inputs, outputs_);
   FloatTensor& maps = found.front();
   const auto expect = [this](const FloatTensor& tensor, const TensorShape& shape) {

@@ -45,7 +45,7 @@ TEST(EntityFinder, LooksAtWhatTheImageFills) {
   FloatTensor embedding{{1, 6, 4, 4}, {}};
   for (int i = 0; i < 6 * 16; ++i) embedding.values.push_back(static_cast<float>(i));
   // An image of 32 x 18: the input's 16 x 9 pixels, which is the embedding's 4 x 3.
-  const FinderMaps maps = Mirror(6).finder().look(embedding, {16, 9, {0.5f, 0.5f}});
+  const FinderMaps maps = Mirror(6).finder().look(embedding, {16, 9, {0.5f, 0.5f}}, {});
   EXPECT_EQ(maps.columns, 4);
   EXPECT_EQ(maps.rows, 3);
   EXPECT_EQ(maps.image_from_cell, Eigen::Vector2f(8, 8));
@@ -82,7 +82,7 @@ TEST(EntityFinder, SeesTheGoldenMug) {
   const SamNetwork network(model, {});
   const ImageFeatures features = network.encode(image);
   const FinderMaps maps =
-      EntityFinder(model, {}).look(network.embedding(features), features.frame);
+      EntityFinder(model, {}).look(network.embedding(features), features.frame, {});
   const auto things = things_in(ThingCells(maps, 64, 32), {});
   ASSERT_EQ(things.size(), 1u);
   EXPECT_EQ(things[0].prompt.interior_px, Eigen::Vector2f(21.5f, 13.5f));

@@ -23,7 +23,7 @@ std::optional<Entities> SamMaskSource::entities(const Frame& frame,
   FinderMaps maps;
   std::optional<ThingCells> cells;
   if (finder_) {
-    maps = finder_->look(network_.embedding(features), features.frame);
+    maps = finder_->look(network_.embedding(features), features.frame, frame);
     cells.emplace(maps, frame.color.width(), frame.color.height());
   }
   const ThingMasks masks(std::move(maps), grid.size);
