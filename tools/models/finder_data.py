@@ -1,8 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
 """What the entity finder learns from: rendered frames of the tuned halves of the benchmarks (docs/evaluation.md), of seeds that no
-benchmark uses, changed anew each time they are looked at, and where the things in them are."""
+benchmark uses, and of random rooms made in Blender (tools/blender_scene/random_rooms.py), changed anew each time they are looked
+at, and where the things in them are."""
 
+import json
+import math
 import pathlib
 import subprocess
 
@@ -16,6 +19,8 @@ SHORTEST_CELLS = 0.25  # a box's side is no nearer to a cell's middle than this,
 ASPECTS = [(1024, 768), (1024, 768), (1024, 768), (1024, 576), (1024, 1024), (768, 1024)]  # of cameras, the usual one thrice
 ASKED = 2  # cells of a thing that are asked for its mask
 JPEG_QUALITY = 80
+NO_DEPTH = 0.1  # share of samples without depth
+PER_M = 512  # steps of inverse depth, in frames as they are packed
 
 # Kinds of scenes, seeds, and options that make few frames, far apart. Seeds 109 and 110 are kept back, to choose methods by.
 DESKS, ROOMS, PLANS = ["writing-desk", "breakfast-table", "book-shelf"], ["living-room", "bedroom", "kitchen"], ["flat"]
@@ -44,33 +49,49 @@ def render(program: pathlib.Path, folder: pathlib.Path):
             (scene / "done").touch()
 
 
-def pack(folder: pathlib.Path, file: pathlib.Path):
-    """One file of all frames of the recordings in `folder` that are there: JPEG and PNG bytes in turn."""
-    frames = []
-    for kind, seed, _ in scene_list():
-        for frame in sorted((folder / f"{kind}-{seed}").glob("*/results/frame*.jpg")):
-            rgb = cv2.imread(str(frame))
-            ids = cv2.imread(str(frame.with_name(frame.stem.replace("frame", "instance") + ".png")), cv2.IMREAD_UNCHANGED)
-            _, numbers = np.unique(np.append(0, ids), return_inverse=True)  # 0, of nothing, stays the first
-            small = numbers[1:].reshape(ids.shape).astype(np.uint16)
-            for extension, image, options in ((".jpg", rgb, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY]), (".png", small, [])):
-                frames.append(cv2.imencode(extension, image, options)[1])
-    np.savez(file, ends=np.cumsum([len(data) for data in frames]), data=np.concatenate(frames))
+def mean_inverse_depth(depth_m, size):
+    """1/m on pixels of `size` = (width, height), each the mean of the valid ones that it covers; 0 where fewer than half are."""
+    valid = (depth_m > 0).astype(np.float32)
+    inverse = np.divide(1, depth_m, out=np.zeros(depth_m.shape, np.float32), where=depth_m > 0)
+    inverse, valid = (cv2.resize(image, size, interpolation=cv2.INTER_AREA) for image in (inverse, valid))
+    return np.where(valid >= 0.5, inverse / np.maximum(valid, 0.5), 0)
 
 
-def unpack(files):
-    """(rgb bytes, ids bytes) of every frame."""
-    frames = []
-    for file in files:
-        with np.load(file) as packed:
-            parts = np.split(packed["data"], packed["ends"][:-1])
-        frames += list(zip(parts[0::2], parts[1::2]))
-    return frames
+def packed_frame(frame, camera):
+    """JPEG bytes of the picture, PNG bytes of ids and of inverse depth as wide as the grid of masks is."""
+    rgb = cv2.imread(str(frame))
+    ids, depth = (cv2.imread(str(frame.with_name(frame.stem.replace("frame", name) + ".png")), cv2.IMREAD_UNCHANGED)
+                  for name in ("instance", "depth"))  # fmt: skip
+    _, numbers = np.unique(np.append(0, ids), return_inverse=True)  # 0, of nothing, stays the first
+    width = INPUT_PX // GRID_PX
+    inverse = mean_inverse_depth((depth / camera["scale"]).astype(np.float32), (width, width * ids.shape[0] // ids.shape[1]))
+    images = (".jpg", rgb), (".png", numbers[1:].reshape(ids.shape).astype(np.uint16)), (".png", np.rint(inverse * PER_M).clip(0, 65535).astype(np.uint16))
+    options = {".jpg": [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY], ".png": [cv2.IMWRITE_PNG_COMPRESSION, 9]}
+    return [cv2.imencode(extension, image, options[extension])[1] for extension, image in images]
+
+
+def pack(scenes, file: pathlib.Path):
+    """One file of all frames of these recordings, and of each its focal length as a share of its width."""
+    parts, focals = [], []
+    for scene in scenes:
+        camera = json.loads((scene / "cam_params.json").read_text())["camera"]
+        for frame in sorted(scene.glob("*/results/frame*.jpg")):
+            parts += packed_frame(frame, camera)
+            focals.append(camera["fx"] / camera["w"])
+    np.savez(file, ends=np.cumsum([len(data) for data in parts]), data=np.concatenate(parts), focals=np.array(focals, np.float32))
+
+
+def unpack(file):
+    """(rgb bytes, ids bytes, inverse depth bytes, focal length) of every frame."""
+    with np.load(file) as packed:
+        parts = np.split(packed["data"], packed["ends"][:-1])
+        return list(zip(parts[0::3], parts[1::3], parts[2::3], packed["focals"]))
 
 
 def decoded(frame):
     rgb = cv2.cvtColor(cv2.imdecode(frame[0], cv2.IMREAD_COLOR), cv2.COLOR_BGR2RGB)
-    return rgb, cv2.imdecode(frame[1], cv2.IMREAD_UNCHANGED).astype(np.int32)
+    ids, inverse = (cv2.imdecode(data, cv2.IMREAD_UNCHANGED) for data in frame[1:3])
+    return rgb, ids.astype(np.int32), inverse.astype(np.float32) / PER_M
 
 
 def recoloured(rgb, ids, rng):
@@ -92,9 +113,9 @@ def printed(rgb, ids, print_rgb, rng):
     return np.clip(rgb * (1 - share) + repeated * shading * share, 0, 255)
 
 
-def strewn(rgb, ids, other_rgb, other_ids, rng):
-    """With a few small things of another frame somewhere on top."""
-    rgb, ids = rgb.copy(), ids.copy()
+def strewn(rgb, ids, inverse, other_rgb, other_ids, rng):
+    """With a few small things of another frame somewhere on top, flat as paper or a little nearer than what is under them."""
+    rgb, ids, inverse = rgb.copy(), ids.copy(), inverse.copy()
     numbers, counts = np.unique(other_ids[other_ids > 0], return_counts=True)
     fitting = numbers[(counts > 200) & (counts < 0.08 * ids.size)]
     for number in rng.permutation(fitting)[: rng.integers(1, 6)]:
@@ -110,7 +131,10 @@ def strewn(rgb, ids, other_rgb, other_ids, rng):
         place = np.s_[y : y + size[1], x : x + size[0]]
         rgb[place][mask > 0] = patch[mask > 0]
         ids[place][mask > 0] = ids.max() + 1
-    return rgb, ids
+        if rng.random() < 0.5:
+            nearer = cv2.resize((ids == ids.max()).astype(np.uint8), inverse.shape[::-1], interpolation=cv2.INTER_NEAREST)
+            inverse[nearer > 0] *= rng.uniform(1.005, 1.1)
+    return rgb, ids, inverse
 
 
 def relit(rgb, rng):
@@ -130,6 +154,50 @@ def relit(rgb, rng):
         image = cv2.filter2D(image, -1, line / line.sum())
     image = image + rng.standard_normal(image.shape, np.float32) * np.float32(rng.uniform(0, 0.03))
     return (np.clip(image, 0, 1) * 255).astype(np.uint8)
+
+
+def measured(inverse, ids, rng):
+    """Inverse depth as another sensor gives it: shifted against the picture, smooth, noisy, with holes. `ids` are of its size."""
+    inverse = inverse.copy()
+    if rng.random() < 0.3:
+        shift = np.column_stack([np.eye(2), rng.normal(0, 1, 2)])
+        inverse = cv2.warpAffine(inverse, shift, inverse.shape[::-1], flags=cv2.INTER_NEAREST, borderMode=cv2.BORDER_REPLICATE)
+    if rng.random() < 0.3:
+        sigma, valid = rng.uniform(0.7, 3), (inverse > 0).astype(np.float32)
+        smooth = cv2.GaussianBlur(inverse, (0, 0), sigma) / np.maximum(cv2.GaussianBlur(valid, (0, 0), sigma), 1e-3)
+        inverse = np.where((inverse > 0) | (rng.random() < 0.5), smooth, 0)
+    if rng.random() < 0.5:
+        noise = rng.standard_normal(inverse.shape, np.float32)
+        if rng.random() < 0.5:
+            noise = cv2.GaussianBlur(noise, (0, 0), 1.5) * 4
+        inverse = inverse * (1 + noise * np.float32(rng.uniform(0, 0.01)))
+    lost = rng.random(ids.max() + 1) < (0.15 if rng.random() < 0.3 else 0)  # what shines or is black
+    lost[ids.max() if rng.random() < 0.5 else 0] = False
+    holes = lost[ids]
+    if rng.random() < 0.4:
+        blobs = cv2.GaussianBlur(rng.standard_normal(inverse.shape, np.float32), (0, 0), rng.uniform(2, 12))
+        holes |= blobs > np.quantile(blobs[::4, ::4], rng.uniform(0.7, 1))
+    if rng.random() < 0.2:
+        holes |= inverse < 1 / rng.uniform(1.5, 4)  # beyond the range
+    return np.where(holes, 0, np.maximum(inverse, 0)) * np.float32(np.exp(rng.normal(0, 0.15)))
+
+
+def geometry(inverse, focal):
+    """4 x rows x columns of what the finder is told of depth (depth_view.h): the logarithm of how large a pixel is, in metres, plus 5;
+    how far to the right and down the surface slants, as half of its tangent; 1 where depth is known. `focal` in these pixels."""
+    known = inverse > 0
+    log = -np.log(np.where(known, inverse, 1)).astype(np.float32)
+
+    def slant(axis):
+        before, after = (np.roll(log, shift, axis) for shift in (1, -1))
+        has_before, has_after = (np.roll(known, shift, axis) & known for shift in (1, -1))
+        first, last = [slice(None)] * 2, [slice(None)] * 2
+        first[axis], last[axis] = 0, -1
+        has_before[tuple(first)] = has_after[tuple(last)] = False
+        steps = (log - before) * has_before + (after - log) * has_after
+        return np.clip(0.5 * focal * steps / np.maximum(1, has_before.astype(np.int8) + has_after), -2, 2)
+
+    return np.stack([np.where(known, log - math.log(focal) + 5, 0), slant(1), slant(0), known]).astype(np.float32)
 
 
 def view(rng, width, height, size):
@@ -205,10 +273,12 @@ def asked_cells(things, depth_of_cells, number, rng):
 
 
 def sample(frames, size, rng):
-    """A changed view of a random frame: rgb of `size`, targets, weights, cells that are asked, and the things' ids on the grid of masks."""
-    (rgb, ids), (other_rgb, other_ids) = (decoded(frames[i]) for i in rng.integers(0, len(frames), 2))
+    """A changed view of a random frame: rgb of `size`, geometry, targets, weights, cells that are asked, and the things' ids on the
+    grid of masks."""
+    chosen, other = (frames[i] for i in rng.integers(0, len(frames), 2))
+    (rgb, ids, inverse), (other_rgb, other_ids, _) = decoded(chosen), decoded(other)
     if rng.random() < 0.35:
-        rgb, ids = strewn(rgb, ids, other_rgb, other_ids, rng)
+        rgb, ids, inverse = strewn(rgb, ids, inverse, other_rgb, other_ids, rng)
     if rng.random() < 0.4:
         rgb = recoloured(rgb, ids, rng)
     if rng.random() < 0.35:
@@ -220,13 +290,24 @@ def sample(frames, size, rng):
     things, depth = things_in(half)
     wanted, weight, number = targets(half, things, depth, size[1] // CELL_PX, size[0] // CELL_PX)
     image = warped(rgb, source_from_network, size, 1, cv2.INTER_LINEAR)
-    return image, wanted, weight, asked_cells(things, wanted[0], number, rng), grid
+    shown = geometry(seen_inverse(inverse, ids.shape, source_from_network, size, grid, rng),
+                     chosen[3] * ids.shape[1] / np.linalg.norm(source_from_network[:, 0]) / GRID_PX)  # fmt: skip
+    return image, shown, wanted, weight, asked_cells(things, wanted[0], number, rng), grid
 
 
-def batch(frames, count, rng):
-    """`count` samples of one size, stacked; the asked cells with the number of their sample in front."""
-    size = ASPECTS[rng.integers(len(ASPECTS))]
-    images, wanted, weights, asked, grids = zip(*(sample(frames, size, rng) for _ in range(count)))
+def seen_inverse(inverse, shape, source_from_network, size, ids, rng):
+    """Inverse depth on the grid of masks; at times there is none."""
+    if rng.random() < NO_DEPTH:
+        return np.zeros(ids.shape, np.float32)
+    depth_from_network = source_from_network * (inverse.shape[1] / shape[1])
+    known = warped((inverse > 0).astype(np.float32), depth_from_network, size, GRID_PX, cv2.INTER_LINEAR)
+    mean = warped(inverse, depth_from_network, size, GRID_PX, cv2.INTER_LINEAR) / np.maximum(known, 0.5)
+    return measured(np.where(known >= 0.5, mean, 0), ids, rng)
+
+
+def batch(groups, size, rng):
+    """Samples of one size, stacked, of each group of (frames, count) so many; the asked cells with the number of their sample in front."""
+    images, shown, wanted, weights, asked, grids = zip(*(sample(frames, size, rng) for frames, count in groups for _ in range(count)))
     numbered = [np.column_stack([np.full(len(cells), place), cells]) for place, cells in enumerate(asked)]
-    return (np.stack(images), np.stack(wanted).astype(np.float16), np.stack(weights).astype(np.float16), np.concatenate(numbered),
-            np.stack(grids).astype(np.int16))  # fmt: skip
+    return (np.stack(images), np.stack(shown).astype(np.float16), np.stack(wanted).astype(np.float16), np.stack(weights).astype(np.float16),
+            np.concatenate(numbered), np.stack(grids).astype(np.int16))  # fmt: skip

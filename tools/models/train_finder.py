@@ -1,14 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
-"""Trains the entity finder of the default mask model and writes finder.onnx: from MobileSAM's embedding of an image, where its things
-are and which pixels are theirs (src/ovimap/inference/sam/entity_finder.h). First `render` what it learns from, which no
-benchmark's unseen half shares anything with; a rendering that was broken off goes on where it stopped. `train` takes minutes on a
-GPU, a night on two cores.
+"""Trains the entity finder of the default mask model and writes finder.onnx: from MobileSAM's embedding of an image and the depth seen
+with it, where its things are and which pixels are theirs (src/ovimap/inference/sam/entity_finder.h). First `render` what it learns
+from, of which no benchmark's unseen half has anything, and rooms of random things in Blender (tools/blender_scene/README.md), which
+every fourth sample is of; a rendering that was broken off goes on where it stopped. `train` takes minutes on a GPU, a night on two
+cores.
 
     pip install -r tools/models/requirements-finder.txt  # in an environment of its own
     python3 tools/models/train_finder.py render build/release/bin/ovimap FRAMES_FOLDER
-    python3 tools/models/train_finder.py train FRAMES_FOLDER/frames.npz --encoder .models/mobilesam/encoder.onnx
+    venv/bin/python tools/blender_scene/random_rooms.py ROOMS
+    python3 tools/models/train_finder.py pack ROOMS FRAMES_FOLDER/rooms.npz
+    python3 tools/models/train_finder.py train FRAMES_FOLDER/frames.npz FRAMES_FOLDER/rooms.npz --encoder .models/mobilesam/encoder.onnx
 
 Then the digest that it prints goes into mobilesam.yaml.
 """
@@ -30,7 +33,8 @@ from finder_network import Finder, exported
 from sam_encoder import SamEncoder
 
 HERE = pathlib.Path(__file__).parent
-BATCH, REMEMBERED, RATE, WARM_UP, NOISE, DROPPED, DECAY = 16, 3, 2e-3, 100, 0.02, 0.1, 0.998
+ROOMS = 4  # of a batch
+BATCH, REMEMBERED, RATE, WARM_UP, NOISE, DROPPED, DECAY = 16, 2, 2e-3, 100, 0.02, 0.1, 0.998
 BOX_WEIGHT, SHARE_WEIGHT, MASK_WEIGHT, QUALITY_WEIGHT, BOX_BETA = 0.5, 0.3, 1.0, 0.2, 0.2
 MEMORY = 96  # batches whose embeddings are kept to be learned from again
 
@@ -38,15 +42,15 @@ MEMORY = 96  # batches whose embeddings are kept to be learned from again
 class Batches(torch.utils.data.IterableDataset):
     """Batches of changed views without end, made beside the training."""
 
-    def __init__(self, frames, seed):
-        self._frames, self._seed = frames, seed
+    def __init__(self, groups, seed):
+        self._groups, self._seed = groups, seed
 
     def __iter__(self):
         cv2.setNumThreads(0)
         worker = torch.utils.data.get_worker_info()
         rng = np.random.default_rng([self._seed, worker.id if worker else 0])
         while True:
-            yield tuple(torch.from_numpy(part) for part in finder_data.batch(self._frames, BATCH, rng))
+            yield tuple(torch.from_numpy(part) for part in finder_data.batch(self._groups, finder_data.ASPECTS[rng.integers(len(finder_data.ASPECTS))], rng))
 
 
 def cell_losses(things, wanted, weight):
@@ -77,23 +81,23 @@ def mask_losses(net, kernels, basis, asked, grid):
 class Training:
     """One finder that learns: its optimiser, and the mean of its weights over the last hundreds of steps, which is kept."""
 
-    def __init__(self, name, net, device):
-        self.name, self.net = name, net.to(device).train()
-        self._optimizer = torch.optim.AdamW(net.parameters(), lr=RATE, weight_decay=1e-3)
+    def __init__(self, net, device):
+        self.net = net.to(device, memory_format=torch.channels_last).train()
+        self._optimizer = torch.optim.AdamW(net.parameters(), lr=RATE, weight_decay=1e-3, fused=device == "cuda")
         self.mean = torch.optim.swa_utils.AveragedModel(
             net, multi_avg_fn=torch.optim.swa_utils.get_ema_multi_avg_fn(DECAY), use_buffers=True)  # fmt: skip
-        self._sums, self._steps = np.zeros(6), 0
+        self._sums, self._steps = torch.zeros(6, device=device), 0
 
     def step(self, batch, rate):
-        embedding, wanted, weight, asked, grid = batch
+        embedding, shown, wanted, weight, asked, grid = batch
         for group in self._optimizer.param_groups:
             group["lr"] = rate
         device = embedding.device.type
         with torch.autocast(device, torch.bfloat16, enabled=device == "cuda"):
-            things, kernels, basis = self.net(embedding)
+            things, kernels, basis = self.net(embedding, shown.to(embedding.dtype))
         depth, box, share = cell_losses(things.float(), wanted.float(), weight.float())
         loss = depth + BOX_WEIGHT * box + SHARE_WEIGHT * share
-        mask = quality = overlap = torch.zeros(())
+        mask = quality = overlap = torch.zeros((), device=device)
         if basis is not None and len(asked):
             mask, quality, overlap = mask_losses(self.net, kernels.float(), basis.float(), asked, grid)
             loss = loss + MASK_WEIGHT * mask + QUALITY_WEIGHT * quality
@@ -102,13 +106,14 @@ class Training:
         nn.utils.clip_grad_norm_(self.net.parameters(), 1)
         self._optimizer.step()
         self.mean.update_parameters(self.net)
-        self._sums += [value.item() for value in (depth, box, share, mask, quality, overlap)]
+        self._sums += torch.stack([depth, box, share, mask, quality, overlap]).detach()
         self._steps += 1
 
     def report(self):
         names = "depth", "boxes", "shares", "masks", "quality", "overlap"
-        told = f"{self.name}: " + ", ".join(f"{name} {total / max(1, self._steps):.3f}" for name, total in zip(names, self._sums))
-        self._sums[:], self._steps = 0, 0
+        told = ", ".join(f"{name} {total / max(1, self._steps):.3f}" for name, total in zip(names, self._sums.tolist()))
+        self._sums.zero_()
+        self._steps = 0
         return told
 
 
@@ -122,24 +127,23 @@ def disturbed(batch, rng):
     return (functional.dropout2d(embedding, DROPPED) if rng.random() < 0.5 else embedding, *batch[1:])
 
 
-def train(trainings, frames, encoder, device, steps, minutes, workers):
+def train(training, groups, encoder, device, steps, minutes, workers):
     """Until `steps` batches were encoded or `minutes` have passed; each is learned from at once and, at random, again."""
-    loader = iter(torch.utils.data.DataLoader(Batches(frames, 0), batch_size=None, num_workers=workers, prefetch_factor=4 if workers else None))
+    loader = iter(torch.utils.data.DataLoader(Batches(groups, 0), batch_size=None, num_workers=workers, prefetch_factor=4 if workers else None))
     rng, memory, start = np.random.default_rng(0), [], time.monotonic()
     for step in range(1, steps + 1):
         progress = max(step / steps, (time.monotonic() - start) / (60 * minutes))
         if progress > 1:
             break
-        images, wanted, weights, asked, grids = next(loader)
-        batch = (encoder(images), *(part.to(device) for part in (wanted, weights, asked, grids.long())))
+        images, shown, wanted, weights, asked, grids = next(loader)
+        batch = (encoder(images).contiguous(memory_format=torch.channels_last), *(part.to(device) for part in (shown, wanted, weights, asked, grids.long())))
         memory.append(batch)
         if len(memory) > MEMORY:
             memory.pop(rng.integers(MEMORY))
         for chosen in [batch, *(memory[i] for i in rng.integers(0, len(memory), REMEMBERED - 1))]:
-            for training in trainings:
-                training.step(disturbed(chosen, rng), rate_at(step, progress))
+            training.step(disturbed(chosen, rng), rate_at(step, progress))
         if step % 50 == 0:
-            print(f"{step} of {steps}, {time.monotonic() - start:.0f} s: " + "; ".join(training.report() for training in trainings), flush=True)
+            print(f"{step} of {steps}, {time.monotonic() - start:.0f} s: {training.report()}", flush=True)
 
 
 def write(net, file):
@@ -154,8 +158,12 @@ def main():
     command = commands.add_parser("render")
     command.add_argument("program", type=pathlib.Path)
     command.add_argument("folder", type=pathlib.Path, help="for recordings, 1 GB")
+    command = commands.add_parser("pack")
+    command.add_argument("rooms", type=pathlib.Path, help="folder that random_rooms.py wrote")
+    command.add_argument("file", type=pathlib.Path)
     command = commands.add_parser("train")
-    command.add_argument("frames", type=pathlib.Path, nargs="+")
+    command.add_argument("frames", type=pathlib.Path, help="of `render`")
+    command.add_argument("rooms", type=pathlib.Path, help="of `pack`")
     command.add_argument("--encoder", type=pathlib.Path, required=True)
     command.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
     command.add_argument("--workers", type=int, default=2)
@@ -165,15 +173,19 @@ def main():
     arguments = parser.parse_args()
     if arguments.command == "render":
         finder_data.render(arguments.program.resolve(), arguments.folder / "scenes")
-        finder_data.pack(arguments.folder / "scenes", arguments.folder / "frames.npz")
+        scenes = arguments.folder / "scenes"
+        finder_data.pack([scenes / f"{kind}-{seed}" for kind, seed, _ in finder_data.scene_list()], arguments.folder / "frames.npz")
+        return
+    if arguments.command == "pack":
+        finder_data.pack(sorted(done.parent for done in arguments.rooms.glob("*/done")), arguments.file)
         return
     torch.manual_seed(0)
-    frames = finder_data.unpack(arguments.frames)
-    print(f"{len(frames)} frames")
-    training = Training("finder", Finder(), arguments.device)
+    frames, rooms = finder_data.unpack(arguments.frames), finder_data.unpack(arguments.rooms)
+    print(f"{len(frames)} and {len(rooms)} frames")
+    training = Training(Finder(), arguments.device)
     encoder = SamEncoder(arguments.encoder, arguments.device, BATCH)
-    train([training], frames, encoder, arguments.device, arguments.steps, arguments.minutes, arguments.workers)
-    write(training.mean.module.cpu().eval(), arguments.out)
+    train(training, [(frames, BATCH - ROOMS), (rooms, ROOMS)], encoder, arguments.device, arguments.steps, arguments.minutes, arguments.workers)
+    write(training.mean.module.cpu().to(memory_format=torch.contiguous_format).eval(), arguments.out)
 
 
 if __name__ == "__main__":
