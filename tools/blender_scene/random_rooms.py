@@ -5,7 +5,7 @@
 depth and ids, without the truth of a benchmark. Sizes, parts, surfaces, lights and cameras are drawn anew for each room; of the
 reported scene `studio` nothing is shared but Blender and the primitives of furnish.py.
 
-Usage: random_rooms.py OUT [--seeds 1:40] [--frames 8] [--size 400x300] [--samples 8]
+Usage: random_rooms.py OUT [--seeds 1:46] [--frames 8] [--size 400x300] [--samples 8]
 README.md beside this file says what to install. A broken-off run goes on with the rooms that are missing."""
 import argparse
 import json
@@ -304,7 +304,7 @@ def write_room(seed, folder, arguments):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("out", type=pathlib.Path)
-    parser.add_argument("--seeds", default="1:40", help="FIRST:END")
+    parser.add_argument("--seeds", default="1:46", help="FIRST:END")
     parser.add_argument("--frames", type=int, default=8)
     parser.add_argument("--size", default="400x300", help="WIDTHxHEIGHT of the frames")
     parser.add_argument("--samples", type=int, default=8)
