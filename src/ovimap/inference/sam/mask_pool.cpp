@@ -76,6 +76,7 @@ bool MaskPool::offer(const MaskProposals& proposals, const MaskPrompt* region, b
   chosen.own_region = region && fills(chosen, *region);
   if (region && region->known && !chosen.own_region) return false;
   const float area_px = static_cast<float>(chosen.area) * grid_.image_px_per_grid_px();
+  if (cells_) chosen.score *= config_.finder.decoder_trust;
   add(std::move(chosen));
   if (!region) return true;
   const auto region_px = static_cast<float>(region->area_px);

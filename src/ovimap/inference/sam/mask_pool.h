@@ -19,7 +19,7 @@ struct AcceptedMask {
   BitMask mask;               ///< on the logit grid
   int area = 0;               ///< grid pixels
   float stability = 0;        ///< IoU between the masks at a raised and a lowered threshold
-  float score = 0;            ///< predicted IoU times stability, in [0, 1]
+  float score = 0;            ///< predicted IoU, as far as it is believed, times stability
   bool own_region = false;    ///< fills the geometric region that prompted it
   std::vector<float> logits;  ///< size x size, for painting at full resolution
   Eigen::AlignedBox2f extent_px;       ///< in the colour image

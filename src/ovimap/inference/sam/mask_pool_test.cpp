@@ -253,6 +253,17 @@ TEST(MaskPool, WhereAFinderHasNoCellScoresDecide) {
   EXPECT_EQ(pool.entities().scores.size(), 1u);
 }
 
+TEST(MaskPool, OfTwoLikeMasksTheFindersIsKept) {
+  const Box box{2, 2, 12, 12};
+  const MaskPrompt thing = region_of(box);
+  MaskPool pool(test_config(), pool_grid(), cells_that_see(box));
+  pool.offer_unasked(proposals_of({{box, 0.8f}}), thing);
+  pool.offer(proposals_of({{{2, 2, 12, 11}, 0.95f}}), &thing);
+  ASSERT_EQ(pool.masks().size(), 1u);
+  EXPECT_FLOAT_EQ(pool.masks()[0].score, 0.8f);
+  EXPECT_EQ(pool.masks()[0].area, 100);
+}
+
 TEST(MaskPool, OfAKnownObjectOnlyALikeMaskIsTaken) {
   MaskPool pool(test_config(), pool_grid());
   MaskPrompt object = region_of({8, 8, 16, 16});

@@ -14,6 +14,8 @@ void list_fields(FinderConfig& config, ConfigFields& fields) {
   fields.add("min_mask_iou", config.min_mask_iou, 0.f, 2.f,
              "how good the finder believes a mask of its own to be that is taken without asking; "
              "2: none");
+  fields.add("decoder_trust", config.decoder_trust, 0.f, 1.f,
+             "what a rating of the decoder is worth beside one of the finder, where there is one");
 }
 
 void list_fields(SamConfig& config, ConfigFields& fields) {

@@ -16,6 +16,7 @@ struct FinderConfig {
   int max_prompts = 30;     ///< a frame; 0: no finder is asked
   float min_depth = 0.3f;   ///< of a thing's middle, from 0 at a border to 1; lower peaks are none
   float min_mask_iou = 0.75f;  ///< as a finder rates its own mask; of a lesser one SAM is asked
+  float decoder_trust = 0.5f;  ///< of SAM's own rating, beside the finder's, which is the true IoU
 };
 
 /// Settings of prompting a SAM-type network (method section 2).
