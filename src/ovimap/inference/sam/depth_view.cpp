@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <limits>
 
 #include "ovimap/frames/frame/registration.h"
 
@@ -13,15 +13,14 @@ namespace ovimap {
 namespace {
 
 // As tools/models/finder_data.py has them.
-constexpr float kMiddle = 5;       ///< brings pixels of some millimetres to about 0
-constexpr float kSteepest = 2;     ///< of half a slope
-constexpr float kUnknown = 0;      ///< inverse depths are positive
+constexpr float kMiddle = 5;    ///< brings pixels of some millimetres to about 0
+constexpr float kSteepest = 2;  ///< of half a slope
 
-/// 1/m, the mean over the depth pixels that a pixel of the grid covers in the colour image.
+/// Means of inverse depth, 1/m, over the depth pixels that a pixel of the grid covers in the colour
+/// image.
 class InverseDepth {
  public:
-  InverseDepth(int rows, int columns)
-      : sums_(columns, rows, kUnknown), counts_(columns, rows, 0) {}
+  InverseDepth(int rows, int columns) : sums_(columns, rows), counts_(columns, rows) {}
 
   void add(const Frame& frame, const Eigen::Vector2f& grid_from_image) {
     const Registration registration(frame);
@@ -39,10 +38,12 @@ class InverseDepth {
       }
   }
 
-  std::optional<float> log_depth(int x, int y) const {
-    if (x < 0 || y < 0 || x >= sums_.width() || y >= sums_.height() || counts_.at(x, y) == 0)
-      return std::nullopt;
-    return std::log(static_cast<float>(counts_.at(x, y)) / sums_.at(x, y));
+  /// Logarithms of depth in metres; NaN where none is known.
+  Image<float> log_depth() const {
+    Image<float> logs(sums_.width(), sums_.height(), std::numeric_limits<float>::quiet_NaN());
+    for (std::size_t i = 0; i < logs.size(); ++i)
+      if (counts_[i] > 0) logs[i] = std::log(static_cast<float>(counts_[i]) / sums_[i]);
+    return logs;
   }
 
  private:
@@ -59,12 +60,11 @@ class InverseDepth {
 };
 
 /// Half of what the neighbours on both sides say, or the one whose depth is known.
-float half_slope(std::optional<float> before, float here, std::optional<float> after,
-                 float focal_px) {
+float half_slope(float before, float here, float after, float focal_px) {
   float steps = 0;
   int known = 0;
-  if (before) steps += here - *before, ++known;
-  if (after) steps += *after - here, ++known;
+  for (const float step : {here - before, after - here})
+    if (!std::isnan(step)) steps += step, ++known;
   if (known == 0) return 0;
   return std::clamp(0.5f * focal_px * steps / static_cast<float>(known), -kSteepest, kSteepest);
 }
@@ -76,19 +76,22 @@ FloatTensor depth_view(const Frame& frame, const Eigen::Vector2f& grid_from_imag
   const auto plane = static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns);
   FloatTensor view{{1, kDepthMaps, rows, columns}, std::vector<float>(kDepthMaps * plane, 0.f)};
   if (frame.depth.width() == 0) return view;
-  InverseDepth depth(rows, columns);
-  depth.add(frame, grid_from_image);
+  InverseDepth inverse(rows, columns);
+  inverse.add(frame, grid_from_image);
+  const Image<float> logs = inverse.log_depth();
+  const auto log_at = [&](int x, int y) {
+    const bool inside = x >= 0 && y >= 0 && x < columns && y < rows;
+    return inside ? logs.at(x, y) : std::numeric_limits<float>::quiet_NaN();
+  };
   const float focal_px = frame.color_camera.fx * grid_from_image.x();
   std::size_t at = 0;
   for (int y = 0; y < rows; ++y)
     for (int x = 0; x < columns; ++x, ++at) {
-      const std::optional<float> here = depth.log_depth(x, y);
-      if (!here) continue;
-      view.values[at] = *here - std::log(focal_px) + kMiddle;
-      view.values[plane + at] =
-          half_slope(depth.log_depth(x - 1, y), *here, depth.log_depth(x + 1, y), focal_px);
-      view.values[2 * plane + at] =
-          half_slope(depth.log_depth(x, y - 1), *here, depth.log_depth(x, y + 1), focal_px);
+      const float here = logs.at(x, y);
+      if (std::isnan(here)) continue;
+      view.values[at] = here - std::log(focal_px) + kMiddle;
+      view.values[plane + at] = half_slope(log_at(x - 1, y), here, log_at(x + 1, y), focal_px);
+      view.values[2 * plane + at] = half_slope(log_at(x, y - 1), here, log_at(x, y + 1), focal_px);
       view.values[3 * plane + at] = 1;
     }
   return view;

@@ -83,7 +83,8 @@ FinderMaps EntityFinder::look(const FloatTensor& embedding, const InputFrame& fr
   if (!depth_input_.empty()) {
     const auto grid_px = static_cast<float>(kGridPxPerEmbedded * embedding.shape[3]) /
                          static_cast<float>(input_size_px_);
-    depth = depth_view(source, frame.scale * grid_px, kGridPxPerEmbedded * static_cast<int>(seen.shape[2]),
+    depth = depth_view(source, frame.scale * grid_px,
+                       kGridPxPerEmbedded * static_cast<int>(seen.shape[2]),
                        kGridPxPerEmbedded * static_cast<int>(seen.shape[3]));
     inputs.push_back({depth_input_, depth.shape, std::span<const float>(depth.values)});
   }

@@ -16,9 +16,9 @@ namespace ovimap {
 
 /// Finds things where neither depth nor a gap between masks shows one: what lies flat on a table, or
 /// is one with what it stands on. A small network reads the features that a promptable network made
-/// of the image and, if it can, the depth seen with it (depth_view), and says where to ask that one, and for what box; if it can, it gives masks as well,
-/// so that only doubtful ones are asked for (ThingMasks). Trained on rendered rooms alone
-/// (tools/models/train_finder.py); one-stage detection by centreness as in FCOS (Tian et al., ICCV
+/// of the image and, if it can, the depth seen with it (depth_view), and says where to ask that one,
+/// and for what box; if it can, it gives masks as well, so that only doubtful ones are asked for
+/// (ThingMasks). Trained on rendered rooms alone (tools/models/train_finder.py); one-stage detection by centreness as in FCOS (Tian et al., ICCV
 /// 2019), where the centre is the pixel farthest from the thing's border.
 class EntityFinder {
  public:
