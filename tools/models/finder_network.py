@@ -30,28 +30,27 @@ class Finder(nn.Module):
     """Convolutions over the embedding and over the depth seen with it; at twice its resolution what each cell's thing is (one-stage detection, FCOS: Tian et al.
     2019); and the masks of things as sums of a few images over the whole view, weighed as each cell says (YOLACT: Bolya et al. 2019)."""
 
-    def __init__(self, channels=CHANNELS, dilations=tuple(DILATIONS), with_masks=True):
+    def __init__(self):
         super().__init__()
-        half, self.with_masks = channels // 2, with_masks
+        half = CHANNELS // 2
         self.seen = conv(SEEN, SHARP[0])
         self.halved = nn.ModuleList([conv_halving(SHARP[0], SHARP[1]), conv_halving(SHARP[1], SHARP[2])])
         self.widened = nn.ModuleList([conv(SHARP[1], SHARP[1]), conv(SHARP[2], SHARP[2])])
-        self.stem = conv(EMBEDDED + SHARP[2], channels, 1)
-        self.blocks = nn.ModuleList(conv(channels, channels, 3, dilation) for dilation in dilations)
-        self.up = nn.ConvTranspose2d(channels, half, 2, 2)
+        self.stem = conv(EMBEDDED + SHARP[2], CHANNELS, 1)
+        self.blocks = nn.ModuleList(conv(CHANNELS, CHANNELS, 3, dilation) for dilation in DILATIONS)
+        self.up = nn.ConvTranspose2d(CHANNELS, half, 2, 2)
         self.skip = nn.ConvTranspose2d(EMBEDDED, half // 2, 2, 2)
         self.join = conv(half + half // 2 + SHARP[1], half)
         self.cells = conv(half, half)
         self.things = nn.Conv2d(half, 6, 1)
         nn.init.zeros_(self.things.bias)
         self.things.bias.data[1:5] = 2.5  # things are some twelve cells across
-        if with_masks:
-            self.asked = conv(half, half)
-            self.kernels = nn.Conv2d(half, BASIS + PLACE + 1, 1)
-            self.fine = nn.ConvTranspose2d(half, half // 2, 2, 2)
-            self.sharp = conv(half // 2 + SHARP[0], half // 2)
-            self.basis = nn.ModuleList([conv(half // 2, half // 2), conv(half // 2, half // 2)])
-            self.last = nn.Conv2d(half // 2, BASIS, 1)
+        self.asked = conv(half, half)
+        self.kernels = nn.Conv2d(half, BASIS + PLACE + 1, 1)
+        self.fine = nn.ConvTranspose2d(half, half // 2, 2, 2)
+        self.sharp = conv(half // 2 + SHARP[0], half // 2)
+        self.basis = nn.ModuleList([conv(half // 2, half // 2), conv(half // 2, half // 2)])
+        self.last = nn.Conv2d(half // 2, BASIS, 1)
 
     def forward(self, x, shown):
         """`shown`: the maps of depth, with four times the rows and columns of the embedding `x`."""
@@ -65,8 +64,6 @@ class Finder(nn.Module):
             y = y + functional.relu(block(y))
         y = functional.relu(self.join(torch.cat([functional.relu(self.up(y)), functional.relu(self.skip(x)), levels[1]], 1)))
         z = y + functional.relu(self.cells(y))
-        if not self.with_masks:
-            return self.things(z), None, None
         kernels = self.kernels(y + functional.relu(self.asked(y)))
         b = functional.relu(self.fine(y))
         b = functional.relu(self.sharp(torch.cat([b, fine], 1)))
@@ -119,12 +116,11 @@ def exported(net: Finder) -> bytes:
     y = graph.add("Relu", convolved(graph.add("Concat", doubled(y, net.up), doubled(x, net.skip), levels[1], axis=1), net.join))
     convolved(further(y, net.cells), net.things, output="things")
     graph.add_output("things", [1, 6, "cell_rows", "cell_columns"])
-    if net.with_masks:
-        convolved(further(y, net.asked), net.kernels, output="kernels")
-        graph.add_output("kernels", [1, BASIS + PLACE + 1, "cell_rows", "cell_columns"])
-        basis = graph.add("Relu", convolved(graph.add("Concat", doubled(y, net.fine), levels[0], axis=1), net.sharp))
-        for layer in net.basis:
-            basis = further(basis, layer)
-        convolved(basis, net.last, output="basis")
-        graph.add_output("basis", [1, BASIS, "grid_rows", "grid_columns"])
+    convolved(further(y, net.asked), net.kernels, output="kernels")
+    graph.add_output("kernels", [1, BASIS + PLACE + 1, "cell_rows", "cell_columns"])
+    basis = graph.add("Relu", convolved(graph.add("Concat", doubled(y, net.fine), levels[0], axis=1), net.sharp))
+    for layer in net.basis:
+        basis = further(basis, layer)
+    convolved(basis, net.last, output="basis")
+    graph.add_output("basis", [1, BASIS, "grid_rows", "grid_columns"])
     return graph.serialised()

@@ -50,7 +50,8 @@ class Batches(torch.utils.data.IterableDataset):
         worker = torch.utils.data.get_worker_info()
         rng = np.random.default_rng([self._seed, worker.id if worker else 0])
         while True:
-            yield tuple(torch.from_numpy(part) for part in finder_data.batch(self._groups, finder_data.ASPECTS[rng.integers(len(finder_data.ASPECTS))], rng))
+            size = finder_data.ASPECTS[rng.integers(len(finder_data.ASPECTS))]
+            yield tuple(torch.from_numpy(part) for part in finder_data.batch(self._groups, size, rng))
 
 
 def cell_losses(things, wanted, weight):
@@ -98,7 +99,7 @@ class Training:
         depth, box, share = cell_losses(things.float(), wanted.float(), weight.float())
         loss = depth + BOX_WEIGHT * box + SHARE_WEIGHT * share
         mask = quality = overlap = torch.zeros((), device=device)
-        if basis is not None and len(asked):
+        if len(asked):
             mask, quality, overlap = mask_losses(self.net, kernels.float(), basis.float(), asked, grid)
             loss = loss + MASK_WEIGHT * mask + QUALITY_WEIGHT * quality
         self._optimizer.zero_grad()
