@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What the judge of pairs of super-points learns from, and what its groups are worth on a map.
-//   ovimap_pair_samples MAP SCENE          scores of the map's objects, of those that the judge makes, and of perfect groups
+//   ovimap_pair_samples MAP SCENE          scores of the map's objects, of those that the judge makes, and of perfect groups,
+//                                          then the IoU of each true thing in each of the three
 //   ovimap_pair_samples MAP SCENE OUT      writes samples: 32-bit floats, features of a pair, whether it is one thing, its weight
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <exception>
 #include <map>
@@ -44,12 +46,19 @@ struct LabelledTruth {
       if (labels[i] != kNoLabel) ++shares[labels[i]][truth.instances[i]];
   }
 
-  void print(const char* name, const std::map<Label, std::uint32_t>& object_of) const {
+  /// What is scored, under objects made of super-points.
+  LabelledScene scene(const std::map<Label, std::uint32_t>& object_of) const {
     LabelledScene scene{truth.instances, {}, {}};
+    for (std::int32_t& id : scene.truth)
+      if (truth.unscored.count(id) > 0) id = 0;
     for (const std::uint32_t label : labels) {
       const auto found = object_of.find(label);
       scene.predicted.push_back(found == object_of.end() ? 0 : found->second);
     }
+    return scene;
+  }
+
+  void print(const char* name, const LabelledScene& scene) const {
     const StandardScores scores = standard_scores(std::span(&scene, 1));
     std::printf("%-10s AP75 %.3f AP50 %.3f AP25 %.3f mIoU %.3f, %d objects for %d\n", name,
                 scores.ap75, scores.ap50, scores.ap25, scores.miou, scores.predicted_instances,
@@ -116,23 +125,62 @@ void write_samples(const MapDocument& document, const LabelledTruth& truth,
   std::fclose(file);
 }
 
+/// The best IoU of each true thing with any object.
+std::map<std::int32_t, double> best_overlaps(const LabelledScene& scene) {
+  std::map<std::int32_t, int> truths, objects;
+  std::map<std::pair<std::int32_t, std::uint32_t>, int> both;
+  for (std::size_t i = 0; i < scene.truth.size(); ++i) {
+    const auto object = scene.predicted[i];
+    ++truths[scene.truth[i]], ++objects[static_cast<std::int32_t>(object)];
+    if (scene.truth[i] > 0 && object > 0) ++both[{scene.truth[i], object}];
+  }
+  std::map<std::int32_t, double> best;
+  for (const auto& [pair, count] : both) {
+    const int either =
+        truths[pair.first] + objects[static_cast<std::int32_t>(pair.second)] - count;
+    double& overlap = best[pair.first];
+    overlap = std::max(overlap, static_cast<double>(count) / either);
+  }
+  return best;
+}
+
+void print_things(const Truth& truth, const std::array<LabelledScene, 3>& scenes) {
+  std::map<std::int32_t, int> sizes;
+  for (const std::int32_t id : scenes[0].truth)
+    if (id > 0) ++sizes[id];
+  std::array<std::map<std::int32_t, double>, 3> best;
+  for (std::size_t i = 0; i < scenes.size(); ++i) best[i] = best_overlaps(scenes[i]);
+  for (const auto& [id, size] : sizes) {
+    const auto name = truth.instance_names.find(id);
+    std::printf("%-6d %-22s %8d points  map %.2f judge %.2f perfect %.2f\n", id,
+                name == truth.instance_names.end() ? "" : name->second.c_str(), size, best[0][id],
+                best[1][id], best[2][id]);
+  }
+}
+
 void print_scores(const MapDocument& document, const LabelledTruth& truth,
                   const SuperPointShapes& shapes) {
   std::map<Label, std::uint32_t> found, ideal;
   for (const InstanceSummary& object : document.instances)
     for (const Label label : object.super_points) found[label] = object.id;
-  truth.print("map", found);
   InstanceRegistry registry(document.instance_config);
   registry.restore(document.registry);
   const EntitySightings& sightings = document.registry.entity_sightings;
+  std::map<Label, std::vector<Label>> members;
   std::map<Label, std::uint32_t> judged;
   for (const auto& [root, object] : contract_by_judge(
            roots_of(sightings), sightings, shapes, document.instance_config.consensus.apart_weight))
-    if (registry.instance_of(root) != 0) judged[root] = object;
-  truth.print("judge", judged);
+    if (registry.instance_of(root) != 0) members[object].push_back(root);
+  for (const auto& [object, roots] : members)
+    if (record_of(registry.super_points(), roots).views >= InstanceSummaryConfig().min_instance_views)
+      for (const Label root : roots) judged[root] = object;
   for (const auto& [label, shares] : truth.shares)
     ideal[label] = static_cast<std::uint32_t>(std::max(owner(shares), 0));
-  truth.print("perfect", ideal);
+  const std::array<LabelledScene, 3> scenes{truth.scene(found), truth.scene(judged),
+                                            truth.scene(ideal)};
+  const std::array<const char*, 3> names{"map", "judge", "perfect"};
+  for (std::size_t i = 0; i < scenes.size(); ++i) truth.print(names[i], scenes[i]);
+  print_things(truth.truth, scenes);
 }
 
 }  // namespace
