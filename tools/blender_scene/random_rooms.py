@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
-"""Renders rooms of random things with Blender's Cycles for the entity finder to learn from (tools/models/train_finder.py): pictures,
-depth and ids, without the truth of a benchmark. Sizes, parts, surfaces, lights and cameras are drawn anew for each room; of the
-reported scene `studio` nothing is shared but Blender and the primitives of furnish.py.
+"""Renders rooms of random things with Blender's Cycles for the entity finder to learn from (tools/models/train_finder.py): recordings
+with truth, of views that are far apart. Sizes, parts, surfaces, lights and cameras are drawn anew for each room; of the reported
+scene `studio` nothing is shared but Blender and the primitives of furnish.py.
 
 Usage: random_rooms.py OUT [--seeds 1:46] [--frames 8] [--size 400x300] [--samples 8]
 README.md beside this file says what to install. A broken-off run goes on with the rooms that are missing."""
@@ -278,26 +278,33 @@ def write_room(seed, folder, arguments):
     focal = width * room.chance.uniform(0.65, 1.0)
     camera.data.lens = focal / width * camera.data.sensor_width
     scene.view_settings.exposure = room.chance.uniform(-1.5, 0.6)
-    for i in range(arguments.frames):
-        render.set_camera(camera, room.camera(), 10 * i + 1)
-    results, noise, seen = folder / "room" / "results", numpy.random.default_rng(seed), []
+    poses = [room.camera() for _ in range(arguments.frames)]
+    for i, pose in enumerate(poses):
+        render.set_camera(camera, pose, 10 * i + 1)
+    results, noise, frames = folder / "room" / "results", numpy.random.default_rng(seed), []
     results.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as scratch:
+        scratch = pathlib.Path(scratch)
         # What stays the same from frame to frame is kept, so first all of the truth, then all pictures.
-        for i in range(arguments.frames):
+        for i, pose in enumerate(poses):
             scene.frame_set(10 * i + 1)
-            depth, ids = render.render_truth(scene, pathlib.Path(scratch) / "truth.exr")
+            depth, ids = render.render_truth(scene, scratch / "truth.exr")
             if numpy.median(depth) > NEAREST:
-                seen.append((10 * i + 1, depth, ids))
-        for i, (moment, depth, ids) in enumerate(seen):
-            scene.frame_set(moment)
-            color = render.render_color(scene, pathlib.Path(scratch) / "color.png", arguments.samples)
-            depth = truth.noisy_depth(depth, focal, noise)
+                numpy.savez(scratch / f"{i}.npz", depth=depth, ids=ids)
+                frames.append((10 * i + 1, numpy.array(pose), scratch / f"{i}.npz"))
+        for i, (moment, _, exact) in enumerate(frames):
+            with numpy.load(exact) as kept:
+                depth, ids = truth.noisy_depth(kept["depth"], focal, noise), kept["ids"]
             Image.fromarray(numpy.rint(depth * render.UNITS).clip(0, 65535).astype(numpy.uint16)).save(results / f"depth{i:06d}.png")
             Image.fromarray(ids).save(results / f"instance{i:06d}.png")
-            Image.fromarray(color).save(results / f"frame{i:06d}.jpg", quality=92)
-    lens = {"w": width, "h": height, "fx": focal, "fy": focal, "cx": (width - 1) / 2, "cy": (height - 1) / 2, "scale": render.UNITS}
-    (folder / "cam_params.json").write_text(json.dumps({"camera": lens}, indent=1))
+            if not (results / f"frame{i:06d}.jpg").exists():
+                scene.frame_set(moment)
+                color = render.render_color(scene, scratch / "color.png", arguments.samples)
+                Image.fromarray(color).save(results / f"frame{i:06d}.jpg", quality=92)
+        middle = (width - 1) / 2, (height - 1) / 2
+        truth.write(folder, "room", furnish.THINGS, [(pose, exact) for _, pose, exact in frames], (focal, *middle))
+    render.write_way(folder / "room", [pose for _, pose, _ in frames])
+    render.write_camera(folder, width, height, focal)
     (folder / "done").touch()
 
 

@@ -122,6 +122,17 @@ def write_frame(results, kept, i, color, focal, arguments):
     Image.fromarray(color).save(results / f"frame{i:06d}.jpg", quality=92)
 
 
+def write_way(folder, poses):
+    lines = (" ".join(f"{v:.9g}" for v in numpy.array(pose).reshape(-1)) + "\n" for pose in poses)
+    (folder / "traj.txt").write_text("".join(lines))
+    (folder / "timestamps.txt").write_text("".join(f"{0.5 * i:.6f}\n" for i in range(len(poses))))
+
+
+def write_camera(folder, width, height, focal):
+    lens = {"w": width, "h": height, "fx": focal, "fy": focal, "cx": (width - 1) / 2, "cy": (height - 1) / 2, "scale": UNITS}
+    (folder / "cam_params.json").write_text(json.dumps({"camera": lens}, indent=1))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("out", type=pathlib.Path)
@@ -156,12 +167,9 @@ def main():
                 color = render_color(scene, pathlib.Path(scratch) / "color.png", arguments.samples)
                 write_frame(results, kept, i, color, focal, arguments)
                 print(f"frame {i + 1} of {arguments.frames}", flush=True)
-    matrices = numpy.array([numpy.array(pose) for pose in poses])
-    (arguments.out / SCENE / "traj.txt").write_text("".join(" ".join(f"{v:.9g}" for v in pose.reshape(-1)) + "\n" for pose in matrices))
-    (arguments.out / SCENE / "timestamps.txt").write_text("".join(f"{0.5 * i:.6f}\n" for i in range(len(poses))))
-    camera_json = {"camera": {"w": width, "h": height, "fx": focal, "fy": focal, "cx": (width - 1) / 2, "cy": (height - 1) / 2, "scale": UNITS}}
-    (arguments.out / "cam_params.json").write_text(json.dumps(camera_json, indent=1))
-    frames = [(matrix, kept / f"{i:06d}.npz") for i, matrix in enumerate(matrices)]
+    write_way(arguments.out / SCENE, poses)
+    write_camera(arguments.out, width, height, focal)
+    frames = [(matrix, kept / f"{i:06d}.npz") for i, matrix in enumerate(map(numpy.array, poses))]
     truth.write(arguments.out, SCENE, things, frames, (focal, (width - 1) / 2, (height - 1) / 2))
 
 
