@@ -13,15 +13,15 @@
 namespace ovimap {
 namespace {
 
-/// The model folder of a finder alone. outputs: as model.yaml lists them.
+/// The model folder of a finder alone. outputs, further_inputs: as model.yaml lists them.
 void write_model(const ScratchFolder& scratch, const std::string& network,
-                 const std::string& outputs) {
+                 const std::string& outputs, const std::string& further_inputs = "") {
   scratch.write("finder.onnx", network);
   scratch.write("model.yaml",
                 concat("kind: sam\nname: n\nlicense: l\nsource: s\n"
                        "input: {size: 16, resize: long_side, mean: [0, 0, 0], std: [1, 1, 1]}\n"
-                       "networks:\n  finder: {file: finder.onnx, inputs: {embedding: embedding}, "
-                       "outputs: {", outputs, "}}\nsha256:\n  finder.onnx: ",
+                       "networks:\n  finder: {file: finder.onnx, inputs: {embedding: embedding",
+                       further_inputs, "}, outputs: {", outputs, "}}\nsha256:\n  finder.onnx: ",
                        sha256_of_file(scratch.path() / "finder.onnx"), "\n"));
 }
 
@@ -72,6 +72,23 @@ TEST(EntityFinder, RefusesKernelsThatDoNotFitTheBasis) {
     return EntityFinder(read_model_folder(scratch.path()), {});
   };
   EXPECT_THROW(model_with(6), Error);  // a basis of 6 images wants 12
+}
+
+TEST(EntityFinder, RefusesAViewOfDepthOfAnotherNumberOfMaps) {
+  const auto model_with = [](int maps) {
+    ScratchFolder scratch("entity_finder_depth");
+    OnnxGraph graph;
+    graph.input("embedding", OnnxGraph::kFloat, {1, 6, kAnySize, kAnySize})
+        .input("geometry", OnnxGraph::kFloat, {1, maps, kAnySize, kAnySize})
+        .node("Identity", {"embedding"}, "things")
+        .node("Identity", {"geometry"}, "seen")
+        .output("things", {1, 6, kAnySize, kAnySize})
+        .output("seen", {1, maps, kAnySize, kAnySize});
+    write_model(scratch, graph.file(), "things: things", ", geometry: geometry");
+    return EntityFinder(read_model_folder(scratch.path()), {});
+  };
+  EXPECT_NO_THROW(model_with(4));
+  EXPECT_THROW(model_with(5), Error);
 }
 
 TEST(EntityFinder, SeesTheGoldenMug) {
