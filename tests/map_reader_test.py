@@ -45,6 +45,7 @@ COLUMNS = {
     "votes": "label, instance, votes",
     "label_pairs": "lower, higher, joined, apart",
     "entity_sightings": "label, frame, entity",
+    "entity_ratings": "frame, entity, rating",
     "super_point_frames": "label, first_frame, last_frame, runs",
     "instance_aliases": "id, target",
     "blocks": "tile, present, hash, data",

@@ -130,7 +130,8 @@ void InstanceRegistry::see_entities(const Segments& segments,
     ++point.votes.begin()->second;
     entity_of_root[root] = most->first;
   }
-  consensus_.observe(entity_of_root);
+  consensus_.observe(entity_of_root, has_entities ? std::span<const float>(segments.ratings)
+                                                  : std::span<const float>());
 }
 
 void InstanceRegistry::settle() {

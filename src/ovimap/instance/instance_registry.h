@@ -100,6 +100,8 @@ class InstanceRegistry {
   /// Super-points by the instance they are now.
   const std::map<InstanceId, std::vector<Label>>& instances() const { return members_; }
   const std::map<InstanceId, InstanceId>& aliases() const { return aliases_; }
+  /// In which 2D entities each root was seen; nothing by other readings than kConsensus.
+  const EntitySightings& entity_sightings() const { return consensus_.sightings(); }
   const SuperPointMerging& merging() const { return merging_; }
   const InstanceConfig& config() const { return config_; }
 

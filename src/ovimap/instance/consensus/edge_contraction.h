@@ -11,10 +11,16 @@
 
 namespace ovimap {
 
+inline constexpr int kHighestRating = 255;
+
 /// A super-point was seen in a 2D entity.
 struct EntitySighting {
   std::uint32_t frame = 0;   ///< counts frames with entities
   std::uint16_t entity = 0;  ///< not 0; means nothing beyond its frame
+  std::uint8_t rating = kHighestRating;  ///< of its mask by the mask's source; of an entity always
+                                         ///< the same
+  /// The highest is given to masks that are true, and to those of which nothing is known.
+  bool is_rated() const { return rating < kHighestRating; }
   auto operator<=>(const EntitySighting&) const = default;
 };
 

@@ -3,6 +3,7 @@
 #include "ovimap/instance/consensus/entity_consensus.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "ovimap/base/config.h"
@@ -15,9 +16,12 @@ void list_fields(ConsensusConfig& config, ConfigFields& fields) {
              "what a frame that keeps two super-points apart weighs against one that joins them");
 }
 
-void EntityConsensus::observe(const std::map<Label, std::uint16_t>& entity_of_root) {
+void EntityConsensus::observe(const std::map<Label, std::uint16_t>& entity_of_root,
+                              std::span<const float> ratings) {
   for (const auto& [root, entity] : entity_of_root) {
-    sightings_[root].push_back({frames_, entity});
+    const float rating = entity <= ratings.size() ? std::clamp(ratings[entity - 1u], 0.f, 1.f) : 1.f;
+    sightings_[root].push_back(
+        {frames_, entity, static_cast<std::uint8_t>(std::lround(kHighestRating * rating))});
     shown_.insert(root);
   }
   ++frames_;

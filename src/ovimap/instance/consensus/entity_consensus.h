@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <set>
+#include <span>
 #include <vector>
 
 #include "ovimap/instance/consensus/edge_contraction.h"
@@ -37,8 +38,10 @@ class EntityConsensus {
  public:
   explicit EntityConsensus(const ConsensusConfig& config = {}) : config_(config) {}
 
-  /// Adds one frame: the entity of each root seen in one.
-  void observe(const std::map<Label, std::uint16_t>& entity_of_root);
+  /// Adds one frame: the entity of each root seen in one, and how its masks are rated
+  /// (Segments::ratings).
+  void observe(const std::map<Label, std::uint16_t>& entity_of_root,
+               std::span<const float> ratings = {});
 
   /// Contracts anew the super-points that frames showed since this was asked last, with all others of
   /// the objects that they were in. Returns the oldest (lowest) root of each one's object; all others

@@ -117,6 +117,15 @@ TEST(EntityConsensus, SettlesAlikeHoweverOftenItWasUpdated) {
   }
 }
 
+TEST(EntityConsensus, KeepsHowMasksAreRated) {
+  EntityConsensus consensus;
+  const std::vector<float> ratings{0.2f, 1.f};
+  consensus.observe({{1, 1}, {2, 2}, {3, 3}}, ratings);
+  EXPECT_EQ(consensus.sightings().at(1)[0].rating, 51);
+  EXPECT_FALSE(consensus.sightings().at(2)[0].is_rated());
+  EXPECT_FALSE(consensus.sightings().at(3)[0].is_rated()) << "the source says nothing of it";
+}
+
 TEST(EntityConsensus, LooksAtObjectsInSightAlone) {
   EntityConsensus consensus = after({{{1, 1}, {2, 1}, {3, 2}, {4, 2}}});
   EXPECT_EQ(consensus.update(), (std::map<Label, Label>{{1, 1}, {2, 1}, {3, 3}, {4, 3}}));

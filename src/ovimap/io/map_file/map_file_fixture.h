@@ -106,7 +106,7 @@ inline MapDocument random_document(int block_count, std::uint32_t seed) {
       {20, {900, {{3, 800}}, FrameRuns({{3, 803}}), -5, std::int64_t{1} << 40}}};
   document.registry.frames = 900;
   document.registry.aliases = {{2, 1}};
-  document.registry.entity_sightings = {{4, {{0, 8}, {3, 65535}}}, {20, {{3, 1}}}};
+  document.registry.entity_sightings = {{4, {{0, 8}, {3, 65535, 0}}}, {20, {{3, 1, 254}}}};
   document.registry.pair_counts = {{{1, 4}, {11, 2}}, {{4, 20}, {0, 1}}};
   document.registry.last_id = 3;
   InstanceSummary cup, table;

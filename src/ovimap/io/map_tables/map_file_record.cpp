@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 #include <functional>
+#include <set>
 
 #include "ovimap/io/map_tables/map_file_frames.h"
 #include "ovimap/io/map_tables/map_file_history.h"
@@ -74,6 +75,22 @@ FrameRuns runs_from(RowReader& rows) {
   return FrameRuns(std::move(runs));
 }
 
+void write_sightings(SQLite::Database& database, const EntitySightings& sightings) {
+  RowWriter rows(database, kEntitySightings);
+  std::set<EntitySighting> rated;
+  for (const auto& [label, seen] : sightings)
+    for (const EntitySighting& sighting : seen) {
+      rows.insert(label, sighting.frame, sighting.entity);
+      if (sighting.is_rated()) rated.insert(sighting);
+    }
+  rows.finish();
+  if (rated.empty()) return;
+  RowWriter ratings(database, kEntityRatings);
+  for (const EntitySighting& sighting : rated)
+    ratings.insert(sighting.frame, sighting.entity, sighting.rating);
+  ratings.finish();
+}
+
 void write_registry(SQLite::Database& database, const InstanceRegistry::State& state) {
   RowWriter points(database, kSuperPoints);
   for (const auto& [label, point] : state.super_points) points.insert(label, point.frames_seen);
@@ -86,10 +103,7 @@ void write_registry(SQLite::Database& database, const InstanceRegistry::State& s
   for (const auto& [pair, count] : state.pair_counts)
     pairs.insert(pair.first, pair.second, count.joined, count.apart);
   pairs.finish();
-  RowWriter sightings(database, kEntitySightings);
-  for (const auto& [label, seen] : state.entity_sightings)
-    for (const auto& [frame, entity] : seen) sightings.insert(label, frame, entity);
-  sightings.finish();
+  write_sightings(database, state.entity_sightings);
   RowWriter frames(database, kSuperPointFrames);
   for (const auto& [label, point] : state.super_points) {
     if (point.seen.runs().empty()) continue;
@@ -216,13 +230,31 @@ void read_frames(SQLite::Database& database, MapRecord& record) {
 /// Maps of earlier schemas know nothing of which 2D entities showed a super-point.
 constexpr int kSchemaWithConsensus = 3;
 
+/// Of masks below the highest, by frame and entity.
+std::map<std::pair<std::uint32_t, std::uint16_t>, std::uint8_t> read_ratings(
+    SQLite::Database& database) {
+  std::map<std::pair<std::uint32_t, std::uint16_t>, std::uint8_t> ratings;
+  if (!holds_table(database, kEntityRatings)) return ratings;
+  RowReader rows(database, kEntityRatings);
+  while (rows.next()) {
+    const auto frame = rows.integer<std::uint32_t>();
+    const auto entity = rows.integer<std::uint16_t>();
+    ratings[{frame, entity}] = rows.integer<std::uint8_t>();
+  }
+  return ratings;
+}
+
 EntitySightings read_sightings(SQLite::Database& database, const LabelForest& forest) {
+  const auto ratings = read_ratings(database);
   EntitySightings sightings;
   RowReader rows(database, kEntitySightings);
   while (rows.next()) {
     std::vector<EntitySighting>& seen = sightings[take_label(rows, forest)];
-    const auto frame = rows.integer<std::uint32_t>();
-    seen.push_back({frame, rows.integer<std::uint16_t>()});
+    EntitySighting sighting{rows.integer<std::uint32_t>()};
+    sighting.entity = rows.integer<std::uint16_t>();
+    const auto rated = ratings.find({sighting.frame, sighting.entity});
+    if (rated != ratings.end()) sighting.rating = rated->second;
+    seen.push_back(sighting);
   }
   return sightings;
 }

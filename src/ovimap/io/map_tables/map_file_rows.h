@@ -65,6 +65,13 @@ inline constexpr MapTable kEntitySightings{
     "label INTEGER NOT NULL, frame INTEGER NOT NULL, entity INTEGER NOT NULL, "
     "PRIMARY KEY (label, frame)",
     "WITHOUT ROWID"};
+/// How good its source rated the mask of an entity, of 255; not in maps whose masks are all taken for
+/// true.
+inline constexpr MapTable kEntityRatings{
+    "entity_ratings", "frame, entity, rating",
+    "frame INTEGER NOT NULL, entity INTEGER NOT NULL, rating INTEGER NOT NULL, "
+    "PRIMARY KEY (frame, entity)",
+    "WITHOUT ROWID"};
 inline constexpr MapTable kLabelForest{"label_forest", "epoch, roots",
                                        "epoch INTEGER PRIMARY KEY, roots BLOB NOT NULL"};
 inline constexpr MapTable kFrames{
@@ -201,7 +208,7 @@ inline constexpr MapTable kChecks{
 /// All of them.
 inline constexpr const MapTable* kAll[] = {
     &kMeta, &kInstances, &kInstanceSuperPoints, &kInstanceNames, &kInstanceAliases, &kSuperPoints,
-    &kSuperPointFrames, &kVotes, &kLabelPairs, &kEntitySightings, &kLabelForest, &kFrames,
+    &kSuperPointFrames, &kVotes, &kLabelPairs, &kEntitySightings, &kEntityRatings, &kLabelForest, &kFrames,
     &kSuperPointLooks, &kSuperPointViews, &kWriting, &kThings, &kRecognized, &kEmbeddings, &kSurfaces, &kObjectParts, &kPartEmbeddings, &kBlocks, &kKeptFrames,
     &kInstanceRecords, &kAppearances, &kViews, &kVisits, &kVisitTimes, &kObjectEvents, &kPastObjects, &kSeenFree, &kSuspectSpace, &kMovers, &kLiveSteps, &kEdits, &kCorrectedInstances,
     &kCorrectedSuperPoints, &kCorrectedNames, &kCorrectedSurfaces, &kCorrectedEmbeddings,

@@ -83,6 +83,7 @@ std::optional<FrameSegments> cut_segments(const PreparedFrame& prepared, MaskSou
   auto t = timers.measure("mask_fusion");
   cut.segments = fuse_masks(regions, prepared.registration.ids_at_depth(entities->ids), frame.depth,
                             config.mask_fusion);
+  cut.segments.ratings = entities->scores;
   return cut;
 }
 

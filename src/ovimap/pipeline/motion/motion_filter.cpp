@@ -122,7 +122,7 @@ DepthImage still_depth(const DepthImage& depth, const IdImage& moving) {
 Segments still_segments(const Segments& segments, const IdImage& moving) {
   std::vector<int> moves(segments.segments.size() + 1, 0);
   for (std::size_t i = 0; i < moving.size(); ++i) moves[segments.ids[i]] += moving[i] != 0;
-  Segments still{segments.ids, {}};
+  Segments still{segments.ids, {}, segments.ratings};
   std::vector<std::uint16_t> numbers(moves.size(), 0);
   for (std::size_t id = 1; id < moves.size(); ++id) {
     Segment segment = segments.segments[id - 1];

@@ -69,7 +69,7 @@ void append_registry(InstanceRegistry::State& a, const InstanceRegistry::State& 
   for (const auto& [label, seen] : b.entity_sightings)
     for (const EntitySighting& sighting : seen)
       a.entity_sightings[label + by.label].push_back(
-          {sighting.frame + by.mask_frame, sighting.entity});
+          {sighting.frame + by.mask_frame, sighting.entity, sighting.rating});
   a.frames += b.frames;
   a.last_id = by.instance + highest_b;
 }
