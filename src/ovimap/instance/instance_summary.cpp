@@ -3,68 +3,52 @@
 #include "ovimap/instance/instance_summary.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
+#include <span>
 
 #include "ovimap/base/config.h"
-#include "ovimap/base/parallel.h"
-#include "ovimap/map/voxels/block_tiles.h"
-#include "ovimap/map/voxels/label_slots.h"
+#include "ovimap/instance/entity_fits.h"
 
 namespace ovimap {
 
 namespace {
 
-/// Adds the surface voxels of one block by label.
-void add_extents(const VoxelMap& map, const VoxelBlock& block, SurfaceExtents& extents) {
-  const float voxel_size = map.config().voxel_size_m;
-  for (int v = 0; v < kBlockVoxels; ++v) {
-    if (block.weight[static_cast<std::size_t>(v)] <= 0.f ||
-        std::fabs(map.distance_m(block, v)) >= voxel_size)
-      continue;
-    const Label label = voxel_label(block, v, map.labels());
-    if (label == kNoLabel) continue;
-    const Eigen::Vector3i offset(v & 7, v >> 3 & 7, v >> 6);
-    const Eigen::Vector3f center =
-        ((block.index * kBlockSide + offset).cast<float>().array() + 0.5f) * voxel_size;
-    SurfaceExtent& extent = extents[label];
-    ++extent.points;
-    extent.sum += center.cast<double>();
-    extent.box.extend(center);
-  }
+/// One frame alone showed it, in a mask that its source rates well and of which it is most: no leftover
+/// of something larger.
+bool seen_well_once(std::span<const EntityFit> fits, float least_fit) {
+  return fits.size() == 1 && fits[0].is_rated() && fits[0].rated_overlap() >= least_fit;
+}
+
+bool seen_enough(const InstanceSummary& summary, const EntityFits& fits,
+                 const InstanceSummaryConfig& config) {
+  if (summary.views >= config.min_instance_views) return true;
+  return summary.views == 1 && config.min_instance_views == 2 &&
+         seen_well_once(fits.of(summary.super_points), config.min_only_view_fit);
 }
 
 }  // namespace
+
+void describe(const SurfaceExtent& extent, InstanceSummary& summary) {
+  summary.points = extent.points;
+  summary.box = extent.box;
+  if (extent.points > 0)
+    summary.centroid = (extent.sum / static_cast<double>(extent.points)).cast<float>();
+}
 
 void list_fields(InstanceSummaryConfig& config, ConfigFields& fields) {
   fields.add("min_instance_voxels", config.min_instance_voxels, 0, 100000000,
              "instances with fewer surface voxels are left out");
   fields.add("min_instance_views", config.min_instance_views, 0, 1000000,
              "instances seen in fewer frames are left out");
+  fields.add("min_only_view_fit", config.min_only_view_fit, 0.f, 1.f,
+             "but where 2 frames are asked for, one is enough whose mask fits so well, times how "
+             "its source rates it");
   fields.add("min_part_views", config.min_part_views, 1, 1000000,
              "parts of objects that fewer frames tell from the rest of it are left out");
   fields.add("max_part_share", config.max_part_share, 0.f, 1.f,
              "so are parts that are more than this share of their object");
   fields.add("surface_spacing_m", config.surface_spacing_m, 0.001f, 10.f,
              "between the points of an instance that a map keeps apart from its voxels, metres");
-}
-
-SurfaceExtents surface_extents(const VoxelMap& map) {
-  SurfaceExtents totals;
-  for_each_part(map, [&](std::span<const Tile> tiles) {
-    std::vector<SurfaceExtents> extents(tiles.size());
-    parallel_for(tiles.size(), 2, [&](std::size_t i) {
-      for (const std::uint32_t slot : tiles[i].slots) add_extents(map, map.block(slot), extents[i]);
-    });
-    for (const SurfaceExtents& of_tile : extents)
-      for (const auto& [label, extent] : of_tile) {
-        SurfaceExtent& total = totals[label];
-        total.points += extent.points;
-        total.sum += extent.sum;
-        total.box.extend(extent.box);
-      }
-  });
-  return totals;
 }
 
 std::vector<InstanceSummary> summarize_instances(const VoxelMap& map,
@@ -78,26 +62,21 @@ std::vector<InstanceSummary> summarize_instances(const SurfaceExtents& extents,
                                                  const InstanceRegistry& registry,
                                                  const InstanceSummaryConfig& config) {
   const std::vector<InstanceId> instance_of = registry.instance_table(forest);
-  std::map<InstanceId, InstanceSummary> summaries;
-  std::map<InstanceId, Eigen::Vector3d> sums;
-  for (const auto& [label, extent] : extents) {
-    const InstanceId id = label < instance_of.size() ? instance_of[label] : 0;
-    if (id == 0) continue;
-    InstanceSummary& summary = summaries[id];
-    summary.points += extent.points;
-    summary.box.extend(extent.box);
-    sums.try_emplace(id, Eigen::Vector3d::Zero()).first->second += extent.sum;
-  }
+  std::map<InstanceId, SurfaceExtent> totals;
+  for (const auto& [label, extent] : extents)
+    if (const InstanceId id = label < instance_of.size() ? instance_of[label] : 0; id != 0)
+      totals[id] += extent;
+  const EntityFits fits(extents, registry.entity_sightings());
   std::vector<InstanceSummary> result;
-  for (auto& [id, summary] : summaries) {
+  for (const auto& [id, extent] : totals) {
+    InstanceSummary summary;
+    summary.id = id;
     summary.views = registry.record(id).views;
     summary.super_points = registry.super_points_of(id);
-    if (summary.points < static_cast<std::size_t>(config.min_instance_voxels) ||
-        summary.views < config.min_instance_views)
-      continue;
-    summary.id = id;
-    summary.centroid = (sums.at(id) / static_cast<double>(summary.points)).cast<float>();
-    result.push_back(std::move(summary));
+    describe(extent, summary);
+    if (summary.points >= static_cast<std::size_t>(config.min_instance_voxels) &&
+        seen_enough(summary, fits, config))
+      result.push_back(std::move(summary));
   }
   return result;
 }
@@ -114,17 +93,9 @@ void measure_instances(const SurfaceExtents& extents, std::vector<InstanceSummar
   for (const auto& [label, extent] : extents) {
     const auto found = owner.find(label);
     if (found == owner.end()) continue;
-    SurfaceExtent& total = totals[found->second];
-    total.points += extent.points;
-    total.sum += extent.sum;
-    total.box.extend(extent.box);
+    totals[found->second] += extent;
   }
-  for (std::size_t i = 0; i < instances.size(); ++i) {
-    instances[i].points = totals[i].points;
-    instances[i].box = totals[i].box;
-    if (totals[i].points > 0)
-      instances[i].centroid = (totals[i].sum / static_cast<double>(totals[i].points)).cast<float>();
-  }
+  for (std::size_t i = 0; i < instances.size(); ++i) describe(totals[i], instances[i]);
 }
 
 }  // namespace ovimap

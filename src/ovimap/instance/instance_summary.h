@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "ovimap/instance/instance_registry.h"
+#include "ovimap/instance/surface_extents.h"
 #include "ovimap/map/voxels/voxel_map.h"
 
 namespace ovimap {
@@ -19,6 +20,8 @@ struct InstanceSummaryConfig {
   float surface_spacing_m =
       0.02f;  ///< between the points of an instance that a map keeps apart from its voxels
   int min_instance_views = 2;  ///< instances seen in fewer frames are left out
+  float min_only_view_fit = 0.5f;  ///< ... but of two, one is enough whose mask fits so well, times how
+                                   ///< its source rates it (EntityFit)
   int min_part_views = 3;      ///< parts of objects told by fewer frames are left out
   float max_part_share = 0.8f;  ///< so are those that are more of their object
 };
@@ -34,16 +37,8 @@ struct InstanceSummary {
   std::vector<Label> super_points;  ///< roots, ascending
 };
 
-/// Surface voxels of one super-point.
-struct SurfaceExtent {
-  std::size_t points = 0;
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();  ///< of their centres, world, metres
-  Eigen::AlignedBox3f box;
-};
-using SurfaceExtents = std::map<Label, SurfaceExtent>;  ///< by root
-
-/// Measures the whole map, tile after tile.
-SurfaceExtents surface_extents(const VoxelMap& map);
+/// Sets its points, box and centroid.
+void describe(const SurfaceExtent& extent, InstanceSummary& summary);
 
 /// Gathers every instance's geometry by one pass over the map. Ordered by id.
 std::vector<InstanceSummary> summarize_instances(const VoxelMap& map,

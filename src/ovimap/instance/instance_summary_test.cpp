@@ -46,5 +46,44 @@ TEST(SummarizeInstances, LeavesOutWhatIsSmallOrSeenOnce) {
           .empty());
 }
 
+SurfaceExtent surface_of(int points) {
+  SurfaceExtent extent;
+  for (int i = 0; i < points; ++i) extent.add({0.01f * static_cast<float>(i), 0, 0});
+  return extent;
+}
+
+/// Super-points that are an instance each, seen as often as they are sighted.
+std::vector<InstanceSummary> listed(const EntitySightings& sightings,
+                                    const SurfaceExtents& extents) {
+  LabelForest forest;
+  InstanceRegistry::State state;
+  for (const auto& [root, seen] : sightings) {
+    forest.create();
+    SuperPoint& point = state.super_points[root];
+    point.votes[++state.last_id] = static_cast<int>(seen.size());
+    point.seen = FrameRuns({{0, static_cast<std::uint32_t>(seen.size())}});
+  }
+  state.entity_sightings = sightings;
+  InstanceRegistry registry;
+  registry.restore(state);
+  return summarize_instances(extents, forest, registry, {});
+}
+
+TEST(SummarizeInstances, KeepsWhatWasSeenOnceInAGoodMask) {
+  const SurfaceExtents extents{{1, surface_of(100)}};
+  EXPECT_EQ(listed({{1, {{0, 7, 200}}}}, extents).size(), 1u);
+  EXPECT_TRUE(listed({{1, {{0, 7, 100}}}}, extents).empty()) << "a doubtful mask";
+  EXPECT_TRUE(listed({{1, {{0, 7}}}}, extents).empty()) << "nobody said how good it is";
+}
+
+TEST(SummarizeInstances, LeavesOutALeftoverOfWhatAGoodMaskShowed) {
+  const EntitySightings sightings{{1, {{0, 7, 200}}}, {2, {{0, 7, 200}, {1, 3, 200}}}};
+  const auto ids = [&](int first, int second) {
+    return listed(sightings, {{1, surface_of(first)}, {2, surface_of(second)}}).size();
+  };
+  EXPECT_EQ(ids(100, 50), 2u);
+  EXPECT_EQ(ids(50, 100), 1u);
+}
+
 }  // namespace
 }  // namespace ovimap

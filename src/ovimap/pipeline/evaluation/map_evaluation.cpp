@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "ovimap/base/config.h"
+#include "ovimap/instance/entity_fits.h"
 #include "ovimap/instance/instance_mesh.h"
 #include "ovimap/io/map_file/map_edits.h"
 #include "ovimap/io/mesh/ply.h"
@@ -74,6 +75,17 @@ Prediction load_prediction(const Truth& truth, const MapAndTruth& paths) {
   return {std::move(mesh), std::move(map)};
 }
 
+/// Of each object; none where no masks tell.
+std::map<InstanceId, float> confidences(const Prediction& predicted) {
+  std::map<InstanceId, float> confidence;
+  if (!predicted.map || predicted.map->registry.entity_sightings.empty()) return confidence;
+  const SurfaceExtents extents = surface_extents(predicted.map->map);
+  const EntityFits fits(extents, predicted.map->registry.entity_sightings);
+  for (const InstanceSummary& instance : predicted.map->instances)
+    confidence[instance.id] = fits.confidence(instance.super_points);
+  return confidence;
+}
+
 void count_views(const MapDocument& map, int min_views, EvaluatedScene& scene) {
   InstanceRegistry registry(map.instance_config);  // knows objects too small for the list as well
   registry.restore(map.registry);
@@ -124,7 +136,8 @@ Draft draft_scene(const MapAndTruth& paths, const std::string& classes,
   draft.scene.sized = sized_scene(truth, labels);
   for (std::int32_t& id : truth.instances)
     if (truth.unscored.count(id) > 0) id = 0;
-  draft.scene.labels.instances = {std::move(truth.instances), std::move(labels), {}};
+  draft.scene.labels.instances = {std::move(truth.instances), std::move(labels),
+                                  confidences(predicted)};
   draft.classes = {paths.source, std::move(truth.classes), std::move(truth.class_names)};
   draft.embedded = predicted.map && has_embeddings(*predicted.map);
   if (draft.embedded) count_views(*predicted.map, config.min_embedded_views, draft.scene);

@@ -10,30 +10,8 @@ namespace ovimap {
 
 namespace {
 
-struct Extent {
-  std::size_t points = 0;
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  Eigen::AlignedBox3f box;
-
-  void add(const Eigen::Vector3f& point) {
-    ++points;
-    sum += point.cast<double>();
-    box.extend(point);
-  }
-  void add(const Extent& other) {
-    points += other.points;
-    sum += other.sum;
-    box.extend(other.box);
-  }
-  void fill(InstanceSummary& summary) const {
-    summary.points = points;
-    summary.box = box;
-    if (points > 0) summary.centroid = (sum / static_cast<double>(points)).cast<float>();
-  }
-};
-
-std::vector<Extent> extents_by_label(const Mesh& mesh) {
-  std::vector<Extent> extents;
+std::vector<SurfaceExtent> extents_by_label(const Mesh& mesh) {
+  std::vector<SurfaceExtent> extents;
   for (std::size_t v = 0; v < mesh.labels.size(); ++v) {
     const std::uint32_t label = mesh.labels[v];
     if (label >= extents.size()) extents.resize(label + 1);
@@ -92,32 +70,18 @@ Mesh labelled_surface(const MeshStore& store, const LabelTable& table,
 std::vector<InstanceSummary> find_instances(const Mesh& mesh, const LabelForest& forest,
                                             const InstanceRegistry& registry,
                                             const InstanceSummaryConfig& config) {
-  std::map<Label, Extent> by_root;
-  const std::vector<Extent> by_label = extents_by_label(mesh);
+  SurfaceExtents by_root;
+  const std::vector<SurfaceExtent> by_label = extents_by_label(mesh);
   for (Label label = 1; label < by_label.size(); ++label)
-    if (by_label[label].points > 0) by_root[forest.root(label)].add(by_label[label]);
-  std::map<InstanceId, Extent> found;
-  for (const auto& [root, extent] : by_root)
-    if (const InstanceId id = registry.instance_of(root); id != 0) found[id].add(extent);
-  std::vector<InstanceSummary> result;
-  for (const auto& [id, extent] : found) {
-    InstanceSummary summary;
-    summary.id = id;
-    summary.views = registry.record(id).views;
-    summary.super_points = registry.super_points_of(id);
-    extent.fill(summary);
-    if (summary.points >= static_cast<std::size_t>(config.min_instance_voxels) &&
-        summary.views >= config.min_instance_views)
-      result.push_back(std::move(summary));
-  }
-  return result;
+    if (by_label[label].points > 0) by_root[forest.root(label)] += by_label[label];
+  return summarize_instances(by_root, forest, registry, config);
 }
 
 void measure_on_surface(const Mesh& mesh, float spacing_m, MapRecord& record) {
-  const std::vector<Extent> extents = extents_by_label(mesh);
+  const std::vector<SurfaceExtent> extents = extents_by_label(mesh);
   for (auto* list : {&record.instances, &record.hidden})
     for (InstanceSummary& instance : *list)
-      (instance.id < extents.size() ? extents[instance.id] : Extent{}).fill(instance);
+      describe(instance.id < extents.size() ? extents[instance.id] : SurfaceExtent{}, instance);
   record.surfaces = sample_surfaces(mesh, spacing_m);
 }
 
