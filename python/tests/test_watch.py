@@ -187,11 +187,11 @@ class Hook:
                 body = self.rfile.read(int(self.headers["Content-Length"]))
                 hook.tries += 1
                 taken = hook.tries > refuse
+                if taken:  # noted before the answer, after which the next event comes to another thread
+                    hook.events.put((self.path, self.headers["Content-Type"], json.loads(body)))
                 self.send_response(status if taken else 500)
                 self.send_header("Location", "/elsewhere")
                 self.end_headers()
-                if taken:
-                    hook.events.put((self.path, self.headers["Content-Type"], json.loads(body)))
 
             def log_message(self, *_):
                 pass
