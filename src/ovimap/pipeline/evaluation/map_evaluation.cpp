@@ -75,10 +75,17 @@ Prediction load_prediction(const Truth& truth, const MapAndTruth& paths) {
   return {std::move(mesh), std::move(map)};
 }
 
-/// Of each object; none where no masks tell.
+bool is_any_rated(const EntitySightings& sightings) {
+  for (const auto& [root, seen] : sightings)
+    if (std::any_of(seen.begin(), seen.end(), [](const auto& one) { return one.is_rated(); }))
+      return true;
+  return false;
+}
+
+/// Of each object; none where nobody rated the masks: pieces of depth fit what is made of them.
 std::map<InstanceId, float> confidences(const Prediction& predicted) {
   std::map<InstanceId, float> confidence;
-  if (!predicted.map || predicted.map->registry.entity_sightings.empty()) return confidence;
+  if (!predicted.map || !is_any_rated(predicted.map->registry.entity_sightings)) return confidence;
   const SurfaceExtents extents = surface_extents(predicted.map->map);
   const EntityFits fits(extents, predicted.map->registry.entity_sightings);
   for (const InstanceSummary& instance : predicted.map->instances)
