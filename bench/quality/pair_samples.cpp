@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "ovimap/eval/scenes/overlap.h"
 #include "ovimap/eval/scores/standard_scores.h"
 #include "ovimap/instance/consensus/judged_contraction.h"
 #include "ovimap/io/map_file/map_file.h"
@@ -125,62 +126,54 @@ void write_samples(const MapDocument& document, const LabelledTruth& truth,
   std::fclose(file);
 }
 
-/// The best IoU of each true thing with any object.
-std::map<std::int32_t, double> best_overlaps(const LabelledScene& scene) {
-  std::map<std::int32_t, int> truths, objects;
-  std::map<std::pair<std::int32_t, std::uint32_t>, int> both;
-  for (std::size_t i = 0; i < scene.truth.size(); ++i) {
-    const auto object = scene.predicted[i];
-    ++truths[scene.truth[i]], ++objects[static_cast<std::int32_t>(object)];
-    if (scene.truth[i] > 0 && object > 0) ++both[{scene.truth[i], object}];
-  }
-  std::map<std::int32_t, double> best;
-  for (const auto& [pair, count] : both) {
-    const int either =
-        truths[pair.first] + objects[static_cast<std::int32_t>(pair.second)] - count;
-    double& overlap = best[pair.first];
-    overlap = std::max(overlap, static_cast<double>(count) / either);
-  }
+using Overlaps = std::array<InstanceOverlaps, 3>;
+
+/// The best IoU of a true thing, at its place among all, with any object.
+double best_iou(const InstanceOverlaps& table, std::size_t thing) {
+  double best = 0;
+  for (const InstanceOverlap& overlap : table.overlaps)
+    if (overlap.truth == thing) best = std::max(best, overlap.iou());
   return best;
 }
 
-void print_things(const Truth& truth, const std::array<LabelledScene, 3>& scenes) {
-  std::map<std::int32_t, int> sizes;
-  for (const std::int32_t id : scenes[0].truth)
-    if (id > 0) ++sizes[id];
-  std::array<std::map<std::int32_t, double>, 3> best;
-  for (std::size_t i = 0; i < scenes.size(); ++i) best[i] = best_overlaps(scenes[i]);
-  for (const auto& [id, size] : sizes) {
-    const auto name = truth.instance_names.find(id);
-    std::printf("%-6d %-22s %8d points  map %.2f judge %.2f perfect %.2f\n", id,
-                name == truth.instance_names.end() ? "" : name->second.c_str(), size, best[0][id],
-                best[1][id], best[2][id]);
+void print_things(const Truth& truth, const Overlaps& tables) {
+  for (std::size_t thing = 0; thing < tables[0].truth.size(); ++thing) {
+    const InstanceSize& size = tables[0].truth[thing];
+    const auto name = truth.instance_names.find(static_cast<std::int32_t>(size.id));
+    std::printf("%-6lld %-22s %8lld points  map %.2f judge %.2f perfect %.2f\n",
+                static_cast<long long>(size.id),
+                name == truth.instance_names.end() ? "" : name->second.c_str(),
+                static_cast<long long>(size.vertices), best_iou(tables[0], thing),
+                best_iou(tables[1], thing), best_iou(tables[2], thing));
   }
+}
+
+std::map<Label, std::uint32_t> object_by_label(std::span<const InstanceSummary> objects) {
+  std::map<Label, std::uint32_t> object_of;
+  for (const InstanceSummary& object : objects)
+    for (const Label label : object.super_points) object_of[label] = object.id;
+  return object_of;
 }
 
 void print_scores(const MapDocument& document, const LabelledTruth& truth,
                   const SuperPointShapes& shapes) {
-  std::map<Label, std::uint32_t> found, ideal;
-  for (const InstanceSummary& object : document.instances)
-    for (const Label label : object.super_points) found[label] = object.id;
   InstanceRegistry registry(document.instance_config);
   registry.restore(document.registry);
-  const EntitySightings& sightings = document.registry.entity_sightings;
-  std::map<Label, std::vector<Label>> members;
-  std::map<Label, std::uint32_t> judged;
-  for (const auto& [root, object] : contract_by_judge(
-           roots_of(sightings), sightings, shapes, document.instance_config.consensus.apart_weight))
-    if (registry.instance_of(root) != 0) members[object].push_back(root);
-  for (const auto& [object, roots] : members)
-    if (record_of(registry.super_points(), roots).views >= InstanceSummaryConfig().min_instance_views)
-      for (const Label root : roots) judged[root] = object;
+  registry.settle(shapes);
+  std::map<Label, std::uint32_t> ideal;
   for (const auto& [label, shares] : truth.shares)
     ideal[label] = static_cast<std::uint32_t>(std::max(owner(shares), 0));
-  const std::array<LabelledScene, 3> scenes{truth.scene(found), truth.scene(judged),
-                                            truth.scene(ideal)};
+  const std::array<LabelledScene, 3> scenes{
+      truth.scene(object_by_label(document.instances)),
+      truth.scene(object_by_label(summarize_instances(document.map, registry, {}))),
+      truth.scene(ideal)};
   const std::array<const char*, 3> names{"map", "judge", "perfect"};
-  for (std::size_t i = 0; i < scenes.size(); ++i) truth.print(names[i], scenes[i]);
-  print_things(truth.truth, scenes);
+  Overlaps tables;
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    truth.print(names[i], scenes[i]);
+    tables[i] = count_overlaps(scenes[i].truth, scenes[i].predicted, Background::kNotPositive);
+  }
+  print_things(truth.truth, tables);
 }
 
 }  // namespace
