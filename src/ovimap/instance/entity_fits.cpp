@@ -39,7 +39,7 @@ std::vector<EntityFit> EntityFits::of(std::span<const Label> super_points) const
   std::map<std::uint32_t, EntityFit> best;
   for (const auto& [sighting, shared] : own) {
     const std::size_t either = in_sight.at(sighting.frame) + points_.at(sighting) - shared;
-    const EntityFit fit{static_cast<float>(shared) / static_cast<float>(either), sighting.rating};
+    const EntityFit fit{static_cast<float>(shared) / static_cast<float>(either), sighting};
     EntityFit& known = best[sighting.frame];
     if (fit.rated_overlap() > known.rated_overlap()) known = fit;
   }

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <map>
 #include <span>
 #include <vector>
@@ -17,10 +16,9 @@ namespace ovimap {
 /// surface, with what of the object the frame shows in entities.
 struct EntityFit {
   float overlap = 0;
-  std::uint8_t rating = kHighestRating;  ///< of that entity
-  bool is_rated() const { return rating < kHighestRating; }
+  EntitySighting entity;
   float rated_overlap() const {
-    return overlap * static_cast<float>(rating) / static_cast<float>(kHighestRating);
+    return overlap * static_cast<float>(entity.rating) / static_cast<float>(kHighestRating);
   }
 };
 

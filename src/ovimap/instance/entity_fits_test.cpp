@@ -27,7 +27,7 @@ TEST(EntityFits, ComparesEachFramesBestEntityWithWhatIsInSight) {
   ASSERT_EQ(both.size(), 3u);
   EXPECT_FLOAT_EQ(both[0].overlap, 1.f) << "one entity shows both";
   EXPECT_FLOAT_EQ(both[1].overlap, 60.f / 90) << "the larger one's, in the better mask";
-  EXPECT_EQ(both[1].rating, kHalf);
+  EXPECT_EQ(both[1].entity.rating, kHalf);
   EXPECT_FLOAT_EQ(both[2].overlap, 1.f) << "the other one is out of sight";
   EXPECT_FLOAT_EQ(fits.of(std::vector<Label>{1})[0].overlap, 60.f / 90);
   EXPECT_FLOAT_EQ(fits.confidence(std::vector<Label>{1, 2}), (2 + 60.f / 90 * kHalf / 255) / 5);

@@ -130,8 +130,7 @@ void InstanceRegistry::see_entities(const Segments& segments,
     ++point.votes.begin()->second;
     entity_of_root[root] = most->first;
   }
-  consensus_.observe(entity_of_root, has_entities ? std::span<const float>(segments.ratings)
-                                                  : std::span<const float>());
+  consensus_.observe(entity_of_root, segments.ratings);
 }
 
 void InstanceRegistry::settle() {

@@ -16,7 +16,7 @@ namespace {
 /// One frame alone showed it, in a mask that its source rates well and of which it is most: no leftover
 /// of something larger.
 bool seen_well_once(std::span<const EntityFit> fits, float least_fit) {
-  return fits.size() == 1 && fits[0].is_rated() && fits[0].rated_overlap() >= least_fit;
+  return fits.size() == 1 && fits[0].entity.is_rated() && fits[0].rated_overlap() >= least_fit;
 }
 
 bool seen_enough(const InstanceSummary& summary, const EntityFits& fits,
