@@ -8,7 +8,6 @@ scene `studio` nothing is shared but Blender and the primitives of furnish.py.
 Usage: random_rooms.py OUT [--seeds 1:46] [--frames 8] [--size 400x300] [--samples 8]
 README.md beside this file says what to install. A broken-off run goes on with the rooms that are missing."""
 import argparse
-import json
 import math
 import pathlib
 import random
