@@ -33,6 +33,7 @@ COLUMNS = {
     "instances": "id, min_x, min_y, min_z, max_x, max_y, max_z, centroid_x, centroid_y, centroid_z, points, views",
     "instance_super_points": "instance, label",
     "instance_names": "id, name",
+    "instance_confidences": "id, confidence",
     "frames": "position, source_index, timestamp_s, name, world_from_camera, labelled",
     "embeddings": "instance, embedding",
     "surfaces": "instance, points",
@@ -62,6 +63,7 @@ for found in ("instances", "surfaces", "embeddings"):
     COLUMNS[f"corrected_{found}"] = COLUMNS[found]
 COLUMNS["corrected_super_points"] = COLUMNS["instance_super_points"]
 COLUMNS["corrected_names"] = COLUMNS["instance_names"]
+COLUMNS["corrected_confidences"] = COLUMNS["instance_confidences"]
 
 
 def row_hash(row):

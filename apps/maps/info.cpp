@@ -7,6 +7,7 @@
 #include "ovimap/io/map_file/map_check.h"
 #include "ovimap/io/map_file/map_file.h"
 #include "ovimap/io/map_file/map_file_access.h"
+#include "ovimap/pipeline/revise/percent_text.h"
 #include "ovimap/pipeline/search/history_dates.h"
 #include "ovimap/pipeline/search/scene_graph.h"
 #include "ovimap/pipeline/sequence/timings_text.h"
@@ -137,16 +138,17 @@ int info(const InfoOptions& options) {
   if (tiles.evicted > 0)
     std::printf("made within a bound on memory: %zu tiles left it, %zu came back\n", tiles.evicted,
                 tiles.loaded);
-  std::printf("%6s  %-24s %24s %24s %8s %6s\n", "id", "name", "centroid (m)", "size (m)", "points",
-              "views");
+  std::printf("%6s  %-24s %24s %24s %8s %6s %6s\n", "id", "name", "centroid (m)", "size (m)",
+              "points", "views", "whole");
   const auto parts = parts_by_object(map.parts, map.instances);
   for (const InstanceSummary& instance : map.instances) {
     const Eigen::Vector3f center = instance.centroid, size = instance.box.sizes();
     const auto name = map.names.find(instance.id);
-    std::printf("%6u  %-24s %8.2f%8.2f%8.2f %8.2f%8.2f%8.2f %8zu %6d\n", instance.id,
+    std::printf("%6u  %-24s %8.2f%8.2f%8.2f %8.2f%8.2f%8.2f %8zu %6d %6s\n", instance.id,
                 name == map.names.end() ? "" : name->second.c_str(), double{center.x()},
                 double{center.y()}, double{center.z()}, double{size.x()}, double{size.y()},
-                double{size.z()}, instance.points, instance.views);
+                double{size.z()}, instance.points, instance.views,
+                instance.confidence ? percent_text(*instance.confidence).c_str() : "");
     if (const auto of_it = parts.find(instance.id); options.parts && of_it != parts.end())
       print_parts(of_it->second);
   }

@@ -33,12 +33,13 @@ using Colors = nb::ndarray<nb::numpy, const std::uint8_t, nb::shape<-1, 3>>;
 using Triangles = nb::ndarray<nb::numpy, const std::uint32_t, nb::shape<-1, 3>>;
 using Ids = nb::ndarray<nb::numpy, const std::uint32_t, nb::ndim<1>>;
 using Counts = nb::ndarray<nb::numpy, const std::int64_t, nb::ndim<1>>;
+using Shares = nb::ndarray<nb::numpy, const float, nb::ndim<1>>;
 using Boxes = nb::ndarray<nb::numpy, const float, nb::shape<-1, 2, 3>>;
 
 /// The objects of a map, one row each.
 struct Instances {
   std::vector<std::uint32_t> ids;
-  std::vector<float> boxes, centroids;
+  std::vector<float> boxes, centroids, confidences;
   std::vector<std::int64_t> points, views;
   std::vector<std::string> names;
   std::vector<std::vector<std::string>> writing;
@@ -53,6 +54,8 @@ Instances instances_of(const SavedMap& map) {
     all.centroids.insert(all.centroids.end(), instance.centroid.begin(), instance.centroid.end());
     all.points.push_back(static_cast<std::int64_t>(instance.points));
     all.views.push_back(instance.views);
+    all.confidences.push_back(
+        instance.confidence.value_or(std::numeric_limits<float>::quiet_NaN()));
     const auto name = map.info().names.find(instance.id);
     all.names.push_back(name == map.info().names.end() ? "" : name->second);
     std::vector<std::string>& texts = all.writing.emplace_back();
@@ -96,6 +99,13 @@ void bind_instances(nb::module_& module) {
             return view<Counts>(all.views.data(), {all.ids.size()}, nb::find(all));
           },
           "int64 [objects]: frames in which it was seen")
+      .def_prop_ro(
+          "confidences",
+          [](const Instances& all) {
+            return view<Shares>(all.confidences.data(), {all.ids.size()}, nb::find(all));
+          },
+          "float32 [objects]: how sure masks are that it is one whole thing, 0 to 1; NaN where nobody "
+          "rated them, and of what a person put together")
       .def_ro("names", &Instances::names, "given by people; empty strings otherwise")
       .def_ro("writing", &Instances::writing,
               "texts that `ovimap read` read on each, surest first")

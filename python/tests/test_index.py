@@ -44,7 +44,8 @@ def table(name, embeddings):
     known = pa.array(~np.any(embeddings, axis=1))
     return pa.table(
         [same(name), same("1"), same(""), pa.array(np.arange(rows, dtype=np.uint32)), same(""), corner, corner, corner,
-         pa.array(np.ones(rows, np.int64)), pa.array(np.ones(rows, np.int64)), same(ENCODER.name), same(ENCODER.digest),
+         pa.array(np.ones(rows, np.int64)), pa.array(np.ones(rows, np.int64)),
+         pa.nulls(rows, pa.float32()), same(ENCODER.name), same(ENCODER.digest),
          pa.FixedSizeListArray.from_arrays(flat(embeddings), ENCODER.dimension, mask=known)],
         schema=object_schema(ENCODER))
 

@@ -32,6 +32,7 @@ def object_schema(encoder: Encoder) -> pa.Schema:
             ("centroid", CORNER),
             ("points", pa.int64()),  # surface voxels
             ("views", pa.int64()),  # frames in which it was seen
+            ("confidence", pa.float32()),  # how sure masks are that it is one whole thing; null where nobody rated them
             ("encoder", pa.string()),
             ("encoder_digest", pa.string()),
             ("embedding", pa.list_(pa.float32(), encoder.dimension)),  # length 1; null where its look is unknown
@@ -66,6 +67,7 @@ def object_table(map: str | os.PathLike[str]) -> pa.Table:
         _rows(objects.centroids),
         pa.array(objects.points),
         pa.array(objects.views),
+        pa.array(objects.confidences, from_pandas=True),
         pa.repeat(encoder.name, count),
         pa.repeat(encoder.digest, count),
         _rows(opened.embeddings, known),

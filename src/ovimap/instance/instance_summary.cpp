@@ -26,6 +26,13 @@ bool seen_enough(const InstanceSummary& summary, const EntityFits& fits,
          seen_well_once(fits.of(summary.super_points), config.min_only_view_fit);
 }
 
+bool is_any_rated(const EntitySightings& sightings) {
+  for (const auto& [root, seen] : sightings)
+    if (std::any_of(seen.begin(), seen.end(), [](const auto& one) { return one.is_rated(); }))
+      return true;
+  return false;
+}
+
 }  // namespace
 
 void describe(const SurfaceExtent& extent, InstanceSummary& summary) {
@@ -66,7 +73,9 @@ std::vector<InstanceSummary> summarize_instances(const SurfaceExtents& extents,
   for (const auto& [label, extent] : extents)
     if (const InstanceId id = label < instance_of.size() ? instance_of[label] : 0; id != 0)
       totals[id] += extent;
-  const EntityFits fits(extents, registry.entity_sightings());
+  const EntitySightings& sightings = registry.entity_sightings();
+  const bool rated = is_any_rated(sightings);
+  const EntityFits fits(extents, sightings);
   std::vector<InstanceSummary> result;
   for (const auto& [id, extent] : totals) {
     InstanceSummary summary;
@@ -74,9 +83,11 @@ std::vector<InstanceSummary> summarize_instances(const SurfaceExtents& extents,
     summary.views = registry.record(id).views;
     summary.super_points = registry.super_points_of(id);
     describe(extent, summary);
-    if (summary.points >= static_cast<std::size_t>(config.min_instance_voxels) &&
-        seen_enough(summary, fits, config))
-      result.push_back(std::move(summary));
+    if (summary.points < static_cast<std::size_t>(config.min_instance_voxels) ||
+        !seen_enough(summary, fits, config))
+      continue;
+    if (rated) summary.confidence = fits.confidence(summary.super_points);
+    result.push_back(std::move(summary));
   }
   return result;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,9 @@ struct InstanceSummary {
   std::size_t points = 0;           ///< surface voxels
   int views = 0;                    ///< frames in which it was seen
   std::vector<Label> super_points;  ///< roots, ascending
+  /// How sure masks are that it is one whole thing, 0 to 1 (EntityFits); none where their source does
+  /// not rate them, and of what a person put together.
+  std::optional<float> confidence;
 };
 
 /// Sets its points, box and centroid.

@@ -61,6 +61,8 @@ export interface Instance {
   centroid: Point;
   points: number;
   views: number;
+  /** How sure masks are that it is one whole thing; null where nobody rated them. */
+  confidence: number | null;
   /** Nothing may change it before the lock is undone. */
   locked: boolean;
   crops: number[];

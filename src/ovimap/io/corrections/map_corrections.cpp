@@ -178,6 +178,7 @@ InstanceSummary united(const InstanceSummary& a, const InstanceSummary& b) {
   both.centroid += (b.centroid - a.centroid) * static_cast<float>(share);
   both.points += b.points;
   both.views = std::max(a.views, b.views);
+  both.confidence.reset();  // what masks said of either is not said of both
   return both;
 }
 

@@ -60,6 +60,7 @@ class MapCorrections : public ::testing::Test {
       instance.id = id;
       instance.super_points = labels;
       instance.views = static_cast<int>(id);
+      instance.confidence = 0.1f * static_cast<float>(id);
       record_.surfaces[id] = {{static_cast<float>(id), 0, 0}};
       for (const Label label : labels) {
         record_.registry.super_points[label] = {3, {{label + 10, 3}}, FrameRuns({{0, label}})};
@@ -131,6 +132,7 @@ TEST_F(MapCorrections, MergedObjectsAreOneWithEverythingTheyHad) {
   EXPECT_TRUE(merged.box.isApprox(direct[0].box));
   EXPECT_TRUE(merged.centroid.isApprox(direct[0].centroid, 1e-5f));
   EXPECT_EQ(merged.views, 7);
+  EXPECT_FALSE(merged.confidence.has_value());
   EXPECT_EQ(one.names.at(7), "cup");
   EXPECT_EQ(one.surfaces.at(7).size(), 3u);
   EXPECT_EQ(appearance_of(one, 7).views.size(), 5u);
@@ -152,6 +154,9 @@ TEST_F(MapCorrections, APartBecomesAnObject) {
   EXPECT_EQ(two.instances[2].views, 5);  // those of the super-points that each has
   EXPECT_EQ(two.instances[3].views, 6);
   EXPECT_EQ(asked_, 1);
+  EXPECT_EQ(two.instances[0].confidence, 0.1f);  // left alone
+  EXPECT_FALSE(two.instances[2].confidence.has_value());
+  EXPECT_FALSE(two.instances[3].confidence.has_value());
 }
 
 TEST_F(MapCorrections, APartTakesItsViewsAlong) {

@@ -28,14 +28,15 @@ std::string instances_csv(std::span<const InstanceSummary> instances,
                           const std::map<InstanceId, std::string>& names) {
   std::string csv =
       "id,name,min_x,min_y,min_z,max_x,max_y,max_z,centroid_x,centroid_y,centroid_z,points,"
-      "views\r\n";
+      "views,confidence\r\n";
   for (const InstanceSummary& instance : instances) {
     const auto name = names.find(instance.id);
     csv += std::to_string(instance.id) + ',' + (name == names.end() ? "" : quoted(name->second));
     for (const Eigen::Vector3f& point : {Eigen::Vector3f(instance.box.min()),
                                          Eigen::Vector3f(instance.box.max()), instance.centroid})
       for (const float value : point) csv += ',' + number(value);
-    csv += ',' + std::to_string(instance.points) + ',' + std::to_string(instance.views) + "\r\n";
+    csv += ',' + std::to_string(instance.points) + ',' + std::to_string(instance.views) + ',' +
+           (instance.confidence ? number(*instance.confidence) : "") + "\r\n";
   }
   return csv;
 }

@@ -14,15 +14,17 @@ TEST(InstanceCsv, QuotesWhatNeedsIt) {
   cup.centroid = {0.15f, -1.75f, 0};
   cup.points = 5000000000;
   cup.views = 3;
+  cup.confidence = 0.75f;
   nothing.id = 8;
   const std::string csv =
       instances_csv(std::vector{cup, nothing}, {{7, "cup, \"old\"\nblue"}, {9, "elsewhere"}});
   EXPECT_EQ(csv.substr(0, 9), "id,name,m");
   EXPECT_NE(csv.find("7,\"cup, \"\"old\"\"\nblue\",0.1,-2,0,0.2,-1.5,0.001,0.15,-1.75,0,5000000000,"
-                     "3\r\n"),
+                     "3,0.75\r\n"),
             std::string::npos)
       << csv;
   EXPECT_NE(csv.find("\r\n8,,"), std::string::npos);
+  EXPECT_TRUE(csv.ends_with(",0,\r\n")) << csv;  // nobody said how sure
 }
 
 }  // namespace

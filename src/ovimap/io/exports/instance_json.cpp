@@ -38,6 +38,7 @@ Json instance_json_value(const InstanceSummary& instance,
   entry["centroid"] = json_vector(instance.centroid);
   entry["points"] = instance.points;
   entry["views"] = instance.views;
+  if (instance.confidence) entry["confidence"] = json_number(*instance.confidence);
   entry["superpoints"] = instance.super_points;
   return entry;
 }

@@ -13,7 +13,7 @@
 namespace ovimap {
 
 /// Instances as a JSON object {"instances": [...]}, each {"id", "name", "box": {"min", "max"},
-/// "centroid", "points", "views", "superpoints"}; metres in the world frame. The name is "" when it
+/// "centroid", "points", "views", "confidence" where masks are rated, "superpoints"}; metres in the world frame. The name is "" when it
 /// has none; what is not UTF-8 in it is replaced.
 std::string instances_json(std::span<const InstanceSummary> instances,
                            const std::map<InstanceId, std::string>& names);
@@ -22,7 +22,7 @@ std::string instances_json(std::span<const InstanceSummary> instances,
 /// above), "hidden" and "locked" (ids, as people corrected the map), "history" ({"visits",
 /// "events"}, docs/changes.md), "voxel_size_m", "blocks", "size_bytes", "content_hash" (16 hexadecimal
 /// digits), "source", "version", "config"}; an instance of which parts are known has "parts", a list of
-/// {"name", "box", "centroid", "points", "views", "superpoints"}. And, where it was read, "writing": {"reader", "objects":
+/// {"name", "box", "centroid", "points", "views", "confidence", "superpoints"}. And, where it was read, "writing": {"reader", "objects":
 /// {"ID": [{"text", "confidence"}]}}. `path` is how the map is called in it.
 std::string info_json(const std::filesystem::path& path, const MapInfo& info);
 

@@ -107,6 +107,8 @@ TEST_F(MapFileDamage, EveryTableIsGuarded) {
                           "UPDATE instances SET min_x = 'left'",
                           "DELETE FROM instance_super_points WHERE label = 1",
                           "UPDATE instance_names SET name = 'cup'",
+                          "UPDATE instance_confidences SET confidence = 0.5",
+                          "DROP TABLE instance_confidences",
                           "UPDATE super_point_frames SET last_frame = 4 WHERE label = 1",
                           "UPDATE instance_aliases SET target = 3",
                           "UPDATE super_points SET frames_seen = 99999999999999",

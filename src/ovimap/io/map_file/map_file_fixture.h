@@ -117,12 +117,14 @@ inline MapDocument random_document(int block_count, std::uint32_t seed) {
   cup.points = 5000000000;
   cup.views = 3;
   cup.super_points = {1, 4};
+  cup.confidence = 2.f / 3.f;
   table.id = 3;
   table.views = 800;
   document.instances = {cup, table};
   ObjectPart handle = cup;
   handle.id = 4;
   handle.super_points = {4};
+  handle.confidence.reset();
   handle.views = 4;
   document.parts = {handle};
   document.names = {{1, "Tasse \xc3\xa4 'x'\n\"y\""}, {2, ""}};
@@ -214,7 +216,7 @@ inline bool same_voxels(const VoxelMap& a, const VoxelMap& b) {
 inline bool same_instance(const InstanceSummary& a, const InstanceSummary& b) {
   return a.id == b.id && a.box.min() == b.box.min() && a.box.max() == b.box.max() &&
          a.centroid == b.centroid && a.points == b.points && a.views == b.views &&
-         a.super_points == b.super_points;
+         a.super_points == b.super_points && a.confidence == b.confidence;
 }
 
 inline bool same_instances(const std::vector<InstanceSummary>& a,

@@ -116,6 +116,28 @@ void write_registry(SQLite::Database& database, const InstanceRegistry::State& s
   aliases.finish();
 }
 
+void write_confidences(SQLite::Database& database, const MapRecord& record, const MapTable& table) {
+  const auto is_rated = [](const InstanceSummary& one) { return one.confidence.has_value(); };
+  if (std::none_of(record.instances.begin(), record.instances.end(), is_rated)) return;
+  RowWriter rows(database, table);
+  for (const InstanceSummary& instance : record.instances)
+    if (instance.confidence) rows.insert(instance.id, *instance.confidence);
+  rows.finish();
+}
+
+void read_confidences(SQLite::Database& database, const MapTable& table,
+                      std::map<InstanceId, InstanceSummary>& instances) {
+  if (!holds_table(database, table)) return;
+  RowReader rows(database, table);
+  while (rows.next()) {
+    const auto found = instances.find(rows.integer<InstanceId>());
+    if (found == instances.end()) rows.fail("names an instance that is not there");
+    const auto confidence = static_cast<float>(rows.real());
+    if (!(confidence >= 0 && confidence <= 1)) rows.fail("has a confidence beyond 0 and 1");
+    found->second.confidence = confidence;
+  }
+}
+
 }  // namespace
 
 Label take_label(RowReader& rows, const LabelForest& forest) {
@@ -147,6 +169,7 @@ void write_instances(SQLite::Database& database, const MapRecord& record,
   RowWriter names(database, tables.names);
   for (const auto& [id, name] : record.names) names.insert(id, name);
   names.finish();
+  write_confidences(database, record, tables.confidences);
 }
 
 void write_record(SQLite::Database& database, const MapRecord& record, const MapMeta& meta) {
@@ -202,6 +225,7 @@ void read_instances(SQLite::Database& database, MapRecord& record, const Instanc
     if (found == instances.end()) super_points.fail("names an instance that is not there");
     found->second.super_points.push_back(label);
   }
+  read_confidences(database, tables.confidences, instances);
   for (auto& [id, instance] : instances) record.instances.push_back(std::move(instance));
   RowReader names(database, tables.names);
   while (names.next()) {

@@ -14,13 +14,14 @@ namespace ovimap {
 
 /// Where objects are described: as mapping found them, and as people corrected them.
 struct InstanceTables {
-  const MapTable &instances, &super_points, &names;
+  const MapTable &instances, &super_points, &names, &confidences;
 };
 inline constexpr InstanceTables kFoundInstanceTables{
-    map_tables::kInstances, map_tables::kInstanceSuperPoints, map_tables::kInstanceNames};
-inline constexpr InstanceTables kCorrectedInstanceTables{map_tables::kCorrectedInstances,
-                                                         map_tables::kCorrectedSuperPoints,
-                                                         map_tables::kCorrectedNames};
+    map_tables::kInstances, map_tables::kInstanceSuperPoints, map_tables::kInstanceNames,
+    map_tables::kInstanceConfidences};
+inline constexpr InstanceTables kCorrectedInstanceTables{
+    map_tables::kCorrectedInstances, map_tables::kCorrectedSuperPoints, map_tables::kCorrectedNames,
+    map_tables::kCorrectedConfidences};
 
 /// Maps of the first schema know nothing of looks.
 inline constexpr int kSchemaWithSemantics = 2;
@@ -37,7 +38,7 @@ LabelForest read_forest(SQLite::Database& database);
 /// The parts of the way back. Each fills its part of `record` and throws Error with a phrase when
 /// the file does not hold what was written.
 void write_instances(SQLite::Database& database, const MapRecord& record,
-                     const InstanceTables& tables);  ///< with their names
+                     const InstanceTables& tables);  ///< with their names and confidences
 void read_instances(SQLite::Database& database, MapRecord& record, const InstanceTables& tables);
 void read_frames(SQLite::Database& database, MapRecord& record);
 /// `forest`: the labels that the state may speak of.

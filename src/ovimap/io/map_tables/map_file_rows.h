@@ -43,6 +43,9 @@ inline constexpr MapTable kInstanceSuperPoints{
     "WITHOUT ROWID"};
 inline constexpr MapTable kInstanceNames{"instance_names", "id, name",
                                          "id INTEGER PRIMARY KEY, name TEXT NOT NULL"};
+/// Not in maps whose masks nobody rated.
+inline constexpr MapTable kInstanceConfidences{"instance_confidences", "id, confidence",
+                                               "id INTEGER PRIMARY KEY, confidence REAL NOT NULL"};
 inline constexpr MapTable kInstanceAliases{"instance_aliases", "id, target",
                                            "id INTEGER PRIMARY KEY, target INTEGER NOT NULL"};
 inline constexpr MapTable kSuperPoints{"super_points", "label, frames_seen",
@@ -194,6 +197,8 @@ inline constexpr MapTable kCorrectedSuperPoints{
     kInstanceSuperPoints.options};
 inline constexpr MapTable kCorrectedNames{"corrected_names", kInstanceNames.columns,
                                           kInstanceNames.definition};
+inline constexpr MapTable kCorrectedConfidences{
+    "corrected_confidences", kInstanceConfidences.columns, kInstanceConfidences.definition};
 inline constexpr MapTable kCorrectedSurfaces{"corrected_surfaces", kSurfaces.columns,
                                              kSurfaces.definition};
 inline constexpr MapTable kCorrectedEmbeddings{"corrected_embeddings", kEmbeddings.columns,
@@ -207,11 +212,11 @@ inline constexpr MapTable kChecks{
     "name TEXT PRIMARY KEY, rows INTEGER NOT NULL, hash INTEGER NOT NULL", "WITHOUT ROWID"};
 /// All of them.
 inline constexpr const MapTable* kAll[] = {
-    &kMeta, &kInstances, &kInstanceSuperPoints, &kInstanceNames, &kInstanceAliases, &kSuperPoints,
+    &kMeta, &kInstances, &kInstanceSuperPoints, &kInstanceNames, &kInstanceConfidences, &kInstanceAliases, &kSuperPoints,
     &kSuperPointFrames, &kVotes, &kLabelPairs, &kEntitySightings, &kEntityRatings, &kLabelForest, &kFrames,
     &kSuperPointLooks, &kSuperPointViews, &kWriting, &kThings, &kRecognized, &kEmbeddings, &kSurfaces, &kObjectParts, &kPartEmbeddings, &kBlocks, &kKeptFrames,
     &kInstanceRecords, &kAppearances, &kViews, &kVisits, &kVisitTimes, &kObjectEvents, &kPastObjects, &kSeenFree, &kSuspectSpace, &kMovers, &kLiveSteps, &kEdits, &kCorrectedInstances,
-    &kCorrectedSuperPoints, &kCorrectedNames, &kCorrectedSurfaces, &kCorrectedEmbeddings,
+    &kCorrectedSuperPoints, &kCorrectedNames, &kCorrectedConfidences, &kCorrectedSurfaces, &kCorrectedEmbeddings,
     &kCorrectedFlags, &kChecks};
 }  // namespace map_tables
 

@@ -7,7 +7,6 @@
 #include <memory>
 
 #include "ovimap/base/config.h"
-#include "ovimap/instance/entity_fits.h"
 #include "ovimap/instance/instance_mesh.h"
 #include "ovimap/io/map_file/map_edits.h"
 #include "ovimap/io/mesh/ply.h"
@@ -75,21 +74,16 @@ Prediction load_prediction(const Truth& truth, const MapAndTruth& paths) {
   return {std::move(mesh), std::move(map)};
 }
 
-bool is_any_rated(const EntitySightings& sightings) {
-  for (const auto& [root, seen] : sightings)
-    if (std::any_of(seen.begin(), seen.end(), [](const auto& one) { return one.is_rated(); }))
-      return true;
-  return false;
-}
-
-/// Of each object; none where nobody rated the masks: pieces of depth fit what is made of them.
+/// Of each object; none where nobody rated the masks: pieces of depth fit what is made of them. What a person put
+/// together is surest.
 std::map<InstanceId, float> confidences(const Prediction& predicted) {
   std::map<InstanceId, float> confidence;
-  if (!predicted.map || !is_any_rated(predicted.map->registry.entity_sightings)) return confidence;
-  const SurfaceExtents extents = surface_extents(predicted.map->map);
-  const EntityFits fits(extents, predicted.map->registry.entity_sightings);
-  for (const InstanceSummary& instance : predicted.map->instances)
-    confidence[instance.id] = fits.confidence(instance.super_points);
+  if (!predicted.map) return confidence;
+  const std::vector<InstanceSummary>& instances = predicted.map->instances;
+  if (std::none_of(instances.begin(), instances.end(), [](const auto& one) { return one.confidence.has_value(); }))
+    return confidence;
+  for (const InstanceSummary& instance : instances)
+    confidence[instance.id] = instance.confidence.value_or(1.f);
   return confidence;
 }
 

@@ -9,6 +9,7 @@
 #include "ovimap/io/pictures/palette.h"
 #include "ovimap/pipeline/report/html_text.h"
 #include "ovimap/pipeline/report/map_report_style.h"
+#include "ovimap/pipeline/revise/percent_text.h"
 #include "ovimap/pipeline/sequence/timings_text.h"
 
 namespace ovimap {
@@ -154,6 +155,7 @@ std::string facts(const MapRecord& map, const InstanceSummary& instance) {
       fact("Size", triple(sizes, " &times; ") + " m"),
       fact("Points", grouped_number(instance.points)),
       fact("Views", grouped_number(static_cast<std::size_t>(instance.views))),
+      instance.confidence ? fact("Whole by its masks", percent_text(*instance.confidence)) : "",
       fact("Encoder queries", grouped_number(static_cast<std::size_t>(look.queries))),
       "</dl>\n");
 }

@@ -108,6 +108,7 @@ json instance_json(const MapSnapshot& now, std::size_t position) {
           {"centroid", rounded_point(instance.centroid)},
           {"points", instance.points},
           {"views", instance.views},
+          {"confidence", instance.confidence ? rounded_json(*instance.confidence) : json()},
           {"locked", now.record->locked.contains(instance.id)},
           {"crops", crops_of(now, instance)},
           {"writing", writing_of(now, instance.id)}};
