@@ -29,6 +29,9 @@ endif()
 # Results must not depend on how the compiler fuses or reorders floating-point operations.
 # Nobody here reads errno or floating-point exception flags; saying so lets loops be vectorised.
 target_compile_options(ovimap_options INTERFACE -ffp-contract=off -fno-math-errno -fno-trapping-math)
+if(CMAKE_SYSTEM_PROCESSOR STREQUAL "aarch64")
+  target_compile_options(ovimap_options INTERFACE -U__ARM_FEATURE_FMA)  # by which Eigen would fuse there, and not elsewhere
+endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(ovimap_options INTERFACE -fpch-preprocess)  # for ccache
 endif()

@@ -63,7 +63,7 @@ import sys
 title, *paths = sys.argv[1:]
 maps = [sqlite3.connect(path) for path in paths]
 tables = [{name: rest for name, *rest in map.execute("SELECT name, rows, hash FROM checks WHERE name != 'meta'")} for map in maps]
-settings = [dict(map.execute("SELECT key, value FROM meta WHERE key NOT LIKE 'timing%'")) for map in maps]
+settings = [dict(map.execute("SELECT key, value FROM meta WHERE key NOT LIKE 'timing%' AND key NOT IN ('source', 'version')")) for map in maps]
 odd = [name for here, arm in (tables, settings) for name in here.keys() | arm.keys() if here.get(name) != arm.get(name)]
 print(f"{title}: {len(tables[0])} tables, " + (f"differing in {', '.join(sorted(odd))}" if odd else "the same"))
 sys.exit(bool(odd))
