@@ -80,23 +80,6 @@ TEST_F(ProgramTest, WritesAndScoresEntities) {
   expect_complaint("masks recording --score --masks truth", {"instance images"});
 }
 
-TEST_F(ProgramTest, MapsTwiceWhenAskedTo) {
-  const std::string network = "run replica/scene --encoder none --masks " + golden_model("sam/batched") +
-                              " --set mask_interval=1 --set masks.sam.min_mask_px=8 --json -o ";
-  const nlohmann::json once = run_json(network + "a.ovimap"),
-                       twice = run_json(network + "b.ovimap --second-pass");
-  EXPECT_EQ(twice["frames"], once["frames"]);
-  EXPECT_EQ(twice["mask_frames"], once["frames"]);
-  const std::string anew = "run replica/scene -o c.ovimap --encoder none --second-pass ";
-  expect_complaint(anew, {"second pass", "--masks sam"});
-  expect_complaint(anew + "--masks gt", {"second pass", "--masks sam"});
-  expect_complaint(anew + "--masks " + golden_model("sam/batched") + " --poses track",
-                   {"--trajectory", "--second-pass"});
-  expect_complaint(anew + "--masks " + golden_model("sam/batched") + " --max-memory 100M",
-                   {"--max-memory", "--second-pass"});
-  expect_complaint(anew + "--live", {"--live", "--second-pass"});
-}
-
 TEST_F(ProgramTest, SaysHowManyFramesHadMasks) {
   ASSERT_EQ(run("masks replica/scene --masks gt -o some").code, 0);
   for (const auto& entry : std::filesystem::directory_iterator(path("some")))

@@ -184,33 +184,6 @@ MappingRun finished_run(MappingInputs&& inputs, MapHeader header, Mapper&& mappe
   return run;
 }
 
-/// The map whose objects a second pass asks for; nothing of it is saved. Throws Error when the
-/// options leave no place for two passes.
-std::unique_ptr<Mapper> first_pass(const MappingInputs& inputs, const std::string& title) {
-  if (!inputs.masks || !inputs.masks->is_slow())
-    throw Error("a second pass asks a network again; give --masks sam or another network, or leave "
-                "--second-pass away");
-  if (inputs.tracking)
-    throw Error("a second pass needs poses that are known beforehand; write them down with "
-                "--trajectory, give those, or leave --second-pass away");
-  if (inputs.config.memory.max_mb > 0)
-    throw Error("a second pass keeps the first map in memory beside its own; leave --max-memory or "
-                "--second-pass away");
-  MapperConfig config = inputs.config.mapper;
-  config.frame_store.max_mb = 0;
-  auto mapper = std::make_unique<Mapper>(config, inputs.masks);
-  Progress progress(concat(title, ", first pass"));
-  run_sequence(*inputs.source, inputs.range, *mapper,
-               [&](std::size_t done, std::size_t total, const FrameReport*) {
-                 progress.show(done, total);
-                 return !interrupted();
-               });
-  if (interrupted())
-    throw Error("stopped in the first of two passes, which leaves no map; a run without "
-                "--second-pass keeps what it has by then");
-  return mapper;
-}
-
 /// What the visit changed. Both maps share a bound on memory: voxels of the one before wait in a file
 /// beside the checkpoint.
 void tell_visit(const RunTarget& target, const MemoryConfig& memory, TileKeeper& tiles,
@@ -281,14 +254,8 @@ MappingRun map_recording(const MappingOptions& options, const std::string& title
   Mapper mapper(inputs.config.mapper, inputs.masks, inputs.encoder);
   mapper.recognize_with(inputs.recognizer);
   MapHeader header = make_header(inputs, options, mapper.config());
-  if (target.twice) header.config_text.insert(0, "# second pass\n");
   SequenceResult sequence = resume(begun, header, inputs, mapper);
   auto checkpoints = make_checkpointer(begun, inputs, header, sequence.frames.size());
-  std::unique_ptr<Mapper> guide;
-  if (target.twice) {
-    guide = first_pass(inputs, title);
-    mapper.ask_for_objects_of(*guide);
-  }
   {
     Progress progress(title);
     sequence = run_sequence(

@@ -48,7 +48,6 @@ struct MappingRun {
 struct RunTarget {
   std::filesystem::path map;
   bool resume = false;  ///< go on with the checkpoint or map that is there
-  bool twice = false;   ///< map a second time, asking the network for the first map's objects
   std::filesystem::path continued = {};  ///< another visit to the place of this map; empty: a new map
   std::filesystem::path repeated = {};   ///< the map of a live run, to be made again; map_live alone
 };

@@ -23,7 +23,6 @@ struct RunOptions {
   bool json = false;
   bool live = false;
   bool resume = false;
-  bool twice = false;
   double fps = 30;
 };
 
@@ -40,7 +39,6 @@ void check_for_camera(const RunOptions& options) {
     if (given)
       throw Error(concat(option, " is for recordings; leave it away where a camera sends the frames"));
   };
-  refuse(options.twice, "--second-pass");
   refuse(!options.continued.empty(), "--continue");
   refuse(!options.repeated.empty(), "--repeat");
   refuse(!options.pictures.empty(), "--pictures");
@@ -62,8 +60,7 @@ int run(RunOptions options) {
   const ThreadLimit limit(options.mapping.threads);
   check_map_target(options.map);
   if (!options.pictures.empty()) make_folder(options.pictures);
-  const RunTarget target{options.map, options.resume, options.twice, options.continued,
-                         options.repeated};
+  const RunTarget target{options.map, options.resume, options.continued, options.repeated};
   std::optional<CameraRun> camera;
   if (names_camera(options.mapping.source)) check_for_camera(options), camera.emplace(options.mapping);
   MappingRun mapped = map_source(options, target, camera);
@@ -111,8 +108,7 @@ Action add_run(CLI::App& command) {
                       "the map of a live run of this recording: map it again as that run did, with the "
                       "frames that it took and the masks when they came, and say whether it is the same map")
           ->excludes(live);
-  auto* continued =
-      command
+  command
       .add_option("--continue", options->continued,
                   "a map of the same place to go on with, in whose world frame the recording's poses "
                   "are: what is gone leaves it, ids, names and corrections stay")
@@ -125,17 +121,10 @@ Action add_run(CLI::App& command) {
   command.add_option("--trajectory", options->trajectory,
                      "file to write the camera's poses to, a TUM line for each frame in the map");
   add_max_memory(command, options->mapping);
-  auto* resume =
-      command.add_flag("--resume", options->resume,
-                       "go on with the frames that a killed run, or the map, does not have yet")
-          ->excludes(repeat);
   command
-      .add_flag("--second-pass", options->twice,
-                "map twice, and ask the network of --masks for the first map's objects in the second")
-      ->excludes(live)
-      ->excludes(repeat)
-      ->excludes(resume)
-      ->excludes(continued);
+      .add_flag("--resume", options->resume,
+                "go on with the frames that a killed run, or the map, does not have yet")
+      ->excludes(repeat);
   command.add_flag("--json", options->json, "print one JSON object");
   return [options] { return run(*options); };
 }

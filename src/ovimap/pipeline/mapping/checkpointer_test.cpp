@@ -30,12 +30,6 @@ MapperConfig checkpointed_config() {
   return config;
 }
 
-/// As a network is, asked when the picture has moved.
-class SlowDeskMasks : public DeskMasks {
- public:
-  bool is_slow() const override { return true; }
-};
-
 class CheckpointerTest : public ::testing::Test {
  protected:
   Mapper mapper() const {

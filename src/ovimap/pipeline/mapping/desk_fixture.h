@@ -105,4 +105,10 @@ class DeskMasks : public MaskSource {
   DeskScene scene_;
 };
 
+/// The desk's truth as by a network.
+class SlowDeskMasks : public DeskMasks {
+ public:
+  bool is_slow() const override { return true; }
+};
+
 }  // namespace ovimap

@@ -105,7 +105,7 @@ FrameReport Mapper::process(const Frame& frame) {
   const PreparedFrame prepared = prepare_frame(borrowed, config_, timers_);
   std::optional<FrameSegments> cut;
   if (wants_masks(frame))
-    cut = cut_segments(prepared, masks_.get(), config_, timers_, known_objects(prepared));
+    cut = cut_segments(prepared, masks_.get(), config_, timers_);
   FrameReport report = fuse(prepared, cut ? &*cut : nullptr);
   if (frames_ % config_.view_interval == 0) report.views = look_at_objects(frame);
   return report;
@@ -114,14 +114,6 @@ FrameReport Mapper::process(const Frame& frame) {
 bool Mapper::wants_masks(const Frame& frame) const {
   return config_.mask_interval > 0 ? frames_ % config_.mask_interval == 0
                                    : mask_motion_.wants(frame);
-}
-
-std::vector<MaskPrompt> Mapper::known_objects(const PreparedFrame& prepared) {
-  Mapper* const guide = guide_ ? guide_ : config_.ask_for_known ? this : nullptr;
-  if (!guide || !masks_ || !masks_->is_slow() || guide->frames() == 0) return {};
-  const Frame& frame = *prepared.frame;
-  return object_prompts(guide->project(frame).instances, prepared.registration,
-                        frame.color_camera);
 }
 
 FrameReport Mapper::fuse(const PreparedFrame& prepared, const FrameSegments* cut) {

@@ -97,11 +97,6 @@ class Mapper {
   /// The map seen from a frame's depth camera, guided by its depth (method section 8).
   InstanceView project(const Frame& frame);
 
-  /// From now on a network is asked for the objects that `guide` shows in a frame, by their boxes,
-  /// before anything else: a finished map of the same recording makes this one its second pass.
-  /// `guide` must stay.
-  void ask_for_objects_of(Mapper& guide) { guide_ = &guide; }
-
   /// What super-points look like now; views that the encoder has not answered have no embedding
   /// yet.
   const SuperPointLooks& looks() const { return builder_->looks(); }
@@ -159,13 +154,11 @@ class Mapper {
                                               const FrameSegments* cut);
   Image<InstanceId> instances_of(const Image<Label>& labels) const;
   bool wants_masks(const Frame& frame) const;
-  std::vector<MaskPrompt> known_objects(const PreparedFrame& prepared);
   FrameReport observe(const Frame& frame, const FrameSegments* cut,
                       std::span<const SegmentAssociation> associations);
 
   MapperConfig config_;
   std::shared_ptr<MaskSource> masks_;
-  Mapper* guide_ = nullptr;  ///< whose objects are asked for; null: as the config says
   VoxelMap map_;
   InstanceRegistry registry_;
   std::unique_ptr<AppearanceBuilder> builder_;

@@ -34,8 +34,6 @@ void list_fields(MapperConfig& config, ConfigFields& fields) {
   fields.add("mask_motion", config.mask_motion, 0.f, 1.f,
              "networks are asked again when what is in view moved by this share of the picture; "
              "0: every frame");
-  fields.add("ask_for_known", config.ask_for_known,
-             "networks are asked for the objects of the map so far, by their boxes; not by live runs");
   fields.add("occlusion_margin_m", config.occlusion_margin_m, 0.f, 10.f,
              "how much nearer a surface hides a point from the colour camera, metres");
   fields.add("allow_still_camera", config.allow_still_camera,

@@ -40,8 +40,6 @@ struct MapperConfig {
                           ///< network), every frame otherwise
   float mask_motion = 0.1f;  ///< what moves by less of the picture's width since the last masks
                              ///< needs no new ones (MaskMotion); 0: every frame
-  bool ask_for_known = false;     ///< networks are asked for the objects of the map so far, by their
-                                  ///< boxes, where they should be in sight
   float occlusion_margin_m =
       0.05f;  ///< how much nearer a surface must be to hide a point from the colour camera
   bool allow_still_camera = false;  ///< a recording in which every pose is the same is no mistake

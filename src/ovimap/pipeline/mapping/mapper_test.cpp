@@ -118,25 +118,11 @@ TEST(Mapper, AsksForMasksAtTheInterval) {
   EXPECT_EQ(mapper.mask_frames(), 2);
 }
 
-/// The desk's truth by a network that remembers what of a map it was asked for.
-class AskedDeskMasks : public DeskMasks {
- public:
-  bool is_slow() const override { return true; }
-  std::optional<Entities> entities(const Frame& frame,
-                                   std::span<const MaskPrompt> prompts) override {
-    known.emplace_back();
-    for (const MaskPrompt& prompt : prompts)
-      if (prompt.known) known.back().push_back(prompt);
-    return DeskMasks::entities(frame, {});
-  }
-  std::vector<std::vector<MaskPrompt>> known;  ///< by frame
-};
-
 TEST(Mapper, AsksANetworkWhenThePictureHasMoved) {
   MapperConfig config;
   config.mask_motion = 0.4f;  // the desk's frames are 30 degrees apart
   config.allow_still_camera = true;
-  Mapper mapper(config, std::make_shared<AskedDeskMasks>());
+  Mapper mapper(config, std::make_shared<SlowDeskMasks>());
   const DeskScene scene;
   std::vector<std::int64_t> asked;
   for (const std::int64_t i : {0, 0, 1, 1, 2, 2, 3, 3, 4})
@@ -145,52 +131,8 @@ TEST(Mapper, AsksANetworkWhenThePictureHasMoved) {
   EXPECT_EQ(std::adjacent_find(asked.begin(), asked.end()), asked.end()) << "nothing had moved";
   EXPECT_GE(asked.size(), 2u);
   config.mask_motion = 0.f;
-  Mapper every(config, std::make_shared<AskedDeskMasks>());
+  Mapper every(config, std::make_shared<SlowDeskMasks>());
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(every.process(*scene.read(0).frame).labelled);
-}
-
-/// Whether some prompt is asked for in the box of a true object, give or take two pixels.
-bool asked_for(const std::vector<MaskPrompt>& prompts, const IdImage& truth, std::uint16_t id) {
-  Eigen::AlignedBox2f box;
-  for (int y = 0; y < truth.height(); ++y)
-    for (int x = 0; x < truth.width(); ++x)
-      if (truth.at(x, y) == id)
-        box.extend(Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)));
-  return std::any_of(prompts.begin(), prompts.end(), [&](const MaskPrompt& prompt) {
-    return (prompt.extent_px.min() - box.min()).cwiseAbs().maxCoeff() <= 2 &&
-           (prompt.extent_px.max() - box.max()).cwiseAbs().maxCoeff() <= 2;
-  });
-}
-
-TEST(Mapper, ASecondPassAsksForTheObjectsOfTheFirst) {
-  MapperConfig config;
-  config.mask_interval = 1;
-  auto masks = std::make_shared<AskedDeskMasks>();
-  Mapper first(config, masks);
-  map_desk(first);
-  for (const auto& prompts : masks->known) EXPECT_TRUE(prompts.empty());
-  masks->known.clear();
-  Mapper second(config, masks);
-  second.ask_for_objects_of(first);
-  map_desk(second);
-  const DeskScene scene;
-  ASSERT_EQ(static_cast<std::int64_t>(masks->known.size()), scene.size());
-  for (std::int64_t i = 0; i < scene.size(); ++i)
-    for (std::uint16_t id = 2; id <= 3; ++id)
-      EXPECT_TRUE(asked_for(masks->known[static_cast<std::size_t>(i)], *scene.truth_ids(i), id))
-          << "ball " << id << " in frame " << i;
-  EXPECT_EQ(summarize_instances(second.map(), second.registry(), {}).size(), 3u);
-}
-
-TEST(Mapper, AsksForWhatTheMapAlreadyKnowsWhenToldTo) {
-  MapperConfig config;
-  config.mask_interval = 1;
-  config.ask_for_known = true;
-  auto masks = std::make_shared<AskedDeskMasks>();
-  Mapper mapper(config, masks);
-  map_desk(mapper);
-  EXPECT_TRUE(masks->known.front().empty());
-  EXPECT_GE(masks->known.back().size(), 3u);
 }
 
 /// Six boxes in a row of places, each with a colour of its own.

@@ -51,8 +51,7 @@ PreparedFrame prepare_frame(std::shared_ptr<const Frame> frame, const MapperConf
 }
 
 std::optional<FrameSegments> cut_segments(const PreparedFrame& prepared, MaskSource* masks,
-                                          const MapperConfig& config, StageTimers& timers,
-                                          std::span<const MaskPrompt> known) {
+                                          const MapperConfig& config, StageTimers& timers) {
   const Frame& frame = *prepared.frame;
   const DepthRegions regions = [&] {
     auto t = timers.measure("regions");
@@ -66,11 +65,8 @@ std::optional<FrameSegments> cut_segments(const PreparedFrame& prepared, MaskSou
   }
   const std::optional<Entities> entities = [&] {
     auto t = timers.measure("masks");
-    std::vector<MaskPrompt> prompts(known.begin(), known.end());
-    for (const MaskPrompt& region :
-         region_prompts(regions, prepared.registration, frame.color_camera))
-      prompts.push_back(region);
-    return masks->entities(frame, prompts);
+    return masks->entities(
+        frame, region_prompts(regions, prepared.registration, frame.color_camera));
   }();
   if (!entities) return std::nullopt;
   if (!entities->ids.same_size(frame.color))

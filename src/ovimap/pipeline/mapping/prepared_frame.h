@@ -44,10 +44,8 @@ struct FrameSegments {
 
 /// Cuts the frame by depth and, unless `masks` is null, by its 2D entities; nullopt when the source
 /// has no masks of this frame, which then is no evidence of what objects there are. Does not look
-/// at the map; `known`: what a map says is in sight, for the source beside the frame's regions.
-/// Throws what the mask source throws.
+/// at the map. Throws what the mask source throws.
 std::optional<FrameSegments> cut_segments(const PreparedFrame& prepared, MaskSource* masks,
-                                          const MapperConfig& config, StageTimers& timers,
-                                          std::span<const MaskPrompt> known = {});
+                                          const MapperConfig& config, StageTimers& timers);
 
 }  // namespace ovimap
