@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
 # Sourced by scripts that try something in a system with nothing but Debian's essential packages: made by debootstrap from this
-# machine's own mirror, kept as an archive in $BARE, unpacked afresh for every trial. Needs root; nothing outside $BARE is changed.
+# machine's own mirror (for a release of Ubuntu, from the one that $OVIMAP_UBUNTU_MIRROR names), kept as an archive in $BARE, unpacked afresh for every trial. Needs root; nothing outside $BARE is changed.
 BARE="${OVIMAP_BARE:-/tmp/ovimap-bare}"
 
 bare_fail() {
@@ -15,13 +15,29 @@ bare_mirror() {
     /etc/apt/sources.list.d/debian.sources /etc/apt/sources.list 2>/dev/null | head -n 1
 }
 
+# bare_bootstrap SUITE FOLDER
+bare_bootstrap() {
+  local suite="$1" folder="$2" options=(--variant=minbase --include=ca-certificates)
+  case "$suite" in
+    jammy | noble) ;;
+    *) debootstrap "${options[@]}" "$suite" "$folder" "$(bare_mirror)"; return ;;
+  esac
+  local mirror="${OVIMAP_UBUNTU_MIRROR:?name a mirror of Ubuntu in it, as ubuntu.sources of a machine with it does}" keys="$BARE/ubuntu-keys" package
+  # Debian's debootstrap does not trust Ubuntu: the keys come from the mirror itself, for systems that are thrown away.
+  package="$(curl -fsS "$mirror/dists/$suite/main/binary-amd64/Packages.gz" | gzip -d | sed -n 's,^Filename: \(pool/main/u/ubuntu-keyring/ubuntu-keyring_.*\.deb\)$,\1,p' | head -n 1)"
+  curl -fsS -o "$keys.deb" "$mirror/$package"
+  dpkg -x "$keys.deb" "$keys"
+  debootstrap "${options[@]}" --components=main,universe --keyring="$keys/usr/share/keyrings/ubuntu-archive-keyring.gpg" \
+    "$suite" "$folder" "$mirror" gutsy
+}
+
 # bare_make SUITE: the archive, unless it is there.
 bare_make() {
   local suite="$1"
   [ ! -e "$BARE/$suite.tar" ] || return 0
   mkdir -p "$BARE"
-  debootstrap --variant=minbase --include=ca-certificates "$suite" "$BARE/$suite.new" "$(bare_mirror)" > "$BARE/$suite.log" 2>&1 ||
-    bare_fail "debootstrap of $suite failed; see $BARE/$suite.log"
+  rm -rf "$BARE/$suite.new"  # of one that broke off
+  bare_bootstrap "$suite" "$BARE/$suite.new" > "$BARE/$suite.log" 2>&1 || bare_fail "debootstrap of $suite failed; see $BARE/$suite.log"
   tar -C "$BARE/$suite.new" -cf "$BARE/$suite.tar.new" .
   rm -rf "$BARE/$suite.new"
   mv "$BARE/$suite.tar.new" "$BARE/$suite.tar"
