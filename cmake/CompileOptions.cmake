@@ -22,8 +22,8 @@ find_program(OVIMAP_MOLD mold)
 add_library(ovimap_options INTERFACE)
 target_compile_options(ovimap_options INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor
   $<$<BOOL:${OVIMAP_WERROR}>:-Werror>)
-if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-  # GCC 12 takes Eigen's copies of small vectors into dynamic ones for reads past their end.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # GCC 12 and 14 take copies of small vectors for reads past their end.
   target_compile_options(ovimap_options INTERFACE -Wno-array-bounds)
 endif()
 # Results must not depend on how the compiler fuses or reorders floating-point operations.

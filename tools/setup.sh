@@ -47,7 +47,7 @@ have_program_of() {
     ccache | chromium | cmake | curl | git | mold | npm | pkg-config | unzip) command -v "$1" >/dev/null ;;
     ninja-build) command -v ninja >/dev/null ;;
     python3-venv) python3 -c 'import ensurepip, venv' 2>/dev/null ;;
-    python3-dev) [ -e "$(python3 -c 'import sysconfig; print(sysconfig.get_paths()["include"])')/Python.h" ] ;;
+    python3-dev) [ -e "$(python3 -c 'import sysconfig; print(sysconfig.get_paths()["include"])' 2>/dev/null)/Python.h" ] ;;
     *) return 1 ;;
   esac
 }
