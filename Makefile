@@ -7,7 +7,7 @@ OVIMAP := $(BUILD)/bin/ovimap
 JOBS ?= $(shell nproc)
 SOURCE ?= demo/tiny/room
 
-.PHONY: site help setup setup-program build build-program build-all packages packages-test demo demo-lasting test test-setup asan tsan fuzz bench rivals benchmarks viewer-speed live-speed wheel clean
+.PHONY: site reference bare-test arm64-test help setup setup-program build build-program build-all packages packages-test demo demo-lasting test test-setup asan tsan fuzz bench rivals benchmarks viewer-speed live-speed wheel clean
 
 help:
 	@echo "make demo    set up, build, show what ovimap does (ovimap demo); VIEW=1: then in a browser"
@@ -20,9 +20,12 @@ help:
 	@echo "make fuzz    feed the readers with odd bytes, FUZZ_SECONDS (60) each; installs clang"
 	@echo "make live-speed SOURCE=RECORDING   what serving a map costs while it is made"
 	@echo "make site    the documentation as pages, its links checked"
+	@echo "make reference  the reference of the C++ library, in build/reference; needs doxygen"
 	@echo "make wheel   build a Python wheel that carries its libraries, and try it in a clean environment"
 	@echo "make packages  a wheel with the native program, and a Debian package, in build/packages/out"
 	@echo "make packages-test  try them in bare Debian 12 and 13 (root, debootstrap)"
+	@echo "make bare-test  build with every compiler of Debian 13 and run every test there (root, debootstrap)"
+	@echo "make arm64-test  cross-build for 64-bit ARM, run what makes maps there, compare these (root, debootstrap)"
 	@echo "make viewer-speed MAP=FILE   when the viewer shows its first picture, and how fast it answers"
 	@echo "make asan    run the tests under AddressSanitizer and UBSan;  make tsan: ThreadSanitizer"
 
@@ -99,6 +102,12 @@ packages: test-setup
 packages-test:
 	@tools/packages_test.sh
 
+bare-test:
+	@tools/bare_test.sh
+
+arm64-test: build
+	@tools/arm64_test.sh $(OVIMAP)
+
 viewer-speed: build test-setup
 	@test -f "$(MAP)" || { echo "name a map: make viewer-speed MAP=room.ovimap"; exit 1; }
 	@cd viewer && node e2e/speed.mjs "$(abspath $(OVIMAP))" "$(abspath $(MAP))"
@@ -110,6 +119,10 @@ live-speed: build test-setup
 # The documentation as pages; the packages it is made with are not those of the build.
 site: build/site-env/.complete
 	@NO_MKDOCS_2_WARNING=1 build/site-env/bin/mkdocs build --strict -q && echo "open build/site/index.html"
+
+reference:
+	@command -v doxygen > /dev/null || { echo "doxygen is missing; run: apt-get install doxygen"; exit 1; }
+	@rm -rf build/reference && mkdir -p build/reference && doxygen docs/Doxyfile && echo "open build/reference/index.html"
 
 build/site-env/.complete: tools/requirements-site.txt
 	@python3 -m venv build/site-env && build/site-env/bin/pip install -q --disable-pip-version-check -r $< && touch $@

@@ -16,7 +16,7 @@ struct InstanceSize {
 
 /// A truth and a predicted instance that share vertices.
 struct InstanceOverlap {
-  std::size_t truth = 0, predicted = 0;  ///< positions in InstanceOverlaps::truth and ::predicted
+  std::size_t truth = 0, predicted = 0;  ///< positions in InstanceOverlaps::truth and predicted
   std::int64_t shared = 0;               ///< vertices
   std::int64_t united = 0;               ///< vertices of either
 
