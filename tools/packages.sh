@@ -17,13 +17,17 @@ mkdir -p "$OUT" "$WORK/plain"
 }
 PATH="$WORK/env/bin:$PATH"
 
+"$ROOT/tools/packages/ceres.sh" "$WORK/ceres" > "$WORK/log" 2>&1 || { tail -n 20 "$WORK/log"; exit 1; }
+export LD_LIBRARY_PATH="$WORK/ceres/lib:$ROOT/.deps/onnxruntime/lib"  # what the wheel carries
+
 python "$ROOT/tools/packages/wheel.py" "$BUILD" "$WORK/stage" > "$WORK/log" 2>&1 || { tail -n 20 "$WORK/log"; exit 1; }
 wheel pack -d "$WORK/plain" "$WORK/stage" > "$WORK/log"
 # The tag is that of the C library here: the wheel runs on this distribution and newer ones.
 glibc="$(getconf GNU_LIBC_VERSION | sed -e 's/glibc //' -e 's/\./_/')"
-LD_LIBRARY_PATH="$ROOT/.deps/onnxruntime/lib" auditwheel repair --plat "manylinux_${glibc}_$(uname -m)" -w "$OUT" "$WORK"/plain/*.whl \
+auditwheel repair --plat "manylinux_${glibc}_$(uname -m)" -w "$OUT" "$WORK"/plain/*.whl \
   > "$WORK/log" 2>&1 || { tail -n 20 "$WORK/log"; exit 1; }
 
+unset LD_LIBRARY_PATH
 (cd "$BUILD" && cpack -G DEB -B "$WORK/cpack") > "$WORK/log" 2>&1 || { tail -n 20 "$WORK/log"; exit 1; }
 mv "$WORK"/cpack/*.deb "$OUT"
 rm -rf "$WORK/stage" "$WORK/plain" "$WORK/cpack"

@@ -11,14 +11,17 @@ log="$build/test-output.log"
 rm -f "$report"  # one of an earlier run would be counted
 export TSAN_OPTIONS="suppressions=$(realpath tests/thread_sanitizer.txt) ${TSAN_OPTIONS:-}"  # read under ThreadSanitizer alone
 
-# Of ctest's lines: each failure as it happens, and every 100th test.
+# Of ctest's lines: each failure as it happens, and every 100th test. No awk: Debian's own reads ahead.
 show_progress() {
-  awk '/^ *[0-9]+\/[0-9]+ Test +#/ {
-         split($1, of, "/")
-         if (/\*\*\*(Failed|Timeout|Exception)/) print "tests: " $1 " " $4 " failed"
-         else if (of[1] % 100 == 0) print "tests: " $1
-         fflush()
-       }'
+  local line
+  while IFS= read -r line; do
+    [[ "$line" =~ ^\ *([0-9]+)/([0-9]+)\ Test\ +#[0-9]+:\ ([^ ]+) ]] || continue
+    if [[ "$line" == *"***Failed"* || "$line" == *"***Timeout"* || "$line" == *"***Exception"* ]]; then
+      echo "tests: ${BASH_REMATCH[1]}/${BASH_REMATCH[2]} ${BASH_REMATCH[3]} failed"
+    elif ((BASH_REMATCH[1] % 100 == 0)); then
+      echo "tests: ${BASH_REMATCH[1]}/${BASH_REMATCH[2]}"
+    fi
+  done
 }
 
 ctest --test-dir "$build" -j "$(nproc)" --output-on-failure --output-junit "$(realpath "$build")/test-report.xml" "$@" 2>&1 | tee "$log" | show_progress

@@ -52,7 +52,7 @@ nb::handle frame_error_type() {
 NB_MODULE(_ovimap, module) {
   nb::set_leak_warnings(false);  // what lives until the interpreter ends is no leak of ours
   module.attr("__doc__") = "Posed RGB-D frames to a map of objects that can be searched in words.";
-  module.def("version", &version, "Version of the library, \"0.1.0\".");
+  module.def("version", &version, "Version of the library, \"0.2.0\".");
   module.def("commit", &commit, "The commit the library was built from, or \"unknown\".");
   bind_errors(module);
   bind_callback_errors();

@@ -4,7 +4,7 @@
 
 namespace ovimap {
 
-/// Version of the library, "0.1.0".
+/// Version of the library, "0.2.0".
 const char* version();
 
 /// Commit it was built from, with "-dirty" when files differed; "unknown" outside a checkout.
