@@ -142,17 +142,27 @@ class KilledClosureTest : public TrackProgramTest {
       "loops.online=false --set loops.min_path_m=0.1 --set checkpoint.seconds=100000 --set "
       "loops.step_sigma_m=0.1 --set track.keyframe_step_m=0.04 --resume -o map.ovimap";
 
-  /// Kills the program so long after it has begun to write its checkpoint.
-  void run_and_kill(std::chrono::milliseconds delay) const {
+  using Clock = std::chrono::steady_clock;
+
+  /// Kills the program so long after it has begun to write its checkpoint, unless it ends before. Returns how long it went on.
+  Clock::duration run_and_kill(Clock::duration delay) const {
     const pid_t child = ::fork();
     if (child == 0) execute();
     const auto log = path("map.ovimap.partial-wal");
     int status = 0;
-    while (!std::filesystem::exists(log) && ::waitpid(child, &status, WNOHANG) == 0)
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    std::this_thread::sleep_for(delay);
-    ::kill(child, SIGKILL);
-    ::waitpid(child, &status, 0);
+    const auto is_running = [&] { return ::waitpid(child, &status, WNOHANG) == 0; };
+    const auto wait = [] { std::this_thread::sleep_for(std::chrono::milliseconds(1)); };
+    while (!std::filesystem::exists(log) && is_running()) wait();
+    const auto begun = Clock::now();
+    while (is_running()) {
+      if (Clock::now() - begun >= delay) {
+        ::kill(child, SIGKILL);
+        ::waitpid(child, &status, 0);
+        break;
+      }
+      wait();
+    }
+    return Clock::now() - begun;
   }
   [[noreturn]] void execute() const {
     const int out = ::open(path("killed.txt").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
@@ -165,25 +175,26 @@ class KilledClosureTest : public TrackProgramTest {
 };
 
 TEST_F(KilledClosureTest, ResumesToTheSameMap) {
-  const auto whole = run_json(std::string(kClose) + " --json");
-  EXPECT_GT(whole["tracking"]["loops_closed"], 0);
-  EXPECT_GT(whole["tracking"]["loop_moved_m"], 0.006) << "the map was not fused anew";
+  const Clock::duration whole = run_and_kill(std::chrono::hours(1));
   const auto expected = run_json("info map.ovimap --json")["content_hash"];
-  int closing = 0, delay_ms = 0;
-  bool ended = false;  // before a kill; a busy machine is slower from one run to the next
-  for (int tries = 0; tries < 40 && (closing == 0 || !ended); ++tries) {
+  std::filesystem::remove(path("map.ovimap"));
+  const auto report = run_json(std::string(kClose) + " --json");
+  EXPECT_GT(report["tracking"]["loops_closed"], 0);
+  EXPECT_GT(report["tracking"]["loop_moved_m"], 0.006) << "the map was not fused anew";
+  int closing = 0;
+  Clock::duration delay = whole / 2;  // a busy machine is slower from one run to the next
+  for (int tries = 0; tries < 20 && closing == 0; ++tries) {
     std::filesystem::remove(path("map.ovimap"));
-    run_and_kill(std::chrono::milliseconds(delay_ms));
+    run_and_kill(delay);
     const ProgramResult partial = run("info map.ovimap.partial --json");
     const bool done = std::filesystem::exists(path("map.ovimap"));
     closing += !done && partial.code == 0 &&
                nlohmann::json::parse(partial.out)["frames"] == sequence_.frames;
     if (!done) {
-      ASSERT_EQ(run(kClose).code, 0) << delay_ms;
+      ASSERT_EQ(run(kClose).code, 0) << tries;
     }
-    EXPECT_EQ(run_json("info map.ovimap --json")["content_hash"], expected) << delay_ms;
-    ended = ended || done;
-    delay_ms = done ? delay_ms / 2 : delay_ms + 5 + delay_ms / 2;
+    EXPECT_EQ(run_json("info map.ovimap --json")["content_hash"], expected) << tries;
+    delay = done ? delay / 2 : delay + whole / 8;
   }
   EXPECT_GT(closing, 0) << "no kill came between the last frame and the map";
 }
