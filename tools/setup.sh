@@ -148,7 +148,7 @@ package_sources() {
 # Releases of this distribution whose archive has the headers, best match of ORT_VERSION first.
 header_suites() {
   case "$(. /etc/os-release && echo "${ID:-}")" in
-    ubuntu) echo plucky questing ;;
+    ubuntu) echo resolute questing plucky ;;
     *) echo trixie ;;
   esac
 }
