@@ -56,11 +56,12 @@ bare_open() {
   cp /etc/ssl/certs/ca-certificates.crt "$ROOT_FOLDER/etc/ssl/certs/ca-certificates.crt"
   mount --bind /proc "$ROOT_FOLDER/proc"
   mount --bind /dev "$ROOT_FOLDER/dev"
+  mount --bind /dev/pts "$ROOT_FOLDER/dev/pts"
 }
 
 bare_close() {
   trap - EXIT
-  umount -l "$ROOT_FOLDER/proc" "$ROOT_FOLDER/dev"  # also where a process of the trial is not quite gone
+  umount -l "$ROOT_FOLDER/proc" "$ROOT_FOLDER/dev/pts" "$ROOT_FOLDER/dev"  # also where a process of the trial is not quite gone
   rm -rf --one-file-system "$ROOT_FOLDER" "$ROOT_FOLDER.log"
 }
 
