@@ -93,11 +93,8 @@ benchmarks: build
 wheel: test-setup
 	@tools/wheel_test.sh $(if $(SOURCE),"$(SOURCE)")
 
-# What the tests need need not be built, but the Python package.
 packages: test-setup
-	@cmake --preset release > /dev/null
-	@cmake --build --preset release -j $(JOBS) --target ovimap ovimap_viewer _ovimap_stub
-	@tools/packages.sh $(BUILD)
+	@tools/packages.sh
 
 packages-test:
 	@tools/packages_test.sh

@@ -37,9 +37,7 @@ def shared_libraries(program: str) -> list:
 
 
 def package_of(library: pathlib.Path) -> str:
-    """The Debian package that brought it, or whose source it was built from (ceres.sh). dpkg knows a file by the name it was packed with, before /lib moved to /usr/lib."""
-    if library.name.startswith("libceres.so"):
-        return "libceres-dev"
+    """The Debian package that brought it. dpkg knows a file by the name it was packed with, before /lib moved to /usr/lib."""
     for name in (str(library), str(library).removeprefix("/usr")):
         asked = subprocess.run(["dpkg-query", "-S", name], capture_output=True, text=True)
         if asked.returncode == 0:
@@ -112,8 +110,8 @@ def add_models(folder: pathlib.Path) -> list:
 
 
 SHARED_NOTE = """The shared libraries are Debian's, unchanged but for the paths they look in; their sources are to be had from Debian under the
-names and versions given. Ceres alone is built anew from Debian's source, without SuiteSparse, parts of which are under the GPL. Some
-libraries are under the LGPL: who passes this package on passes those on under these terms.
+names and versions given. Some are under the LGPL: who passes this package on passes those on under these terms. Ceres is compiled in from
+Debian's source, without SuiteSparse, parts of which are under the GPL.
 """
 
 
