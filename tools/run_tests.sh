@@ -11,15 +11,16 @@ log="$build/test-output.log"
 rm -f "$report"  # one of an earlier run would be counted
 export TSAN_OPTIONS="suppressions=$(realpath tests/thread_sanitizer.txt) ${TSAN_OPTIONS:-}"  # read under ThreadSanitizer alone
 
-# Of ctest's lines: each failure as it happens, and every 100th test. No awk: Debian's own reads ahead.
+# Of ctest's lines: each failure as it happens, every 100th test, and one a minute. No awk: Debian's own reads ahead.
 show_progress() {
-  local line
+  local line told=$SECONDS
   while IFS= read -r line; do
     [[ "$line" =~ ^\ *([0-9]+)/([0-9]+)\ Test\ +#[0-9]+:\ ([^ ]+) ]] || continue
     if [[ "$line" == *"***Failed"* || "$line" == *"***Timeout"* || "$line" == *"***Exception"* ]]; then
       echo "tests: ${BASH_REMATCH[1]}/${BASH_REMATCH[2]} ${BASH_REMATCH[3]} failed"
-    elif ((BASH_REMATCH[1] % 100 == 0)); then
+    elif ((BASH_REMATCH[1] % 100 == 0 || SECONDS - told >= 60)); then
       echo "tests: ${BASH_REMATCH[1]}/${BASH_REMATCH[2]}"
+      told=$SECONDS
     fi
   done
 }
