@@ -41,7 +41,7 @@ void say_how_to_go_on(const std::string& folder, const std::string& map) {
   std::printf(
       "\nLook at   %s/report.html in a browser, the pictures in %s/pictures\n"
       "See       ovimap serve %s\n"
-      "Ask       ovimap query %s \"something to sit on\" \"largest cabinet\"\n"
+      "Ask       ovimap query %s \"a place for books\" \"largest cabinet\"\n"
       "Go on     ovimap check YOUR_RECORDING              is anything wrong with it?\n"
       "          ovimap run YOUR_RECORDING -o my.ovimap   depth alone, real time\n"
       "          ovimap run YOUR_RECORDING --masks sam -o my.ovimap\n",

@@ -49,8 +49,8 @@ void require_same_map(const MapDocument& begun, const VoxelMapConfig& map,
                     now = encoder ? encoder->identity().name : "";
   if (!before.empty() && before != now)
     throw Error(concat("the map's objects are embedded by '", before, "', and this run has ",
-                       now.empty() ? "no encoder" : concat("'", now, "'"), "; give --encoder ", before,
-                       ", or embed the map anew with `ovimap reembed`"));
+                       now.empty() ? "no encoder" : concat("'", now, "'"), "; give that model to --encoder (`ovimap models list` names what is here; the built-in one is "
+                       "`--encoder default`), or embed the map anew with `ovimap reembed`"));
 }
 
 }  // namespace ovimap::apps
