@@ -102,7 +102,7 @@ packages-test:
 bare-test:
 	@tools/bare_test.sh
 
-arm64-test: build
+arm64-test: build test-setup
 	@tools/arm64_test.sh $(OVIMAP)
 
 viewer-speed: build test-setup

@@ -3,18 +3,16 @@
 # SPDX-License-Identifier: Apache-2.0
 # Builds this commit for 64-bit ARM with Debian 12's cross compiler in a bare system, runs the tests of what maps are made of by qemu, and
 # holds maps that the ARM program makes against those of this machine's. Needs root, debootstrap, the network, and
-# tools/setup.sh to have run. Usage: tools/arm64_test.sh [PROGRAM]   (build/release/bin/ovimap)
+# tools/setup.sh --tests to have run. Usage: tools/arm64_test.sh [PROGRAM]   (build/release/bin/ovimap)
 set -euo pipefail
 ROOT="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 source "$ROOT/tools/bare_system.sh"
 PROGRAM="${1:-$ROOT/build/release/bin/ovimap}"
-TESTED=(base geometry image frames segment map instance io)  # modules that make a map and its file
+TESTED=(ovimap_{base,geometry,image,frames,segment,map,instance,io}_test)  # modules that make a map and its file
 
 bare_open bookworm
-git clone -q "$ROOT" "$ROOT_FOLDER/root/ovimap"
-mkdir -p "$BARE/ccache.arm64" "$ROOT_FOLDER/root/.cache/ccache"
-mount --bind "$BARE/ccache.arm64" "$ROOT_FOLDER/root/.cache/ccache"
-trap 'umount -l "$ROOT_FOLDER/root/.cache/ccache"; bare_close' EXIT
+bare_checkout
+bare_ccache arm64
 
 # Libraries of the other architecture; programs, and packages that are alike on all, of this one.
 install_packages() {
@@ -47,7 +45,7 @@ install_runtime() {
 build() {
   bare_run "cd ovimap; cmake -G Ninja -B build/arm64 --toolchain cmake/Arm64.cmake -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON \
       -DOVIMAP_BENCH=OFF -DOVIMAP_EXAMPLES=OFF -DOVIMAP_VIEWER=OFF
-    ninja -C build/arm64 ovimap ${TESTED[*]/%/_test}"
+    ninja -C build/arm64 ovimap ${TESTED[*]}"
 }
 
 # same_map TITLE OPTIONS...: made by both, the same up to the rounding of distances (docs/install.md, "64-bit ARM").
@@ -59,12 +57,11 @@ same_map() {
   "$ROOT/.venv/bin/python" "$ROOT/tests/compare_maps.py" "$title" "$here" "$ROOT_FOLDER/root/arm.ovimap"
 }
 
-TESTED=("${TESTED[@]/#/ovimap_}")
 install_packages > "$BARE/arm64.log" 2>&1 || { tail -n 20 "$BARE/arm64.log"; bare_fail "the libraries are not to be had"; }
 install_runtime
 build > "$BARE/arm64.log" 2>&1 || { grep -E 'error|FAILED' "$BARE/arm64.log" | head -n 30; bare_fail "it does not build; see $BARE/arm64.log"; }
 for test in "${TESTED[@]}"; do
-  bare_run "qemu-aarch64 ovimap/build/arm64/bin/${test}_test --gtest_brief=1" | tail -n 5
+  bare_run "qemu-aarch64 ovimap/build/arm64/bin/$test --gtest_brief=1" | tail -n 5
 done
 "$PROGRAM" synth "$ROOT_FOLDER/root/room" --room tiny --frames 6 --size 320x240 --noise > /dev/null
 same_map "depth alone" --masks none

@@ -59,8 +59,18 @@ bare_open() {
   mount --bind /dev/pts "$ROOT_FOLDER/dev/pts"
 }
 
+# bare_checkout: this commit, as /root/ovimap.
+bare_checkout() { git clone -q "$ROOT" "$ROOT_FOLDER/root/ovimap"; }
+
+# bare_ccache NAME: objects of earlier trials of that name, so that one that broke off need not begin anew.
+bare_ccache() {
+  mkdir -p "$BARE/ccache.$1" "$ROOT_FOLDER/root/.cache/ccache"
+  mount --bind "$BARE/ccache.$1" "$ROOT_FOLDER/root/.cache/ccache"
+}
+
 bare_close() {
   trap - EXIT
+  ! mountpoint -q "$ROOT_FOLDER/root/.cache/ccache" || umount -l "$ROOT_FOLDER/root/.cache/ccache"
   umount -l "$ROOT_FOLDER/proc" "$ROOT_FOLDER/dev/pts" "$ROOT_FOLDER/dev"  # also where a process of the trial is not quite gone
   rm -rf --one-file-system "$ROOT_FOLDER" "$ROOT_FOLDER.log"
 }

@@ -12,11 +12,8 @@ COMPILERS=("${@:2}")
 [ "$#" -gt 0 ] || COMPILERS=(g++-12 g++-13 clang-19)
 
 bare_open "$SUITE"
-git clone -q "$ROOT" "$ROOT_FOLDER/root/ovimap"
-# Objects of earlier trials of this release stay, so that one that broke off need not begin anew.
-mkdir -p "$BARE/ccache.$SUITE" "$ROOT_FOLDER/root/.cache/ccache"
-mount --bind "$BARE/ccache.$SUITE" "$ROOT_FOLDER/root/.cache/ccache"
-trap 'umount -l "$ROOT_FOLDER/root/.cache/ccache"; bare_close' EXIT
+bare_checkout
+bare_ccache "$SUITE"
 
 # Stands before a compiler: reads the source and leaves an empty object.
 cat > "$ROOT_FOLDER/opt/read-only" << 'LAUNCHER'

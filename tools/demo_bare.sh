@@ -10,7 +10,7 @@ SUITE="${1:-bookworm}"
 COSTS="$BARE/compile-costs.$SUITE"
 
 bare_open "$SUITE"
-git clone -q "$ROOT" "$ROOT_FOLDER/root/ovimap"
+bare_checkout
 # Stands before every compiler call; the source is its last argument.
 cat > "$ROOT_FOLDER/opt/timed" << 'LAUNCHER'
 #!/bin/bash

@@ -24,6 +24,7 @@ VALIDATOR="$ROOT/.deps/gltf-validator"
 ORT_VERSION=1.32.0       # the library, the same on every release, so that maps are; the headers below must not be newer
 ORT_HEADER_PACKAGE=libonnxruntime-dev
 SCRATCH="$(mktemp -d)"
+source "$TOOLS/private_apt.sh"
 trap 'rm -rf "$SCRATCH"' EXIT
 
 say() { printf 'setup: %s\n' "$*"; }
@@ -129,22 +130,6 @@ have_system_runtime() {
   return 1
 }
 
-# The URIs and keyrings of the host's own package sources, as "URI KEYRING" lines.
-package_sources() {
-  local file
-  for file in /etc/apt/sources.list.d/*.sources; do
-    [ -e "$file" ] || continue
-    awk '/^URIs:/ {uri = $2} /^Signed-By:/ {key = $2}
-         /^[[:space:]]*$/ {if (uri) print uri, key; uri = key = ""}
-         END {if (uri) print uri, key}' "$file"
-  done
-  for file in /etc/apt/sources.list /etc/apt/sources.list.d/*.list; do
-    [ ! -e "$file" ] || sed -n -E \
-      -e 's/^deb[[:space:]]+\[[^]]*signed-by=([^] ]+)[^]]*\][[:space:]]+([^ ]+).*/\2 \1/p' \
-      -e 's/^deb[[:space:]]+(\[[^]]*\][[:space:]]+)?([^[ ]+).*/\2/p' "$file"
-  done
-}
-
 # Releases of this distribution whose archive has the headers, best match of ORT_VERSION first.
 header_suites() {
   case "$(. /etc/os-release && echo "${ID:-}")" in
@@ -158,17 +143,6 @@ header_components() {
     ubuntu) echo main universe ;;
     *) echo main ;;
   esac
-}
-
-# apt with lists and cache of its own: reads another release and leaves the system's alone.
-private_apt() {
-  local state="$SCRATCH/apt"
-  mkdir -p "$state/lists/partial" "$state/cache/archives/partial" "$state/parts"
-  apt-get -q -o Dir::State="$state" -o Dir::State::lists="$state/lists" \
-    -o Dir::Cache="$state/cache" -o Dir::State::status=/var/lib/dpkg/status \
-    -o Dir::Etc::sourcelist="$SCRATCH/sources.list" \
-    -o Dir::Etc::sourceparts="$state/parts" -o APT::Sandbox::User="$(id -un)" \
-    -o Acquire::Languages=none "$@"
 }
 
 # Leaves the header package's .deb in $SCRATCH; tries each of the host's mirrors.

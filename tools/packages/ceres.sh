@@ -7,18 +7,14 @@ set -euo pipefail
 FOLDER="$(realpath -m "$1")"
 VERSION="$(dpkg-query -W -f '${source:Version}' libceres-dev)"
 [ ! -e "$FOLDER/built-$VERSION" ] || exit 0
+SCRATCH="$FOLDER"
+source "$(dirname "${BASH_SOURCE[0]}")/../private_apt.sh"
 rm -rf "$FOLDER"
-mkdir -p "$FOLDER"/apt/{lists/partial,cache/archives/partial,parts}
+mkdir -p "$FOLDER"
 cd "$FOLDER"
 
-# The host's own package sources, for sources; its lists stay as they are.
-cat /etc/apt/sources.list.d/*.sources /etc/apt/sources.list 2> /dev/null > apt/known || true
-sed -n -E -e 's/^URIs:[[:space:]]*(.*)/\1/p' -e 's/^deb[[:space:]]+(\[[^]]*\][[:space:]]+)?([^[ ]+).*/\2/p' apt/known | sort -u |
-  sed "s,.*,deb-src [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] & $(. /etc/os-release && echo "$VERSION_CODENAME") main," > apt/sources.list
-private_apt() {
-  apt-get -q -o Dir::State="$PWD/apt" -o Dir::State::lists="$PWD/apt/lists" -o Dir::State::status=/var/lib/dpkg/status -o Dir::Cache="$PWD/apt/cache" \
-    -o Dir::Etc::sourcelist="$PWD/apt/sources.list" -o Dir::Etc::sourceparts="$PWD/apt/parts" -o APT::Sandbox::User="$(id -un)" "$@"
-}
+release="$(. /etc/os-release && echo "$VERSION_CODENAME")"
+package_sources | sort -u | while read -r uri key; do echo "deb-src ${key:+[signed-by=$key] }$uri $release main"; done > sources.list
 private_apt update || true  # some mirrors of the list may lack the release
 private_apt source "ceres-solver=$VERSION"
 

@@ -20,7 +20,7 @@ struct MaskPrompt {
   Eigen::Vector2f interior_px;    ///< a point well inside the region
   Eigen::AlignedBox2f extent_px;  ///< the region's box
   int area_px = 0;                ///< the region's size
-  bool known = false;             ///< expected by a map or a finder: asked by its box, and first
+  bool known = false;             ///< seen by a finder: asked by its box, and first
 };
 
 /// 2D entities of one frame: class-agnostic masks that do not overlap.

@@ -10,7 +10,6 @@
 #include "ovimap/base/version.h"
 #include "ovimap/map/fusion/integrate.h"
 #include "ovimap/map/rays/surface_lookup.h"
-#include "ovimap/pipeline/mapping/mask_prompts.h"
 #include "ovimap/pipeline/motion/motion_filter.h"
 
 namespace ovimap {

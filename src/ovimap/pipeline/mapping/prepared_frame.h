@@ -4,7 +4,6 @@
 
 #include <memory>
 #include <optional>
-#include <span>
 
 #include "ovimap/base/stage_timers.h"
 #include "ovimap/frames/frame/registration.h"
