@@ -29,6 +29,10 @@ TEST_F(EditProgramTest, EverythingSeesTheCorrectedMap) {
   edit("rename " + first + " 'tea pot'");
   edit("merge " + first + " " + second);
   EXPECT_EQ(ids().size(), found.size() - 1);
+  const ProgramResult renamed = run("edit room.ovimap rename " + second + " 'tea pot'");
+  EXPECT_NE(renamed.out.find("object " + second + " is part of object " + first),
+            std::string::npos);
+  edit("undo");
   ASSERT_EQ(run("export room.ovimap a.csv").code, 0);
   EXPECT_NE(slurp(path("a.csv")).find(first + ",tea pot,"), std::string::npos);
   ASSERT_EQ(run("report room.ovimap a.html --encoder none").code, 0);
@@ -80,6 +84,7 @@ TEST_F(EditProgramTest, TellsWhatWasDone) {
   EXPECT_TRUE(log[1]["undone_by"].is_null());
   EXPECT_EQ(log[0]["time"].get<std::string>().size(), 20u);
   expect_complaint("edit room.ovimap rename 987654 x", {"987654", "info"});
+  expect_complaint("edit room.ovimap rename lamp x", {"'lamp' is no number from 1 up"});
   expect_complaint("edit room.ovimap", {"edit"});
   expect_complaint("edit missing.ovimap log", {"missing.ovimap"});
 }

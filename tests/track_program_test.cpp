@@ -100,6 +100,13 @@ TEST_F(TrackProgramTest, ACoveredLensIsToldAndMapsNothing) {
   EXPECT_EQ(report["tracking"]["frames_tracked"], 17);
 }
 
+TEST_F(TrackProgramTest, ACameraThatIsLostForMostFramesIsTold) {
+  for (int frame = 3; frame < 20; ++frame) show(frame, behind(frame));
+  const ProgramResult done = run(kRun);
+  EXPECT_EQ(done.code, 1);
+  EXPECT_NE(done.err.find("followed in 3 of 20 frames only"), std::string::npos) << done.err;
+}
+
 /// Two recordings in one: the second has a map of its own, and nothing of it is in the first.
 TEST_F(TrackProgramTest, WhatIsNowhereIsMappedByItself) {
   const std::string run_to = std::string(kRun) + "--set track.part_frames=8 --json";

@@ -59,8 +59,9 @@ class Writing(unittest.TestCase):
         folder = pathlib.Path(cls.scratch.name)
         write_recording(folder)
         cls.map = folder / "signs.ovimap"
-        cls.run_program("run", folder / "room", "--masks", folder / "masks", "--encoder", "default", "-o", cls.map,
-                        "--set", "view_interval=1", "--set", "mask_interval=1", "--set", "allow_still_camera=true")
+        cls.mapping = ["run", folder / "room", "--masks", folder / "masks", "--encoder", "default", "-o", cls.map,
+                       "--set", "view_interval=1", "--set", "mask_interval=1", "--set", "allow_still_camera=true"]
+        cls.run_program(*cls.mapping, "--frames", ":9")
 
     @classmethod
     def tearDownClass(cls):
@@ -104,6 +105,22 @@ class Writing(unittest.TestCase):
         info = json.loads(self.run_program("info", self.map, "--json"))
         self.assertEqual(info["writing"]["reader"], "PP-OCRv6 small")
         self.assertEqual(len(info["writing"]["objects"]), 2)
+
+    def test_5_more_frames_keep_what_was_read(self):
+        before = json.loads(self.run_program("info", self.map, "--json"))
+        made = subprocess.run([PROGRAM, *map(str, self.mapping), "--resume"], capture_output=True, text=True)
+        self.assertEqual(made.returncode, 0, made.stderr)
+        self.assertIn("`ovimap read` reads what the new frames show", made.stderr)
+        info = json.loads(self.run_program("info", self.map, "--json"))
+        self.assertEqual((before["frames"], info["frames"]), (9, 12))
+        self.assertEqual(info["writing"], before["writing"])
+        self.assertEqual(self.answer('text:"library"')["verdict"], "found")
+
+    def test_6_frames_are_embedded_as_the_map_is(self):
+        mapping = ["none" if word == "default" else str(word) for word in self.mapping]
+        refused = subprocess.run([PROGRAM, *mapping, "--resume"], capture_output=True, text=True)
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("this run has no encoder; give that model to --encoder", refused.stderr)
 
 
 if __name__ == "__main__":

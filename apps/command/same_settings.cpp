@@ -12,12 +12,12 @@ namespace ovimap::apps {
 namespace {
 
 /// The lines of a configuration that decide what the map becomes: which frames it is made from, and
-/// when and where it is kept, may differ.
+/// when and where it is kept, may differ. The encoder may have changed since (require_same_encoder).
 std::vector<std::string> deciding_lines(const std::string& config) {
   std::vector<std::string> lines;
   std::istringstream stream(config);
   for (std::string line; std::getline(stream, line);) {
-    if (line.starts_with("# preset")) line.resize(std::min(line.size(), line.find(", frames ")));
+    if (line.starts_with("# preset")) line.resize(std::min(line.size(), line.find(", encoder ")));
     const auto names = [&](const char* start) { return line.starts_with(start); };
     if (!names("checkpoint.") && !names("memory.") && !names("visit.") && !names("# live"))
       lines.push_back(line);
@@ -37,6 +37,19 @@ void require_same_settings(const std::string& begun, const std::string& now, con
                      "'; give the same options, or map anew without ", option));
 }
 
+void require_same_encoder(const EncoderIdentity& begun,
+                          const std::shared_ptr<ImageTextEncoder>& encoder) {
+  const std::string now = encoder ? encoder->identity().name : "";
+  if (begun.name == now) return;
+  if (begun.name.empty())
+    throw Error(concat("the map's objects have no embeddings, and this run has the encoder '", now,
+                       "'; give --encoder none, or embed the map first with `ovimap reembed`"));
+  throw Error(concat("the map's objects are embedded by '", begun.name, "', and this run has ",
+                     now.empty() ? "no encoder" : concat("'", now, "'"),
+                     "; give that model to --encoder (`ovimap models list` names what is here; the "
+                     "built-in one is `--encoder default`), or embed the map anew with `ovimap reembed`"));
+}
+
 void require_same_map(const MapDocument& begun, const VoxelMapConfig& map,
                       const std::shared_ptr<ImageTextEncoder>& encoder) {
   const auto lines = [](VoxelMapConfig config) {
@@ -45,12 +58,7 @@ void require_same_map(const MapDocument& begun, const VoxelMapConfig& map,
     return fields.dump();
   };
   require_same_settings(lines(begun.map.config()), lines(map), "--continue");
-  const std::string &before = begun.semantics.encoder.name,
-                    now = encoder ? encoder->identity().name : "";
-  if (!before.empty() && before != now)
-    throw Error(concat("the map's objects are embedded by '", before, "', and this run has ",
-                       now.empty() ? "no encoder" : concat("'", now, "'"), "; give that model to --encoder (`ovimap models list` names what is here; the built-in one is "
-                       "`--encoder default`), or embed the map anew with `ovimap reembed`"));
+  if (!begun.semantics.encoder.name.empty()) require_same_encoder(begun.semantics.encoder, encoder);
 }
 
 }  // namespace ovimap::apps

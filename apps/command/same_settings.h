@@ -10,8 +10,12 @@ namespace ovimap::apps {
 /// becomes. `option`: the one by which this one goes on with the other.
 void require_same_settings(const std::string& begun, const std::string& now, const char* option);
 
+/// Throws Error unless `encoder` (null: none) embeds in the space of the map's embeddings.
+void require_same_encoder(const EncoderIdentity& begun,
+                          const std::shared_ptr<ImageTextEncoder>& encoder);
+
 /// Throws Error unless a visit has the voxels of the map that it goes on with, and embeds in the
-/// space of its embeddings.
+/// space of its embeddings; a map that has none may get some.
 void require_same_map(const MapDocument& begun, const VoxelMapConfig& map,
                       const std::shared_ptr<ImageTextEncoder>& encoder);
 

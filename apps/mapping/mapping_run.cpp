@@ -101,6 +101,7 @@ SequenceResult resume(BegunRun& begun, MapHeader& header, MappingInputs& inputs,
     begin_visit(*begun.document, header);
   } else {
     require_same_settings(begun.document->config_text, header.config_text, "--resume");
+    require_same_encoder(begun.document->semantics.encoder, inputs.encoder);
     header.history = begun.document->history;
     skip_done(inputs.range, *begun.document);
   }
@@ -206,10 +207,12 @@ struct RepeatedRun {
 
 /// Throws Error when the map of `target.repeated` cannot be made again, or not with the settings that
 /// `header` has.
-RepeatedRun find_repeated(const RunTarget& target, const MapHeader& header, bool tracked) {
+RepeatedRun find_repeated(const RunTarget& target, const MapHeader& header, bool tracked,
+                          const std::shared_ptr<ImageTextEncoder>& encoder) {
   MapRecord live = load_map_without_voxels(target.repeated);
   require_repeatable(live.live_steps, tracked);
   require_same_settings(live.config_text, header.config_text, "--repeat");
+  require_same_encoder(live.semantics.encoder, encoder);
   std::string title = live.config_text.substr(0, live.config_text.find('\n') + 1);
   return {std::move(title), std::move(live.live_steps)};
 }
@@ -255,6 +258,7 @@ MappingRun map_recording(const MappingOptions& options, const std::string& title
   mapper.recognize_with(inputs.recognizer);
   MapHeader header = make_header(inputs, options, mapper.config());
   SequenceResult sequence = resume(begun, header, inputs, mapper);
+  const std::size_t frames_before = sequence.frames.size();
   auto checkpoints = make_checkpointer(begun, inputs, header, sequence.frames.size());
   {
     Progress progress(title);
@@ -269,6 +273,7 @@ MappingRun map_recording(const MappingOptions& options, const std::string& title
   const MemoryConfig memory = inputs.config.memory;
   MappingRun run = finished_run(std::move(inputs), std::move(header), std::move(mapper),
                                 std::move(sequence), std::move(checkpoints));
+  run.frames_before = frames_before;
   if (!target.continued.empty()) tell_visit(target, memory, *begun.tiles, run.document);
   return run;
 }
@@ -289,7 +294,8 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
   mapper.track_with(finder);
   MapHeader header = make_header(inputs, options, mapper.config());
   RepeatedRun repeated;
-  if (!target.repeated.empty()) repeated = find_repeated(target, header, inputs.tracking);
+  if (!target.repeated.empty())
+    repeated = find_repeated(target, header, inputs.tracking, inputs.encoder);
   const std::string pace = intake ? std::string("pushed") : concat(fps, " frames/s");
   header.config_text.insert(
       0, target.repeated.empty() ? concat("# live, ", pace, "\n") : repeated.title);
@@ -318,6 +324,7 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
   if (live.sequence.depth_camera.width == 0) live.sequence.depth_camera = done.depth_camera;
   MappingRun run = finished_run(std::move(inputs), std::move(header), mapper.take(), live.sequence,
                                 std::move(checkpoints));
+  run.frames_before = done.frames.size();
   run.live = std::move(live);
   return run;
 }

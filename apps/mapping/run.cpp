@@ -81,8 +81,10 @@ int run(RunOptions options) {
     print_run(options.map, mapped, fps, repetition);
   advise_on_objects(mapped);
   advise_on_encoder(mapped, options.mapping.model_dirs);
+  advise_on_writing(mapped);
   if (repetition && !repetition->differing.empty()) return kAnswerIsNo;
-  return camera && !camera->report_loss() ? kAnswerIsNo : kDone;
+  const bool frames_missed = camera && !camera->report_loss();
+  return frames_missed || mostly_lost(mapped) ? kAnswerIsNo : kDone;
 }
 
 }  // namespace

@@ -262,7 +262,22 @@ double sent_fps(const LiveRunResult& run) {
   return run.camera_seconds > 0 ? static_cast<double>(frames) / run.camera_seconds : 0;
 }
 
+bool mostly_lost(const MappingRun& run) {
+  if (!run.tracking) return false;
+  std::size_t followed = run.tracking->summary.tracked;
+  for (const MapPart& part : run.parts) followed += part.frames;
+  return 2 * followed < run.tracking->summary.frames;
+}
+
 void advise_on_objects(const MappingRun& run) {
+  if (mostly_lost(run)) {
+    std::fprintf(stderr,
+                 "ovimap: the camera was followed in %zu of %zu frames only: its pictures must overlap "
+                 "and follow one another closely, some 10 to 30 a second; record slower turns with "
+                 "more frames, or give poses (docs/tracking.md)\n",
+                 run.tracking->summary.tracked, run.tracking->summary.frames);
+    return;
+  }
   if (!run.document.instances.empty() || masks_all_absent(run)) return;
   std::fprintf(stderr,
                "ovimap: no object was seen often enough to be kept; map more frames, or --set %s=1 "
@@ -280,6 +295,14 @@ void advise_on_encoder(const MappingRun& run,
                    "ovimap: words go by the small default encoder; a better one: ovimap models "
                    "fetch %s\n",
                    kFirstEncoder);
+}
+
+void advise_on_writing(const MappingRun& run) {
+  if (run.document.semantics.writing_reader.empty() || run.frames_before == run.document.frames.size())
+    return;
+  std::fprintf(stderr,
+               "ovimap: what was read on things before is kept; `ovimap read` reads what the new "
+               "frames show\n");
 }
 
 }  // namespace ovimap::apps

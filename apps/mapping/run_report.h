@@ -24,11 +24,17 @@ void print_run(const std::filesystem::path& map, const MappingRun& run, double f
 /// Frames a second that a camera or clients sent, also those left out.
 double sent_fps(const LiveRunResult& run);
 
+/// Whether the camera was lost for more frames than it was followed, parts counted.
+bool mostly_lost(const MappingRun& run);
+
 /// On stderr, where the map has no object: why.
 void advise_on_objects(const MappingRun& run);
 
 /// On stderr, where the small default encoder was used: how to get a better one.
 void advise_on_encoder(const MappingRun& run,
                        const std::vector<std::filesystem::path>& model_dirs);
+
+/// On stderr, where what an earlier `ovimap read` found was kept: that new frames were not read.
+void advise_on_writing(const MappingRun& run);
 
 }  // namespace ovimap::apps

@@ -41,6 +41,23 @@ nlohmann::json edit_json(const MapEdit& edit) {
           {"undone_by", edit.undone_by == 0 ? nlohmann::json() : nlohmann::json(edit.undone_by)}};
 }
 
+/// Tells which of the objects that were named go by another number since they became one with it.
+void print_aliases(const std::vector<InstanceId>& asked, const std::vector<InstanceId>& edited) {
+  for (std::size_t i = 0; i < std::min(asked.size(), edited.size()); ++i)
+    if (asked[i] != edited[i])
+      std::printf("object %u is part of object %u by now\n", asked[i], edited[i]);
+}
+
+/// A number that an object or an edit can have.
+CLI::Validator ordinal() {
+  const auto fault = [](const std::string& text) {
+    std::uint32_t number = 0;
+    const bool is_number = CLI::detail::lexical_cast(text, number) && number > 0;
+    return is_number ? std::string() : concat("'", text, "' is no number from 1 up");
+  };
+  return {fault, "NUMBER"};
+}
+
 void print_edit(const MapEdit& edit) {
   std::printf("%4lld  %s  %-6s %s", static_cast<long long>(edit.id), time_text(edit.time_s).c_str(),
               edit_action_name(edit.action), edit_arguments_json(edit).c_str());
@@ -69,11 +86,13 @@ int edit_or_log(const EditOptions& options) {
   edit.instances.insert(edit.instances.end(), options.others.begin(), options.others.end());
   const std::filesystem::path taught = options.teach.file();
   if (!taught.empty()) (void)read_taught_file(taught);  // rather refuse than half do it
+  const std::vector<InstanceId> asked = edit.instances;
   edit = edit_map(options.map, edit);
   const std::size_t examples =
       taught.empty() ? 0 : teach(taught, options.map, open_map_search(options.map));
   if (!options.json) {
     print_edit(edit);
+    print_aliases(asked, edit.instances);
     if (!taught.empty())
       std::printf("%zu named objects of this map teach others (%s)\n", examples, taught.c_str());
     return kDone;
@@ -92,7 +111,7 @@ CLI::App& add_action(CLI::App& command, EditOptions& options, EditAction action,
   if (action != EditAction::kUndo)
     sub.add_option("ID", options.object, "object, as `ovimap info` lists it")
         ->required()
-        ->check(CLI::PositiveNumber);
+        ->check(ordinal());
   sub.fallthrough();
   return sub;
 }
@@ -122,7 +141,7 @@ Action add_edit(CLI::App& command) {
   add_action(command, *options, EditAction::kHide, "leave it out of lists, answers and pictures");
   add_action(command, *options, EditAction::kUndo, "take an edit back, or take an undo back")
       .add_option("EDIT", options->edit.undoes, "its number in the log; the latest without it")
-      ->check(CLI::PositiveNumber);
+      ->check(ordinal());
   CLI::App& log = *command.add_subcommand("log", "what was edited, oldest first");
   log.callback([options] { options->log = true; });
   log.fallthrough();

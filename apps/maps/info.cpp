@@ -72,8 +72,9 @@ void print_rooms(const InfoOptions& options) {
   if (graph.plan.rooms.empty())
     std::printf("no rooms: the frames looked through no free space at breast height\n");
   for (const Room& room : graph.plan.rooms) {
-    std::printf("room %d, %.1f m2: %s\n", room.id, double{room.area_m2},
-                graph.name_of(room).c_str());
+    const std::string number = concat("room ", room.id), name = graph.name_of(room);
+    std::printf("%s, %.1f m2%s\n", number.c_str(), double{room.area_m2},
+                name == number ? "" : concat(": ", name).c_str());
     for (std::size_t i = 0; i < search.index.size(); ++i)
       if (graph.room_of[i] == room.id)
         std::printf("%6u  %s\n", search.index.object(i).id, graph.titles[i].c_str());

@@ -88,10 +88,23 @@ nlohmann::json answer_json(const Answered& answered, const Approaches& approache
           {"instances", instances}};
 }
 
+/// A cosine; none where words were not compared with pictures.
+std::string score_text(float score) {
+  char text[16] = "-";
+  if (score != 0.f) std::snprintf(text, sizeof text, "%.3f", double{score});
+  return text;
+}
+
+/// What was asked and whether it is there.
+std::string verdict_text(const QueryAnswer& answer) {
+  if (answer.verdict == Verdict::kFound) return answer.query + ": found";
+  if (answer.like_object) return concat("nothing else is like ", answer.query);
+  return answer.query + ": not in the map";
+}
+
 void print_answer(const Answered& answered, const Approaches& approaches) {
   const QueryAnswer& answer = answered.answer;
-  std::printf("%s: %s", answer.query.c_str(),
-              answer.verdict == Verdict::kFound ? "found" : "not in the map");
+  std::printf("%s", verdict_text(answer).c_str());
   if (answer.count)
     std::printf(", %d found, %.1f +- %.1f by their chances", answer.count->found,
                 answer.count->expected, answer.count->deviation);
@@ -102,7 +115,7 @@ void print_answer(const Answered& answered, const Approaches& approaches) {
   for (const QueryMatch& match : answer.matches) {
     const SearchObject& object = answered.object(match);
     const Eigen::Vector3f place = match.part == 0 ? object.centroid : match.part_box.center();
-    std::printf("  #%-5u %6.3f", match.id, double{match.score});
+    std::printf("  #%-5u %6s", match.id, score_text(match.score).c_str());
     if (match.probability) std::printf("  %3.0f %%", 100.0 * *match.probability);
     std::printf("  at %6.2f %6.2f %6.2f", double{place.x()}, double{place.y()},
                 double{place.z()});

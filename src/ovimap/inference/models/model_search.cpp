@@ -109,9 +109,9 @@ fs::path find_model(const std::string& name, const std::vector<fs::path>& search
     searched += (searched.empty() ? "" : ", ") + place.string();
   throw Error(concat("model '", name, "' was not found in ",
                      searched.empty() ? "any folder" : searched,
-                     "; run `ovimap models fetch default` (in a checkout: tools/setup.sh), or name "
-                     "its folder with "
-                     "--model-dir or OVIMAP_MODELS"));
+                     "; `ovimap models list` says what is there and what `ovimap models fetch NAME` "
+                     "gets (in a checkout tools/setup.sh gets the small ones), and --model-dir or "
+                     "OVIMAP_MODELS name other folders"));
 }
 
 }  // namespace ovimap

@@ -271,6 +271,7 @@ MapRecord Mapper::record(MapHeader header, std::vector<FrameLogEntry> frames,
   record.semantics.crops = config_.semantics.crops;
   if (encoder()) record.semantics.encoder = encoder()->identity();
   record.semantics.recognizer = builder_->recognizer();
+  record.semantics.writing_reader = writing_reader_;
   record.frames = std::move(frames);
   record.kept_frames = kept_frames();
   record.depth_camera = depth_camera;
@@ -289,6 +290,7 @@ void Mapper::restore(MapDocument&& document) {
   if (document.semantics.recognizer != builder_->recognizer())  // other numbers mean other things
     for (auto& [label, look] : document.semantics.looks)
       for (ObjectView& view : look.views) view.things.resize(0);
+  writing_reader_ = std::move(document.semantics.writing_reader);
   builder_->restore(std::move(document.semantics.looks));
   frame_store_.restore(std::move(document.kept_frames), document.frames.size());
   for (const FrameLogEntry& frame : document.frames) {

@@ -171,6 +171,7 @@ class Mapper {
   bool settled_ = false;  ///< the objects are those of all that is in the map
   std::vector<std::uint32_t> touched_blocks_;
   std::vector<LiveStep> live_steps_;
+  std::string writing_reader_;  ///< read the writing that restored views have; empty: nothing did
   int frames_ = 0, mask_frames_ = 0;
   std::int64_t first_number_ = 0;
 };

@@ -208,6 +208,7 @@ QueryAnswer QueryEngine::find_like(InstanceId id, bool relevance) const {
   const auto row = index_.embeddings().row(static_cast<Eigen::Index>(*itself));
   QueryAnswer result = answer_like(row.transpose(), *itself, relevance);
   result.query = concat("#", id);
+  result.like_object = true;
   return result;
 }
 

@@ -46,6 +46,7 @@ struct QueryAnswer {
   std::string reading;  ///< how a phrase was understood: "[mug] on [table]"; empty for free text
   std::string reason;   ///< why a phrase was not found: "no [table] in the map"; and what of it was
                         ///< not judged: "not judged: wooden"
+  bool like_object = false;  ///< asked was what looks like an object, which is not among the matches
   Verdict verdict = Verdict::kNotInMap;
   std::vector<QueryMatch> matches;  ///< best first, also when the verdict is kNotInMap
   std::optional<CountEstimate> count;  ///< of "how many" and "two ..."
