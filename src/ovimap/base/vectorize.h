@@ -11,3 +11,10 @@
 #else
 #define OVIMAP_VECTORIZE
 #endif
+
+/// Before a loop: what it writes overlaps nothing that it reads.
+#if defined(__clang__)
+#define OVIMAP_NO_OVERLAP _Pragma("clang loop vectorize(assume_safety)")
+#else
+#define OVIMAP_NO_OVERLAP _Pragma("GCC ivdep")
+#endif

@@ -80,7 +80,7 @@ OVIMAP_VECTORIZE void extend_running_sums(const std::uint8_t* left, const std::u
                                           std::uint32_t* next) {
   const auto plane = static_cast<std::size_t>(width);
   const std::uint32_t yy = y * y;
-#pragma GCC ivdep  // the rows never overlap
+  OVIMAP_NO_OVERLAP  // the rows never overlap
   for (std::size_t x = 0; x < plane; ++x) {
     const std::int32_t l = left[x], r = right[x];
     const std::int32_t n = l + r + 1;
@@ -106,7 +106,7 @@ OVIMAP_VECTORIZE void subtract(const std::uint32_t* bottom, const std::uint32_t*
                                int begin, int end, std::uint32_t* sums) {
   for (int sum = 0; sum < kSums; ++sum) {
     const std::size_t first = static_cast<std::size_t>(sum) * static_cast<std::size_t>(width);
-#pragma GCC ivdep
+  OVIMAP_NO_OVERLAP
     for (std::size_t x = first + static_cast<std::size_t>(begin);
          x < first + static_cast<std::size_t>(end); ++x)
       sums[x] = bottom[x] - top[x];
@@ -134,7 +134,7 @@ OVIMAP_VECTORIZE void solve_planes(const std::uint32_t* sums, const std::uint32_
   const auto real = [](std::uint32_t bits) {
     return static_cast<float>(static_cast<std::int32_t>(bits));
   };
-#pragma GCC ivdep
+  OVIMAP_NO_OVERLAP
   for (std::size_t x = 0; x < plane; ++x) {
     const std::uint32_t n = sums[kN * plane + x], u = sums[kU * plane + x],
                         sum_ny = sums[kNY * plane + x];

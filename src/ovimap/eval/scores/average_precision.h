@@ -17,6 +17,9 @@ struct ScoredOverlaps {
   std::vector<double> confidence;  ///< per table.predicted; higher ranks first
 };
 
+/// IoU thresholds that `AP` averages over, in percent.
+constexpr int kFirstPercent = 50, kLastPercent = 95, kStepPercent = 5;
+
 struct PrecisionRecall {
   double average_precision = 0, recall = 0;
 };

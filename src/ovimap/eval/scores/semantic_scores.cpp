@@ -13,8 +13,7 @@ namespace ovimap {
 
 namespace {
 
-constexpr int kFirstPercent = 50, kStandardLastPercent = 95, kReferenceLastPercent = 90;
-constexpr int kStepPercent = 5;
+constexpr int kReferenceLastPercent = 90;
 
 /// One scene's instances of all classes.
 struct ClassedOverlaps {
@@ -194,7 +193,7 @@ std::vector<ClassScores> standard_class_scores(std::span<const SemanticScene> sc
     if (std::all_of(tables.begin(), tables.end(),
                     [](const auto& s) { return s.table.truth.empty(); }))
       continue;
-    fill_precision(scores[c], kStandardLastPercent, [&](int percent) {
+    fill_precision(scores[c], kLastPercent, [&](int percent) {
       return ranked_precision(tables, percent).average_precision;
     });
   }

@@ -12,7 +12,9 @@
 
 namespace ovimap {
 
+namespace {
 using Json = nlohmann::ordered_json;
+}
 
 Json json_number(float value) {
   if (!std::isfinite(value)) return nullptr;

@@ -118,7 +118,7 @@ OVIMAP_INLINE void blend_colors(const RgbImage& image, const ProjectedRow& row, 
   const Ints first = old[0] + old[1] + old[2] == 0.f;
   const Ints known = (words & 0xffffff) != 0;  // black is unknown
   const Floats mix = first ? broadcast(1.f) : larger(share, broadcast(kLeastColorShare));
-  const Floats shares = known & (share > 0.f) ? mix : Floats{};
+  const Floats shares = (known & (share > 0.f)) ? mix : Floats{};
   for (int channel = 0; channel < 3; ++channel) {
     const Floats target =
         __builtin_convertvector((words >> (8 * channel)) & 0xff, Floats) * kColorScale;

@@ -31,7 +31,7 @@ OVIMAP_VECTORIZE void find_row_voxels(const float* depth, const PixelRays::Row& 
   const float ox = origin.x(), oy = origin.y(), oz = origin.z();
   const float rx = rays.part.x(), ry = rays.part.y(), rz = rays.part.z();
   int *x = voxels.x.data(), *y = voxels.y.data(), *z = voxels.z.data();
-#pragma GCC ivdep  // the arrays never overlap
+  OVIMAP_NO_OVERLAP  // the arrays never overlap
   for (int i = 0; i < width; ++i) {
     x[i] = floor_of((ox + (rays.column_x[i] + rx) * depth[i]) * inverse_voxel_size);
     y[i] = floor_of((oy + (rays.column_y[i] + ry) * depth[i]) * inverse_voxel_size);

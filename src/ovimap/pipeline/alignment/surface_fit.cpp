@@ -6,24 +6,9 @@
 #include <array>
 
 #include "ovimap/map/voxels/voxel_block.h"
+#include "ovimap/track/alignment/normal_equations.h"
 
 namespace ovimap {
-
-namespace {
-
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
-using Vector6d = Eigen::Matrix<double, 6, 1>;
-
-Pose motion(const Vector6d& turn_and_shift) {
-  Pose result = Pose::Identity();
-  const Eigen::Vector3d turn = turn_and_shift.head<3>();
-  if (turn.norm() > 0)
-    result.linear() = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
-  result.translation() = turn_and_shift.tail<3>();
-  return result;
-}
-
-}  // namespace
 
 SurfacePoints thinned_surface(const Mesh& mesh, float spacing_m) {
   std::vector<std::pair<std::array<int, 3>, std::uint32_t>> cells(mesh.vertices.size());
@@ -60,13 +45,13 @@ Pose SurfaceFit::step(const Pose& a_from_b, float reach_m) const {
     if (plane.dot(pose.linear() * b_.normals[i]) < kSameSurfaceCosine) continue;
     const Eigen::Vector3d p = moved[i].cast<double>(), n = plane.cast<double>();
     Vector6d row;
-    row << p.cross(n), n;
+    row << n, p.cross(n);
     normal += row * row.transpose();
     right += row * n.dot(a_.points[found[i]->index].cast<double>() - p);
   }
   const Vector6d change = normal.ldlt().solve(right);
   if (!change.allFinite()) return a_from_b;
-  return rigid_pose((motion(change) * a_from_b).matrix());  // products drift
+  return rigid_pose((small_motion(change) * a_from_b).matrix());  // products drift
 }
 
 }  // namespace ovimap

@@ -3,14 +3,9 @@
 #include "ovimap/pipeline/live/camera_feed.h"
 
 #include "ovimap/base/error.h"
+#include "ovimap/pipeline/live/look_again.h"
 
 namespace ovimap {
-
-namespace {
-
-constexpr std::chrono::milliseconds kLook{50};  // between looks at whether to stop
-
-}  // namespace
 
 void CameraFeed::start() {
   thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });

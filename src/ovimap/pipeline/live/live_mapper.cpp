@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "ovimap/base/config.h"
+#include "ovimap/pipeline/live/look_again.h"
 
 namespace ovimap {
 
@@ -89,7 +90,6 @@ void LiveMapper::move_and_wait(PoseUpdate update) {
 }
 
 void LiveMapper::drain(const std::function<bool()>& go_on) {
-  constexpr std::chrono::milliseconds kLook{50};
   incoming_.close();
   const auto ended = [&] {
     std::unique_lock lock(mutex_);
@@ -163,7 +163,6 @@ void LiveMapper::restore(MapDocument&& document) {
 
 /// While none comes there is time for masks.
 std::optional<LiveMapper::Prepared> LiveMapper::next_prepared() {
-  constexpr std::chrono::milliseconds kLook{50};
   while (!prepared_.wait_for(kLook))
     if (!repeating_) apply_late_masks();
   return prepared_.pop();

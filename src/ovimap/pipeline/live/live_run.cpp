@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "ovimap/base/error.h"
+#include "ovimap/pipeline/live/look_again.h"
 
 namespace ovimap {
 
@@ -147,7 +148,6 @@ LiveRunResult repeat_live(const FrameSource& source, const std::vector<LiveStep>
 
 LiveRunResult run_pushed(FrameIntake& intake, LiveMapper& mapper, const LiveProgress& progress,
                          const FrameFilter& filter) {
-  constexpr std::chrono::milliseconds kLook{50};  // between looks at whether to go on
   LiveRunResult result;
   std::optional<Clock::time_point> start;  // the first frame's
   std::size_t handed_over = 0;

@@ -73,7 +73,7 @@ TEST_F(HttpServerTest, ListsObjects) {
   ASSERT_EQ(instances.size(), 2u);
   EXPECT_EQ(instances[0]["id"], 1);
   EXPECT_EQ(instances[0]["name"], random_document(1, 1).names.at(1));
-  EXPECT_EQ(instances[0]["crops"], json({0}));
+  EXPECT_EQ(instances[0]["crops"], json::array({0}));
   EXPECT_TRUE(instances[1]["box"]["min"][0].is_null());  // an empty box has no corners
   const json detail = get("/api/instances/1");
   EXPECT_GT(detail["height_m"], 0.0);
