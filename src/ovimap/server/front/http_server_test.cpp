@@ -424,7 +424,7 @@ TEST_F(HttpServerTest, WritesAnExportOnceAndCountsItAsWork) {
   MapEdit hide;
   hide.action = EditAction::kHide;
   hide.instances = {3};
-  running_->map().correct(hide);
+  running_->map().correct(std::move(hide));
   EXPECT_NE(*write(request).body, *first);
 }
 
