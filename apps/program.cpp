@@ -49,7 +49,7 @@ constexpr CommandEntry kCommands[] = {
     {"eval-poses", "score the poses of a camera against true ones",
      "eval-poses tracked.txt demo/tiny/room", add_eval_poses},
     {"ablate", "vary one choice and score the maps, beside published figures",
-     "ablate fusion demo/tiny/room --masks gt --frames ::4 -o tables", add_ablate},
+     "ablate fusion demo/tiny/room --masks gt --frames ::8 -o tables", add_ablate},
     {"reproduce", "make the paper's tables from your own copy of its data",
      nullptr, add_reproduce},
     {"bench", "measure speed and memory on a recording",

@@ -161,6 +161,14 @@ class LiveMap(Strangers, Bodies, Crowds, Attacked, unittest.TestCase):
         self.assertEqual(json.loads(ovimap("info", self.map, "--json"))["frames"], self.camera.taken)
 
 
+def attack_all(classes):
+    """Attackers mostly wait, so each class of servers is attacked by a process of its own at the same time."""
+    begun = [subprocess.Popen([sys.executable, __file__, PROGRAM, case.__name__], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) for case in classes]
+    for case, process in zip(classes, begun):
+        print(f"{case.__name__}:\n{process.communicate()[0]}", flush=True)
+    return int(any(process.returncode for process in begun))
+
+
 def main():
     global PROGRAM
     PROGRAM = os.path.abspath(sys.argv.pop(1))
@@ -169,7 +177,7 @@ def main():
         print(f"a process may open {hard} files, the attacks need 2000; raise it: ulimit -n")
         return NOT_AVAILABLE
     resource.setrlimit(resource.RLIMIT_NOFILE, (max(soft, 2000), hard))
-    return unittest.main()
+    return unittest.main() if sys.argv[1:] else attack_all([StillMap, EncryptedMap, LiveMap])
 
 
 if __name__ == "__main__":
