@@ -11,8 +11,8 @@ namespace ovimap::apps {
 /// when there is no bound.
 std::unique_ptr<Checkpointer> bound_memory(const MemoryConfig& memory);
 
-/// Walks down a generated corridor, with depth alone and voxels of 4 cm, and reports every 500
-/// frames what a frame costs and how large the map is.
-int bench_corridor(int frames, const ProgramConfig& config, bool json);
+/// Walks down a generated corridor with voxels of 4 cm, and reports for every tenth of the frames what
+/// one costs, stage by stage, and how large the map is.
+int bench_corridor(int frames, ProgramConfig config, const MappingOptions& options, bool json);
 
 }  // namespace ovimap::apps

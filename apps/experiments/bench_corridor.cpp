@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
-#include <chrono>
 #include <cstdio>
+#include <map>
+#include <utility>
 
 #include "bench.h"
 #include "ovimap/synth/recordings/corridor.h"
@@ -10,15 +11,17 @@ namespace ovimap::apps {
 
 namespace {
 
-constexpr std::int64_t kPart = 500;  // frames of a row
-constexpr float kVoxel_m = 0.04f;    // a corridor of 300 m at 1 cm would take 15 GB
+constexpr std::int64_t kParts = 10;
+constexpr float kVoxel_m = 0.04f;  // a corridor of 300 m at 1 cm would take 15 GB
 
-/// Cost of the frames up to `frames`, and what the map is by then.
+/// Cost of a tenth of the frames, and what the map is at their end.
 struct CorridorRow {
-  std::int64_t frames;
-  StageSummary frame, project, mesh;
-  double map_mb;   ///< in memory
-  double wall_m2;  ///< 0 with a bound on memory, for which all of the map would have to come back
+  std::int64_t frames;  ///< up to here
+  std::map<std::string, StageSummary> stages;  ///< "frame": all that mapping does
+  double cpu_ms;    ///< of processor time a frame
+  double blocks_touched;  ///< a frame
+  double map_mb;    ///< in memory
+  double wall_m2;   ///< 0 with a bound on memory, for which all of the map would have to come back
   std::size_t blocks, objects;
 };
 
@@ -40,62 +43,108 @@ double surface_m2(const VoxelMap& map) {
   return static_cast<double>(voxels) * side * side;
 }
 
-/// With a bound on memory no mesh is kept, which has none.
-CorridorWalk walk(const CorridorSource& corridor, ProgramConfig config) {
-  config.mapper.map.voxel_size_m = kVoxel_m;
-  Mapper mapper(config.mapper);
-  const auto checkpoints = bound_memory(config.memory);
-  IncrementalMesh mesh;
-  CorridorWalk walked;
-  Progress progress("walking");
-  StageTimers part;
-  for (std::int64_t i = 0; i < corridor.size() && !interrupted(); ++i) {
-    const Frame frame = *corridor.read(i).frame;
-    {
-      auto t = part.measure("frame");
-      mapper.process(frame);
-      if (checkpoints) checkpoints->after_frame(mapper, {}, frame.depth_camera);
+/// Walks down the corridor and measures its tenths.
+class CorridorWalker {
+ public:
+  CorridorWalker(const CorridorSource& corridor, const ProgramConfig& config,
+                 std::shared_ptr<MaskSource> masks)
+      : corridor_(corridor),
+        mapper_(config.mapper, std::move(masks)),
+        checkpoints_(bound_memory(config.memory)) {}
+
+  CorridorWalk walk() {
+    Progress progress("walking");
+    const std::int64_t part = corridor_.size() / kParts;
+    CorridorWalk walked;
+    for (std::int64_t i = 0; i < part * kParts && !interrupted(); ++i) {
+      step(*corridor_.read(i).frame);
+      progress.show(static_cast<std::size_t>(i + 1), static_cast<std::size_t>(corridor_.size()));
+      if ((i + 1) % part == 0) walked.rows.push_back(end_part(i + 1, part));
     }
-    if (!checkpoints) {
-      auto t = part.measure("mesh");
-      mesh.update(mapper.map(), mapper.touched_blocks());
-    }
-    {
-      auto t = part.measure("project");
-      (void)mapper.project(frame);
-    }
-    progress.show(static_cast<std::size_t>(i + 1), static_cast<std::size_t>(corridor.size()));
-    if ((i + 1) % kPart != 0) continue;
-    auto summary = part.summary();
-    walked.rows.push_back({i + 1, summary["frame"], summary["project"], summary["mesh"],
-                           static_cast<double>(mapper.map().bytes()) / 1e6,
-                           checkpoints ? 0. : surface_m2(mapper.map()), mapper.map().block_count(),
-                           mapper.registry().instances().size()});
-    part = {};
+    if (checkpoints_) checkpoints_->report(walked.tiles);
+    return walked;
   }
-  if (checkpoints) checkpoints->report(walked.tiles);
-  return walked;
+
+ private:
+  /// With a bound on memory no mesh is kept, which has none.
+  void step(const Frame& frame) {
+    StageTimers& timers = mapper_.timers();
+    const double cpu_before = cpu_seconds();
+    {
+      auto t = timers.measure("frame");
+      mapper_.process(frame);
+      if (checkpoints_) checkpoints_->after_frame(mapper_, {}, frame.depth_camera);
+    }
+    cpu_ms_ += 1e3 * (cpu_seconds() - cpu_before);
+    touched_ += static_cast<double>(mapper_.touched_blocks().size());
+    if (!checkpoints_) {
+      auto t = timers.measure("mesh_update");
+      mesh_.update(mapper_.map(), mapper_.touched_blocks());
+    }
+    auto t = timers.measure("projection");
+    (void)mapper_.project(frame);
+  }
+
+  CorridorRow end_part(std::int64_t frames, std::int64_t part) {
+    const auto count = static_cast<double>(part);
+    const VoxelMap& map = mapper_.map();
+    return {frames,
+            std::exchange(mapper_.timers(), {}).summary(),
+            std::exchange(cpu_ms_, 0) / count,
+            std::exchange(touched_, 0) / count,
+            static_cast<double>(map.bytes()) / 1e6,
+            checkpoints_ ? 0. : surface_m2(map),
+            map.block_count(),
+            mapper_.registry().instances().size()};
+  }
+
+  const CorridorSource& corridor_;
+  Mapper mapper_;
+  std::unique_ptr<Checkpointer> checkpoints_;
+  IncrementalMesh mesh_;
+  double cpu_ms_ = 0, touched_ = 0;
+};
+
+nlohmann::json row_json(const CorridorRow& row) {
+  nlohmann::json stages;
+  for (const auto& [stage, s] : row.stages)
+    stages[stage] = {{"p50_ms", s.p50_ms}, {"p95_ms", s.p95_ms}, {"total_ms", s.total_ms}};
+  return {{"frames", row.frames},     {"stages", stages},
+          {"cpu_ms", row.cpu_ms},     {"blocks_touched", row.blocks_touched},
+          {"map_mb", row.map_mb},     {"blocks", row.blocks},
+          {"surface_m2", row.wall_m2}, {"objects", row.objects}};
+}
+
+void print_rows(const std::vector<CorridorRow>& rows) {
+  std::printf("%8s %9s %9s %9s %11s %9s %9s %9s %10s %8s\n", "frames", "p50 ms", "p95 ms", "cpu ms",
+              "project ms", "touched", "map MB", "blocks", "surface m2", "objects");
+  for (const CorridorRow& row : rows)
+    std::printf("%8lld %9.2f %9.2f %9.2f %11.2f %9.0f %9.1f %9zu %10.0f %8zu\n",
+                static_cast<long long>(row.frames), row.stages.at("frame").p50_ms,
+                row.stages.at("frame").p95_ms, row.cpu_ms, row.stages.at("projection").p50_ms,
+                row.blocks_touched, row.map_mb, row.blocks, row.wall_m2, row.objects);
+  std::printf("\n%-16s %16s %15s %6s\n", "stage", "first tenth, ms", "last tenth, ms", "ratio");
+  for (const auto& [stage, first] : rows.front().stages) {
+    const auto last = rows.back().stages.find(stage);
+    if (last != rows.back().stages.end())
+      std::printf("%-16s %16.0f %15.0f %6.2f\n", stage.c_str(), first.total_ms,
+                  last->second.total_ms, last->second.total_ms / first.total_ms);
+  }
 }
 
 }  // namespace
 
-int bench_corridor(int frames, const ProgramConfig& config, bool json) {
+int bench_corridor(int frames, ProgramConfig config, const MappingOptions& options, bool json) {
   watch_for_interrupt();
-  const CorridorSource corridor({.frames = frames});
-  const auto [rows, tiles] = walk(corridor, config);
-  const double growth = rows.empty() ? 0 : rows.back().frame.p50_ms / rows.front().frame.p50_ms;
+  config.mapper.map.voxel_size_m = kVoxel_m;
+  const CorridorSource corridor({.frames = frames, .hung = true});
+  CorridorWalker walker(corridor, config,
+                        make_mask_source(options.masks, config.masks, {&corridor, options.model_dirs}));
+  const auto [rows, tiles] = walker.walk();
+  const double growth = rows.empty() ? 0 : rows.back().cpu_ms / rows.front().cpu_ms;
   if (json) {
     nlohmann::json parts = nlohmann::json::array();
-    for (const CorridorRow& row : rows)
-      parts.push_back({{"frames", row.frames},
-                       {"frame_p50_ms", row.frame.p50_ms},
-                       {"frame_p95_ms", row.frame.p95_ms},
-                       {"project_p50_ms", row.project.p50_ms},
-                       {"mesh_p50_ms", row.mesh.p50_ms},
-                       {"map_mb", row.map_mb},
-                       {"blocks", row.blocks},
-                       {"surface_m2", row.wall_m2},
-                       {"objects", row.objects}});
+    for (const CorridorRow& row : rows) parts.push_back(row_json(row));
     print_json({{"parts", parts},
                 {"stages", stages_json(tiles)},
                 {"growth", growth},
@@ -103,18 +152,13 @@ int bench_corridor(int frames, const ProgramConfig& config, bool json) {
                 {"peak_rss_mb", peak_rss_mb()}});
     return kDone;
   }
-  std::printf("%8s %9s %9s %11s %9s %9s %9s %10s %8s\n", "frames", "p50 ms", "p95 ms", "project ms",
-              "mesh ms", "map MB", "blocks", "surface m2", "objects");
-  for (const CorridorRow& row : rows)
-    std::printf("%8lld %9.2f %9.2f %11.2f %9.2f %9.1f %9zu %10.0f %8zu\n",
-                static_cast<long long>(row.frames), row.frame.p50_ms, row.frame.p95_ms,
-                row.project.p50_ms, row.mesh.p50_ms, row.map_mb, row.blocks, row.wall_m2,
-                row.objects);
+  if (rows.empty()) return kDone;
+  print_rows(rows);
   for (const auto& [stage, s] : tiles.summary())
     std::printf("%s: %.2f ms, p95 %.2f ms, %zu times\n", stage.c_str(), s.p50_ms, s.p95_ms,
                 s.count);
-  std::printf("the last %lld frames cost %.2f times the first; peak memory %.0f MB\n",
-              static_cast<long long>(kPart), growth, peak_rss_mb());
+  std::printf("the last tenth of the frames takes %.2f times the processor time of the first; peak memory %.0f MB\n",
+              growth, peak_rss_mb());
   return kDone;
 }
 

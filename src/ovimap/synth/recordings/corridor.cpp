@@ -42,14 +42,23 @@ CorridorSource::CorridorSource(const CorridorConfig& config)
               0.5f * static_cast<float>(config.height - 1)} {
   Random random(config.seed);
   const float end = config.step_m * static_cast<float>(config.frames) + kSight_m;
-  for (float x = 1.5f; x < end; x += random.uniform(0.6f, 1.6f)) {
-    const float side = random.index(2) == 0 ? -1.f : 1.f;
-    const float depth = random.uniform(0.15f, 0.45f), length = random.uniform(0.3f, 0.9f);
-    const float height = random.uniform(0.3f, 1.8f);
-    const float inner = side * (kHalfWidth_m - depth);
-    boxes_.emplace_back(Eigen::Vector3f(x, std::min(inner, side * kHalfWidth_m), 0.f),
-                        Eigen::Vector3f(x + length, std::max(inner, side * kHalfWidth_m), height));
+  const auto side = [&] { return random.index(2) == 0 ? -1.f : 1.f; };
+  const auto uniform = [&](float low, float high) { return random.uniform(low, high); };
+  for (float x = 1.5f; x < end; x += uniform(0.6f, 1.6f)) {
+    const float of = side(), depth = uniform(0.15f, 0.45f), length = uniform(0.3f, 0.9f);
+    add_box(of, depth, {x, x + length}, {0.f, uniform(0.3f, 1.8f)});
   }
+  for (float x = 1.5f; config.hung && x < end; x += uniform(0.3f, 0.5f)) {
+    const float of = side(), depth = uniform(0.06f, 0.12f), low = uniform(1.f, 2.f);
+    add_box(of, depth, {x, x + uniform(0.2f, 0.3f)}, {low, low + uniform(0.2f, 0.35f)});
+  }
+}
+
+void CorridorSource::add_box(float side, float depth, const Eigen::Vector2f& along,
+                             const Eigen::Vector2f& up) {
+  const float wall = side * kHalfWidth_m, inner = side * (kHalfWidth_m - depth);
+  boxes_.emplace_back(Eigen::Vector3f(along[0], std::min(inner, wall), up[0]),
+                      Eigen::Vector3f(along[1], std::max(inner, wall), up[1]));
 }
 
 Pose CorridorSource::pose(std::int64_t position) const {

@@ -14,6 +14,7 @@ struct CorridorConfig {
   int frames = 5000;
   float step_m = 0.06f;           ///< forward motion from frame to frame
   int width = 320, height = 240;  ///< pixels
+  bool hung = false;  ///< small boxes hang on the walls as well, some 2.5 a metre
   std::uint32_t seed = 1;
 };
 
@@ -39,6 +40,7 @@ class CorridorSource : public FrameSource {
     int face = 0;  ///< axis of the surface's normal
   };
 
+  void add_box(float side, float depth, const Eigen::Vector2f& along, const Eigen::Vector2f& up);
   Pose pose(std::int64_t position) const;
   std::vector<std::size_t> boxes_near(float x) const;
   Hit trace(const Eigen::Vector3f& eye, const Eigen::Vector3f& ray,
@@ -48,7 +50,7 @@ class CorridorSource : public FrameSource {
 
   CorridorConfig config_;
   PinholeCamera camera_;
-  std::vector<Eigen::AlignedBox3f> boxes_;  ///< ordered along the corridor
+  std::vector<Eigen::AlignedBox3f> boxes_;  ///< those on the floor first
 };
 
 }  // namespace ovimap
