@@ -12,6 +12,20 @@ namespace ovimap {
 
 namespace {
 
+/// The lower of two ids; 0 is none.
+InstanceId older(InstanceId a, InstanceId b) {
+  return a == 0 || (b != 0 && b < a) ? b : a;
+}
+
+/// Objects by the oldest root of each root's.
+std::vector<RegroupedObject> listed(const std::map<Label, Label>& object_of) {
+  std::map<Label, RegroupedObject> objects;
+  for (const auto& [root, object] : object_of) objects[object].roots.push_back(root);
+  std::vector<RegroupedObject> list;
+  for (auto& [object, regrouped] : objects) list.push_back(std::move(regrouped));
+  return list;
+}
+
 /// Segment indices, largest first; equals in order.
 std::vector<std::size_t> by_area(const Segments& segments) {
   std::vector<std::size_t> order(segments.segments.size());
@@ -134,33 +148,44 @@ void InstanceRegistry::see_entities(const Segments& segments,
 }
 
 void InstanceRegistry::settle() {
-  if (config_.instances == InstanceReading::kConsensus) group(consensus_.settle());
+  if (config_.instances == InstanceReading::kConsensus) group(listed(consensus_.settle()));
 }
 
 void InstanceRegistry::settle(const SuperPointShapes& shapes) {
-  group(consensus_.settle(shapes));
+  group(listed(consensus_.settle(shapes)));
 }
 
 /// An object goes by the oldest id among its super-points. The others are its aliases for as long
 /// as they belong to it.
-void InstanceRegistry::group(const std::map<Label, Label>& object_of) {
-  std::map<Label, InstanceId> oldest;
-  for (const auto& [root, object] : object_of) {
-    const InstanceId own = own_id(root);
-    if (own == 0) continue;
-    const auto [found, first] = oldest.try_emplace(object, own);
-    if (!first) found->second = std::min(found->second, own);
+void InstanceRegistry::group(std::vector<RegroupedObject> objects) {
+  std::map<InstanceId, std::size_t> object_with;  // those whose super-points are all named
+  for (std::size_t i = 0; i < objects.size(); ++i)
+    for (const Label root : objects[i].roots) object_with[own_id(root)] = i;
+  std::vector<InstanceId> ids;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const InstanceId now = objects[i].resting ? resolve(own_id(objects[i].resting)) : 0;
+    const auto namesake = object_with.find(now);
+    const bool left = namesake != object_with.end() && namesake->second != i;
+    InstanceId id = left ? 0 : now;
+    for (const Label root : objects[i].roots) id = older(id, own_id(root));
+    if (objects[i].resting && id != now) {  // then it is new to those that rest as well
+      const std::set<Label>& all = consensus_.object_with(objects[i].resting);
+      objects[i].roots.assign(all.begin(), all.end());
+      for (const Label root : all) id = older(id, own_id(root));
+    }
+    ids.push_back(id);
   }
-  for (const auto& [root, object] : object_of) {
-    const InstanceId own = own_id(root);
-    if (own == 0) continue;
-    const InstanceId id = oldest.at(object);
-    if (own == id)
-      aliases_.erase(own);
-    else
-      aliases_[own] = id;
-  }
-  for (const auto& [root, object] : object_of) regroup(root);
+  for (std::size_t i = 0; i < objects.size(); ++i)
+    for (const Label root : objects[i].roots) {
+      const InstanceId own = own_id(root);
+      if (own == 0) continue;
+      if (own == ids[i])
+        aliases_.erase(own);
+      else
+        aliases_[own] = ids[i];
+    }
+  for (const RegroupedObject& object : objects)
+    for (const Label root : object.roots) regroup(root);
 }
 
 /// That which a super-point got when it was first seen in an entity; 0: a map file may lack it.

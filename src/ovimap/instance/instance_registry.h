@@ -131,7 +131,7 @@ class InstanceRegistry {
             const LabelForest& forest);
   void see_entities(const Segments& segments, std::span<const SegmentAssociation> associations,
                     const LabelForest& forest, bool has_entities);
-  void group(const std::map<Label, Label>& object_of);
+  void group(std::vector<RegroupedObject> objects);
   InstanceId own_id(Label root) const;
   void merge_super_points(std::span<const SegmentAssociation> associations, LabelForest& forest);
   void absorb(Label keep, Label drop);

@@ -158,6 +158,36 @@ TEST_F(RegistryTest, KnowsTheMembersOfEveryInstance) {
   }
 }
 
+/// However objects come together and apart while frames come, each goes by the oldest id of its
+/// super-points, and by those of no others.
+TEST_F(RegistryTest, ObjectsGoByTheirOldestIdAllTheTime) {
+  std::mt19937 random(6);
+  LabelForest forest;
+  for (int i = 0; i < 40; ++i) forest.create();
+  InstanceRegistry registry;
+  for (std::int64_t frame = 0; frame < 300; ++frame) {
+    const Label first = 1 + static_cast<Label>(random() % 32);
+    Segments segments;
+    std::vector<SegmentAssociation> associations;
+    for (Label label = first; label < first + 8; ++label) {
+      segments.segments.push_back({static_cast<std::uint16_t>(label / 4 + random() % 2 + 1), 100});
+      associations.push_back({label, false, {}, {{label, 100}}});
+    }
+    registry.observe(segments, associations, frame, true, forest);
+    for (const auto& [id, labels] : registry.instances()) {
+      InstanceId oldest = registry.super_points().at(labels.front()).votes.begin()->first;
+      for (const Label label : labels) {
+        const InstanceId own = registry.super_points().at(label).votes.begin()->first;
+        ASSERT_EQ(registry.resolve(own), id) << "frame " << frame;
+        oldest = std::min(oldest, own);
+      }
+      ASSERT_EQ(oldest, id) << "frame " << frame;
+    }
+    for (const auto& [alias, id] : registry.aliases())
+      ASSERT_FALSE(registry.aliases().contains(id)) << "frame " << frame;
+  }
+}
+
 TEST_F(RegistryTest, AnEntityJoinsAllSuperPointsThatItShowsUntilFramesTellThemApart) {
   InstanceRegistry registry;
   see(registry, {{1, 5, 500}});  // two ends of a wall, each from where the other is out of sight

@@ -15,17 +15,8 @@ namespace ovimap {
 
 namespace {
 
-using Node = std::uint32_t;  ///< place of a root among all roots in order
-
-/// How many super-points of a cluster an entity shows.
-struct Presence {
-  EntitySighting sighting;
-  int count = 0;
-};
-using Cluster = std::vector<Presence>;  // by sighting
-
-Cluster united(const Cluster& a, const Cluster& b) {
-  Cluster both;
+Presences united(const Presences& a, const Presences& b) {
+  Presences both;
   both.reserve(a.size() + b.size());
   std::merge(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(both),
              [](const Presence& x, const Presence& y) { return x.sighting < y.sighting; });
@@ -43,16 +34,19 @@ Cluster united(const Cluster& a, const Cluster& b) {
 /// What the frames say of all pairs with one super-point in each of two clusters.
 struct Evidence {
   std::int64_t joined = 0, met = 0;  ///< sums over pairs of frames; met: joined or apart
+  bool tied = false;
 
   Evidence operator+(const Evidence& other) const {
-    return {joined + other.joined, met + other.met};
+    return {joined + other.joined, met + other.met, tied || other.tied};
   }
   double weight(double apart_weight) const {
-    return static_cast<double>(joined) - apart_weight * static_cast<double>(met - joined);
+    constexpr double kTie = 1e-6;  // less than any frame says
+    return static_cast<double>(joined) - apart_weight * static_cast<double>(met - joined) +
+           (tied ? kTie : 0);
   }
 };
 
-Evidence evidence_between(const Cluster& a, const Cluster& b) {
+Evidence evidence_between(const Presences& a, const Presences& b) {
   Evidence sum;
   for (auto i = a.begin(), j = b.begin(); i != a.end() && j != b.end();) {
     const std::uint32_t frame = std::max(i->sighting.frame, j->sighting.frame);
@@ -72,7 +66,7 @@ Evidence evidence_between(const Cluster& a, const Cluster& b) {
   return sum;
 }
 
-/// Edges are kept only between clusters that some entity joins:
+/// Edges are kept only between clusters that some entity joins, or that are tied:
 /// no others can come to speak for joining.
 ///
 /// How often two clusters met is counted when their edge comes first in the queue. Until then the
@@ -80,19 +74,16 @@ Evidence evidence_between(const Cluster& a, const Cluster& b) {
 /// a hundred super-points does not count anew, each time, how often it met each neighbour.
 class EdgeContraction {
  public:
-  EdgeContraction(std::span<const Label> roots, const EntitySightings& sightings,
+  EdgeContraction(std::vector<Presences> nodes, std::span<const std::pair<Node, Node>> tied,
                   double apart_weight)
-      : apart_weight_(apart_weight), roots_(roots) {
-    for (const Label root : roots_) {
-      Cluster& cluster = clusters_.emplace_back();
-      for (const EntitySighting& sighting : sightings.at(root)) cluster.push_back({sighting, 1});
-    }
-    edges_of_.resize(roots_.size());
-    grown_at_.resize(roots_.size(), now_);
-    into_.resize(roots_.size());
+      : apart_weight_(apart_weight),
+        clusters_(std::move(nodes)),
+        into_(clusters_.size()),
+        grown_at_(clusters_.size(), now_),
+        edges_of_(clusters_.size()) {
     std::iota(into_.begin(), into_.end(), Node{0});
     oldest_ = into_;
-    add_edges();
+    add_edges(tied);
   }
 
   void run() {
@@ -113,11 +104,10 @@ class EdgeContraction {
     }
   }
 
-  std::map<Label, Label> objects() const {
-    std::map<Label, Label> objects;
-    for (Node node = 0; node < roots_.size(); ++node)
-      objects.emplace_hint(objects.end(), roots_[node], roots_[oldest_[cluster_with(node)]]);
-    return objects;
+  std::vector<Node> oldest() const {
+    std::vector<Node> oldest(clusters_.size());
+    for (Node node = 0; node < clusters_.size(); ++node) oldest[node] = oldest_[cluster_with(node)];
+    return oldest;
   }
 
  private:
@@ -142,27 +132,38 @@ class EdgeContraction {
     }
   };
 
-  /// One for each pair that some entity shows together.
-  void add_edges() {
-    std::vector<std::pair<EntitySighting, Node>> shown;
+  /// One for each pair that some entity shows together, or that is tied.
+  void add_edges(std::span<const std::pair<Node, Node>> tied) {
+    struct Shown {
+      EntitySighting sighting;
+      Node node;
+      int count;
+    };
+    std::vector<Shown> shown;
     for (Node node = 0; node < clusters_.size(); ++node)
-      for (const Presence& presence : clusters_[node]) shown.emplace_back(presence.sighting, node);
-    std::sort(shown.begin(), shown.end());
+      for (const Presence& presence : clusters_[node])
+        shown.push_back({presence.sighting, node, presence.count});
+    std::sort(shown.begin(), shown.end(), [](const Shown& a, const Shown& b) {
+      return std::tie(a.sighting, a.node) < std::tie(b.sighting, b.node);
+    });
     for (std::size_t i = 0; i < shown.size(); ++i)
-      for (std::size_t j = i + 1; j < shown.size() && shown[j].first == shown[i].first; ++j)
-        join_once(shown[i].second, shown[j].second);
+      for (std::size_t j = i + 1; j < shown.size() && shown[j].sighting == shown[i].sighting; ++j) {
+        Evidence& evidence = between(shown[i].node, shown[j].node);
+        const std::int64_t pairs = std::int64_t{shown[i].count} * shown[j].count;
+        evidence.joined += pairs, evidence.met += pairs;
+      }
+    for (const auto& [a, b] : tied) between(a, b).tied = true;
     for (EdgeIndex edge = 0; edge < edges_.size(); ++edge) enqueue(edge);
   }
 
-  void join_once(Node a, Node b) {
+  Evidence& between(Node a, Node b) {
     const auto [at, is_new] =
         edges_of_[a].try_emplace(b, static_cast<EdgeIndex>(edges_.size()));
     if (is_new) {
       edges_.push_back({a, b, {}});
       edges_of_[b].emplace(a, at->second);
     }
-    Evidence& evidence = edges_[at->second].evidence;
-    ++evidence.joined, ++evidence.met;
+    return edges_[at->second].evidence;
   }
 
   Queued queued(EdgeIndex index) const {
@@ -182,7 +183,7 @@ class EdgeContraction {
     Node keep = edges_[between].a, drop = edges_[between].b;
     if (edges_of_[keep].size() < edges_of_[drop].size()) std::swap(keep, drop);
     clusters_[keep] = united(clusters_[keep], clusters_[drop]);
-    Cluster().swap(clusters_[drop]);
+    Presences().swap(clusters_[drop]);
     into_[drop] = keep;
     grown_at_[keep] = ++now_;
     remove(between);
@@ -224,24 +225,37 @@ class EdgeContraction {
   }
 
   double apart_weight_;
-  std::span<const Label> roots_;
-  std::vector<Cluster> clusters_;
+  std::uint32_t now_ = 1;  ///< counts contractions
+  std::vector<Presences> clusters_;
   std::vector<Node> into_;    ///< the cluster each went into; itself while it is one
   std::vector<Node> oldest_;  ///< of each cluster
-  std::uint32_t now_ = 1;     ///< counts contractions
   std::vector<std::uint32_t> grown_at_;
-  std::vector<Edge> edges_;
   std::vector<Edges> edges_of_;
+  std::vector<Edge> edges_;
   std::priority_queue<Queued> queue_;
 };
 
 }  // namespace
 
+std::vector<Node> contract_nodes(std::vector<Presences> nodes,
+                                 std::span<const std::pair<Node, Node>> tied, double apart_weight) {
+  EdgeContraction graph(std::move(nodes), tied, apart_weight);
+  graph.run();
+  return graph.oldest();
+}
+
 std::map<Label, Label> contract_edges(std::span<const Label> roots,
                                       const EntitySightings& sightings, double apart_weight) {
-  EdgeContraction graph(roots, sightings, apart_weight);
-  graph.run();
-  return graph.objects();
+  std::vector<Presences> nodes;
+  for (const Label root : roots) {
+    Presences& presences = nodes.emplace_back();
+    for (const EntitySighting& sighting : sightings.at(root)) presences.push_back({sighting, 1});
+  }
+  const std::vector<Node> oldest = contract_nodes(std::move(nodes), {}, apart_weight);
+  std::map<Label, Label> objects;
+  for (std::size_t i = 0; i < roots.size(); ++i)
+    objects.emplace_hint(objects.end(), roots[i], roots[oldest[i]]);
+  return objects;
 }
 
 }  // namespace ovimap

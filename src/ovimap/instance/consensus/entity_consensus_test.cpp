@@ -19,6 +19,17 @@ EntityConsensus after(const std::vector<Frame>& frames, float apart_weight = 0.5
   return consensus;
 }
 
+/// What update() finds: the oldest root of the object of each root that it speaks of.
+std::map<Label, Label> updated(EntityConsensus& consensus) {
+  std::map<Label, Label> objects;
+  for (const RegroupedObject& object : consensus.update()) {
+    const Label any = object.roots.empty() ? object.resting : object.roots.front();
+    const std::set<Label>& all = consensus.object_with(any);
+    for (const Label root : all) objects[root] = *all.begin();
+  }
+  return objects;
+}
+
 TEST(EntityConsensus, MostFramesDecide) {
   const Frame joined = {{1, 7}, {2, 7}}, apart = {{1, 7}, {2, 3}};
   EXPECT_EQ(after({joined, apart}).settle().at(2), 1u);
@@ -128,14 +139,42 @@ TEST(EntityConsensus, KeepsHowMasksAreRated) {
 
 TEST(EntityConsensus, LooksAtObjectsInSightAlone) {
   EntityConsensus consensus = after({{{1, 1}, {2, 1}, {3, 2}, {4, 2}}});
-  EXPECT_EQ(consensus.update(), (std::map<Label, Label>{{1, 1}, {2, 1}, {3, 3}, {4, 3}}));
-  EXPECT_TRUE(consensus.update().empty()) << "nothing came since";
+  EXPECT_EQ(updated(consensus), (std::map<Label, Label>{{1, 1}, {2, 1}, {3, 3}, {4, 3}}));
+  EXPECT_TRUE(updated(consensus).empty()) << "nothing came since";
   consensus.observe({{2, 5}, {5, 5}});
-  EXPECT_EQ(consensus.update(), (std::map<Label, Label>{{1, 1}, {2, 1}, {5, 1}}));
+  EXPECT_EQ(updated(consensus), (std::map<Label, Label>{{1, 1}, {2, 1}, {5, 1}}));
   consensus.observe({{1, 1}, {2, 2}});
-  EXPECT_EQ(consensus.update().at(2), 1u);
+  EXPECT_EQ(updated(consensus).at(2), 1u);
   for (int i = 0; i < 2; ++i) consensus.observe({{1, 1}, {2, 2}});
-  EXPECT_EQ(consensus.update(), (std::map<Label, Label>{{1, 1}, {2, 2}, {5, 2}})) << "taken apart";
+  EXPECT_EQ(updated(consensus), (std::map<Label, Label>{{1, 1}, {2, 2}, {5, 2}})) << "taken apart";
+}
+
+TEST(EntityConsensus, WhatRestsStaysTogetherUntilFramesSpeakAgainstIt) {
+  EntityConsensus consensus({.apart_weight = 0.5f, .recent_sightings = 4});
+  for (int i = 0; i < 3; ++i) consensus.observe({{1, 1}, {2, 1}, {3, 1}});
+  updated(consensus);
+  for (int i = 0; i < 9; ++i) {  // none of the frames that count shows them together any more
+    consensus.observe({{2, 1}});
+    EXPECT_EQ(consensus.update(), (std::vector<RegroupedObject>{{{2}, 1}}));
+  }
+  EXPECT_EQ(consensus.object_with(2), (std::set<Label>{1, 2, 3}));
+  consensus.observe({{2, 1}, {3, 2}});
+  updated(consensus);
+  EXPECT_EQ(consensus.object_with(3), (std::set<Label>{1, 3})) << "by three frames against one";
+  EXPECT_EQ(consensus.object_with(2), (std::set<Label>{2}));
+  EXPECT_EQ(consensus.settle(), (std::map<Label, Label>{{1, 1}, {2, 1}, {3, 1}})) << "by all frames";
+}
+
+/// An endless floor, with ever new pieces of it and things on it.
+TEST(EntityConsensus, AFrameCostsWhatItShows) {
+  EntityConsensus consensus;
+  for (Label i = 0; i < 500; ++i) {
+    consensus.observe({{1, 1}, {10 + 2 * i, 1}, {11 + 2 * i, 2}});
+    std::size_t asked = 0;
+    for (const RegroupedObject& object : consensus.update()) asked += object.roots.size();
+    ASSERT_EQ(asked, 3u) << "frame " << i;
+  }
+  EXPECT_EQ(consensus.object_with(1).size(), 501u);
 }
 
 TEST(EntityConsensus, UpdatesWhatIsAlwaysInSightAsItSettles) {
@@ -146,8 +185,8 @@ TEST(EntityConsensus, UpdatesWhatIsAlwaysInSightAsItSettles) {
     for (Label root = 1; root <= 30; ++root)
       frame[root] = static_cast<std::uint16_t>(root / 4 + random() % 2 + 1);
     consensus.observe(frame);
-    const std::map<Label, Label> updated = consensus.update();
-    ASSERT_EQ(updated, consensus.settle()) << "frame " << i;
+    const std::map<Label, Label> objects = updated(consensus);
+    ASSERT_EQ(objects, consensus.settle()) << "frame " << i;
   }
 }
 
@@ -158,13 +197,13 @@ TEST(EntityConsensus, GoesOnWhereItStopped) {
   std::map<Label, Label> objects;
   for (int i = 0; i < 20; ++i) {
     whole.observe(frames[static_cast<std::size_t>(i)]);
-    for (const auto& [root, object] : whole.update()) objects[root] = object;
+    for (const auto& [root, object] : updated(whole)) objects[root] = object;
   }
   resumed.restore(whole.sightings(), whole.frames(), objects);
   for (int i = 20; i < 40; ++i) {
     for (EntityConsensus* consensus : {&whole, &resumed})
       consensus->observe(frames[static_cast<std::size_t>(i)]);
-    ASSERT_EQ(resumed.update(), whole.update()) << "frame " << i;
+    ASSERT_EQ(updated(resumed), updated(whole)) << "frame " << i;
   }
   EXPECT_EQ(resumed.sightings(), whole.sightings());
 }
