@@ -281,7 +281,7 @@ def lasting_section(program, kitchen):
 
 def corridor_section(program):
     return ["## Does mapping slow down as the map grows?", "",
-            "    ovimap bench --corridor 5000", "", *speed.corridor_lines(program)]
+            f"    ovimap bench --corridor {speed.CORRIDOR_FRAMES} --masks gt", "", *speed.corridor_lines(program)]
 
 
 # ----------------------------------------------------------------------------------------------------------- page
