@@ -216,6 +216,17 @@ TEST_F(ProgramTest, SaysWhatIsWrongWithTheCommandLine) {
   EXPECT_EQ(run("--help").code, 0);
 }
 
+TEST_F(ProgramTest, MeasuresWhatATenthOfACorridorCosts) {
+  const auto walk = run_json("bench --corridor 40 --masks gt --json");
+  ASSERT_EQ(walk["parts"].size(), 10u);
+  EXPECT_EQ(walk["parts"][9]["frames"], 40);
+  EXPECT_GT(walk["parts"][9]["objects"], walk["parts"][0]["objects"]);
+  EXPECT_GT(walk["parts"][9]["blocks_touched"], 0);
+  EXPECT_GT(walk["parts"][9]["stages"]["registry"]["total_ms"], 0);
+  EXPECT_EQ(walk["frames_lost"], 0);
+  EXPECT_EQ(run_json("bench --corridor 20 --track --max-memory 16M --json")["parts"].size(), 10u);
+}
+
 TEST_F(ProgramTest, SaysWhatIsWrongWithTheRecording) {
   std::filesystem::create_directories(path("empty"));
   expect_complaint("run nowhere -o a.ovimap", {"nowhere"});

@@ -126,7 +126,7 @@ int bench(const BenchOptions& options) {
     throw Error(
         "name a SOURCE to measure, or --corridor N (where the program was built with rooms)");
 #ifdef OVIMAP_SYNTH
-  if (options.corridor > 0) return bench_corridor(options.corridor, config, options.mapping, options.json);
+  if (options.corridor > 0) return bench_corridor(options.corridor, config, options.mapping, options.track, options.json);
 #endif
   config.masks.runtime.threads = network_threads(config, options.mapping);
   if (options.track) config.source.poses = PoseNeed::kNone;
@@ -213,7 +213,7 @@ Action add_bench(CLI::App& command) {
       .add_option("--corridor", options->corridor,
                   "walk N frames down a generated corridor instead, with 4 cm voxels: "
                   "does mapping slow down?")
-      ->check(CLI::Range(1000, 1000000));
+      ->check(CLI::Range(10, 1000000));
 #endif
   command.add_flag("--json", options->json, "print one JSON object");
   return [options] { return bench(*options); };

@@ -12,7 +12,8 @@ namespace ovimap::apps {
 std::unique_ptr<Checkpointer> bound_memory(const MemoryConfig& memory);
 
 /// Walks down a generated corridor with voxels of 4 cm, and reports for every tenth of the frames what
-/// one costs, stage by stage, and how large the map is.
-int bench_corridor(int frames, ProgramConfig config, const MappingOptions& options, bool json);
+/// one costs, stage by stage, and how large the map is. `track`: poses are found.
+int bench_corridor(int frames, ProgramConfig config, const MappingOptions& options, bool track,
+                   bool json);
 
 }  // namespace ovimap::apps

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "bench.h"
+#include "ovimap/pipeline/sequence/pose_finder.h"
 #include "ovimap/synth/recordings/corridor.h"
 
 namespace ovimap::apps {
@@ -28,6 +29,7 @@ struct CorridorRow {
 struct CorridorWalk {
   std::vector<CorridorRow> rows;
   StageTimers tiles;  ///< what leaving memory and coming back took
+  std::int64_t lost = 0;  ///< frames whose pose was not found
 };
 
 /// Square metres of observed surface, by its voxels.
@@ -46,11 +48,14 @@ double surface_m2(const VoxelMap& map) {
 /// Walks down the corridor and measures its tenths.
 class CorridorWalker {
  public:
+  /// `track`: poses are found.
   CorridorWalker(const CorridorSource& corridor, const ProgramConfig& config,
-                 std::shared_ptr<MaskSource> masks)
+                 std::shared_ptr<MaskSource> masks, bool track)
       : corridor_(corridor),
         mapper_(config.mapper, std::move(masks)),
-        checkpoints_(bound_memory(config.memory)) {}
+        checkpoints_(bound_memory(config.memory)) {
+    if (track) finder_.emplace(Tracker(config.track), config.loops);
+  }
 
   CorridorWalk walk() {
     Progress progress("walking");
@@ -62,18 +67,26 @@ class CorridorWalker {
       if ((i + 1) % part == 0) walked.rows.push_back(end_part(i + 1, part));
     }
     if (checkpoints_) checkpoints_->report(walked.tiles);
+    walked.lost = corridor_.size() - static_cast<std::int64_t>(frames_.size());
     return walked;
   }
 
  private:
+  void map(Frame& frame) {
+    if (finder_ && !finder_->locate(frame, mapper_).tracked) return;
+    const FrameReport report = mapper_.process(frame);
+    frames_.push_back({frame.index, frame.timestamp_s, frame.name, frame.world_from_camera, report.labelled});
+    if (finder_) finder_->close_loops(mapper_, frames_, frame.depth_camera);
+    if (checkpoints_) checkpoints_->after_frame(mapper_, frames_, frame.depth_camera);
+  }
+
   /// With a bound on memory no mesh is kept, which has none.
-  void step(const Frame& frame) {
+  void step(Frame frame) {
     StageTimers& timers = mapper_.timers();
     const double cpu_before = cpu_seconds();
     {
       auto t = timers.measure("frame");
-      mapper_.process(frame);
-      if (checkpoints_) checkpoints_->after_frame(mapper_, {}, frame.depth_camera);
+      map(frame);
     }
     cpu_ms_ += 1e3 * (cpu_seconds() - cpu_before);
     touched_ += static_cast<double>(mapper_.touched_blocks().size());
@@ -101,6 +114,8 @@ class CorridorWalker {
   const CorridorSource& corridor_;
   Mapper mapper_;
   std::unique_ptr<Checkpointer> checkpoints_;
+  std::optional<PoseFinder> finder_;
+  std::vector<FrameLogEntry> frames_;
   IncrementalMesh mesh_;
   double cpu_ms_ = 0, touched_ = 0;
 };
@@ -134,13 +149,15 @@ void print_rows(const std::vector<CorridorRow>& rows) {
 
 }  // namespace
 
-int bench_corridor(int frames, ProgramConfig config, const MappingOptions& options, bool json) {
+int bench_corridor(int frames, ProgramConfig config, const MappingOptions& options, bool track,
+                   bool json) {
   watch_for_interrupt();
   config.mapper.map.voxel_size_m = kVoxel_m;
   const CorridorSource corridor({.frames = frames, .hung = true});
   CorridorWalker walker(corridor, config,
-                        make_mask_source(options.masks, config.masks, {&corridor, options.model_dirs}));
-  const auto [rows, tiles] = walker.walk();
+                        make_mask_source(options.masks, config.masks, {&corridor, options.model_dirs}),
+                        track);
+  const auto [rows, tiles, lost] = walker.walk();
   const double growth = rows.empty() ? 0 : rows.back().cpu_ms / rows.front().cpu_ms;
   if (json) {
     nlohmann::json parts = nlohmann::json::array();
@@ -148,6 +165,7 @@ int bench_corridor(int frames, ProgramConfig config, const MappingOptions& optio
     print_json({{"parts", parts},
                 {"stages", stages_json(tiles)},
                 {"growth", growth},
+                {"frames_lost", lost},
                 {"interrupted", interrupted()},
                 {"peak_rss_mb", peak_rss_mb()}});
     return kDone;
@@ -157,6 +175,7 @@ int bench_corridor(int frames, ProgramConfig config, const MappingOptions& optio
   for (const auto& [stage, s] : tiles.summary())
     std::printf("%s: %.2f ms, p95 %.2f ms, %zu times\n", stage.c_str(), s.p50_ms, s.p95_ms,
                 s.count);
+  if (track) std::printf("the camera was lost in %lld frames\n", static_cast<long long>(lost));
   std::printf("the last tenth of the frames takes %.2f times the processor time of the first; peak memory %.0f MB\n",
               growth, peak_rss_mb());
   return kDone;
