@@ -44,7 +44,7 @@ print(ovimap.version())"' || bare_fail "$TITLE: the Python package does not answ
 
 try_deb() {
   if ! compgen -G "$OUT/ovimap_*~${suite}_*.deb" > /dev/null; then
-    echo "$TITLE: not tried; there is none for this release: run tools/packages.sh on it"
+    echo "$TITLE: not tried; there is none for this release: run tools/bare_packages.sh $suite"
     return
   fi
   cp "$OUT"/ovimap_*~"${suite}"_*.deb "$ROOT_FOLDER/root"
