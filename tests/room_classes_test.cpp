@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "ovimap/semantics/classes/class_names.h"
-#include "ovimap/semantics/query/word_lists.h"
+#include "ovimap/semantics/words/word_lists.h"
 #include "ovimap/synth/furniture/furniture_palette.h"
 
 namespace ovimap {

@@ -12,7 +12,7 @@
 #include "ovimap/base/parallel.h"
 #include "ovimap/semantics/query/query_matcher.h"
 #include "ovimap/semantics/query/query_text.h"
-#include "ovimap/semantics/query/word_lists.h"
+#include "ovimap/semantics/words/word_lists.h"
 
 namespace ovimap {
 

@@ -3,13 +3,12 @@
 #include "ovimap/semantics/query/query_scene.h"
 
 #include <algorithm>
-#include <cmath>
 #include <tuple>
 
 #include "ovimap/base/error.h"
 #include "ovimap/base/parallel.h"
+#include "ovimap/semantics/query/attribute_rating.h"
 #include "ovimap/semantics/query/query_text.h"
-#include "ovimap/semantics/words/written_words.h"
 
 namespace ovimap {
 
@@ -25,15 +24,6 @@ float at(const Eigen::VectorXf& values, std::size_t i) {
   return values[static_cast<Eigen::Index>(i)];
 }
 
-/// "0.02 m above the top of #12, which is 0.30 m from #4"
-std::string with_anchor(const std::string& clause, const std::string& anchor_evidence) {
-  return anchor_evidence.empty() ? clause : clause + ", which is " + anchor_evidence;
-}
-
-void add_evidence(std::string& evidence, const std::string& clause) {
-  evidence += (evidence.empty() ? "" : "; ") + clause;
-}
-
 void add_missing(PhraseMatch& result, const PhraseMatch& anchors) {
   result.missing.insert(result.missing.end(), anchors.missing.begin(), anchors.missing.end());
 }
@@ -46,39 +36,6 @@ void first_that_fits(const std::vector<std::size_t>& ordered, const Eigen::Vecto
     at(result, i) = at(chances, i) * none_before;
     none_before *= 1.f - at(chances, i);
   }
-}
-
-struct Rating {
-  float score = 1.f;
-  std::string evidence;
-};
-
-/// Plainly of a colour is what shows it on half of its surface; on a quarter is the border.
-void rate_color(const ColorShares& shares, Color color, Rating& rating) {
-  constexpr float kPlain = 0.5f, kLeast = 0.05f;
-  const float share = shares[static_cast<std::size_t>(color)];
-  rating.score *= std::clamp(share / kPlain, kLeast, 1.f);
-  add_evidence(rating.evidence,
-               concat(static_cast<int>(std::lround(100.f * share)), " % ", color_name(color)));
-}
-
-/// Sizes are known to some per cent: the border is the bound itself.
-void rate_size(const ObjectMeasures& measures, const SizeBound& size, Rating& rating) {
-  constexpr float kDeviation = 0.05f;  // of the logarithm
-  const float side_m = size.side == Side::kHeight   ? measures.height_m
-                       : size.side == Side::kLength ? measures.length_m
-                                                    : measures.depth_m;
-  const float excess = std::log(std::max(side_m, 1e-3f) / size.bound_m) / kDeviation;
-  rating.score *= 1.f / (1.f + std::exp(size.more ? -excess : excess));
-  add_evidence(rating.evidence, concat(std::round(100.f * side_m) / 100.f, " m ", side_name(size.side)));
-}
-
-/// What reads as half of the words is the border.
-void rate_writing(std::span<const std::u32string> wanted, std::span<const WrittenLine> lines,
-                  Rating& rating) {
-  const WritingMatch match = match_writing(wanted, lines);
-  rating.score *= match.share;
-  if (match.line) add_evidence(rating.evidence, concat("reads \"", match.line->text, "\""));
 }
 
 std::vector<std::size_t> positive(const Eigen::VectorXf& scores) {
@@ -251,7 +208,7 @@ void PhraseSearch::apply_attributes(const QueryPhrase& phrase, PhraseMatch& resu
   const std::vector<std::u32string> written = written_words(phrase.writing);
   if (!phrase.writing.empty()) require_writing(phrase.writing);
   for (const std::size_t i : positive(result.scores)) {
-    Rating rating;
+    AttributeRating rating;
     if (colored) rate_color(scene_.colors->shares()[i], *phrase.color, rating);
     if (phrase.size) rate_size(measures[i], *phrase.size, rating);
     if (!phrase.writing.empty()) rate_writing(written, scene_.writing[i], rating);

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "ovimap/base/error.h"
-#include "ovimap/semantics/query/word_lists.h"
+#include "ovimap/semantics/words/word_lists.h"
 
 namespace ovimap {
 

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ovimap/semantics/query/word_lists.h"
+#include "ovimap/semantics/words/word_lists.h"
 
 namespace ovimap {
 namespace {

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "ovimap/base/error.h"
-#include "ovimap/semantics/query/word_lists.h"
+#include "ovimap/semantics/words/word_lists.h"
 
 namespace ovimap {
 namespace {
