@@ -19,10 +19,11 @@ namespace ovimap {
 
 namespace {
 
-/// The voxels of a map file, read when they are needed: where an object was taken apart.
+/// The voxels of a map file, read when they are needed: where an object was taken apart. Without a path
+/// none are: parts of what was taken apart are measured on the surface.
 VoxelSource voxels_of(const std::filesystem::path& path, std::optional<VoxelMap>& place) {
-  return [&]() -> const VoxelMap& {
-    if (!place) place = std::move(load_map(path).map);
+  return [path, &place]() -> const VoxelMap& {
+    if (!place) place = path.empty() ? VoxelMap() : std::move(load_map(path).map);
     return *place;
   };
 }
@@ -33,14 +34,6 @@ BlockErrors errors_of(const VoxelMap& map) {
     if (const auto error_m = surface_error_m(map, map.block(slot)))
       errors[pack_index(map.block_index(slot))] = error_byte(error_m);
   return errors;
-}
-
-/// Parts of what was taken apart are measured on the surface, so that no voxels are needed.
-VoxelSource no_voxels(std::optional<VoxelMap>& place) {
-  return [&]() -> const VoxelMap& {
-    if (!place) place.emplace();
-    return *place;
-  };
 }
 
 /// What is asked of the file must be of the map that clients see.
@@ -117,7 +110,7 @@ MapRecord ServedMap::corrected() const {
   MapRecord record = found_->record;
   record.edits = log_;
   std::optional<VoxelMap> place;
-  apply_edits(record, found_->forest, found_->live ? no_voxels(place) : voxels_of(path_, place));
+  apply_edits(record, found_->forest, voxels_of(found_->live ? std::filesystem::path() : path_, place));
   return record;
 }
 
@@ -343,7 +336,7 @@ MapEdit ServedMap::correct(MapEdit edit) {
     MapRecord record = found_->record;
     record.edits = log_;
     std::optional<VoxelMap> place;
-    edit = append_edit(record, found_->forest, no_voxels(place), std::move(edit));
+    edit = append_edit(record, found_->forest, voxels_of({}, place), std::move(edit));
     log_ = std::move(record.edits);
   } else {
     require_same_map(path_, found_->info);
