@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 
-#include "ovimap/base/error.h"
 #include "apps/models/models_fetch.h"
+#include "ovimap/base/error.h"
 #include "program.h"
 
 namespace ovimap::apps {
@@ -64,8 +64,7 @@ int demo(const DemoOptions& options) {
   steps.step("finding objects by name",
              {"query", map, "sofa", "lamp", "chair", "elephant", "--top", "1"}, kAnswerIsNo);
   steps.step("a page about it", {"report", map, path("report.html")});
-  steps.step("how good it is: the rendered room comes with the truth",
-             {"eval", map, "--gt", room});
+  steps.step("how good it is: the rendered room comes with the truth", {"eval", map, "--gt", room});
   if (steps.code() != kDone) return steps.code();
   say_how_to_go_on(options.folder.string(), map);
   if (options.view) steps.step("in the browser", {"serve", map});

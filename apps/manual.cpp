@@ -57,8 +57,9 @@ std::string options_section(const CLI::App& command) {
 std::string commands_section(const CLI::App& app) {
   std::string text;
   for (const CLI::App* command : commands_of(app))
-    text += concat(".TP\n\\fB", command->get_name(), "\\fR\n", roff(command->get_description()),
-                   "\n", app.get_parent() ? "" : concat("See ovimap\\-", command->get_name(), "(1).\n"));
+    text +=
+        concat(".TP\n\\fB", command->get_name(), "\\fR\n", roff(command->get_description()), "\n",
+               app.get_parent() ? "" : concat("See ovimap\\-", command->get_name(), "(1).\n"));
   return text.empty() ? "" : ".SH COMMANDS\n" + text;
 }
 
@@ -104,7 +105,8 @@ std::string zsh_completion(const CLI::App& app) {
 
 std::string fish_quoted(const std::string& text) {
   std::string out = "'";
-  for (const char c : text) out += c == '\'' || c == '\\' ? std::string("\\") + c : std::string(1, c);
+  for (const char c : text)
+    out += c == '\'' || c == '\\' ? std::string("\\") + c : std::string(1, c);
   return out + "'";
 }
 

@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <iostream>
 
+#include "apps/command/usage_fault.h"
 #include "apps/mapping/calibrate.h"
 #include "ovimap/base/version.h"
-#include "apps/command/usage_fault.h"
 
 namespace ovimap::apps {
 
@@ -22,14 +22,12 @@ struct CommandEntry {
 };
 
 constexpr CommandEntry kCommands[] = {
-    {"run", "map a recording: SOURCE in, MAP out",
-     "run demo/tiny/room -o room.ovimap", add_run},
-    {"check", "look for what commonly is wrong with a recording",
-     "check demo/tiny/room", add_check},
+    {"run", "map a recording: SOURCE in, MAP out", "run demo/tiny/room -o room.ovimap", add_run},
+    {"check", "look for what commonly is wrong with a recording", "check demo/tiny/room",
+     add_check},
     {"calibrate", "find where the colour camera is, from edges of depth and colour",
      "calibrate demo/tiny/room -o calibration.yaml", add_calibrate},
-    {"info", "what a map holds",
-     "info demo/tiny.ovimap", add_info},
+    {"info", "what a map holds", "info demo/tiny.ovimap", add_info},
     {"query", "find objects in words: MAP \"mug on the table\"",
      "query demo/tiny.ovimap \"sofa\" \"lamp on the table\" --top 3", add_query},
     {"export", "write a map as mesh, scene, table, grid, picture or folder of objects",
@@ -42,23 +40,19 @@ constexpr CommandEntry kCommands[] = {
      "merge upstairs.ovimap downstairs.ovimap --align -o house.ovimap", add_merge},
     {"correct", "fuse a map's frames again, from corrected poses",
      "correct room.ovimap --poses better.txt", add_correct},
-    {"eval", "score maps against the truth",
-     "eval demo/tiny.ovimap --gt demo/tiny/room", add_eval},
+    {"eval", "score maps against the truth", "eval demo/tiny.ovimap --gt demo/tiny/room", add_eval},
     {"eval-changes", "score what a map of several visits says of what changed",
      "eval-changes home.ovimap rooms", add_eval_changes},
     {"eval-poses", "score the poses of a camera against true ones",
      "eval-poses tracked.txt demo/tiny/room", add_eval_poses},
     {"ablate", "vary one choice and score the maps, beside published figures",
      "ablate fusion demo/tiny/room --masks gt --frames ::8 -o tables", add_ablate},
-    {"reproduce", "make the paper's tables from your own copy of its data",
-     nullptr, add_reproduce},
-    {"bench", "measure speed and memory on a recording",
-     "bench demo/tiny/room", add_bench},
+    {"reproduce", "make the paper's tables from your own copy of its data", nullptr, add_reproduce},
+    {"bench", "measure speed and memory on a recording", "bench demo/tiny/room", add_bench},
 #ifdef OVIMAP_SYNTH
-    {"demo", "show what ovimap does: render a small room, map it, find things in it",
-     "demo", add_demo},
-    {"synth", "render a furnished room with exact truth",
-     "synth demo/tiny --room tiny", add_synth},
+    {"demo", "show what ovimap does: render a small room, map it, find things in it", "demo",
+     add_demo},
+    {"synth", "render a furnished room with exact truth", "synth demo/tiny --room tiny", add_synth},
 #endif
     {"reembed", "give a map's objects the embeddings of another encoder",
      "reembed demo/tiny.ovimap --encoder default", add_reembed},
@@ -70,14 +64,11 @@ constexpr CommandEntry kCommands[] = {
      "report demo/tiny.ovimap report.html", add_report},
     {"masks", "write the 2D entities of frames, or score them against the truth",
      "masks demo/tiny/room --frames ::20 --score", add_masks},
-    {"serve", "show a map in a browser, and to programs over HTTP",
-     "serve demo/tiny.ovimap", add_serve},
-    {"models", "list, fetch, verify and find networks",
-     "models list", add_models},
-    {"manual", "write man pages and completions for shells",
-     "manual ~/.local/share", add_manual},
-    {"config", "list every setting with its default",
-     "config", add_config},
+    {"serve", "show a map in a browser, and to programs over HTTP", "serve demo/tiny.ovimap",
+     add_serve},
+    {"models", "list, fetch, verify and find networks", "models list", add_models},
+    {"manual", "write man pages and completions for shells", "manual ~/.local/share", add_manual},
+    {"config", "list every setting with its default", "config", add_config},
 };
 
 int complain(const char* message, int code) {

@@ -24,7 +24,8 @@ bool is_of_this_machine(std::string host) {
   for (char& letter : host)
     if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
   return host == "localhost" || (host.starts_with("127.") && consists_of(host, "0123456789.")) ||
-         (host.starts_with('[') && host.ends_with(']') && consists_of(host, "[]0123456789abcdef:."));
+         (host.starts_with('[') && host.ends_with(']') &&
+          consists_of(host, "[]0123456789abcdef:."));
 }
 
 }  // namespace

@@ -58,8 +58,8 @@ TEST_F(EditProgramTest, EverythingSeesTheCorrectedMap) {
 TEST_F(EditProgramTest, SaysHowToMakeAMapWhole) {
   map_with("none");
   std::ofstream(path("room.ovimap-wal")) << "";  // what a change that was cut short leaves
-  for (const char* command : {"info room.ovimap", "edit room.ovimap undo", "export room.ovimap a.csv",
-                              "serve room.ovimap --port 0"})
+  for (const char* command : {"info room.ovimap", "edit room.ovimap undo",
+                              "export room.ovimap a.csv", "serve room.ovimap --port 0"})
     expect_complaint(command, {"cut short", "`ovimap info --recover room.ovimap`"});
   const ProgramResult done = run("info --recover room.ovimap");
   EXPECT_EQ(done.code, 0) << done.err;
@@ -95,14 +95,16 @@ TEST_F(EditProgramTest, NamesTeach) {
   const std::string id = std::to_string(ids()[1]);
   const auto best = [&](const std::string& options) {
     const std::string query = " zaphod --top 1 --json --encoder " + golden_model("minilm");
-    return nlohmann::json::parse(run("query room.ovimap" + options + query).out)["results"][0]["instances"][0];
+    return nlohmann::json::parse(
+        run("query room.ovimap" + options + query).out)["results"][0]["instances"][0];
   };
   edit("rename " + id + " zaphod");
   EXPECT_EQ(best("")["id"], ids()[1]);
   EXPECT_LT(best(" --set query.evidence.taught_weight=0")["standard_score"].get<float>() + 5.f,
             best("")["standard_score"].get<float>());
   EXPECT_FALSE(std::filesystem::exists(path("taught.json"))) << "it is off unless it is asked for";
-  const auto done = run_json("edit room.ovimap --teach taught.json --json rename " + id + " zaphod");
+  const auto done =
+      run_json("edit room.ovimap --teach taught.json --json rename " + id + " zaphod");
   EXPECT_EQ(done["taught"], 1);
   EXPECT_NE(slurp(path("taught.json")).find("zaphod"), std::string::npos);
   EXPECT_EQ(best(" --teach taught.json")["id"], ids()[1]);

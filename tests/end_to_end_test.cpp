@@ -46,8 +46,8 @@ TEST_F(EndToEndTest, MasksOnFewFramesStillTellTheObjectsApart) {
     double least_ap25;
   };
   double before = 1;
-  for (const Expected& e : {Expected{1, 40, 0.85}, Expected{5, 8, 0.75}, Expected{11, 4, 0.4},
-                            Expected{20, 2, 0.15}}) {
+  for (const Expected& e :
+       {Expected{1, 40, 0.85}, Expected{5, 8, 0.75}, Expected{11, 4, 0.4}, Expected{20, 2, 0.15}}) {
     const std::string folder = concat("every", e.every);
     std::filesystem::create_directories(path(folder));
     for (int i = 0; i < 40; i += e.every) {
@@ -56,8 +56,8 @@ TEST_F(EndToEndTest, MasksOnFewFramesStillTellTheObjectsApart) {
     }
     ASSERT_EQ(run("run room/room --encoder none -o room.ovimap --masks " + folder).code, 0);
     EXPECT_EQ(run_json("info room.ovimap --json")["mask_frames"], e.mask_frames);
-    const double ap25 = run_json("eval room.ovimap --gt room/room --json")["standard"]
-                                ["class_agnostic"]["ap25"];
+    const double ap25 =
+        run_json("eval room.ovimap --gt room/room --json")["standard"]["class_agnostic"]["ap25"];
     EXPECT_GE(ap25, e.least_ap25) << "every " << e.every;
     EXPECT_LE(ap25, before + 0.03) << "fewer masks, no better a map; every " << e.every;
     before = ap25;

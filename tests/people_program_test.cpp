@@ -10,7 +10,8 @@ namespace {
 class PeopleProgramTest : public ProgramTest {
  protected:
   PeopleProgramTest() {
-    const std::filesystem::path golden = OVIMAP_SOURCE_DIR "/src/ovimap/inference/testdata/golden_detector";
+    const std::filesystem::path golden =
+        OVIMAP_SOURCE_DIR "/src/ovimap/inference/testdata/golden_detector";
     std::filesystem::create_directories(path("models"));
     std::filesystem::copy(golden, path("models/red"));
     std::string model = slurp(path("models/red/model.yaml"));
@@ -27,7 +28,8 @@ class PeopleProgramTest : public ProgramTest {
         pixel.r = 0;
         if (frame % 3 == 0 && 2 * u < color.width() && 2 * v < color.height()) pixel = {255, 0, 0};
       }
-    write_file(path("recording") / ("frame-" + fixture::padded(frame, 6) + ".color.png"), encode_png(color));
+    write_file(path("recording") / ("frame-" + fixture::padded(frame, 6) + ".color.png"),
+               encode_png(color));
   }
   /// Whether a map's surface is red anywhere.
   bool is_red(const std::string& map) const {
@@ -39,7 +41,8 @@ class PeopleProgramTest : public ProgramTest {
   }
   static constexpr const char* kDrop =
       "run recording --people drop --model-dir models --set people.detector=red "
-      "--set people.reach_m=10 --set people.seed_m=10 --set people.step_share=1 "  // the whole quarter
+      "--set people.reach_m=10 --set people.seed_m=10 --set people.step_share=1 "  // the whole
+                                                                                   // quarter
       "--set map.voxel_size_m=0.05 ";
 };
 

@@ -242,7 +242,7 @@ TEST_F(ProgramTest, SaysWhatIsWrongWithTheRecording) {
 TEST_F(ProgramTest, RefusesPosesThatNeverChangeUnlessTold) {
   for (int i = 0; i < sequence_.frames; ++i)
     write_text(path("recording/frame-" + fixture::padded(i, 6) + ".pose.txt"),
-                        "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1");
+               "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1");
   expect_complaint("run recording -o a.ovimap", {"same pose", "allow_still_camera"});
   EXPECT_EQ(run("run recording -o a.ovimap --set allow_still_camera=true").code, 0);
 }

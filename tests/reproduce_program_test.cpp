@@ -56,11 +56,11 @@ class ReproduceProgramTest : public TruthfulProgramTest {
   }
 
   void annotate_replica(const fs::path& folder) const {
-    std::string text = concat("ply\nformat ascii 1.0\nelement vertex ", mesh_.vertices.size(),
-                              "\nproperty float x\nproperty float y\nproperty float z\n",
-                              "element face ", mesh_.triangles.size(),
-                              "\nproperty list uchar int vertex_indices\n",
-                              "property int object_id\nend_header\n");
+    std::string text =
+        concat("ply\nformat ascii 1.0\nelement vertex ", mesh_.vertices.size(),
+               "\nproperty float x\nproperty float y\nproperty float z\n", "element face ",
+               mesh_.triangles.size(), "\nproperty list uchar int vertex_indices\n",
+               "property int object_id\nend_header\n");
     for (const auto& v : mesh_.vertices) text += concat(v.x(), " ", v.y(), " ", v.z(), "\n");
     for (const auto& t : mesh_.triangles)
       text += concat("3 ", t[0], " ", t[1], " ", t[2], " ", mesh_.labels[t[0]], "\n");
@@ -75,7 +75,7 @@ class ReproduceProgramTest : public TruthfulProgramTest {
     fs::create_directories(folder);
     write_text(folder / "mesh_semantic.ply", text);
     write_text(folder / "info_semantic.json",
-                        nlohmann::json{{"classes", classes}, {"objects", objects}}.dump());
+               nlohmann::json{{"classes", classes}, {"objects", objects}}.dump());
   }
 
   void write_scannet_scene(const fs::path& folder) const {
@@ -85,7 +85,7 @@ class ReproduceProgramTest : public TruthfulProgramTest {
     const std::string stem = (folder / "scene0011_00").string();
     write_ply(stem + "_vh_clean_2.labels.ply", mesh_);
     write_text(stem + "_vh_clean_2.0.010000.segs.json",
-                        nlohmann::json{{"segIndices", mesh_.labels}}.dump());
+               nlohmann::json{{"segIndices", mesh_.labels}}.dump());
     nlohmann::json groups = nlohmann::json::array();
     for (const std::uint32_t id : std::set(mesh_.labels.begin(), mesh_.labels.end()))
       if (id > 0)
@@ -94,8 +94,8 @@ class ReproduceProgramTest : public TruthfulProgramTest {
                           {"segments", nlohmann::json::array({id})}});
     write_text(stem + ".aggregation.json", nlohmann::json{{"segGroups", groups}}.dump());
     write_text(path("ScanNet/scannetv2-labels.combined.tsv"),
-                        "id\traw_category\tnyu40id\tnyu40class\n1\twall\t1\twall\n"
-                        "6\tcouch\t6\tsofa\n1299\todd thing\t40\totherprop\n");
+               "id\traw_category\tnyu40id\tnyu40class\n1\twall\t1\twall\n"
+               "6\tcouch\t6\tsofa\n1299\todd thing\t40\totherprop\n");
   }
 
   std::string command(const std::string& data) const {
@@ -164,8 +164,7 @@ TEST_F(ReproduceProgramTest, SaysWhatEachSceneLacks) {
 }
 
 TEST_F(ReproduceProgramTest, DepthAloneNeedsNoNetworks) {
-  const auto json =
-      run_json("reproduce --scannet ScanNet/scans -o out --masks none --json");
+  const auto json = run_json("reproduce --scannet ScanNet/scans -o out --masks none --json");
   EXPECT_FALSE(json.contains("Replica"));
   const auto& figures = json["ScanNet"]["measured"][0]["standard"];
   EXPECT_TRUE(figures["inst mIoU"].is_number());

@@ -147,12 +147,18 @@ TEST_F(ResumeProgramTest, GoesOnWithAMap) {
 }
 
 TEST_F(ResumeProgramTest, ALiveRunThatWasKilledIsRepeatedWithItsPause) {
-  const std::vector<std::string> live = {
-      "run", "long/scene", "--masks", "gt", "--encoder", "none", "--set", "checkpoint.frames=1",
-      "--set", "map.voxel_size_m=0.03", "-o", "room.ovimap", "--live", "--fps", "30"};
+  const std::vector<std::string> live = {"run",       "long/scene",
+                                         "--masks",   "gt",
+                                         "--encoder", "none",
+                                         "--set",     "checkpoint.frames=1",
+                                         "--set",     "map.voxel_size_m=0.03",
+                                         "-o",        "room.ovimap",
+                                         "--live",    "--fps",
+                                         "30"};
   ASSERT_FALSE(run_and_kill(live, 3, std::chrono::milliseconds(0)));
   ASSERT_EQ(run(std::string(kRun) + "-o room.ovimap --live --fps 30 --resume").code, 0);
-  const nlohmann::json again = run_json(std::string(kRun) + "--repeat room.ovimap -o again.ovimap --json");
+  const nlohmann::json again =
+      run_json(std::string(kRun) + "--repeat room.ovimap -o again.ovimap --json");
   EXPECT_EQ(again["repeated"]["same"], true) << again["repeated"];
   ASSERT_EQ(run("edit room.ovimap rename 1 pot").code, 0);
   const ProgramResult other = run(std::string(kRun) + "--repeat room.ovimap -o again.ovimap");

@@ -33,7 +33,8 @@ class TwoCameraRoom final : public FrameSource {
     frame.world_from_camera = pose;
     frame.depth_camera = frame.color_camera = spec_.camera;
     frame.depth = noisy_depth(renderer_.render(spec_.camera, pose, false), {}, seed);
-    frame.color = noisy_color(seen_through_lens(pose * truth_.color_from_depth.inverse()), {}, seed);
+    frame.color =
+        noisy_color(seen_through_lens(pose * truth_.color_from_depth.inverse()), {}, seed);
     return {std::move(frame), {}};
   }
   const PinholeCamera& camera() const { return spec_.camera; }
@@ -50,13 +51,16 @@ class TwoCameraRoom final : public FrameSource {
     RgbImage bent(truth_.camera.width, truth_.camera.height);
     for (int y = 0; y < bent.height(); ++y)
       for (int x = 0; x < bent.width(); ++x) {
-        const Eigen::Vector2d at = truth_.camera.unproject(static_cast<float>(x), static_cast<float>(y), 1)
-                                       .head<2>().cast<double>();
+        const Eigen::Vector2d at =
+            truth_.camera.unproject(static_cast<float>(x), static_cast<float>(y), 1)
+                .head<2>()
+                .cast<double>();
         Eigen::Vector2d ray = at;
         for (int i = 0; i < 20; ++i) ray += at - truth_.lens.bend(ray);
         const Eigen::Vector2f pixel = wide.project(ray.homogeneous().cast<float>());
-        bent.at(x, y) = straight.at(std::clamp(static_cast<int>(pixel.x() + 0.5f), 0, wide.width - 1),
-                                    std::clamp(static_cast<int>(pixel.y() + 0.5f), 0, wide.height - 1));
+        bent.at(x, y) =
+            straight.at(std::clamp(static_cast<int>(pixel.x() + 0.5f), 0, wide.width - 1),
+                        std::clamp(static_cast<int>(pixel.y() + 0.5f), 0, wide.height - 1));
       }
     return bent;
   }

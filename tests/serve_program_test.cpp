@@ -159,8 +159,7 @@ TEST_F(ServeProgramTest, AnswersInWords) {
   EXPECT_EQ(ask({{"text", "largest object"}}, 200)["reading"], "largest [object]");
   EXPECT_FALSE(ask({{"text", "table"}}, 200).contains("heat"));
   const json alike = ask({{"like", objects[0]["id"]}}, 200);
-  for (const auto& match : alike["matches"])
-    EXPECT_NE(match["id"], objects[0]["id"]);
+  for (const auto& match : alike["matches"]) EXPECT_NE(match["id"], objects[0]["id"]);
   ask({{"text", "thing"}, {"not", {"thing"}}}, 200);
   ask({{"text", "  "}}, 400);
   ask({{"text", std::string(3000, 'a')}}, 400);

@@ -31,8 +31,8 @@ class TrackProgramTest : public ProgramTest {
     const Image<std::uint16_t> dark(320, 240, 20);  // 2 cm
     write_file(path("unposed") / "depth" / concat(frame, ".png"), encode_png(dark));
   }
-  /// Writes a frame of the recording that shows the room from somewhere else, by a sensor that reads
-  /// so much too far.
+  /// Writes a frame of the recording that shows the room from somewhere else, by a sensor that
+  /// reads so much too far.
   void show(int frame, const Pose& pose, float too_far = 1) const {
     fixture::RoomCamera camera;
     camera.camera = sequence_.depth_camera;
@@ -79,7 +79,8 @@ TEST_F(TrackProgramTest, LiveTracksAsWell) {
 TEST_F(TrackProgramTest, ALiveRunIsRepeatedWithItsPoses) {
   for (int frame : {7, 8}) cover(frame);
   const std::string live = "run unposed --poses track --masks none --set map.voxel_size_m=0.03 ";
-  const auto hurried = run_json(live + "--live --fps 30 -o map.ovimap --trajectory live.txt --json");
+  const auto hurried =
+      run_json(live + "--live --fps 30 -o map.ovimap --trajectory live.txt --json");
   const auto repeated =
       run_json(live + "--repeat map.ovimap -o again.ovimap --trajectory again.txt --json");
   EXPECT_EQ(repeated["repeated"]["same"], true) << repeated["repeated"];
@@ -135,13 +136,14 @@ TEST_F(TrackProgramTest, AFewLostFramesAreNoPart) {
   EXPECT_FALSE(std::filesystem::exists(path("map.part2.ovimap")));
 }
 
-/// A recording that goes to and fro with a sensor that warms up, so that the camera drifts, and is killed
-/// while its loops are closed.
+/// A recording that goes to and fro with a sensor that warms up, so that the camera drifts, and is
+/// killed while its loops are closed.
 class KilledClosureTest : public TrackProgramTest {
  protected:
   KilledClosureTest() {
     for (int frame = 0; frame < 20; ++frame)
-      show(frame, fixture::room_pose(std::min(frame, 19 - frame)), 1 + 0.001f * static_cast<float>(frame));
+      show(frame, fixture::room_pose(std::min(frame, 19 - frame)),
+           1 + 0.001f * static_cast<float>(frame));
   }
   /// The one checkpoint is made before the last loops are closed. Poses that shake make them move.
   static constexpr const char* kClose =
@@ -151,7 +153,8 @@ class KilledClosureTest : public TrackProgramTest {
 
   using Clock = std::chrono::steady_clock;
 
-  /// Kills the program so long after it has begun to write its checkpoint, unless it ends before. Returns how long it went on.
+  /// Kills the program so long after it has begun to write its checkpoint, unless it ends before.
+  /// Returns how long it went on.
   Clock::duration run_and_kill(Clock::duration delay) const {
     const pid_t child = ::fork();
     if (child == 0) execute();
@@ -206,7 +209,8 @@ TEST_F(KilledClosureTest, ResumesToTheSameMap) {
   EXPECT_GT(closing, 0) << "no kill came between the last frame and the map";
 }
 
-/// The map keeps no frames, and so has no keyframes. A bare room has few objects to tell a place by.
+/// The map keeps no frames, and so has no keyframes. A bare room has few objects to tell a place
+/// by.
 TEST_F(TrackProgramTest, ObjectsSayWhereAVisitBegins) {
   ASSERT_EQ(run(std::string(kRun) + "--frames :14").code, 0);
   const std::string visit =

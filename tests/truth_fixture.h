@@ -26,7 +26,7 @@ class TruthfulProgramTest : public EncodedProgramTest {
     write_text(path("replica/instance_labels_scene.txt"), instances);
     write_text(path("replica/semantic_labels_scene.txt"), classes);
     write_text(path("replica/labels.json"),
-                        R"({"classes": {"1": "wall", "2": "sofa", "3": "teapot"}})");
+               R"({"classes": {"1": "wall", "2": "sofa", "3": "teapot"}})");
   }
 
   /// The truth's mesh with every position put elsewhere; the labels stay.

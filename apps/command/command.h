@@ -72,9 +72,9 @@ struct MappingOptions {
   std::filesystem::path config_file;
   std::vector<std::string> settings;  ///< "a.b=c"
   std::vector<std::filesystem::path> model_dirs;
-  std::string frames = ":";  ///< "A:B:STEP"
-  std::string poses = "given";  ///< given, track, refine, or auto: given where there are any
-  std::string max_memory;    ///< "300M"; empty: as the settings say
+  std::string frames = ":";          ///< "A:B:STEP"
+  std::string poses = "given";       ///< given, track, refine, or auto: given where there are any
+  std::string max_memory;            ///< "300M"; empty: as the settings say
   std::optional<double> recorded_s;  ///< when the recording was made, seconds since 1970 (UTC)
   int threads = 0;
 };
@@ -110,8 +110,8 @@ void apply_settings(const std::vector<std::string>& settings, ConfigFields& fiel
 /// Preset, then file, then settings. Throws Error for what is unknown.
 ProgramConfig read_program_config(const MappingOptions& options);
 
-/// The encoder that --encoder names; "auto" is the best installed one where there are 2D masks. Null:
-/// none.
+/// The encoder that --encoder names; "auto" is the best installed one where there are 2D masks.
+/// Null: none.
 std::shared_ptr<ImageTextEncoder> make_encoder(const MappingOptions& options,
                                                const ProgramConfig& config);
 

@@ -26,9 +26,10 @@ void add_mapping_settings(CLI::App& command, MappingOptions& options) {
           "masks the best that is installed)")
       ->capture_default_str();
   command
-      .add_option("--recognizer", options.recognizer,
-                  "what tells things by name: none, models of kind detector separated by commas, or "
-                  "auto (where there is an encoder all that are installed)")
+      .add_option(
+          "--recognizer", options.recognizer,
+          "what tells things by name: none, models of kind detector separated by commas, or "
+          "auto (where there is an encoder all that are installed)")
       ->capture_default_str();
   command
       .add_option("--preset", options.preset,
@@ -50,16 +51,23 @@ void add_mapping_settings(CLI::App& command, MappingOptions& options) {
   command
       .add_option_function<std::string>(
           "--dynamic",
-          [&options](const std::string& mode) { options.settings.push_back("motion.mode=" + mode); },
-          "things that move while they are seen: drop (leave them out), track (and follow them), or "
+          [&options](const std::string& mode) {
+            options.settings.push_back("motion.mode=" + mode);
+          },
+          "things that move while they are seen: drop (leave them out), track (and follow them), "
+          "or "
           "off (fuse them as everything else); without, as motion.mode says")
       ->check(CLI::IsMember({"off", "drop", "track"}));
   command
       .add_option_function<std::string>(
           "--people",
-          [&options](const std::string& mode) { options.settings.push_back("people.mode=" + mode); },
-          "people in the frames: keep, or drop (no surface, crop or picture shows them, seated ones "
-          "neither, as far as a detector finds them; docs/changes.md); without, as people.mode says")
+          [&options](const std::string& mode) {
+            options.settings.push_back("people.mode=" + mode);
+          },
+          "people in the frames: keep, or drop (no surface, crop or picture shows them, seated "
+          "ones "
+          "neither, as far as a detector finds them; docs/changes.md); without, as people.mode "
+          "says")
       ->check(CLI::IsMember({"keep", "drop"}));
   add_model_dirs(command, options.model_dirs);
   add_frame_range(command, options.frames);
@@ -176,8 +184,9 @@ std::shared_ptr<const PeopleFilter> make_people_filter(const MappingOptions& opt
   std::shared_ptr<const SamNetwork> outlines;
   if (config.people.mask_network)
     outlines = make_box_network(options.masks, runtime, options.model_dirs);
-  return std::make_shared<PeopleFilter>(config.people, make_person_finder(config.people.detector, runtime, options.model_dirs),
-                                        std::move(outlines));
+  return std::make_shared<PeopleFilter>(
+      config.people, make_person_finder(config.people.detector, runtime, options.model_dirs),
+      std::move(outlines));
 }
 
 int embedding_queries(const SemanticRecord& semantics) {

@@ -12,7 +12,8 @@ namespace ovimap::apps {
 namespace {
 
 /// The lines of a configuration that decide what the map becomes: which frames it is made from, and
-/// when and where it is kept, may differ. The encoder may have changed since (require_same_encoder).
+/// when and where it is kept, may differ. The encoder may have changed since
+/// (require_same_encoder).
 std::vector<std::string> deciding_lines(const std::string& config) {
   std::vector<std::string> lines;
   std::istringstream stream(config);
@@ -44,10 +45,11 @@ void require_same_encoder(const EncoderIdentity& begun,
   if (begun.name.empty())
     throw Error(concat("the map's objects have no embeddings, and this run has the encoder '", now,
                        "'; give --encoder none, or embed the map first with `ovimap reembed`"));
-  throw Error(concat("the map's objects are embedded by '", begun.name, "', and this run has ",
-                     now.empty() ? "no encoder" : concat("'", now, "'"),
-                     "; give that model to --encoder (`ovimap models list` names what is here; the "
-                     "built-in one is `--encoder default`), or embed the map anew with `ovimap reembed`"));
+  throw Error(
+      concat("the map's objects are embedded by '", begun.name, "', and this run has ",
+             now.empty() ? "no encoder" : concat("'", now, "'"),
+             "; give that model to --encoder (`ovimap models list` names what is here; the "
+             "built-in one is `--encoder default`), or embed the map anew with `ovimap reembed`"));
 }
 
 void require_same_map(const MapDocument& begun, const VoxelMapConfig& map,

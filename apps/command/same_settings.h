@@ -6,8 +6,8 @@
 
 namespace ovimap::apps {
 
-/// Throws Error naming the first setting in which two runs differ, of those that decide what the map
-/// becomes. `option`: the one by which this one goes on with the other.
+/// Throws Error naming the first setting in which two runs differ, of those that decide what the
+/// map becomes. `option`: the one by which this one goes on with the other.
 void require_same_settings(const std::string& begun, const std::string& now, const char* option);
 
 /// Throws Error unless `encoder` (null: none) embeds in the space of the map's embeddings.

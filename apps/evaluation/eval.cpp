@@ -58,7 +58,11 @@ int eval(const EvalOptions& options) {
 
 Action add_eval(CLI::App& command) {
   auto options = std::make_shared<EvalOptions>();
-  command.add_option("MAP", options->maps, "map files, or surfaces of other programs (PLY, objects as `label`); several are pooled")->required();
+  command
+      .add_option(
+          "MAP", options->maps,
+          "map files, or surfaces of other programs (PLY, objects as `label`); several are pooled")
+      ->required();
   command
       .add_option("--gt", options->truths, "scene with truth, one for each map in the same order")
       ->required();

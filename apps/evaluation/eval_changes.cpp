@@ -53,11 +53,12 @@ int eval_changes(const EvalChangesOptions& options) {
   std::printf("surface of what stayed: %.1f %% of %zu points\n", 100 * scores.kept(),
               scores.static_points);
   if (scores.mover_points > 0)
-    std::printf("surface of what moved while it was seen: %.2f %% of %zu points, %.2f %% of which "
-                "frames looked through\n",
-                100 * scores.mover_share(), scores.mover_points,
-                100 * static_cast<double>(scores.knowable_points) /
-                    static_cast<double>(scores.mover_points));
+    std::printf(
+        "surface of what moved while it was seen: %.2f %% of %zu points, %.2f %% of which "
+        "frames looked through\n",
+        100 * scores.mover_share(), scores.mover_points,
+        100 * static_cast<double>(scores.knowable_points) /
+            static_cast<double>(scores.mover_points));
   std::printf("%-8s %4s %4s %5s %9s %6s\n", "kind", "real", "told", "right", "precision", "recall");
   print_counts("moved", scores.moved);
   print_counts("removed", scores.removed);

@@ -84,8 +84,8 @@ std::string bars(const std::vector<AblationColumn>& columns,
     // Long names take two lines by turns, so that neighbours do not meet, and end in the picture.
     const double half = 0.5 * kCharacter * static_cast<double>(results[r].variant.name.size());
     svg += svg_text({std::min(left + 0.4 * group, kWidth - half),
-                    kHeight - kBottom + (r % 2 == 0 ? 20.0 : 38.0)},
-                   results[r].variant.name);
+                     kHeight - kBottom + (r % 2 == 0 ? 20.0 : 38.0)},
+                    results[r].variant.name);
   }
   return svg;
 }
@@ -144,11 +144,10 @@ std::string ablation_bars(const Ablation& ablation, const std::vector<AblationRe
     for (const AblationColumn& column : columns) most = std::max(most, value_of(column, result));
   constexpr double kStep = 10;  // percent
   most = std::max(kStep, kStep * std::ceil(most / kStep));
-  return concat(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 ", kWidth, " ", kHeight,
-      "\" font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"100%\" "
-      "height=\"100%\" fill=\"#fff\"/>\n",
-      legend(columns), scale_lines(most), bars(columns, results, most), "</svg>\n");
+  return concat("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 ", kWidth, " ", kHeight,
+                "\" font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"100%\" "
+                "height=\"100%\" fill=\"#fff\"/>\n",
+                legend(columns), scale_lines(most), bars(columns, results, most), "</svg>\n");
 }
 
 }  // namespace ovimap::apps

@@ -21,7 +21,7 @@ struct Motion {
   double seconds = 0, metres_per_s = 0, radians_per_s = 0;
 };
 
-double median(std::vector<Motion> motions, double Motion::* field) {
+double median(std::vector<Motion> motions, double Motion::*field) {
   const auto middle = motions.begin() + std::ssize(motions) / 2;
   std::nth_element(motions.begin(), middle, motions.end(),
                    [&](const Motion& a, const Motion& b) { return a.*field < b.*field; });

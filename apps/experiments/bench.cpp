@@ -22,7 +22,7 @@ namespace {
 struct BenchOptions {
   MappingOptions mapping;
   int project_every = 5;
-  int corridor = 0;  ///< frames; 0: measure SOURCE
+  int corridor = 0;    ///< frames; 0: measure SOURCE
   bool track = false;  ///< find the poses instead of taking the recording's
   bool json = false;
 };
@@ -126,7 +126,8 @@ int bench(const BenchOptions& options) {
     throw Error(
         "name a SOURCE to measure, or --corridor N (where the program was built with rooms)");
 #ifdef OVIMAP_SYNTH
-  if (options.corridor > 0) return bench_corridor(options.corridor, config, options.mapping, options.track, options.json);
+  if (options.corridor > 0)
+    return bench_corridor(options.corridor, config, options.mapping, options.track, options.json);
 #endif
   config.masks.runtime.threads = network_threads(config, options.mapping);
   if (options.track) config.source.poses = PoseNeed::kNone;

@@ -11,8 +11,8 @@ namespace ovimap::apps {
 /// when there is no bound.
 std::unique_ptr<Checkpointer> bound_memory(const MemoryConfig& memory);
 
-/// Walks down a generated corridor with voxels of 4 cm, and reports for every tenth of the frames what
-/// one costs, stage by stage, and how large the map is. `track`: poses are found.
+/// Walks down a generated corridor with voxels of 4 cm, and reports for every tenth of the frames
+/// what one costs, stage by stage, and how large the map is. `track`: poses are found.
 int bench_corridor(int frames, ProgramConfig config, const MappingOptions& options, bool track,
                    bool json);
 

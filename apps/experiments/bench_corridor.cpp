@@ -17,18 +17,18 @@ constexpr float kVoxel_m = 0.04f;  // a corridor of 300 m at 1 cm would take 15 
 
 /// Cost of a tenth of the frames, and what the map is at their end.
 struct CorridorRow {
-  std::int64_t frames;  ///< up to here
+  std::int64_t frames;                         ///< up to here
   std::map<std::string, StageSummary> stages;  ///< "frame": all that mapping does
-  double cpu_ms;    ///< of processor time a frame
-  double blocks_touched;  ///< a frame
-  double map_mb;    ///< in memory
-  double wall_m2;   ///< 0 with a bound on memory, for which all of the map would have to come back
+  double cpu_ms;                               ///< of processor time a frame
+  double blocks_touched;                       ///< a frame
+  double map_mb;                               ///< in memory
+  double wall_m2;  ///< 0 with a bound on memory, for which all of the map would have to come back
   std::size_t blocks, objects;
 };
 
 struct CorridorWalk {
   std::vector<CorridorRow> rows;
-  StageTimers tiles;  ///< what leaving memory and coming back took
+  StageTimers tiles;      ///< what leaving memory and coming back took
   std::int64_t lost = 0;  ///< frames whose pose was not found
 };
 
@@ -75,7 +75,8 @@ class CorridorWalker {
   void map(Frame& frame) {
     if (finder_ && !finder_->locate(frame, mapper_).tracked) return;
     const FrameReport report = mapper_.process(frame);
-    frames_.push_back({frame.index, frame.timestamp_s, frame.name, frame.world_from_camera, report.labelled});
+    frames_.push_back(
+        {frame.index, frame.timestamp_s, frame.name, frame.world_from_camera, report.labelled});
     if (finder_) finder_->close_loops(mapper_, frames_, frame.depth_camera);
     if (checkpoints_) checkpoints_->after_frame(mapper_, frames_, frame.depth_camera);
   }
@@ -124,9 +125,9 @@ nlohmann::json row_json(const CorridorRow& row) {
   nlohmann::json stages;
   for (const auto& [stage, s] : row.stages)
     stages[stage] = {{"p50_ms", s.p50_ms}, {"p95_ms", s.p95_ms}, {"total_ms", s.total_ms}};
-  return {{"frames", row.frames},     {"stages", stages},
-          {"cpu_ms", row.cpu_ms},     {"blocks_touched", row.blocks_touched},
-          {"map_mb", row.map_mb},     {"blocks", row.blocks},
+  return {{"frames", row.frames},      {"stages", stages},
+          {"cpu_ms", row.cpu_ms},      {"blocks_touched", row.blocks_touched},
+          {"map_mb", row.map_mb},      {"blocks", row.blocks},
           {"surface_m2", row.wall_m2}, {"objects", row.objects}};
 }
 
@@ -154,9 +155,9 @@ int bench_corridor(int frames, ProgramConfig config, const MappingOptions& optio
   watch_for_interrupt();
   config.mapper.map.voxel_size_m = kVoxel_m;
   const CorridorSource corridor({.frames = frames, .hung = true});
-  CorridorWalker walker(corridor, config,
-                        make_mask_source(options.masks, config.masks, {&corridor, options.model_dirs}),
-                        track);
+  CorridorWalker walker(
+      corridor, config,
+      make_mask_source(options.masks, config.masks, {&corridor, options.model_dirs}), track);
   const auto [rows, tiles, lost] = walker.walk();
   const double growth = rows.empty() ? 0 : rows.back().cpu_ms / rows.front().cpu_ms;
   if (json) {
@@ -176,8 +177,10 @@ int bench_corridor(int frames, ProgramConfig config, const MappingOptions& optio
     std::printf("%s: %.2f ms, p95 %.2f ms, %zu times\n", stage.c_str(), s.p50_ms, s.p95_ms,
                 s.count);
   if (track) std::printf("the camera was lost in %lld frames\n", static_cast<long long>(lost));
-  std::printf("the last tenth of the frames takes %.2f times the processor time of the first; peak memory %.0f MB\n",
-              growth, peak_rss_mb());
+  std::printf(
+      "the last tenth of the frames takes %.2f times the processor time of the first; peak memory "
+      "%.0f MB\n",
+      growth, peak_rss_mb());
   return kDone;
 }
 

@@ -5,6 +5,7 @@
 
 #include "apps/command/kept_settings.h"
 #include "apps/mapping/mapping_run.h"
+#include "apps/mapping/run_report.h"
 #include "ovimap/base/ascii.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/base/version.h"
@@ -12,7 +13,6 @@
 #include "ovimap/io/map_file/map_file.h"
 #include "ovimap/pipeline/report/map_pictures.h"
 #include "reproduce_report.h"
-#include "apps/mapping/run_report.h"
 
 namespace ovimap::apps {
 
@@ -58,8 +58,7 @@ MappingOptions mapping_of(const ReproduceOptions& options, const PaperDataset& d
 
 void map_scene(const MappingOptions& mapping, const std::string& title, const fs::path& map) {
   const MappingRun mapped = map_recording(mapping, title, {}, RunTarget{map, true});
-  if (interrupted())
-    throw Error("interrupted; the same command goes on where this one stopped");
+  if (interrupted()) throw Error("interrupted; the same command goes on where this one stopped");
   report_faults(mapped);
   save_map(map, mapped.document);
   mapped.checkpoints->remove();
@@ -116,8 +115,8 @@ std::vector<Reproduction> find_scenes(const ReproduceOptions& options) {
   std::vector<Reproduction> all;
   const auto look = [&](const PaperDataset& dataset, const fs::path& root) {
     if (root.empty()) return;
-    Reproduction made{dataset, find_paper_scenes(dataset, root, options.mapping.masks, config), {},
-                      {}};
+    Reproduction made{
+        dataset, find_paper_scenes(dataset, root, options.mapping.masks, config), {}, {}};
     for (const std::string& line : made.found.missing)
       std::fprintf(stderr, "ovimap: %s %s\n", dataset.name.c_str(), line.c_str());
     if (!made.found.scenes.empty()) all.push_back(std::move(made));

@@ -6,11 +6,11 @@
 
 namespace ovimap::apps {
 
-/// Sees to it that the camera of a run that tracks it may find its place in the map that the run goes
-/// on with. Where none of a new visit's first frames shows a place that the map's keyframes know, the
-/// objects of both are asked (place_by_objects), and what they say is left in `inputs.placing` and
-/// proposed to the tracker. Throws Error where the map keeps no frames and objects do not tell.
-/// `begun`: null where nothing is gone on with. Before the mapper is made.
+/// Sees to it that the camera of a run that tracks it may find its place in the map that the run
+/// goes on with. Where none of a new visit's first frames shows a place that the map's keyframes
+/// know, the objects of both are asked (place_by_objects), and what they say is left in
+/// `inputs.placing` and proposed to the tracker. Throws Error where the map keeps no frames and
+/// objects do not tell. `begun`: null where nothing is gone on with. Before the mapper is made.
 void find_start(const MapDocument* begun, bool new_visit, MappingInputs& inputs);
 
 }  // namespace ovimap::apps

@@ -24,8 +24,7 @@ MappingInputs::MappingInputs(const MappingOptions& options, bool recorded)
   }
   people = make_people_filter(options, config);
   if (people && source) source = std::make_unique<PeoplelessSource>(std::move(source), people);
-  tracking = options.poses == "track" || options.poses == "refine" ||
-             (source && !source->posed());
+  tracking = options.poses == "track" || options.poses == "refine" || (source && !source->posed());
   keeps_for_loops = tracking && config.mapper.frame_store.max_mb == 0;
   if (keeps_for_loops) config.mapper.frame_store.max_mb = kStoreForLoops_mb;
   if (!recorded) return;

@@ -15,15 +15,15 @@ struct MappingInputs {
   void open_networks(const MappingOptions& options, const std::filesystem::path& keep_masks = {});
 
   ProgramConfig config;
-  std::unique_ptr<FrameSource> source;  ///< null where frames are pushed
+  std::unique_ptr<FrameSource> source;         ///< null where frames are pushed
   std::shared_ptr<const PeopleFilter> people;  ///< null: they stay in the frames
-  bool tracking = false;                ///< poses are to be found
-  bool keeps_for_loops = false;         ///< frames are kept for that alone
+  bool tracking = false;                       ///< poses are to be found
+  bool keeps_for_loops = false;                ///< frames are kept for that alone
   std::vector<std::int64_t> range;
   std::shared_ptr<MaskSource> masks;
   std::shared_ptr<ImageTextEncoder> encoder;
   std::shared_ptr<const ThingRecognizer> recognizer;
-  std::shared_ptr<PoseFinder> finder;  ///< null: poses are given
+  std::shared_ptr<PoseFinder> finder;      ///< null: poses are given
   std::optional<AlignmentSearch> placing;  ///< what objects said of where the recording lies
 };
 

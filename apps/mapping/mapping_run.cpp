@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <future>
 
+#include "apps/command/same_settings.h"
 #include "find_start.h"
 #include "ovimap/base/thread_priority.h"
 #include "ovimap/io/map_file/map_file.h"
 #include "ovimap/pipeline/revise/visit_history.h"
-#include "apps/command/same_settings.h"
 
 namespace ovimap::apps {
 
@@ -56,8 +56,8 @@ BegunRun find_begun(const RunTarget& target, const MemoryConfig& memory) {
     begun.document = load_map_in(begun.tiles, unfinished ? partial : target.map);
   else if (begun.new_visit)
     begun.document = load_map_in(begun.tiles, target.continued);
-  const bool visit_under_way = begun.document && begun.document->unfinished &&
-                               begun.document->history.visits.size() > 1;
+  const bool visit_under_way =
+      begun.document && begun.document->unfinished && begun.document->history.visits.size() > 1;
   if (visit_under_way && target.continued.empty())
     throw Error(concat("the unfinished run of '", partial.string(),
                        "' goes on with a map; name it by --continue as that run did"));
@@ -67,9 +67,8 @@ BegunRun find_begun(const RunTarget& target, const MemoryConfig& memory) {
 /// Frames that are not in the map yet.
 void skip_done(std::vector<std::int64_t>& range, const MapRecord& begun) {
   if (begun.frames.empty()) return;
-  const std::int64_t first = begun.history.visits.empty()
-                                 ? 0
-                                 : begun.history.visits.back().first_index,
+  const std::int64_t first =
+                         begun.history.visits.empty() ? 0 : begun.history.visits.back().first_index,
                      last = begun.frames.back().index;
   std::erase_if(range, [&](std::int64_t position) { return first + position <= last; });
 }
@@ -77,10 +76,9 @@ void skip_done(std::vector<std::int64_t>& range, const MapRecord& begun) {
 /// Throws Error unless the recording lies where the map is.
 void require_fit(const MapDocument& begun, const MappingInputs& inputs) {
   if (!inputs.config.visit.enabled || inputs.tracking) return;
-  const std::string fault =
-      misfit(fit_visit(begun.map, *inputs.source, inputs.range, inputs.config.track,
-                       inputs.config.visit),
-             inputs.config.visit);
+  const std::string fault = misfit(
+      fit_visit(begun.map, *inputs.source, inputs.range, inputs.config.track, inputs.config.visit),
+      inputs.config.visit);
   if (!fault.empty())
     throw Error(concat("the recording does not fit the map, which stays as it was: ", fault,
                        "; map it by itself and bring the two together with `ovimap merge --align`, "
@@ -121,8 +119,8 @@ SequenceResult resume(BegunRun& begun, MapHeader& header, MappingInputs& inputs,
 std::unique_ptr<Checkpointer> make_checkpointer(const BegunRun& begun, const MappingInputs& inputs,
                                                 const MapHeader& header, std::size_t frames_done) {
   if (!begun.tiles) return nullptr;
-  auto checkpoints = std::make_unique<Checkpointer>(begun.tiles, inputs.config.checkpoint, header,
-                                                    frames_done);
+  auto checkpoints =
+      std::make_unique<Checkpointer>(begun.tiles, inputs.config.checkpoint, header, frames_done);
   if (inputs.finder)
     inputs.finder->before_correction = [to = checkpoints.get()](Mapper& map) {
       to->let_tiles_leave(map);
@@ -152,14 +150,17 @@ std::shared_ptr<PoseFinder> make_finder(const MappingInputs& inputs, const Begun
 TrackingRun finish_tracking(const PoseFinder& finder, const ProgramConfig& config, Mapper& mapper,
                             SequenceResult& sequence) {
   const auto& log = finder.tracker().log();
-  TrackingRun tracking{summarise(log), finder.corrections(), {},
-                       unknown_places(log, config.track.part_frames), sensor_doubts(finder.tracker()),
+  TrackingRun tracking{summarise(log),
+                       finder.corrections(),
+                       {},
+                       unknown_places(log, config.track.part_frames),
+                       sensor_doubts(finder.tracker()),
                        {}};
   if (config.track.part_frames == 0) tracking.unknown.clear();
   Progress progress("closing loops");
-  tracking.loops = close_last_loops(
-      mapper, sequence.frames, sequence.depth_camera, config.track, config.loops,
-      [&](std::size_t done, std::size_t total) { progress.show(done, total); });
+  tracking.loops =
+      close_last_loops(mapper, sequence.frames, sequence.depth_camera, config.track, config.loops,
+                       [&](std::size_t done, std::size_t total) { progress.show(done, total); });
   return tracking;
 }
 
@@ -185,8 +186,8 @@ MappingRun finished_run(MappingInputs&& inputs, MapHeader header, Mapper&& mappe
   return run;
 }
 
-/// What the visit changed. Both maps share a bound on memory: voxels of the one before wait in a file
-/// beside the checkpoint.
+/// What the visit changed. Both maps share a bound on memory: voxels of the one before wait in a
+/// file beside the checkpoint.
 void tell_visit(const RunTarget& target, const MemoryConfig& memory, TileKeeper& tiles,
                 MapDocument& after) {
   const MemoryConfig half{(memory.max_mb + 1) / 2};
@@ -205,8 +206,8 @@ struct RepeatedRun {
   std::vector<LiveStep> steps;
 };
 
-/// Throws Error when the map of `target.repeated` cannot be made again, or not with the settings that
-/// `header` has.
+/// Throws Error when the map of `target.repeated` cannot be made again, or not with the settings
+/// that `header` has.
 RepeatedRun find_repeated(const RunTarget& target, const MapHeader& header, bool tracked,
                           const std::shared_ptr<ImageTextEncoder>& encoder) {
   MapRecord live = load_map_without_voxels(target.repeated);
@@ -316,10 +317,9 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
                     header.edits);
   watch_for_interrupt(kEndsOfALiveRun);
   if (camera) camera->start();
-  LiveRunResult live =
-      target.repeated.empty()
-          ? feed(mapper, inputs, fps, intake)
-          : repeat_live(*inputs.source, repeated.steps, mapper, LiveProgressBar());
+  LiveRunResult live = target.repeated.empty()
+                           ? feed(mapper, inputs, fps, intake)
+                           : repeat_live(*inputs.source, repeated.steps, mapper, LiveProgressBar());
   if (audience) header.edits = audience->end();
   if (live.sequence.depth_camera.width == 0) live.sequence.depth_camera = done.depth_camera;
   MappingRun run = finished_run(std::move(inputs), std::move(header), mapper.take(), live.sequence,

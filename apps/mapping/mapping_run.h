@@ -3,8 +3,8 @@
 #pragma once
 
 #include "apps/command/command.h"
-#include "ovimap/pipeline/live/camera_feed.h"
 #include "ovimap/pipeline/alignment/map_alignment.h"
+#include "ovimap/pipeline/live/camera_feed.h"
 #include "ovimap/pipeline/live/live_run.h"
 #include "ovimap/pipeline/sequence/last_loops.h"
 #include "ovimap/track/sensor_doubts.h"
@@ -14,8 +14,8 @@ namespace ovimap::apps {
 /// How the camera was tracked.
 struct TrackingRun {
   TrackSummary summary;
-  LoopCorrections corrections;  ///< while frames came
-  LoopReport loops;             ///< after the last one
+  LoopCorrections corrections;                                 ///< while frames came
+  LoopReport loops;                                            ///< after the last one
   std::vector<std::pair<std::int64_t, std::int64_t>> unknown;  ///< unknown_places
   std::vector<std::string> sensor_doubts;  ///< none: camera and times are as described
   std::optional<AlignmentSearch> placing;  ///< what objects said of where in a map the camera is
@@ -36,10 +36,10 @@ struct MappingRun {
   bool masks_wanted = false;            ///< there was a source of 2D masks
   std::size_t frames_before = 0;        ///< in the map or checkpoint that it went on with
   SequenceResult sequence;
-  std::optional<LiveRunResult> live;  ///< of map_live
+  std::optional<LiveRunResult> live;         ///< of map_live
   std::optional<std::size_t> people_frames;  ///< that showed people, who were left out
-  std::optional<TrackingRun> tracking;  ///< where poses were not given
-  std::vector<MapPart> parts;           ///< mapped by themselves
+  std::optional<TrackingRun> tracking;       ///< where poses were not given
+  std::vector<MapPart> parts;                ///< mapped by themselves
   StageTimers timers;
   MapDocument document;
   std::unique_ptr<Checkpointer> checkpoints;  ///< remove them when the map is saved
@@ -49,8 +49,9 @@ struct MappingRun {
 struct RunTarget {
   std::filesystem::path map;
   bool resume = false;  ///< go on with the checkpoint or map that is there
-  std::filesystem::path continued = {};  ///< another visit to the place of this map; empty: a new map
-  std::filesystem::path repeated = {};   ///< the map of a live run, to be made again; map_live alone
+  std::filesystem::path continued =
+      {};  ///< another visit to the place of this map; empty: a new map
+  std::filesystem::path repeated = {};  ///< the map of a live run, to be made again; map_live alone
 };
 
 /// Opens what the options name and maps it, with progress under `title`; Ctrl-C ends it early with
@@ -81,10 +82,9 @@ class LiveAudience {
   virtual MapEdits end() = 0;
 };
 
-/// The same as a camera of `fps` frames a second would have it, or as the run of `target.repeated` did
-/// it. Networks let the mapping go first.
-/// `intake`: frames come from there instead, at their own pace, until it ends. `camera`: feeds it,
-/// and is started when the mapping is.
+/// The same as a camera of `fps` frames a second would have it, or as the run of `target.repeated`
+/// did it. Networks let the mapping go first. `intake`: frames come from there instead, at their
+/// own pace, until it ends. `camera`: feeds it, and is started when the mapping is.
 MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& target = {},
                     LiveAudience* audience = nullptr, FrameIntake* intake = nullptr,
                     CameraFeed* camera = nullptr);

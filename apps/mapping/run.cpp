@@ -37,7 +37,8 @@ double recorded_s(const std::string& text) {
 void check_for_camera(const RunOptions& options) {
   const auto refuse = [](bool given, const char* option) {
     if (given)
-      throw Error(concat(option, " is for recordings; leave it away where a camera sends the frames"));
+      throw Error(
+          concat(option, " is for recordings; leave it away where a camera sends the frames"));
   };
   refuse(!options.continued.empty(), "--continue");
   refuse(!options.repeated.empty(), "--repeat");
@@ -48,7 +49,8 @@ MappingRun map_source(const RunOptions& options, const RunTarget& target,
                       std::optional<CameraRun>& camera) {
   if (camera)
     return map_live(options.mapping, 0, target, nullptr, &camera->intake(), &camera->feed());
-  if (options.live || !options.repeated.empty()) return map_live(options.mapping, options.fps, target);
+  if (options.live || !options.repeated.empty())
+    return map_live(options.mapping, options.fps, target);
   return map_recording(options.mapping, "mapping", {}, target);
 }
 
@@ -62,7 +64,8 @@ int run(RunOptions options) {
   if (!options.pictures.empty()) make_folder(options.pictures);
   const RunTarget target{options.map, options.resume, options.continued, options.repeated};
   std::optional<CameraRun> camera;
-  if (names_camera(options.mapping.source)) check_for_camera(options), camera.emplace(options.mapping);
+  if (names_camera(options.mapping.source))
+    check_for_camera(options), camera.emplace(options.mapping);
   MappingRun mapped = map_source(options, target, camera);
   const double fps = camera ? sent_fps(*mapped.live) : options.fps;
   report_faults(mapped);
@@ -93,7 +96,8 @@ Action add_run(CLI::App& command) {
   auto options = std::make_shared<RunOptions>();
   add_mapping_options(command, options->mapping);
   command.get_option("SOURCE")->description(
-      "recording: a folder of a known layout (see docs/sources.md); or openni: for a camera that is "
+      "recording: a folder of a known layout (see docs/sources.md); or openni: for a camera that "
+      "is "
       "plugged in (docs/cameras.md)");
   command.add_option("-o,--output", options->map,
                      "map file to write; with --continue the map itself where it is not given");
@@ -106,19 +110,23 @@ Action add_run(CLI::App& command) {
       ->capture_default_str();
   auto* repeat =
       command
-          .add_option("--repeat", options->repeated,
-                      "the map of a live run of this recording: map it again as that run did, with the "
-                      "frames that it took and the masks when they came, and say whether it is the same map")
+          .add_option(
+              "--repeat", options->repeated,
+              "the map of a live run of this recording: map it again as that run did, with the "
+              "frames that it took and the masks when they came, and say whether it is the same "
+              "map")
           ->excludes(live);
   command
-      .add_option("--continue", options->continued,
-                  "a map of the same place to go on with, in whose world frame the recording's poses "
-                  "are: what is gone leaves it, ids, names and corrections stay")
+      .add_option(
+          "--continue", options->continued,
+          "a map of the same place to go on with, in whose world frame the recording's poses "
+          "are: what is gone leaves it, ids, names and corrections stay")
       ->excludes(live)
       ->excludes(repeat);
-  command.add_option("--recorded", options->recorded,
-                     "when the recording was made, as 2026-03-14T09:30 or \"yesterday evening\", so that the "
-                     "map's history has dates; without, frames whose times are dates say it");
+  command.add_option(
+      "--recorded", options->recorded,
+      "when the recording was made, as 2026-03-14T09:30 or \"yesterday evening\", so that the "
+      "map's history has dates; without, frames whose times are dates say it");
   add_poses(command, options->mapping);
   command.add_option("--trajectory", options->trajectory,
                      "file to write the camera's poses to, a TUM line for each frame in the map");

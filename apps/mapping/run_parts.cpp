@@ -50,7 +50,8 @@ std::vector<MapPart> map_parts(const MappingOptions& options, const std::filesys
     const Stretch stretch = wanted.front();
     const RunTarget target{part_path(map, parts.size() + 2)};
     remove_map(checkpoint_path(target.map));  // what a killed run left of it is begun anew
-    const MappingRun part = map_recording(options_for(options, stretch), "mapping a part", {}, target);
+    const MappingRun part =
+        map_recording(options_for(options, stretch), "mapping a part", {}, target);
     const TrackSummary& summary = part.tracking->summary;
     if (2 * summary.tracked >= summary.frames) {
       save_map(target.map, part.document);

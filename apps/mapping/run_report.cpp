@@ -99,7 +99,8 @@ void print_repetition(const Repetition& repetition) {
     return;
   }
   std::string tables;
-  for (const std::string& name : repetition.differing) tables += (tables.empty() ? "" : ", ") + name;
+  for (const std::string& name : repetition.differing)
+    tables += (tables.empty() ? "" : ", ") + name;
   std::printf("another map than %s; they differ in: %s\n", repetition.of.c_str(), tables.c_str());
 }
 
@@ -146,35 +147,37 @@ nlohmann::json parts_json(const std::vector<MapPart>& parts) {
 void print_parts(const MappingRun& run) {
   for (const MapPart& part : run.parts) {
     const bool placed = part.placing && part.placing->doubt.empty();
-    std::printf("no keyframe shows where frames %lld to %lld lie: %s is a map of them alone, %zu "
-                "objects from %zu frames; %s\n",
-                static_cast<long long>(part.first), static_cast<long long>(part.last),
-                part.map.c_str(), part.objects, part.frames,
-                placed ? "by its objects it lies in this map, `ovimap merge --align` joins the two"
-                       : "`ovimap merge --align` joins maps that share a place");
+    std::printf(
+        "no keyframe shows where frames %lld to %lld lie: %s is a map of them alone, %zu "
+        "objects from %zu frames; %s\n",
+        static_cast<long long>(part.first), static_cast<long long>(part.last), part.map.c_str(),
+        part.objects, part.frames,
+        placed ? "by its objects it lies in this map, `ovimap merge --align` joins the two"
+               : "`ovimap merge --align` joins maps that share a place");
   }
 }
 
 void print_tracking(const TrackingRun& tracking) {
   if (tracking.placing && tracking.placing->doubt.empty())
-    std::printf("no first frame shows a known place; %d objects say where the recording lies, and the "
-                "surfaces agree (overlap %.0f %%, fit %.0f %%)\n",
-                tracking.placing->best.objects, 100. * double{tracking.placing->best.overlap},
-                100. * double{tracking.placing->best.fit});
+    std::printf(
+        "no first frame shows a known place; %d objects say where the recording lies, and the "
+        "surfaces agree (overlap %.0f %%, fit %.0f %%)\n",
+        tracking.placing->best.objects, 100. * double{tracking.placing->best.overlap},
+        100. * double{tracking.placing->best.fit});
   std::printf("%s\n", summary_line(tracking.summary).c_str());
   if (tracking.summary.degenerate > 0)
     std::printf("in %zu frames the images did not tell every direction of the motion\n",
                 tracking.summary.degenerate);
   if (const LoopCorrections& corrected = tracking.corrections; corrected.times > 0)
-    std::printf("places were seen again while frames came: the map was corrected %zu %s, and poses "
-                "moved by up to %.1f cm\n",
-                corrected.times, corrected.times == 1 ? "time" : "times",
-                100 * corrected.furthest_m);
+    std::printf(
+        "places were seen again while frames came: the map was corrected %zu %s, and poses "
+        "moved by up to %.1f cm\n",
+        corrected.times, corrected.times == 1 ? "time" : "times", 100 * corrected.furthest_m);
   if (tracking.loops.closed > 0)
-    std::printf("%zu places were seen again; poses moved by up to %.1f cm, and %.0f %% of the map "
-                "was fused anew\n",
-                tracking.loops.closed, 100 * tracking.loops.furthest_m,
-                100 * tracking.loops.fused_share);
+    std::printf(
+        "%zu places were seen again; poses moved by up to %.1f cm, and %.0f %% of the map "
+        "was fused anew\n",
+        tracking.loops.closed, 100 * tracking.loops.furthest_m, 100 * tracking.loops.fused_share);
 }
 
 bool masks_all_absent(const MappingRun& run) {
@@ -246,8 +249,7 @@ void print_run(const std::filesystem::path& map, const MappingRun& run, double f
                 tiles.evicted, tiles.loaded, peak_rss_mb());
   if (!run.document.movers.empty())
     std::printf("%zu things moved while they were seen\n", run.document.movers.size());
-  if (run.people_frames)
-    std::printf("left out people in %zu frames\n", *run.people_frames);
+  if (run.people_frames) std::printf("left out people in %zu frames\n", *run.people_frames);
   if (run.tracking) print_tracking(*run.tracking);
   print_parts(run);
   if (repetition)
@@ -271,11 +273,12 @@ bool mostly_lost(const MappingRun& run) {
 
 void advise_on_objects(const MappingRun& run) {
   if (mostly_lost(run)) {
-    std::fprintf(stderr,
-                 "ovimap: the camera was followed in %zu of %zu frames only: its pictures must overlap "
-                 "and follow one another closely, some 10 to 30 a second; record slower turns with "
-                 "more frames, or give poses (docs/tracking.md)\n",
-                 run.tracking->summary.tracked, run.tracking->summary.frames);
+    std::fprintf(
+        stderr,
+        "ovimap: the camera was followed in %zu of %zu frames only: its pictures must overlap "
+        "and follow one another closely, some 10 to 30 a second; record slower turns with "
+        "more frames, or give poses (docs/tracking.md)\n",
+        run.tracking->summary.tracked, run.tracking->summary.frames);
     return;
   }
   if (!run.document.instances.empty() || masks_all_absent(run)) return;
@@ -298,7 +301,8 @@ void advise_on_encoder(const MappingRun& run,
 }
 
 void advise_on_writing(const MappingRun& run) {
-  if (run.document.semantics.writing_reader.empty() || run.frames_before == run.document.frames.size())
+  if (run.document.semantics.writing_reader.empty() ||
+      run.frames_before == run.document.frames.size())
     return;
   std::fprintf(stderr,
                "ovimap: what was read on things before is kept; `ovimap read` reads what the new "

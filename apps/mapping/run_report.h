@@ -31,8 +31,7 @@ bool mostly_lost(const MappingRun& run);
 void advise_on_objects(const MappingRun& run);
 
 /// On stderr, where the small default encoder was used: how to get a better one.
-void advise_on_encoder(const MappingRun& run,
-                       const std::vector<std::filesystem::path>& model_dirs);
+void advise_on_encoder(const MappingRun& run, const std::vector<std::filesystem::path>& model_dirs);
 
 /// On stderr, where what an earlier `ovimap read` found was kept: that new frames were not read.
 void advise_on_writing(const MappingRun& run);

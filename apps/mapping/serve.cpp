@@ -5,14 +5,14 @@
 #include <fstream>
 #include <thread>
 
+#include "apps/command/teach_option.h"
+#include "camera_run.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/io/corrections/taught_file.h"
 #include "ovimap/server/api/viewer_files.h"
 #include "ovimap/server/http/access.h"
-#include "camera_run.h"
 #include "run_report.h"
 #include "serve_live.h"
-#include "apps/command/teach_option.h"
 
 namespace ovimap::apps {
 
@@ -193,9 +193,8 @@ void add_live_options(CLI::App& command, ServeOptions& options) {
       ->needs(live);
   add_mapping_settings(command, options.mapping);
   add_poses(command, options.mapping);
-  for (const char* name :
-       {"--masks", "--recognizer", "--preset", "--views", "--config", "--set", "--frames", "--poses",
-        "--people"})
+  for (const char* name : {"--masks", "--recognizer", "--preset", "--views", "--config", "--set",
+                           "--frames", "--poses", "--people"})
     command.get_option(name)->needs(live);
 }
 
@@ -204,10 +203,10 @@ void add_live_options(CLI::App& command, ServeOptions& options) {
 Action add_serve(CLI::App& command) {
   auto options = std::make_shared<ServeOptions>();
   command
-      .add_option(
-          "MAP", options->subject,
-          "map file; with --live a recording, openni: for a camera, or http: frames that clients send "
-          "(docs/live.md)")
+      .add_option("MAP", options->subject,
+                  "map file; with --live a recording, openni: for a camera, or http: frames that "
+                  "clients send "
+                  "(docs/live.md)")
       ->required();
   command.add_option("--port", options->server.port, "port to listen at; 0: any free one")
       ->check(CLI::Range(0, 65535))

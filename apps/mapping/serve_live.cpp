@@ -84,7 +84,8 @@ void LiveService::run(const Announce& announce,
   saved(mapped);
   const bool go_on = !interrupted();
   const std::size_t loops = mapped.tracking ? mapped.tracking->loops.closed : 0;
-  if (go_on) service.saved(std::move(mapped.document), loops);  // its voxels may be in the checkpoint
+  if (go_on)
+    service.saved(std::move(mapped.document), loops);  // its voxels may be in the checkpoint
   mapped.checkpoints->remove();
   if (go_on) service.serve_on();
 }

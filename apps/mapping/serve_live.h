@@ -27,9 +27,9 @@ class ServerThread {
   std::future<void> running_;
 };
 
-/// Maps a recording at a camera's pace, a camera, or what clients push, and serves the map meanwhile; then
-/// saves it and goes on serving until Ctrl-C. Ctrl-C before that saves what was mapped and ends it.
-/// Returns what was mapped, its document given to the served map.
+/// Maps a recording at a camera's pace, a camera, or what clients push, and serves the map
+/// meanwhile; then saves it and goes on serving until Ctrl-C. Ctrl-C before that saves what was
+/// mapped and ends it. Returns what was mapped, its document given to the served map.
 struct LiveService {
   MappingOptions mapping;
   RunTarget target;

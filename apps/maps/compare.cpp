@@ -3,8 +3,8 @@
 // Two maps, or one at two times: what changed from one to the other; and one map of both.
 #include <cstdio>
 
-#include "apps/command/command.h"
 #include "apps/command/box_json.h"
+#include "apps/command/command.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/frames/recording/number_text.h"
 #include "ovimap/image/codec.h"
@@ -133,7 +133,8 @@ nlohmann::json change_json(const HistoryChange& change, const MapHistory& histor
 /// One map at two times, by what its visits found. Exit code 1: something changed.
 int diff_times(const CompareOptions& options) {
   if (!options.out.empty() || !options.transform.empty() || options.align)
-    throw Error("--since and --until compare one map with itself; leave -o, --transform and --align out");
+    throw Error(
+        "--since and --until compare one map with itself; leave -o, --transform and --align out");
   const MapRecord map = read_corrected_record(options.a);
   const HistoryDates dates(map.history, map.frames);
   const auto [since, until, changes] =
@@ -265,9 +266,11 @@ Action add_diff(CLI::App& command) {
       "-o,--output", options->out,
       "draw it, .png (from above) or .ply: new green, moved blue, where it was light "
       "blue, removed red");
-  command.add_option("--since", options->since,
-                     "instead of B: what changed in A since a time, as `ovimap query --at` takes it");
-  command.add_option("--until", options->until, "and until this one; without, until its last visit");
+  command.add_option(
+      "--since", options->since,
+      "instead of B: what changed in A since a time, as `ovimap query --at` takes it");
+  command.add_option("--until", options->until,
+                     "and until this one; without, until its last visit");
   return [options] { return diff(*options); };
 }
 

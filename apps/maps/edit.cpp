@@ -5,11 +5,11 @@
 #include <ctime>
 
 #include "apps/command/command.h"
+#include "apps/command/teach_option.h"
 #include "ovimap/io/corrections/taught_file.h"
 #include "ovimap/io/map_file/map_edits.h"
 #include "ovimap/io/map_file/map_file.h"
 #include "ovimap/pipeline/search/teaching.h"
-#include "apps/command/teach_option.h"
 
 namespace ovimap::apps {
 
@@ -121,8 +121,7 @@ CLI::App& add_action(CLI::App& command, EditOptions& options, EditAction action,
 Action add_edit(CLI::App& command) {
   auto options = std::make_shared<EditOptions>();
   command.add_option("MAP", options->map, "map file")->required();
-  add_teach_option(command, options->teach,
-                   "whether the named objects of this map teach others");
+  add_teach_option(command, options->teach, "whether the named objects of this map teach others");
   command.add_flag("--json", options->json, "print one JSON object");
   command.require_subcommand(1);
   add_action(command, *options, EditAction::kRename, "give an object a name; \"\" takes it away")

@@ -188,9 +188,11 @@ Action add_export(CLI::App& command) {
       .add_option(
           "--what", options->what,
           "mesh: true colours; instances: a colour per object; semantic: a colour and id per "
-          "class; points: vertices alone; objects; rooms: places, rooms and what is in them; grid. Each "
+          "class; points: vertices alone; objects; rooms: places, rooms and what is in them; grid. "
+          "Each "
           "format has its own default")
-      ->check(CLI::IsMember({"mesh", "instances", "semantic", "points", "objects", "rooms", "grid"}));
+      ->check(
+          CLI::IsMember({"mesh", "instances", "semantic", "points", "objects", "rooms", "grid"}));
   add_grid_options(command, *options);
   command
       .add_option("--classes", options->classes,

@@ -115,8 +115,7 @@ int info(const InfoOptions& options) {
     auto document = nlohmann::json::parse(info_json(options.map, map));
     document["tiles_evicted"] = tiles.evicted;
     document["tiles_loaded"] = tiles.loaded;
-    if (!map.history.visits.empty())
-      add_dates(dates_of(options.map, map), document["history"]);
+    if (!map.history.visits.empty()) add_dates(dates_of(options.map, map), document["history"]);
     print_json(document);
     return kDone;
   }

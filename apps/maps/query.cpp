@@ -4,6 +4,7 @@
 
 #include "apps/command/command.h"
 #include "apps/command/file_slug.h"
+#include "apps/command/kept_memory.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/image/codec.h"
 #include "ovimap/instance/instance_mesh.h"
@@ -11,7 +12,6 @@
 #include "ovimap/io/mesh/ply.h"
 #include "ovimap/io/pictures/pictures.h"
 #include "ovimap/pipeline/approach/approach_json.h"
-#include "apps/command/kept_memory.h"
 #include "query_asking.h"
 
 namespace ovimap::apps {
@@ -71,15 +71,13 @@ nlohmann::json answer_json(const Answered& answered, const Approaches& approache
   for (const QueryMatch& match : answer.matches) {
     instances.push_back(match_json(match, answered.object(match), answered.title(match)));
     instances.back()["past"] = answered.is_past(match);
-    if (const auto there = approaches.of_object.find(match.id);
-        there != approaches.of_object.end())
+    if (const auto there = approaches.of_object.find(match.id); there != approaches.of_object.end())
       instances.back()["approach"] = approach_json(there->second, approaches.space.grid);
   }
-  const auto count = answer.count
-                         ? nlohmann::json{{"expected", answer.count->expected},
-                                          {"deviation", answer.count->deviation},
-                                          {"found", answer.count->found}}
-                         : nlohmann::json();
+  const auto count = answer.count ? nlohmann::json{{"expected", answer.count->expected},
+                                                   {"deviation", answer.count->deviation},
+                                                   {"found", answer.count->found}}
+                                  : nlohmann::json();
   return {{"query", answer.query},
           {"count", count},
           {"verdict", verdict_name(answer.verdict)},
@@ -117,14 +115,12 @@ void print_answer(const Answered& answered, const Approaches& approaches) {
     const Eigen::Vector3f place = match.part == 0 ? object.centroid : match.part_box.center();
     std::printf("  #%-5u %6s", match.id, score_text(match.score).c_str());
     if (match.probability) std::printf("  %3.0f %%", 100.0 * *match.probability);
-    std::printf("  at %6.2f %6.2f %6.2f", double{place.x()}, double{place.y()},
-                double{place.z()});
+    std::printf("  at %6.2f %6.2f %6.2f", double{place.x()}, double{place.y()}, double{place.z()});
     if (const std::string& title = answered.title(match); !title.empty())
       std::printf("  %s", title.c_str());
     if (!match.evidence.empty()) std::printf("  %s", match.evidence.c_str());
     std::printf("\n");
-    if (const auto there = approaches.of_object.find(match.id);
-        there != approaches.of_object.end())
+    if (const auto there = approaches.of_object.find(match.id); there != approaches.of_object.end())
       print_approach(there->second);
   }
 }
@@ -135,9 +131,8 @@ std::filesystem::path heat_map_path(const std::filesystem::path& out, std::size_
   if (count == 1) return out;
   constexpr std::size_t kLongest = 40;
   const std::string slug = file_slug(query, kLongest);
-  return out.parent_path() /
-         concat(out.stem().string(), "-", number, "-", slug.empty() ? "query" : slug,
-                out.extension().string());
+  return out.parent_path() / concat(out.stem().string(), "-", number, "-",
+                                    slug.empty() ? "query" : slug, out.extension().string());
 }
 
 void write_heat_maps(const QueryOptions& options, const Eigen::Vector3f& up,
@@ -166,9 +161,8 @@ Approaches find_approaches(const QueryOptions& options, const std::vector<Answer
     for (const QueryMatch& match : answered.answer.matches)
       if (answered.answer.verdict == Verdict::kFound && !answered.is_past(match) &&
           !result.of_object.contains(match.id))
-        result.of_object[match.id] =
-            find_approach(result.space, match.id, options.approach.config,
-                          options.approach.start());
+        result.of_object[match.id] = find_approach(result.space, match.id, options.approach.config,
+                                                   options.approach.start());
   return result;
 }
 
@@ -224,10 +218,12 @@ Action add_query(CLI::App& command) {
   command.add_option("--not", options->negatives, "what it must not be; commas separate")
       ->type_size(1)
       ->allow_extra_args(false);
-  auto* at = command.add_option("--at", options->at,
-                     "ask the map as it was: \"visit 1\", 2026-03-14, Monday, \"2 hours ago\"");
-  command.add_option("--since", options->since,
-                     "only what came, moved or went since then; without TEXT all of it")
+  auto* at =
+      command.add_option("--at", options->at,
+                         "ask the map as it was: \"visit 1\", 2026-03-14, Monday, \"2 hours ago\"");
+  command
+      .add_option("--since", options->since,
+                  "only what came, moved or went since then; without TEXT all of it")
       ->excludes(at);
   command.add_option("--near", options->near, "only near this: as \"TEXT near THIS\"");
   command.add_option("--image", options->images, "what looks like this picture")
@@ -245,9 +241,10 @@ Action add_query(CLI::App& command) {
                   "default, a model, or auto: the one that the map was made with")
       ->capture_default_str();
   add_model_dirs(command, options->model_dirs);
-  add_teach_option(command, options->teach,
-                   "whether what people named in other maps speaks too");
-  command.add_option("--set", options->settings, "one setting, query.a=b or approach.a=b; may be repeated")
+  add_teach_option(command, options->teach, "whether what people named in other maps speaks too");
+  command
+      .add_option("--set", options->settings,
+                  "one setting, query.a=b or approach.a=b; may be repeated")
       ->type_size(1)
       ->allow_extra_args(false);
   command.add_option("--threads", options->threads, "threads to use; 0: all cores")

@@ -59,8 +59,7 @@ std::vector<Answered> QueryAsker::ask(const std::vector<AskedText>& texts) {
     if (asked.past)
       answers.push_back(ask_past(asked));
     else
-      answers.push_back(
-          in_present(present().find({asked.text, options_.negatives, relevance()})));
+      answers.push_back(in_present(present().find({asked.text, options_.negatives, relevance()})));
   }
   for (const std::filesystem::path& image : options_.images)
     answers.push_back(
@@ -72,19 +71,17 @@ std::vector<Answered> QueryAsker::ask(const std::vector<AskedText>& texts) {
 
 MapSearch QueryAsker::open_map() const {
   MapSearch search = open_map_search(options_.map, config_.shapes);
-  search.scene.taught =
-      taught_elsewhere(options_.teach.file(), options_.map, search.info.encoder);
+  search.scene.taught = taught_elsewhere(options_.teach.file(), options_.map, search.info.encoder);
   return search;
 }
 
-/// The map and its encoder take about as long, so both are opened at once. Of a map without embeddings
-/// one can ask what changed, and nothing else.
+/// The map and its encoder take about as long, so both are opened at once. Of a map without
+/// embeddings one can ask what changed, and nothing else.
 void QueryAsker::open(const std::vector<AskedText>& texts) {
   const auto is_listing = [&](const AskedText& asked) {
     return asked.past && asked.past->text == "anything" && options_.negatives.empty();
   };
-  const bool listing =
-      !texts.empty() && std::all_of(texts.begin(), texts.end(), is_listing);
+  const bool listing = !texts.empty() && std::all_of(texts.begin(), texts.end(), is_listing);
   const bool in_words = !(texts.empty() && options_.images.empty());
   auto opening = std::async(std::launch::async, [this] { return open_map(); });
   std::exception_ptr fault;

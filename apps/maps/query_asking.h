@@ -39,7 +39,9 @@ struct Answered {
   std::shared_ptr<const std::vector<std::string>> titles;
   std::shared_ptr<const HistorySearch> past = {};  ///< null: it speaks of the present
 
-  const SearchObject& object(const QueryMatch& match) const { return index->object(match.position); }
+  const SearchObject& object(const QueryMatch& match) const {
+    return index->object(match.position);
+  }
   const std::string& title(const QueryMatch& match) const { return (*titles)[match.position]; }
   /// Whether the object is not where the answer shows it any more.
   bool is_past(const QueryMatch& match) const { return past && past->events[match.position] != 0; }
@@ -51,8 +53,9 @@ class QueryAsker {
   QueryAsker(const QueryOptions& options, const QueryConfig& config)
       : options_(options), config_(config) {}
 
-  /// One answer for each text, then for each picture, then for each object. They refer to this asker,
-  /// which is asked once. Throws Error for a map that cannot be read, and for what cannot be asked of it.
+  /// One answer for each text, then for each picture, then for each object. They refer to this
+  /// asker, which is asked once. Throws Error for a map that cannot be read, and for what cannot be
+  /// asked of it.
   std::vector<Answered> ask(const std::vector<AskedText>& texts);
   const Eigen::Vector3f& up() const { return search_.info.up; }
 

@@ -65,8 +65,11 @@ int read_map(const ReadOptions& options) {
     nlohmann::json objects = nlohmann::json::array();
     for (const auto& [id, lines] : info.writing)
       objects.push_back({{"id", id}, {"writing", lines_json(lines)}});
-    print_json({{"map", out.string()}, {"reader", reader->name()}, {"crops", summary.crops},
-                {"lines", summary.lines}, {"instances", objects}});
+    print_json({{"map", out.string()},
+                {"reader", reader->name()},
+                {"crops", summary.crops},
+                {"lines", summary.lines},
+                {"instances", objects}});
     return kDone;
   }
   std::printf("%s: %zu lines in %zu crops, on %zu objects\n", out.c_str(), summary.lines,

@@ -99,8 +99,7 @@ int fetch(const FetchOptions& options) {
 }
 
 std::string better_encoder() {
-  const HubConfig config =
-      read_hub_config({"hub.connect_timeout_s=3", "hub.stall_timeout_s=3"});
+  const HubConfig config = read_hub_config({"hub.connect_timeout_s=3", "hub.stall_timeout_s=3"});
   if (!Hub(config, hub_access_from_environment()).answers()) return {};
   return fetch_line(find_entry(read_catalogue({}), kFirstEncoder));
 }

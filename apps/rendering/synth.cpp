@@ -63,8 +63,7 @@ RoomOptions chosen_room(const SynthOptions& options, const std::string& room) {
   apply_settings(options.settings, fields);
   if (options.is_video()) {
     chosen.video = options.video;
-    chosen.video->walk.whip_rad_s =
-        static_cast<float>(options.whip_deg_s * std::numbers::pi / 180);
+    chosen.video->walk.whip_rad_s = static_cast<float>(options.whip_deg_s * std::numbers::pi / 180);
     if (options.gyroscope) chosen.video->gyroscope.rate_hz = kGyroscope_hz;
   }
   return chosen;
@@ -180,9 +179,10 @@ void add_walk_options(CLI::App& command, SynthOptions& options, CLI::Option* noi
                       "of a walk: every few seconds a pan aside and back, up to so many degrees a "
                       "second")
           ->check(CLI::Range(0.0, 1000.0)),
-      command.add_flag("--gyroscope", options.gyroscope,
-                       "of a walk: beside the frames what the camera's gyroscope measures, with its "
-                       "noise and offset, as gyroscope.txt"),
+      command.add_flag(
+          "--gyroscope", options.gyroscope,
+          "of a walk: beside the frames what the camera's gyroscope measures, with its "
+          "noise and offset, as gyroscope.txt"),
       command.add_flag("--exact", options.exact, "of a walk: exact frames, as of no real sensor")};
 }
 
@@ -211,9 +211,10 @@ Action add_synth(CLI::App& command) {
                                  "as a depth camera sees it: noise, quantisation, holes");
   add_walk_options(command, *options, noise);
   command
-      .add_option("--visits", options->visits,
-                  "so many visits to the room, OUT/visit1, OUT/visit2, ...: things move, go and come "
-                  "in between; OUT/changes.json tells which")
+      .add_option(
+          "--visits", options->visits,
+          "so many visits to the room, OUT/visit1, OUT/visit2, ...: things move, go and come "
+          "in between; OUT/changes.json tells which")
       ->check(CLI::Range(1, 1000));
   command.add_flag("--figure", options->figure,
                    "somebody walks through with a carton in the hands, in every visit");
@@ -229,8 +230,9 @@ Action add_synth(CLI::App& command) {
       .add_option("--furniture", options->room.furniture, "folder of .sh3f furniture catalogues")
       ->capture_default_str();
   command
-      .add_option("--set", options->settings,
-                  "one setting of how frames are made, as sensor.sigma_base_m=0.003; may be repeated")
+      .add_option(
+          "--set", options->settings,
+          "one setting of how frames are made, as sensor.sigma_base_m=0.003; may be repeated")
       ->type_size(1)
       ->allow_extra_args(false);
   command.add_option("--threads", options->threads, "threads to use; 0: all cores")

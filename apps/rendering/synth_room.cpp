@@ -56,8 +56,8 @@ WrittenRoom write_sequence(
   pack.notice = sequence.notice();
   pack.settings = sequence.settings();
   for (const TruthInstance& instance : sequence.instances())
-    pack.instances.push_back({instance.id, instance.class_id, instance.class_name, instance.room,
-                              instance.substance});
+    pack.instances.push_back(
+        {instance.id, instance.class_id, instance.class_name, instance.room, instance.substance});
   write_replica_pack(out, pack, {}, progress);
   if (const std::vector<TurnRate> rates = sequence.turn_rates(); !rates.empty())
     write_text(out / scene / kGyroscopeFile, gyroscope_text(rates));
@@ -102,12 +102,11 @@ std::vector<WrittenRoom> write_visits(
     truth["visits"].push_back(scene);
     for (const RoomChange& change : visit.changes)
       truth["changes"].push_back(change_json(number, change, room.objects[change.object - 1u]));
-    written.push_back(
-        write_sequence(out, options, std::move(visit.room), scene,
-                       [&](std::int64_t done, std::int64_t frames) {
-                         const auto before = static_cast<std::int64_t>(number - 1) * frames;
-                         if (progress) progress(before + done, visits * frames);
-                       }));
+    written.push_back(write_sequence(
+        out, options, std::move(visit.room), scene, [&](std::int64_t done, std::int64_t frames) {
+          const auto before = static_cast<std::int64_t>(number - 1) * frames;
+          if (progress) progress(before + done, visits * frames);
+        }));
     for (const std::uint32_t id : written.back().moving)
       truth["moving"].push_back({{"visit", number}, {"object", id}});
   }

@@ -20,11 +20,11 @@ struct RoomOptions {
   std::string room = "tiny";  ///< one of room_names
   int frames = 0;             ///< 0: as the room says
   std::uint64_t seed = 1;
-  SynthSequenceConfig frames_as;  ///< exact, or as some sensor sees them
-  std::string plan;    ///< one of floor_plan_names, with a video; empty: the room
+  SynthSequenceConfig frames_as;        ///< exact, or as some sensor sees them
+  std::string plan;                     ///< one of floor_plan_names, with a video; empty: the room
   std::optional<BenchmarkScene> scene;  ///< instead of a room or a plan, with a video
-  std::optional<VideoConfig> video;  ///< the video of a walk instead of frames from all sides
-  int width = 0, height = 0;         ///< pixels; 0: as the room says
+  std::optional<VideoConfig> video;     ///< the video of a walk instead of frames from all sides
+  int width = 0, height = 0;            ///< pixels; 0: as the room says
 };
 
 struct WrittenRoom {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
-// What a gyroscope is worth to tracking: a rendered walk with pans aside and back, followed with and
-// without, by all frames and by some, in the light and in the dark.
+// What a gyroscope is worth to tracking: a rendered walk with pans aside and back, followed with
+// and without, by all frames and by some, in the light and in the dark.
 #include <cstdio>
 #include <cstdlib>
 #include <numbers>
@@ -40,8 +40,7 @@ Film film_of(const std::string& room, double whip_deg_s, float seconds) {
     Frame frame = *sequence.read(i).frame;
     frame.posed = false;
     frame.orientation = orientations.at(frame.timestamp_s);
-    film.truth.push_back(
-        {frame.timestamp_s, sequence.true_poses()[static_cast<std::size_t>(i)]});
+    film.truth.push_back({frame.timestamp_s, sequence.true_poses()[static_cast<std::size_t>(i)]});
     film.frames.push_back(std::move(frame));
   }
   return film;
@@ -92,8 +91,8 @@ int main(int count, char** arguments) try {
     std::fprintf(stderr, "usage: %s ROOM DEGREES_A_SECOND SECONDS\n", arguments[0]);
     return 2;
   }
-  const Film film = film_of(arguments[1], std::atof(arguments[2]),
-                            static_cast<float>(std::atof(arguments[3])));
+  const Film film =
+      film_of(arguments[1], std::atof(arguments[2]), static_cast<float>(std::atof(arguments[3])));
   std::puts("| frames | gyroscope | tracked | lost | ATE rmse, cm | max, cm |");
   std::puts("| --- | --- | --- | --- | --- | --- |");
   for (const Case& shot : {Case{"all"}, Case{"every third", 3}, Case{"every sixth", 6},

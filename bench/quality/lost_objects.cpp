@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Says of every true object that a map lost at which step it was lost: whether its surface was never meshed or has no label, whether super-points
-// already mix it with others, or whether the right super-points were put together wrongly.
+// Says of every true object that a map lost at which step it was lost: whether its surface was
+// never meshed or has no label, whether super-points already mix it with others, or whether the
+// right super-points were put together wrongly.
 //   ovimap_lost_objects MAP SCENE [IOU]
 #include <algorithm>
 #include <cstdio>
@@ -123,8 +124,7 @@ class Report {
  private:
   std::string name(std::int32_t id) const {
     const auto found = truth_.instance_names.find(id);
-    return std::to_string(id) + ":" +
-           (found == truth_.instance_names.end() ? "?" : found->second);
+    return std::to_string(id) + ":" + (found == truth_.instance_names.end() ? "?" : found->second);
   }
 
   void print_object(std::int32_t id, double iou, double ideal, double below) const {
@@ -133,9 +133,10 @@ class Report {
     const char* cause = labelled < below ? (seen < below ? "not meshed" : "not labelled")
                         : ideal < below  ? "mixed in super-points"
                                          : "grouped wrongly";
-    std::printf("%-24s %6.0f vertices, IoU %.2f, of its super-points at best %.2f; meshed %.2f, "
-                "labelled %.2f: %s\n",
-                name(id).c_str(), size, iou, ideal, seen, labelled, cause);
+    std::printf(
+        "%-24s %6.0f vertices, IoU %.2f, of its super-points at best %.2f; meshed %.2f, "
+        "labelled %.2f: %s\n",
+        name(id).c_str(), size, iou, ideal, seen, labelled, cause);
     for (const auto& [label, shares] : super_points_->truths_of) {
       const auto mine = shares.find(id);
       if (mine == shares.end() || mine->second < kTelling * size) continue;

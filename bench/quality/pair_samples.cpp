@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What the judge of pairs of super-points learns from, and what its groups are worth on a map.
-//   ovimap_pair_samples MAP SCENE          scores of the map's objects, of those that the judge makes, and of perfect groups,
+//   ovimap_pair_samples MAP SCENE          scores of the map's objects, of those that the judge
+//   makes, and of perfect groups,
 //                                          then the IoU of each true thing in each of the three
-//   ovimap_pair_samples MAP SCENE OUT      writes samples: 32-bit floats, features of a pair, whether it is one thing, its weight
+//   ovimap_pair_samples MAP SCENE OUT      writes samples: 32-bit floats, features of a pair,
+//   whether it is one thing, its weight
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -67,9 +69,10 @@ struct LabelledTruth {
   }
 };
 
-/// Groups nearly as the truth would and writes down what it was asked: the judge is to know clusters of
-/// every size, and such as hold a mistake. In some rounds in any order, in others in the order that
-/// the judge of today would choose, with some of its mistakes: these are what it will meet.
+/// Groups nearly as the truth would and writes down what it was asked: the judge is to know
+/// clusters of every size, and such as hold a mistake. In some rounds in any order, in others in
+/// the order that the judge of today would choose, with some of its mistakes: these are what it
+/// will meet.
 class Sampler : public PairJudge {
  public:
   Sampler(std::map<Label, Shares> shares, unsigned round, std::FILE* file)

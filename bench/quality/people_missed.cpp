@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// How many people a detector misses in photographs: of each person's box, drawn by hand, it tells how
-// much the found boxes cover. One that they cover by less than four fifths is missed.
+// How many people a detector misses in photographs: of each person's box, drawn by hand, it tells
+// how much the found boxes cover. One that they cover by less than four fifths is missed.
 //   ovimap_people_missed PHOTOS LIST [MIN_SCORE [DETECTOR]]
 // LIST: a line "FILE POSE LEFT TOP RIGHT BOTTOM" for each person (people_photos.txt says where the
 // files are had), or "FILE nobody".
@@ -50,7 +50,8 @@ double covered(const Eigen::AlignedBox2i& box, const std::vector<PersonBox>& fou
   for (int y = box.min().y(); y < box.max().y(); ++y)
     for (int x = box.min().x(); x < box.max().x(); ++x, ++all)
       for (const PersonBox& person : found)
-        if (person.in_image_px.contains(Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)))) {
+        if (person.in_image_px.contains(
+                Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)))) {
           ++inside;
           break;
         }
@@ -79,7 +80,8 @@ void measure(const std::string& folder, const std::string& list, float min_score
   }
   for (const auto& [pose, count] : missed)
     std::printf("%s: missed %d of %d\n", pose.c_str(), count.first, count.second);
-  std::printf("photographs of nobody in which somebody was found: %d of %d\n", taken_for_people, without);
+  std::printf("photographs of nobody in which somebody was found: %d of %d\n", taken_for_people,
+              without);
 }
 
 }  // namespace

@@ -39,9 +39,10 @@ class PluggedCamera {
 }  // namespace
 
 void bind_cameras(nb::module_& module) {
-  nb::class_<PluggedCamera>(module, "RgbdCamera",
-                            "A depth camera that is plugged in; source: \"openni:\" or \"openni:URI\". "
-                            "For one thread. Raises Error where there is none, or several.")
+  nb::class_<PluggedCamera>(
+      module, "RgbdCamera",
+      "A depth camera that is plugged in; source: \"openni:\" or \"openni:URI\". "
+      "For one thread. Raises Error where there is none, or several.")
       .def(nb::init<const std::string&>(), nb::arg("source"))
       .def_prop_ro("name", [](const PluggedCamera& camera) { return camera.camera().name(); })
       .def_prop_ro(

@@ -61,7 +61,8 @@ void bind_check(nb::module_& module) {
               "typing.Any] | None = None) -> CheckReport"),
       "Reads some frames of a recording and says what is wrong with it: depth in another unit, "
       "poses "
-      "inverted or in other axes, unusable frames. frames: \"FIRST:LAST:STEP\", each part optional. "
+      "inverted or in other axes, unusable frames. frames: \"FIRST:LAST:STEP\", each part "
+      "optional. "
       "Raises Error when it cannot be opened.");
 }
 

@@ -69,9 +69,9 @@ std::vector<Visit> visits(SavedMap& map) {
   std::vector<Visit> list;
   for (int visit = 1; visit <= dates.visits(); ++visit) {
     const auto at = static_cast<std::size_t>(visit - 1);
-    list.push_back({visit,
-                    record.history.visits.empty() ? record.source : record.history.visits[at].source,
-                    dates.begin_of(visit), dates.end_of(visit)});
+    list.push_back(
+        {visit, record.history.visits.empty() ? record.source : record.history.visits[at].source,
+         dates.begin_of(visit), dates.end_of(visit)});
   }
   return list;
 }
@@ -166,8 +166,8 @@ QueryAnswer SavedMap::ask_past(const HistoryPhrase& phrase, const Query& query) 
   }
   QueryAnswer answer = ask_history(past, words.get(), query);
   answer.query = query.text;
-  Eigen::VectorXf relevance = Eigen::VectorXf::Zero(
-      static_cast<Eigen::Index>(query.relevance ? index().size() : 0));
+  Eigen::VectorXf relevance =
+      Eigen::VectorXf::Zero(static_cast<Eigen::Index>(query.relevance ? index().size() : 0));
   if (query.relevance)
     for (std::size_t i = 0; i < then.size(); ++i)
       if (const auto row = index().find(then.object(i).id))
@@ -180,10 +180,12 @@ QueryAnswer SavedMap::ask_past(const HistoryPhrase& phrase, const Query& query) 
 void bind_history(nb::module_& module, nb::class_<SavedMap>& map) {
   bind_values(module);
   map.def_prop_ro("visits", &visits, "the recordings that went into it, oldest first")
-      .def_prop_ro("events", &events, nb::call_guard<WithoutGil>(), "what its visits found changed, oldest first")
+      .def_prop_ro("events", &events, nb::call_guard<WithoutGil>(),
+                   "what its visits found changed, oldest first")
       .def("changes", &changes, nb::kw_only(), nb::arg("since") = "", nb::arg("until") = "",
            nb::call_guard<WithoutGil>(),
-           "What changed between two times (docs/query.md, \"Times\"), by object; what came and went "
+           "What changed between two times (docs/query.md, \"Times\"), by object; what came and "
+           "went "
            "in between is left out. Empty: the beginning, and the last visit.");
 }
 

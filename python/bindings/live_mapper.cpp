@@ -115,9 +115,9 @@ class LiveMapperHandle final : public OpenHandle {
   void warn_of_encoder() {
     const LiveStatistics done = statistics();
     if (done.views_failed == 0 || std::exchange(warned_, true)) return;
-    const std::string text =
-        concat("the encoder failed on ", done.views_failed, " view(s), the first: ",
-               done.encoder_fault, "; `ovimap reembed` gives their objects embeddings");
+    const std::string text = concat("the encoder failed on ", done.views_failed,
+                                    " view(s), the first: ", done.encoder_fault,
+                                    "; `ovimap reembed` gives their objects embeddings");
     if (PyErr_WarnEx(PyExc_RuntimeWarning, text.c_str(), 1) < 0) nb::raise_python_error();
   }
 
@@ -155,8 +155,7 @@ void bind_statistics(nb::module_& module) {
       .def_ro("frames_dropped", &LiveStatistics::frames_dropped)
       .def_ro("mask_frames", &LiveStatistics::mask_frames, "frames whose masks are in the map")
       .def_ro("masks_late", &LiveStatistics::masks_late, "... after their frame was fused")
-      .def_ro("masks_waiting", &LiveStatistics::masks_waiting,
-              "frames that are to get masks yet")
+      .def_ro("masks_waiting", &LiveStatistics::masks_waiting, "frames that are to get masks yet")
       .def_ro("masks_skipped", &LiveStatistics::masks_skipped,
               "frames that wanted masks, of which there were too many")
       .def_ro("masks_failed", &LiveStatistics::masks_failed, "frames whose masks were bad")

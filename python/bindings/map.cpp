@@ -105,11 +105,11 @@ void bind_instances(nb::module_& module) {
           [](const Instances& all) {
             return view<Shares>(all.confidences.data(), {all.ids.size()}, nb::find(all));
           },
-          "float32 [objects]: how sure masks are that it is one whole thing, 0 to 1; NaN where nobody "
+          "float32 [objects]: how sure masks are that it is one whole thing, 0 to 1; NaN where "
+          "nobody "
           "rated them, and of what a person put together")
       .def_ro("names", &Instances::names, "given by people; empty strings otherwise")
-      .def_ro("writing", &Instances::writing,
-              "texts that `ovimap read` read on each, surest first")
+      .def_ro("writing", &Instances::writing, "texts that `ovimap read` read on each, surest first")
       .def("__repr__", [](const Instances& all) {
         const auto named = std::count_if(all.names.begin(), all.names.end(),
                                          [](const std::string& name) { return !name.empty(); });
@@ -192,9 +192,9 @@ std::string counted(std::size_t count, const char* thing) {
 /// Map('room.ovimap': 12 objects from 60 frames, embeddings of 'default-encoder'; 2 skipped: ...).
 std::string map_text(const SavedMap& map) {
   const std::string& encoder = map.info().encoder.name;
-  std::string text = concat("Map('", map.path().string(), "': ",
-                            counted(map.index().size(), "object"), " from ",
-                            counted(static_cast<std::size_t>(map.info().frames), "frame"), ", ");
+  std::string text =
+      concat("Map('", map.path().string(), "': ", counted(map.index().size(), "object"), " from ",
+             counted(static_cast<std::size_t>(map.info().frames), "frame"), ", ");
   text += encoder.empty() ? "no embeddings" : concat("embeddings of '", encoder, "'");
   std::string reasons;
   std::size_t skipped = 0;
@@ -323,8 +323,7 @@ nb::tuple map_identity(const nb::object& path) {
     const WithoutGil release;
     map = read_map_identity(file);
   }
-  return nb::make_tuple(map.source, map.frames, map.unfinished,
-                        ovimap::hash_text(map.content_hash),
+  return nb::make_tuple(map.source, map.frames, map.unfinished, ovimap::hash_text(map.content_hash),
                         nb::make_tuple(map.encoder.name, map.encoder.dimension, map.encoder.digest),
                         ovimap::hash_text(map.revision));
 }
@@ -348,7 +347,8 @@ void bind_map(nb::module_& module) {
          "Opens a map without reading its voxels. encoder: \"auto\" (the one that the map was made "
          "with, opened at the first question in words), a name, an ImageTextEncoder or an object "
          "as "
-         "Mapper takes it. settings: as ovimap.settings(\"query\") lists them. teach: whether what people named "
+         "Mapper takes it. settings: as ovimap.settings(\"query\") lists them. teach: whether what "
+         "people named "
          "in other maps speaks too, and corrections teach them: True, or a file (docs/query.md). "
          "Raises Error for what "
          "is no sound map.")

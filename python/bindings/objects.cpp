@@ -217,7 +217,8 @@ void bind_objects(nb::module_& module, nb::class_<SavedMap>& map) {
            return std::array{up.x(), up.y(), up.z()};
          },
          nb::sig("def up(self) -> list[float]"), "away from the floor, world frame")
-      .def("reopened", &SavedMap::reopened, nb::call_guard<WithoutGil>(),
+      .def(
+          "reopened", &SavedMap::reopened, nb::call_guard<WithoutGil>(),
           "The map as its file is by now, after corrections or a run that replaced it. The encoder "
           "stays open.")
       .def("describe", &describe, nb::arg("id"), nb::call_guard<WithoutGil>(),
@@ -229,8 +230,7 @@ void bind_objects(nb::module_& module, nb::class_<SavedMap>& map) {
       .def("relations", &relations, nb::call_guard<WithoutGil>(),
            "How the objects stand to each other: on, inside, above, beside, near; docs/query.md "
            "says when each holds. One relation a pair, the first of these that does.")
-      .def("crops", &crops, nb::arg("id"),
-           nb::sig("def crops(self, id: int) -> list[bytes]"),
+      .def("crops", &crops, nb::arg("id"), nb::sig("def crops(self, id: int) -> list[bytes]"),
            "The pictures that the map keeps of an object, as JPEG, in the order of frames. Raises "
            "Error for an unknown id.")
       .def("place", &place, nb::arg("id"),

@@ -87,8 +87,10 @@ void bind_query(nb::module_& module, nb::class_<SavedMap>& map) {
           nb::arg("negatives") = std::vector<std::string>(), nb::arg("relevance") = false,
           nb::arg("at") = "", nb::arg("since") = "", nb::call_guard<WithoutGil>(),
           "Asks in words: \"mug\", \"red chair, armchair\", \"mug on the table\" (docs/query.md). "
-          "negatives: what it must not be. relevance: rate every object. at, since: the map as it was, "
-          "and only what changed: \"visit 1\", \"2026-03-14\", \"yesterday\". The first question opens "
+          "negatives: what it must not be. relevance: rate every object. at, since: the map as it "
+          "was, "
+          "and only what changed: \"visit 1\", \"2026-03-14\", \"yesterday\". The first question "
+          "opens "
           "the encoder. Raises Error for an empty text or a map without embeddings.")
       .def("query_like", &query_like, nb::arg("what"), nb::kw_only(), nb::arg("relevance") = false,
            nb::sig("def query_like(self, what: typing.Any, *, relevance: bool = False) -> "

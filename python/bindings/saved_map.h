@@ -25,8 +25,8 @@ namespace nb = nanobind;
 /// A map file, open for questions. The encoder is opened at the first one that needs it.
 class SavedMap {
  public:
-  /// `encoder`: null where `encoder_spec` names it. `taught`: file of what corrections teach; empty:
-  /// nothing.
+  /// `encoder`: null where `encoder_spec` names it. `taught`: file of what corrections teach;
+  /// empty: nothing.
   SavedMap(std::filesystem::path path, const QueryConfig& config,
            std::shared_ptr<ImageTextEncoder> encoder, std::string encoder_spec,
            std::vector<std::filesystem::path> model_dirs, std::filesystem::path taught = {});
@@ -43,8 +43,8 @@ class SavedMap {
   /// What it says of its past, with looks and without voxels. Read the first time. Thread-safe.
   const MapRecord& record();
 
-  /// What the map says of its past; positions of matches are those of the objects as they are now, or
-  /// kGone. Thread-safe.
+  /// What the map says of its past; positions of matches are those of the objects as they are now,
+  /// or kGone. Thread-safe.
   QueryAnswer ask_past(const HistoryPhrase& phrase, const Query& query);
   /// What is asked of the past, as history_of_question takes it; nothing: it is of the present.
   std::optional<HistoryPhrase> past_of(const std::string& text, const std::string& at,

@@ -122,8 +122,8 @@ void bind_sources(nb::module_& module) {
       .def_ro("path", &Source::path)
       .def("__repr__",
            [](const Source& source) {
-             return concat("FrameSource(", source.frames->kind(), " '", source.path, "': ",
-                           source.frames->size(), " frames)");
+             return concat("FrameSource(", source.frames->kind(), " '", source.path,
+                           "': ", source.frames->size(), " frames)");
            })
       .def("__len__", [](const Source& source) { return source.frames->size(); })
       .def("__getitem__", &read_frame, nb::arg("position"), nb::call_guard<WithoutGil>())

@@ -11,7 +11,7 @@ namespace ovimap::python {
 namespace {
 
 const std::pair<const char*, const char*> kArguments[] = {
-    {"classes", "classes"},       {"encoder", "encoder"}, {"frames", "frames"}, {"masks", "masks"},
+    {"classes", "classes"},      {"encoder", "encoder"}, {"frames", "frames"}, {"masks", "masks"},
     {"model-dir", "model_dirs"}, {"not", "negatives"},   {"preset", "preset"},
 };
 
@@ -21,8 +21,8 @@ std::string with_settings(const std::string& text) {
                                         "settings={'$1': $2}");
   said = std::regex_replace(said, std::regex(R"(: true\})"), ": True}");
   said = std::regex_replace(said, std::regex(R"(: false\})"), ": False}");
-  said = std::regex_replace(said, std::regex(R"(--set ([\w.]+)=([-\d.]*\d))"),
-                            "settings={'$1': $2}");
+  said =
+      std::regex_replace(said, std::regex(R"(--set ([\w.]+)=([-\d.]*\d))"), "settings={'$1': $2}");
   return std::regex_replace(said, std::regex(R"(--set ([\w.]+)=([^\s;,)]+))"),
                             "settings={'$1': '$2'}");
 }
@@ -30,8 +30,8 @@ std::string with_settings(const std::string& text) {
 std::string with_arguments(std::string text) {
   text = with_settings(text);
   for (const auto& [option, argument] : kArguments)
-    text = std::regex_replace(text, std::regex(std::string("--") + option + R"((?![\w-]))"),
-                              argument);
+    text =
+        std::regex_replace(text, std::regex(std::string("--") + option + R"((?![\w-]))"), argument);
   return text;
 }
 

@@ -58,7 +58,8 @@ inline CameraFilm read_film(const std::filesystem::path& file) {
   film::read(in, head, 5);
   film::read(in, view, 2);
   CameraFilm shown{head[0], head[1], head[2], head[3], view[0], view[1], {}};
-  const auto pixels = static_cast<std::size_t>(shown.width) * static_cast<std::size_t>(shown.height);
+  const auto pixels =
+      static_cast<std::size_t>(shown.width) * static_cast<std::size_t>(shown.height);
   shown.frames.resize(static_cast<std::size_t>(head[4]));
   for (FilmFrame& frame : shown.frames) {
     frame.depth.resize(pixels);

@@ -14,7 +14,9 @@ namespace ovimap::fixture {
 /// The room as a camera shows it that looks straight through the middle of its images.
 inline CameraFilm film_of(const Sequence& sequence, int fps) {
   const PinholeCamera& camera = sequence.depth_camera;
-  CameraFilm film{camera.width, camera.height, fps,
+  CameraFilm film{camera.width,
+                  camera.height,
+                  fps,
                   static_cast<std::int32_t>(1e6 / sequence.depth_units_per_m),
                   2 * std::atan(static_cast<float>(camera.width) / 2 / camera.fx),
                   2 * std::atan(static_cast<float>(camera.height) / 2 / camera.fy),

@@ -15,7 +15,8 @@ namespace {
 /// Records the software camera with the library, for as long as its film lasts.
 void record(const std::filesystem::path& file, bool lossy, std::chrono::milliseconds how_long) {
   openni::Device device;
-  ASSERT_EQ(device.open(openni::ANY_DEVICE), openni::STATUS_OK) << openni::OpenNI::getExtendedError();
+  ASSERT_EQ(device.open(openni::ANY_DEVICE), openni::STATUS_OK)
+      << openni::OpenNI::getExtendedError();
   openni::VideoStream depth, color;
   ASSERT_EQ(depth.create(device, openni::SENSOR_DEPTH), openni::STATUS_OK);
   ASSERT_EQ(color.create(device, openni::SENSOR_COLOR), openni::STATUS_OK);
@@ -86,7 +87,8 @@ TEST_P(OniRecording, IsReadAsItWasShown) {
     const RgbImage color = sequence_.color(i);
     int furthest = 0;
     for (std::size_t k = 0; k < color.size(); ++k)
-      if (k % width > 1) furthest = std::max(furthest, std::abs(color[k].g - read.frame->color[k].g));
+      if (k % width > 1)
+        furthest = std::max(furthest, std::abs(color[k].g - read.frame->color[k].g));
     EXPECT_LE(furthest, lossy ? 60 : 0) << i;
     EXPECT_TRUE(lossy || read.frame->color == color) << i;
     EXPECT_NEAR(read.frame->timestamp_s, i / 30., 1e-4);

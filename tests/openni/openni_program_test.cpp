@@ -17,7 +17,9 @@ class OpenNiProgramTest : public ProgramTest {
   }
   ~OpenNiProgramTest() override { ::unsetenv("LD_LIBRARY_PATH"); }
 
-  void plug_in(int fps = 5) const { fixture::plug_in(path("film"), fixture::film_of(sequence_, fps)); }
+  void plug_in(int fps = 5) const {
+    fixture::plug_in(path("film"), fixture::film_of(sequence_, fps));
+  }
   /// Runs the program until `file` is there, and presses Ctrl-C.
   ProgramResult interrupted(const std::string& arguments, const std::string& file) const {
     write_text(path("interrupt.sh"),
@@ -25,7 +27,8 @@ class OpenNiProgramTest : public ProgramTest {
                       "for i in $(seq 600); do test -e ", file, " && break; sleep 0.1; done\n",
                       "sleep 4\nkill -INT $!\nwait $!\n"));
     const int status = std::system(
-        concat("cd '", folder_.path().string(), "' && bash interrupt.sh > out.txt 2> err.txt").c_str());
+        concat("cd '", folder_.path().string(), "' && bash interrupt.sh > out.txt 2> err.txt")
+            .c_str());
     return {WEXITSTATUS(status), slurp(path("out.txt")), slurp(path("err.txt"))};
   }
   void write_truth() const {
@@ -45,14 +48,16 @@ TEST_F(OpenNiProgramTest, MapsWhatACameraShowsUntilItIsUnplugged) {
     plug_in();
     const ProgramResult result = run(std::string(kRun) + "--json");
     EXPECT_EQ(result.code, 1) << result.err;
-    EXPECT_EQ(result.err,
-              "ovimap: ovimap software camera was unplugged; what it showed until then is in the map\n");
+    EXPECT_EQ(
+        result.err,
+        "ovimap: ovimap software camera was unplugged; what it showed until then is in the map\n");
     const auto report = nlohmann::json::parse(result.out);
     EXPECT_GE(report["frames"], 12) << "of 20; some pass while the program starts";
     EXPECT_EQ(report["tracking"]["frames_tracked"], report["frames"]);
     const auto scores = run_json("eval-poses poses.txt truth.txt --json");
     EXPECT_EQ(scores["matched"], report["frames"]);
-    EXPECT_LT(scores["ate_m"]["rmse"], 0.015) << "left and right swapped, or another field of view?";
+    EXPECT_LT(scores["ate_m"]["rmse"], 0.015)
+        << "left and right swapped, or another field of view?";
     EXPECT_EQ(run_json("info map.ovimap --json")["frames"], report["frames"]);
   }
 }
@@ -67,7 +72,8 @@ TEST_F(OpenNiProgramTest, CtrlCSavesTheMap) {
 }
 
 TEST_F(OpenNiProgramTest, WhatIsAbsentIsSaid) {
-  expect_complaint("run openni: -o map.ovimap", {"no OpenNI camera is plugged in", "docs/cameras.md"});
+  expect_complaint("run openni: -o map.ovimap",
+                   {"no OpenNI camera is plugged in", "docs/cameras.md"});
   expect_complaint("run openni:1d27/0609@1/9 -o map.ovimap", {"1d27/0609@1/9", "cannot be opened"});
   plug_in();
   expect_complaint("run openni: --frames 3:9 -o map.ovimap", {"--frames"});
@@ -75,13 +81,15 @@ TEST_F(OpenNiProgramTest, WhatIsAbsentIsSaid) {
   expect_complaint("run openni: --pictures p -o map.ovimap", {"--pictures"});
   write_text(path("libOpenNI2.so.0"), "no library");
   ::setenv("LD_LIBRARY_PATH", folder_.path().c_str(), 1);
-  expect_complaint("run openni: -o map.ovimap", {"libOpenNI2.so.0", "apt-get install libopenni2-0"});
+  expect_complaint("run openni: -o map.ovimap",
+                   {"libOpenNI2.so.0", "apt-get install libopenni2-0"});
 }
 
 TEST_F(OpenNiProgramTest, ServesWhileACameraIsMapped) {
   plug_in();
-  const ProgramResult result = interrupted(
-      "serve --live openni: --set map.voxel_size_m=0.02 --port 0 --json -o map.ovimap", "map.ovimap");
+  const ProgramResult result =
+      interrupted("serve --live openni: --set map.voxel_size_m=0.02 --port 0 --json -o map.ovimap",
+                  "map.ovimap");
   EXPECT_EQ(result.code, 1) << result.err;
   EXPECT_NE(result.err.find("was unplugged"), std::string::npos) << result.err;
   EXPECT_GT(run_json("info map.ovimap --json")["frames"], 0);

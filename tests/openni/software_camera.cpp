@@ -55,21 +55,30 @@ class Stream : public driver::StreamBase {
   }
   OniStatus getProperty(int id, void* data, int* size) override {
     switch (id) {
-      case ONI_STREAM_PROPERTY_VIDEO_MODE: return give(mode_, data, size);
-      case ONI_STREAM_PROPERTY_HORIZONTAL_FOV: return give(film_.horizontal_fov_rad, data, size);
-      case ONI_STREAM_PROPERTY_VERTICAL_FOV: return give(film_.vertical_fov_rad, data, size);
-      case ONI_STREAM_PROPERTY_MIRRORING: return give(mirrored_, data, size);
-      case ONI_STREAM_PROPERTY_CROPPING: return give(OniCropping{}, data, size);
-      case ONI_STREAM_PROPERTY_MAX_VALUE: return give(10000, data, size);
-      case ONI_STREAM_PROPERTY_STRIDE: return give(stride(), data, size);
-      default: return ONI_STATUS_NOT_SUPPORTED;
+      case ONI_STREAM_PROPERTY_VIDEO_MODE:
+        return give(mode_, data, size);
+      case ONI_STREAM_PROPERTY_HORIZONTAL_FOV:
+        return give(film_.horizontal_fov_rad, data, size);
+      case ONI_STREAM_PROPERTY_VERTICAL_FOV:
+        return give(film_.vertical_fov_rad, data, size);
+      case ONI_STREAM_PROPERTY_MIRRORING:
+        return give(mirrored_, data, size);
+      case ONI_STREAM_PROPERTY_CROPPING:
+        return give(OniCropping{}, data, size);
+      case ONI_STREAM_PROPERTY_MAX_VALUE:
+        return give(10000, data, size);
+      case ONI_STREAM_PROPERTY_STRIDE:
+        return give(stride(), data, size);
+      default:
+        return ONI_STATUS_NOT_SUPPORTED;
     }
   }
   OniStatus setProperty(int id, const void* data, int size) override {
     if (id == ONI_STREAM_PROPERTY_MIRRORING && size == sizeof(mirrored_))
       std::memcpy(&mirrored_, data, sizeof(mirrored_));
     else if (id == ONI_STREAM_PROPERTY_VIDEO_MODE && size == sizeof(mode_))
-      return std::memcmp(data, &mode_, sizeof(mode_)) == 0 ? ONI_STATUS_OK : ONI_STATUS_NOT_SUPPORTED;
+      return std::memcmp(data, &mode_, sizeof(mode_)) == 0 ? ONI_STATUS_OK
+                                                           : ONI_STATUS_NOT_SUPPORTED;
     else
       return ONI_STATUS_NOT_SUPPORTED;
     return ONI_STATUS_OK;
@@ -104,7 +113,8 @@ class Stream : public driver::StreamBase {
     for (int v = 0; v < film_.height; ++v)
       for (int u = 0; u < film_.width; ++u) {
         const int from = mirrored_ ? film_.width - 1 - u : u;
-        std::memcpy(out + v * stride() + u * pixel_bytes(), pixels + v * stride() + from * pixel_bytes(),
+        std::memcpy(out + v * stride() + u * pixel_bytes(),
+                    pixels + v * stride() + from * pixel_bytes(),
                     static_cast<std::size_t>(pixel_bytes()));
       }
   }
@@ -140,7 +150,9 @@ class Device : public driver::DeviceBase {
     if (stream == depth_.get()) depth_.reset();
     if (stream == color_.get()) color_.reset();
   }
-  OniBool isPropertySupported(int id) override { return id == ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION; }
+  OniBool isPropertySupported(int id) override {
+    return id == ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION;
+  }
   OniBool isImageRegistrationModeSupported(OniImageRegistrationMode) override { return TRUE; }
   OniStatus getProperty(int id, void* data, int* size) override {
     return isPropertySupported(id) ? give(registration_, data, size) : ONI_STATUS_NOT_SUPPORTED;

@@ -41,9 +41,9 @@ class Builder : public nlohmann::json_sax<json> {
     const auto [entry, is_new] =
         open_.back()->get_ref<json::object_t&>().try_emplace(std::move(name));
     value_ = &entry->second;
-    return is_new || refuse("has the key " +
-                            json(entry->first).dump(-1, ' ', true).substr(0, kShownKey) +
-                            " twice in one object");
+    return is_new ||
+           refuse("has the key " + json(entry->first).dump(-1, ' ', true).substr(0, kShownKey) +
+                  " twice in one object");
   }
 
   bool parse_error(std::size_t position, const std::string&,

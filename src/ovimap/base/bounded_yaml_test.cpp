@@ -27,8 +27,8 @@ std::string copies_of(const std::string& piece, std::size_t times) {
 }
 
 TEST(BoundedYaml, ReadsWhatPeopleWrite) {
-  const YAML::Node root = parse_yaml("# mine\ncamera: {fx: 5, list: [1, 2]}\nname: a b\n", "x",
-                                     kSmallDocument);
+  const YAML::Node root =
+      parse_yaml("# mine\ncamera: {fx: 5, list: [1, 2]}\nname: a b\n", "x", kSmallDocument);
   EXPECT_EQ(root["camera"]["list"].size(), 2u);
   EXPECT_EQ(root["name"].as<std::string>(), "a b");
   EXPECT_TRUE(parse_yaml("", "x", kSmallDocument).IsNull());

@@ -40,8 +40,8 @@ std::string likely_word(std::string_view word, const std::vector<std::string>& c
   constexpr std::size_t kLettersAMistake = 4, kShortestStart = 3;
   const std::string nearest = nearest_word(word, candidates);
   if (edit_distance(word, nearest) <= 1 + word.size() / kLettersAMistake) return nearest;
-  const auto begun = std::find_if(
-      candidates.begin(), candidates.end(), [&](const std::string& candidate) {
+  const auto begun =
+      std::find_if(candidates.begin(), candidates.end(), [&](const std::string& candidate) {
         return word.size() >= kShortestStart && candidate.starts_with(word);
       });
   return begun == candidates.end() ? std::string() : *begun;

@@ -38,8 +38,8 @@ std::shared_ptr<const SamNetwork> make_box_network(const std::string& spec,
                                                    const std::vector<fs::path>& model_dirs) {
   if (spec.empty() || spec == "none" || spec == "gt") return nullptr;
   if (fs::is_directory(spec) && !fs::is_regular_file(fs::path(spec) / "model.yaml")) return nullptr;
-  const ModelFolder model =
-      read_model_folder(named_model(spec == "sam" ? kDefaultSamModel : spec, model_search_path(model_dirs)));
+  const ModelFolder model = read_model_folder(
+      named_model(spec == "sam" ? kDefaultSamModel : spec, model_search_path(model_dirs)));
   return model.kind == "sam" ? std::make_shared<const SamNetwork>(model, runtime) : nullptr;
 }
 

@@ -33,8 +33,8 @@ class EntityFits {
   std::vector<EntityFit> of(std::span<const Label> super_points) const;
 
   /// How sure they are that these super-points are one whole thing, from 0 to 1: the mean of the
-  /// rated overlaps over those frames and two more that show nothing, so that a frame alone says less than
-  /// many.
+  /// rated overlaps over those frames and two more that show nothing, so that a frame alone says
+  /// less than many.
   float confidence(std::span<const Label> super_points) const;
 
  private:

@@ -19,9 +19,8 @@ SurfaceExtents extents() {
 
 TEST(EntityFits, ComparesEachFramesBestEntityWithWhatIsInSight) {
   const SurfaceExtents surface = extents();
-  const EntitySightings sightings{{1, {{0, 1}, {1, 1, kHalf}, {2, 4}}},
-                                  {2, {{0, 1}, {1, 2, kThird}}},
-                                  {3, {{0, 2}}}};
+  const EntitySightings sightings{
+      {1, {{0, 1}, {1, 1, kHalf}, {2, 4}}}, {2, {{0, 1}, {1, 2, kThird}}}, {3, {{0, 2}}}};
   const EntityFits fits(surface, sightings);
   const std::vector<EntityFit> both = fits.of(std::vector<Label>{1, 2});
   ASSERT_EQ(both.size(), 3u);

@@ -17,8 +17,7 @@ void FrameRuns::add(std::uint32_t frame) {
 FrameRuns& FrameRuns::operator|=(const FrameRuns& other) {
   std::vector<Run> all;
   std::merge(runs_.begin(), runs_.end(), other.runs_.begin(), other.runs_.end(),
-             std::back_inserter(all),
-             [](const Run& a, const Run& b) { return a.begin < b.begin; });
+             std::back_inserter(all), [](const Run& a, const Run& b) { return a.begin < b.begin; });
   runs_.clear();
   for (const Run& run : all) {
     if (runs_.empty() || run.begin > runs_.back().end)

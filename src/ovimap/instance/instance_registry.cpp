@@ -64,8 +64,9 @@ void list_fields(InstanceConfig& config, ConfigFields& fields) {
                                      "what an instance is when there are 2D masks");
   fields.add("min_vote_share", config.min_vote_share, 0.f, 100.f,
              "votes needed per frame without such a vote");
-  fields.add("judged", config.judged,
-             "objects are found at the end by a judge of super-points that looks at their surfaces");
+  fields.add(
+      "judged", config.judged,
+      "objects are found at the end by a judge of super-points that looks at their surfaces");
   list_fields(config.consensus, fields);
   list_fields(config.merging, fields);
 }

@@ -28,8 +28,8 @@ struct InstanceConfig {
   InstanceReading instances = InstanceReading::kConsensus;
   float min_vote_share =
       0.1f;  ///< votes needed per frame in which the super-point was seen without voting so
-  bool judged = true;  ///< kConsensus: settle() asks a judge that was trained on rendered rooms, who
-                       ///< looks at surfaces as well as at masks
+  bool judged = true;  ///< kConsensus: settle() asks a judge that was trained on rendered rooms,
+                       ///< who looks at surfaces as well as at masks
   ConsensusConfig consensus;
   MergeConfig merging;
 };
@@ -61,8 +61,8 @@ InstanceRecord record_of(const std::map<Label, SuperPoint>& known,
 /// when two instances turn out to be one, the older id survives and the other becomes its alias.
 ///
 /// By consensus a union may be taken back by later frames, and super-points are never merged. So
-/// nothing is gathered by instance: what is known is known of super-points, and an instance's record
-/// is put together from those that it has now.
+/// nothing is gathered by instance: what is known is known of super-points, and an instance's
+/// record is put together from those that it has now.
 class InstanceRegistry {
  public:
   explicit InstanceRegistry(const InstanceConfig& config = {})

@@ -13,8 +13,8 @@ namespace ovimap {
 
 namespace {
 
-/// One frame alone showed it, in a mask that its source rates well and of which it is most: no leftover
-/// of something larger.
+/// One frame alone showed it, in a mask that its source rates well and of which it is most: no
+/// leftover of something larger.
 bool seen_well_once(std::span<const EntityFit> fits, float least_fit) {
   return fits.size() == 1 && fits[0].entity.is_rated() && fits[0].rated_overlap() >= least_fit;
 }

@@ -20,11 +20,11 @@ struct InstanceSummaryConfig {
   int min_instance_voxels = 20;  ///< instances with fewer surface voxels are left out
   float surface_spacing_m =
       0.02f;  ///< between the points of an instance that a map keeps apart from its voxels
-  int min_instance_views = 2;  ///< instances seen in fewer frames are left out
-  float min_only_view_fit = 0.5f;  ///< ... but of two, one is enough whose mask fits so well, times how
-                                   ///< its source rates it (EntityFit)
-  int min_part_views = 3;      ///< parts of objects told by fewer frames are left out
-  float max_part_share = 0.8f;  ///< so are those that are more of their object
+  int min_instance_views = 2;      ///< instances seen in fewer frames are left out
+  float min_only_view_fit = 0.5f;  ///< ... but of two, one is enough whose mask fits so well, times
+                                   ///< how its source rates it (EntityFit)
+  int min_part_views = 3;          ///< parts of objects told by fewer frames are left out
+  float max_part_share = 0.8f;     ///< so are those that are more of their object
 };
 void list_fields(InstanceSummaryConfig& config, ConfigFields& fields);
 
@@ -36,8 +36,8 @@ struct InstanceSummary {
   std::size_t points = 0;           ///< surface voxels
   int views = 0;                    ///< frames in which it was seen
   std::vector<Label> super_points;  ///< roots, ascending
-  /// How sure masks are that it is one whole thing, 0 to 1 (EntityFits); none where their source does
-  /// not rate them, and of what a person put together.
+  /// How sure masks are that it is one whole thing, 0 to 1 (EntityFits); none where their source
+  /// does not rate them, and of what a person put together.
   std::optional<float> confidence;
 };
 

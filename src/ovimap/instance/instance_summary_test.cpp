@@ -87,7 +87,8 @@ TEST(SummarizeInstances, LeavesOutALeftoverOfWhatAGoodMaskShowed) {
 
 TEST(SummarizeInstances, TellsHowSureRatedMasksAre) {
   const SurfaceExtents extents{{1, surface_of(100)}, {2, surface_of(100)}};
-  const auto rated = listed({{1, {{0, 7, 255}, {1, 2, 255}}}, {2, {{0, 9, 51}, {1, 5, 51}}}}, extents);
+  const auto rated =
+      listed({{1, {{0, 7, 255}, {1, 2, 255}}}, {2, {{0, 9, 51}, {1, 5, 51}}}}, extents);
   ASSERT_EQ(rated.size(), 2u);
   EXPECT_FLOAT_EQ(rated[0].confidence.value(), 0.5f);  // two frames for it, two of doubt
   EXPECT_FLOAT_EQ(rated[1].confidence.value(), 0.1f);

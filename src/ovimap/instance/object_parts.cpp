@@ -43,8 +43,7 @@ int frames_that_tell(const std::set<EntitySighting>& part, const std::set<Entity
 
 std::vector<Label> without(std::span<const Label> all, std::span<const Label> taken) {
   std::vector<Label> rest;
-  std::set_difference(all.begin(), all.end(), taken.begin(), taken.end(),
-                      std::back_inserter(rest));
+  std::set_difference(all.begin(), all.end(), taken.begin(), taken.end(), std::back_inserter(rest));
   return rest;
 }
 
@@ -100,8 +99,8 @@ std::map<InstanceId, std::vector<const ObjectPart*>> parts_by_object(
   for (const ObjectPart& part : parts) {
     const auto first = owner.find(part.super_points.front());
     if (first == owner.end()) continue;
-    const bool whole = std::all_of(
-        part.super_points.begin(), part.super_points.end(), [&](const Label label) {
+    const bool whole =
+        std::all_of(part.super_points.begin(), part.super_points.end(), [&](const Label label) {
           const auto found = owner.find(label);
           return found != owner.end() && found->second == first->second;
         });

@@ -40,8 +40,8 @@ TEST(FindParts, NeedFramesThatTellThem) {
 TEST(FindParts, OneThingToTheMasksHasNone) {
   const Frame apart{{3, 1}, {5, 2}, {8, 2}}, whole{{3, 1}, {5, 1}, {8, 1}};
   EXPECT_TRUE(find_parts(kCabinet, seen_in({whole, whole, whole}), 1).empty());
-  EXPECT_TRUE(find_parts(kCabinet, seen_in({apart, apart, apart, whole, whole, whole, whole}), 3)
-                  .empty());
+  EXPECT_TRUE(
+      find_parts(kCabinet, seen_in({apart, apart, apart, whole, whole, whole, whole}), 3).empty());
   EXPECT_TRUE(find_parts({}, {}, 1).empty());
   EXPECT_TRUE(find_parts(kCabinet, {}, 1).empty()) << "nobody masked it";
 }

@@ -22,8 +22,8 @@ void list_fields(MergeConfig& config, ConfigFields& fields);
 /// Spa(a, b) > theta_merge; method section 6).
 ///
 /// Beyond the paper, frames that show both super-points as different segments count against the
-/// merge: a magazine that the mask of its table swallows in some frames stays a magazine. A consensus
-/// of entities (EntityConsensus) merges nothing.
+/// merge: a magazine that the mask of its table swallows in some frames stays a magazine. A
+/// consensus of entities (EntityConsensus) merges nothing.
 class SuperPointMerging {
  public:
   struct Merge {

@@ -21,9 +21,8 @@ class FoldThreshold {
                 const SegmentDepthConfig& config) {
     for (int i = 0; i < kSteps; ++i) {
       const float depth = (static_cast<float>(i) + 0.5f) * kStep_m;
-      const float sigma =
-          surface.noise.normal.at(depth) *
-          normal_sigma_rad(depth, surface.radius_px, camera, config.surface.noise);
+      const float sigma = surface.noise.normal.at(depth) *
+                          normal_sigma_rad(depth, surface.radius_px, camera, config.surface.noise);
       // The angle between two independent normals has sqrt(2) times the deviation of one.
       const float angle =
           std::max(config.concave_angle_rad, config.concave_sigmas * std::sqrt(2.f) * sigma);

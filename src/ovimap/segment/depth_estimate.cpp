@@ -101,9 +101,8 @@ class Estimator {
       for (std::size_t x = 0; x < width_; ++x) sums[x] += row_sums_.row(y)[x];
     for (int y = begin; y < end; ++y) {
       const Residual* enters = y + radius < height ? row_sums_.row(y + radius) : nullptr;
-      const Residual* leaves = y > begin && y - radius - 1 >= 0
-                                   ? row_sums_.row(y - radius - 1)
-                                   : nullptr;
+      const Residual* leaves =
+          y > begin && y - radius - 1 >= 0 ? row_sums_.row(y - radius - 1) : nullptr;
       for (std::size_t x = 0; x < width_; ++x)
         sums[x] += (enters ? enters[x] : 0) - (leaves ? leaves[x] : 0);
       filter_row(y, sums);
@@ -124,8 +123,7 @@ class Estimator {
       const float raw = slope[x] > 0.f ? (excess > 0.f ? excess / squares : 0.f) : 1.f;
       estimate[x] = depth[x] > 0.f ? smooth[x] + raw * (depth[x] - smooth[x]) : 0.f;
       const auto window = static_cast<float>((left[x] + right[x] + 1) * (up[x] + down[x] + 1));
-      const float alike =
-          std::min(alike_.most.at(smooth[x]), alike_.pixels.at(smooth[x]) / window);
+      const float alike = std::min(alike_.most.at(smooth[x]), alike_.pixels.at(smooth[x]) / window);
       sigma[x] *= std::sqrt(raw * raw + (1.f - raw) * (1.f - raw) * alike);
     }
   }

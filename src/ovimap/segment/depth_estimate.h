@@ -22,8 +22,8 @@ struct DepthEstimate {
 /// with the fitted planes as local means. Where residuals are what noise alone leaves, the plane is
 /// believed; where they are larger, there is something that no plane describes.
 ///
-/// How noisy the sensor is the frame itself tells (DepthSurface::noise), both a single pixel and the
-/// plane through a window of them. `model`, with which the surface was fitted, gives the growth
+/// How noisy the sensor is the frame itself tells (DepthSurface::noise), both a single pixel and
+/// the plane through a window of them. `model`, with which the surface was fitted, gives the growth
 /// within a range.
 DepthEstimate estimate_depth(const DepthImage& depth, const DepthSurface& surface,
                              const DepthNoiseConfig& model, const DepthEstimateConfig& config);

@@ -14,11 +14,11 @@ namespace ovimap {
 struct SegmentDepthConfig {
   DepthSurfaceConfig surface;
   float concave_angle_rad = 0.26f;  ///< a concave fold sharper than this is an edge (15 degrees)
-  float concave_sigmas = 3.f;       ///< ... and sharper than this many sigmas of the fitted normals,
-                                    ///< which the frame itself tells (FrameNoise)
-  int min_region_px = 100;          ///< smaller regions are dropped
-  int regrow_px = 4;                ///< edge pixels take the nearest region within this many pixels
-  float regrow_m = 0.05f;           ///< ... and within this distance in 3D
+  float concave_sigmas = 3.f;  ///< ... and sharper than this many sigmas of the fitted normals,
+                               ///< which the frame itself tells (FrameNoise)
+  int min_region_px = 100;     ///< smaller regions are dropped
+  int regrow_px = 4;           ///< edge pixels take the nearest region within this many pixels
+  float regrow_m = 0.05f;      ///< ... and within this distance in 3D
 };
 void list_fields(SegmentDepthConfig& config, ConfigFields& fields);
 

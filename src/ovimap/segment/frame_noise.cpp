@@ -22,15 +22,14 @@ constexpr float kFullWindow = 0.9f;          // of its pixels
 /// Absolute residuals in sigmas of the model, by range.
 class Residuals {
  public:
-  void add(float depth_m, float sigmas) {
-    by_range_[ByRange::range_of(depth_m)].push_back(sigmas);
-  }
+  void add(float depth_m, float sigmas) { by_range_[ByRange::range_of(depth_m)].push_back(sigmas); }
 
   /// Their medians, which are moved by little but noise, over what they are where sigma is 1.
   /// Nothing where there are too few of them to tell.
   std::optional<ByRange> sigmas(float median_of_one) {
     std::vector<float> all;
-    for (const std::vector<float>& some : by_range_) all.insert(all.end(), some.begin(), some.end());
+    for (const std::vector<float>& some : by_range_)
+      all.insert(all.end(), some.begin(), some.end());
     if (all.size() < kFewestSamples) return std::nullopt;
     ByRange found(sigma_of(all, median_of_one));
     for (std::size_t range = 0; range < ByRange::kRanges; ++range)

@@ -15,7 +15,8 @@ namespace {
 const PinholeCamera kVgaCamera{640, 480, 570.f, 570.f, 319.5f, 239.5f};
 constexpr float kDepth_m = 2.f;
 
-/// A wall at a slant whose errors are those of cells of so many pixels; between them, what lies there.
+/// A wall at a slant whose errors are those of cells of so many pixels; between them, what lies
+/// there.
 DepthImage wall(float cell_px, float times, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<float> normal;
@@ -58,7 +59,8 @@ TEST(FrameNoise, SeesWhatNeighboursShare) {
     const FrameNoise noise = noise_of(wall(8.f, times, 2));
     EXPECT_GT(noise.plane.at(kDepth_m), 0.5f * times);
     EXPECT_LT(noise.plane.at(kDepth_m), 1.2f * times);
-    EXPECT_GT(noise.normal.at(kDepth_m), 2.f * times) << "planes tilt with what a part of them shares";
+    EXPECT_GT(noise.normal.at(kDepth_m), 2.f * times)
+        << "planes tilt with what a part of them shares";
   }
 }
 

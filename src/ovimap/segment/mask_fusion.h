@@ -32,7 +32,8 @@ struct Segment {
 struct Segments {
   IdImage ids;                    ///< depth image size; 0 = none
   std::vector<Segment> segments;  ///< segments[id - 1]
-  /// How good its source rates the mask of each entity, from 0 to 1: ratings[entity - 1]; empty: all 1.
+  /// How good its source rates the mask of each entity, from 0 to 1: ratings[entity - 1]; empty:
+  /// all 1.
   std::vector<float> ratings = {};
 };
 

@@ -81,7 +81,7 @@ OVIMAP_VECTORIZE void extend_running_sums(const std::uint8_t* left, const std::u
   const auto plane = static_cast<std::size_t>(width);
   const std::uint32_t yy = y * y;
   OVIMAP_NO_OVERLAP  // the rows never overlap
-  for (std::size_t x = 0; x < plane; ++x) {
+      for (std::size_t x = 0; x < plane; ++x) {
     const std::int32_t l = left[x], r = right[x];
     const std::int32_t n = l + r + 1;
     const std::int32_t u = (r * (r + 1) - l * (l + 1)) >> 1;
@@ -106,7 +106,7 @@ OVIMAP_VECTORIZE void subtract(const std::uint32_t* bottom, const std::uint32_t*
                                int begin, int end, std::uint32_t* sums) {
   for (int sum = 0; sum < kSums; ++sum) {
     const std::size_t first = static_cast<std::size_t>(sum) * static_cast<std::size_t>(width);
-  OVIMAP_NO_OVERLAP
+    OVIMAP_NO_OVERLAP
     for (std::size_t x = first + static_cast<std::size_t>(begin);
          x < first + static_cast<std::size_t>(end); ++x)
       sums[x] = bottom[x] - top[x];

@@ -10,9 +10,9 @@ namespace ovimap {
 
 namespace {
 
-constexpr int kMostDelay = 15;        // frames that are looked for to either side
-constexpr std::size_t kFewest = 60;   // turns that are compared
-constexpr double kMuchBetter = 0.5;   // of the error without a shift
+constexpr int kMostDelay = 15;       // frames that are looked for to either side
+constexpr std::size_t kFewest = 60;  // turns that are compared
+constexpr double kMuchBetter = 0.5;  // of the error without a shift
 
 /// The turn from each frame to the next, in the camera's frame.
 struct Turns {
@@ -77,15 +77,16 @@ void doubt_focal_length(const Tracker& tracker, std::vector<std::string>& doubts
                           " than given; check fx and fy of camera.yaml or of the recording"));
 }
 
-/// Where colour is so late that frames are lost, those that are not tell of less: what is told is the
-/// least.
+/// Where colour is so late that frames are lost, those that are not tell of less: what is told is
+/// the least.
 void doubt_color_times(const Tracker& tracker, std::vector<std::string>& doubts) {
   const TrackConfig& config = tracker.config();
   const auto delay = tracker.sensor().color_delay();
   if (!delay || !delay->beyond(static_cast<double>(config.delay_frames),
                                static_cast<double>(config.sensor_sigmas)))
     return;
-  doubts.push_back(concat("the images say that colour was taken at least ", frames_text(delay->value),
+  doubts.push_back(concat("the images say that colour was taken at least ",
+                          frames_text(delay->value),
                           " than the depth beside it; check the time stamps by which the "
                           "recording pairs them"));
 }

@@ -21,9 +21,8 @@ class SensorDoubts : public ::testing::Test {
     const double rest = along - step;
     const Pose next = fixture::room_pose(step + 1);
     pose.translation() += rest * (next.translation() - pose.translation());
-    pose.linear() = Eigen::Quaterniond(pose.linear())
-                        .slerp(rest, Eigen::Quaterniond(next.linear()))
-                        .matrix();
+    pose.linear() =
+        Eigen::Quaterniond(pose.linear()).slerp(rest, Eigen::Quaterniond(next.linear())).matrix();
     pose.rotate(Eigen::AngleAxisd(0.05 * std::sin(0.2 * at), Eigen::Vector3d::UnitY()));
     return pose;
   }

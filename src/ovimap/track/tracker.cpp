@@ -15,7 +15,7 @@ namespace {
 constexpr std::int64_t kLongestGap = 6;  // frames; longer ones predict nothing more
 constexpr int kAllDirections = 6;
 constexpr float kProposed_m = 0.2f, kProposed_rad = 0.2f;  // how far off a proposed place may be
-constexpr int kListenEvery = 5;          // frames; neighbours say the same of the sensor
+constexpr int kListenEvery = 5;  // frames; neighbours say the same of the sensor
 constexpr int kLeastWidth_px = 2 * kCoarsestWidth_px;  // smaller images lack levels
 
 double share_with_depth(const TrackLevel& level) {
@@ -37,8 +37,10 @@ std::vector<Pose> seen_from(const Reference& reference, std::vector<Pose> world_
 
 const TrackedFrame& Tracker::track(const Frame& frame, const VoxelMap& map) {
   if (frame.depth_camera.width < kLeastWidth_px)
-    throw Error(concat("depth images are ", frame.depth_camera.width, " pixels wide; a camera is "
-                       "tracked by images of ", kLeastWidth_px, " and more, others need poses"));
+    throw Error(concat("depth images are ", frame.depth_camera.width,
+                       " pixels wide; a camera is "
+                       "tracked by images of ",
+                       kLeastWidth_px, " and more, others need poses"));
   pyramid_ = make_pyramid(frame);
   TrackedFrame result;
   result.index = frame.index, result.timestamp_s = frame.timestamp_s, result.name = frame.name;
@@ -248,8 +250,8 @@ bool Tracker::try_place(const Keyframe& keyframe, const VoxelMap& map, int most_
   const Image<float> model = cast_inverse_depth(map, keyframe.image.camera,
                                                 keyframe.world_from_camera, config_.max_range_m);
   const Reference reference = make_reference(place, model, keyframe.world_from_camera);
-  const std::optional<Alignment> alignment = align_best(
-      reference, pyramid_, {Pose::Identity(), turn_between(place, pyramid_)}, config);
+  const std::optional<Alignment> alignment =
+      align_best(reference, pyramid_, {Pose::Identity(), turn_between(place, pyramid_)}, config);
   if (!alignment || alignment->degenerate > most_degenerate ||
       !believable(alignment->quality, config_, true))
     return false;

@@ -46,8 +46,8 @@ class Tracker {
   /// to be found.
   void begin_in(std::vector<Keyframe> places);
 
-  /// Places of which something else than images says where in the map they lie: a frame that is lost
-  /// and like no keyframe is held against what the map has of them. They become no keyframes.
+  /// Places of which something else than images says where in the map they lie: a frame that is
+  /// lost and like no keyframe is held against what the map has of them. They become no keyframes.
   void propose(std::vector<Keyframe> places);
 
   /// Keyframes get numbers from there on: that of frame 0. Before the first frame.

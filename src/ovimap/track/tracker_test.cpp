@@ -108,7 +108,8 @@ TEST_F(TrackerTest, AnotherPlaceIsLost) {
 /// comes out behind it was never seen: the surface must be cast anew while there is enough of it.
 TEST_F(TrackerTest, GoesOnBehindWhatHidesTheView) {
   const Pose start = fixture::room_pose(0);
-  const double board_z = 0.5, board_left = -0.9, board_right = -0.25;  // in the first camera's frame
+  const double board_z = 0.5, board_left = -0.9,
+               board_right = -0.25;  // in the first camera's frame
   for (int i = 0; i < 40; ++i) {
     const double along = -0.03 * i;
     const Pose pose = start * Eigen::Translation3d(along, 0, 0);

@@ -56,7 +56,7 @@ void count(RecallGroup& group, bool found) {
 }  // namespace
 
 std::map<std::int32_t, MeasuredSize> measured_sizes(std::span<const Eigen::Vector3f> points,
-                                                 std::span<const std::int32_t> labels) {
+                                                    std::span<const std::int32_t> labels) {
   std::map<std::int32_t, std::vector<Eigen::Vector3f>> points_of;
   for (std::size_t i = 0; i < points.size(); ++i)
     if (labels[i] > 0) points_of[labels[i]].push_back(points[i]);

@@ -25,7 +25,7 @@ struct MeasuredSize {
 
 /// By id; of labels above 0. `points` in metres, z up, as long as `labels`.
 std::map<std::int32_t, MeasuredSize> measured_sizes(std::span<const Eigen::Vector3f> points,
-                                                 std::span<const std::int32_t> labels);
+                                                    std::span<const std::int32_t> labels);
 
 struct SizeGroupsConfig {
   float small_litres = 2, medium_litres = 20;

@@ -22,10 +22,10 @@ struct ErrorStatistics {
 /// How far a trajectory is off the true one (Sturm et al. 2012, as evo computes it).
 struct TrajectoryScores {
   std::size_t truth_poses = 0, matched = 0;
-  ErrorStatistics ate_m;       ///< of positions after the best rigid alignment
+  ErrorStatistics ate_m;             ///< of positions after the best rigid alignment
   ErrorStatistics step_m, step_deg;  ///< relative pose error from one matched pose to the next
-  double path_m = 0;           ///< length of the true way between matched poses
-  double closure_m = 0;        ///< last position from the first, off the truth's
+  double path_m = 0;                 ///< length of the true way between matched poses
+  double closure_m = 0;              ///< last position from the first, off the truth's
 };
 
 /// Matches each pose of the estimate with the nearest in time of the truth, at most `max_gap_s`

@@ -27,14 +27,14 @@ struct CalibrationFitConfig {
   float center_sigma = 0.03f;   ///< of the principal point, share of the width
   float rotation_sigma_rad = 0.03f;
   float translation_sigma_m = 0.04f;
-  float radial_sigma = 0.3f;  ///< of either radial coefficient of a lens, where one is looked for
+  float radial_sigma = 0.3f;    ///< of either radial coefficient of a lens, where one is looked for
   float outset_sigma_px = 1.f;  ///< of how far depth's edges lie inside the true ones
   float prior_weight = 0.002f;  ///< of one deviation squared, against the mean of the edges' losses
   int starts = 6;               ///< views that are refined; 1: the given one, without a search
   int iterations = 25;          ///< of each level of each start
   int search_points = 2000;     ///< edges that the search for starts looks at,
   int final_points = 80000;     ///< and the last refinement,
-  int start_points = 8000;     ///< and the refinement of starts
+  int start_points = 8000;      ///< and the refinement of starts
   float finest = 0.003f;        ///< reach of the last refinement, share of the width
   float truncation = 0.015f;    ///< edges farther off count as that far, share of the width
   float max_shift = 0.1f;       ///< of colour, that is tried, share of the width

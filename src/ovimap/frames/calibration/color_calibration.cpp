@@ -210,8 +210,9 @@ void judge(ColorCalibration& result, double moved_px, const ColorCalibrationConf
         concat("colour is off by ", text_of(moved_px, 1), " px; edges meet to ",
                text_of(result.found_px, 2), " px instead of ", text_of(result.given_px, 2), " px");
     if (result.found.lens != Lens{})
-      result.message += concat("; its lens bends: k1 ", text_of(result.found.lens.coefficients[0], 3),
-                               ", k2 ", text_of(result.found.lens.coefficients[1], 3));
+      result.message +=
+          concat("; its lens bends: k1 ", text_of(result.found.lens.coefficients[0], 3), ", k2 ",
+                 text_of(result.found.lens.coefficients[1], 3));
   }
 }
 

@@ -69,8 +69,8 @@ ColorCalibration calibrate_color(
 double view_difference_px(const PinholeCamera& depth_camera, const ColorView& a, const ColorView& b,
                           float depth_m);
 
-/// Depth's edges over the colour images of two frames, the middle ones of either half, one below the
-/// other: as given at the left, as found at the right. Throws Error when a frame cannot be read
+/// Depth's edges over the colour images of two frames, the middle ones of either half, one below
+/// the other: as given at the left, as found at the right. Throws Error when a frame cannot be read
 /// any more.
 RgbImage calibration_picture(const FrameSource& source, const ColorCalibration& calibration,
                              const CalibrationEdgesConfig& config = {});

@@ -99,8 +99,8 @@ class BoardSource final : public FrameSource {
     for (int v = 0; v < camera.height; ++v)
       for (int u = 0; u < camera.width; ++u) {
         const Eigen::Vector3d ray =
-            world_from_camera.linear() * straight(view.lens, {(u - camera.cx) / camera.fx,
-                                                              (v - camera.cy) / camera.fy});
+            world_from_camera.linear() *
+            straight(view.lens, {(u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy});
         double nearest = 1e9;
         const Board* seen = nullptr;
         for (const Board& board : boards) {
@@ -282,9 +282,9 @@ TEST(ColorCalibration, TextKeepsTheOtherKeys) {
   EXPECT_EQ(rig.depth_units_per_m, 1000);
 
   write_text(file,
-                      "depth_camera: {fx: 300, depth_scale: 5000}\n"
-                      "color_camera: {fx: 7, distortion: {coefficients: [.1, 0, 0, 0, 0]}}\n"
-                      "poses: {direction: camera_from_world}\n");
+             "depth_camera: {fx: 300, depth_scale: 5000}\n"
+             "color_camera: {fx: 7, distortion: {coefficients: [.1, 0, 0, 0, 0]}}\n"
+             "poses: {direction: camera_from_world}\n");
   write_text(file, calibrated_text(file, result));
   CameraRig kept;
   apply_calibration(file, kept);

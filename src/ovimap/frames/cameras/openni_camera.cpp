@@ -29,9 +29,11 @@ std::string chosen_uri(const OpenNiLibrary& library, const std::string& wanted) 
   for (int i = 0; i < count; ++i) uris.emplace_back(devices[i].uri);
   if (devices) library.ReleaseDeviceList(devices);
   if (uris.empty())
-    throw Error("no OpenNI camera is plugged in; plug it in (docs/cameras.md, 'When no camera is found')");
+    throw Error(
+        "no OpenNI camera is plugged in; plug it in (docs/cameras.md, 'When no camera is found')");
   if (uris.size() == 1) return uris.front();
-  throw Error(concat(uris.size(), " OpenNI cameras are plugged in; choose one, as openni:", uris.front()));
+  throw Error(
+      concat(uris.size(), " OpenNI cameras are plugged in; choose one, as openni:", uris.front()));
 }
 
 /// A device that is open.
@@ -108,15 +110,16 @@ class OpenNiCamera : public RgbdCamera {
   bool bring_depth_to_color() {
     const OniImageRegistrationMode mode = ONI_IMAGE_REGISTRATION_DEPTH_TO_COLOR;
     return library_.DeviceIsImageRegistrationModeSupported(device_.handle(), mode) &&
-           library_.DeviceSetProperty(device_.handle(), ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION, &mode,
-                                      sizeof(mode)) == ONI_STATUS_OK;
+           library_.DeviceSetProperty(device_.handle(), ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION,
+                                      &mode, sizeof(mode)) == ONI_STATUS_OK;
   }
 
   CameraRig rig() const {
     CameraRig rig;
     rig.color_camera = color_.camera();
-    rig.depth_camera = registered_ ? rig.color_camera.scaled_to(depth_.size().width, depth_.size().height)
-                                   : depth_.camera();
+    rig.depth_camera = registered_
+                           ? rig.color_camera.scaled_to(depth_.size().width, depth_.size().height)
+                           : depth_.camera();
     rig.depth_units_per_m = depth_.units_per_m();
     return rig;
   }
@@ -166,7 +169,8 @@ class OpenNiCamera : public RgbdCamera {
 
 }  // namespace
 
-std::unique_ptr<RgbdCamera> open_openni_camera(const std::string& uri, const FrameSourceConfig& config) {
+std::unique_ptr<RgbdCamera> open_openni_camera(const std::string& uri,
+                                               const FrameSourceConfig& config) {
   return std::make_unique<OpenNiCamera>(uri, config);
 }
 

@@ -25,7 +25,8 @@ void* load_library() {
 // It stays loaded: its drivers leave threads behind.
 OpenNiLibrary::OpenNiLibrary() : library_(load_library()) {
   if (Initialize(ONI_API_VERSION) != ONI_STATUS_OK)
-    throw Error(concat("OpenNI cannot be started (", fault(), "); is libopenni2-0 installed whole?"));
+    throw Error(
+        concat("OpenNI cannot be started (", fault(), "); is libopenni2-0 installed whole?"));
 }
 
 OpenNiLibrary::~OpenNiLibrary() {

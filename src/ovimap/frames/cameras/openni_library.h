@@ -30,7 +30,8 @@ class OpenNiLibrary {
 
  public:
   // The library's own functions, by their names without "oni".
-#define OVIMAP_ONI(name) decltype(::oni##name)* const name = find<decltype(::oni##name)>("oni" #name)
+#define OVIMAP_ONI(name) \
+  decltype(::oni##name)* const name = find<decltype(::oni##name)>("oni" #name)
   OVIMAP_ONI(Initialize);
   OVIMAP_ONI(Shutdown);
   OVIMAP_ONI(GetExtendedError);

@@ -33,8 +33,8 @@ OniVideoMode choose_mode(const OniSensorInfo* info, OniSensorType sensor, ImageS
   for (int i = 0; info && i < info->numSupportedVideoModes; ++i)
     if (readable(sensor, info->pSupportedVideoModes[i].pixelFormat))
       modes.push_back(info->pSupportedVideoModes[i]);
-  const auto best = std::max_element(modes.begin(), modes.end(),
-                                     [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
+  const auto best = std::max_element(
+      modes.begin(), modes.end(), [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
   return best == modes.end() ? OniVideoMode{} : *best;
 }
 
@@ -50,13 +50,14 @@ OpenNiStream::OpenNiStream(const OpenNiLibrary& library, OniDeviceHandle device,
                        sensor == ONI_SENSOR_COLOR ? "colour as RGB888" : "depth in millimetres",
                        " by OpenNI; both depth and colour are needed"));
   if (library.DeviceCreateStream(device, sensor, &handle_) != ONI_STATUS_OK)
-    throw Error(concat(name_, " cannot be opened (", library.fault(), "); plug the camera in anew"));
+    throw Error(
+        concat(name_, " cannot be opened (", library.fault(), "); plug the camera in anew"));
   library.StreamSetProperty(handle_, ONI_STREAM_PROPERTY_VIDEO_MODE, &mode_, sizeof(mode_));
   OniBool mirrored = FALSE;
   int bytes = sizeof(mirrored);
   library.StreamSetProperty(handle_, ONI_STREAM_PROPERTY_MIRRORING, &mirrored, sizeof(mirrored));
-  mirrored_ = library.StreamGetProperty(handle_, ONI_STREAM_PROPERTY_MIRRORING, &mirrored, &bytes) ==
-                  ONI_STATUS_OK &&
+  mirrored_ = library.StreamGetProperty(handle_, ONI_STREAM_PROPERTY_MIRRORING, &mirrored,
+                                        &bytes) == ONI_STATUS_OK &&
               mirrored != FALSE;
 }
 
@@ -74,9 +75,9 @@ void OpenNiStream::start() {
 }
 
 PinholeCamera OpenNiStream::camera() const {
-  const PinholeCamera camera =
-      camera_of_view(mode_.resolutionX, mode_.resolutionY, property(ONI_STREAM_PROPERTY_HORIZONTAL_FOV),
-                     property(ONI_STREAM_PROPERTY_VERTICAL_FOV));
+  const PinholeCamera camera = camera_of_view(mode_.resolutionX, mode_.resolutionY,
+                                              property(ONI_STREAM_PROPERTY_HORIZONTAL_FOV),
+                                              property(ONI_STREAM_PROPERTY_VERTICAL_FOV));
   if (!camera.valid()) throw Error(concat(name_, ": the camera does not say how much it sees"));
   return camera;
 }
@@ -104,7 +105,8 @@ bool OpenNiStream::plausible(const OniFrame& image) const {
   return image.width == mode_.resolutionX && image.height == mode_.resolutionY &&
          image.videoMode.pixelFormat == mode_.pixelFormat &&
          image.stride >= image.width * pixel_bytes(mode_.pixelFormat) &&
-         image.dataSize >= (image.height - 1) * image.stride + image.width * pixel_bytes(mode_.pixelFormat);
+         image.dataSize >=
+             (image.height - 1) * image.stride + image.width * pixel_bytes(mode_.pixelFormat);
 }
 
 }  // namespace ovimap

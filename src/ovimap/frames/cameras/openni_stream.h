@@ -28,7 +28,9 @@ class OpenNiStream {
   ImageSize size() const { return {mode_.resolutionX, mode_.resolutionY}; }
   /// By the factory's field of view.
   PinholeCamera camera() const;
-  double units_per_m() const { return mode_.pixelFormat == ONI_PIXEL_FORMAT_DEPTH_100_UM ? 10000 : 1000; }
+  double units_per_m() const {
+    return mode_.pixelFormat == ONI_PIXEL_FORMAT_DEPTH_100_UM ? 10000 : 1000;
+  }
 
   /// Reads an image that is ready; it waits in the place of the one before.
   void take();

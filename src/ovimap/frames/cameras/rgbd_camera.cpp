@@ -19,7 +19,8 @@ bool names_camera(const std::string& source) {
   return source.starts_with(kOpenNi);
 }
 
-std::unique_ptr<RgbdCamera> open_camera(const std::string& source, const FrameSourceConfig& config) {
+std::unique_ptr<RgbdCamera> open_camera(const std::string& source,
+                                        const FrameSourceConfig& config) {
   OVIMAP_ASSERT(names_camera(source));
   return open_openni_camera(source.substr(kOpenNi.size()), config);
 }

@@ -35,8 +35,9 @@ class RgbdCamera {
 /// Whether SOURCE names a camera: "openni:" or "openni:URI".
 bool names_camera(const std::string& source);
 
-/// The camera that SOURCE names, which sends from here on. Throws Error where there is none, several
-/// fit, it cannot do what is needed, or this program or machine lacks the maker's library.
-std::unique_ptr<RgbdCamera> open_camera(const std::string& source, const FrameSourceConfig& config = {});
+/// The camera that SOURCE names, which sends from here on. Throws Error where there is none,
+/// several fit, it cannot do what is needed, or this program or machine lacks the maker's library.
+std::unique_ptr<RgbdCamera> open_camera(const std::string& source,
+                                        const FrameSourceConfig& config = {});
 
 }  // namespace ovimap

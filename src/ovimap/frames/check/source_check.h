@@ -27,7 +27,7 @@ struct SourceCheckConfig {
   float min_agreement = 0.5f;        ///< less depth agreement is a fault
   float good_agreement = 0.7f;       ///< less depth agreement is a warning, and names no mistake
   float min_gain = 0.1f;  ///< another reading of poses or depth must agree better by this much
-  EdgeAlignmentConfig alignment;  ///< of colour and depth
+  EdgeAlignmentConfig alignment;                      ///< of colour and depth
   ColorCalibrationConfig lens = quick_calibration();  ///< whether colour's lens was left out
 
   /// Of fewer edges and from the given cameras on, without a search.

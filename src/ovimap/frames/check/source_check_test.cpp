@@ -86,9 +86,8 @@ TEST(SourceCheck, InvertedPosesAreNamedAndTheRemedyHelps) {
   fixture::write_seven_scenes(folder.path(), sequence);
   expect_single_fault(check_source(folder.path()), "pose_convention",
                       "direction: camera_from_world");
-  write_text(
-      folder.path() / "calibration.yaml",
-      fixture::calibration_yaml(sequence) + "poses: {direction: camera_from_world}\n");
+  write_text(folder.path() / "calibration.yaml",
+             fixture::calibration_yaml(sequence) + "poses: {direction: camera_from_world}\n");
   EXPECT_TRUE(check_source(folder.path()).ok());
 }
 

@@ -27,8 +27,7 @@ std::size_t size_in_bytes(int width, int height, std::size_t pixel_bytes) {
 }
 
 [[noreturn]] void throw_wrong_size(std::size_t bytes, std::size_t expected, int width, int height) {
-  throw Error(
-      concat("holds ", bytes, " bytes, expected ", expected, " for ", width, "x", height));
+  throw Error(concat("holds ", bytes, " bytes, expected ", expected, " for ", width, "x", height));
 }
 
 }  // namespace

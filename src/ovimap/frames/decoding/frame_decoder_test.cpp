@@ -47,15 +47,14 @@ TEST(FrameDecoder, RectifiesAsReadersDo) {
   fixture::write_seven_scenes(folder.path(), sequence);
   const Frame bent = *open_frame_source(folder.path())->read(3).frame;
   write_text(folder.path() / "camera.yaml",
-                      "camera: {distortion: {coefficients: [-.3, .1, .001, .002, -.01]}}\n");
+             "camera: {distortion: {coefficients: [-.3, .1, .001, .002, -.01]}}\n");
   const FrameRead straight = open_frame_source(folder.path())->read(3);
   ASSERT_TRUE(straight.frame) << straight.fault;
   const Frame& read = *straight.frame;
   CameraRig rig = rig_of(sequence);
   rig.depth_lens = {Lens::Model::kBrownConrady, {-.3, .1, .001, .002, -.01}};
-  const Frame made =
-      FrameDecoder(rig).decode(encode_png(sequence.color(3)), encode_png(sequence.stored_depth(3)),
-                               sequence.pose(3));
+  const Frame made = FrameDecoder(rig).decode(
+      encode_png(sequence.color(3)), encode_png(sequence.stored_depth(3)), sequence.pose(3));
   EXPECT_EQ(made.color, read.color);
   EXPECT_EQ(made.depth, read.depth);
   EXPECT_EQ(made.color, Rectification(rig.depth_camera, rig.depth_lens, "").color(bent.color));

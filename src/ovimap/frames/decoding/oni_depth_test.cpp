@@ -34,17 +34,19 @@ TEST(OniDepth, ReadsEachCode) {
 }
 
 TEST(OniDepth, ATableHoldsTheValues) {
-  EXPECT_EQ(decoded({3, 0, 0, 0, 0xE8, 3, 0xD0, 7, 1, 0, 0x5D}, 2, true), (std::vector{1000, 2000}));
+  EXPECT_EQ(decoded({3, 0, 0, 0, 0xE8, 3, 0xD0, 7, 1, 0, 0x5D}, 2, true),
+            (std::vector{1000, 2000}));
 }
 
 TEST(OniDepth, WhatIsNoSuchImageIsRefused) {
   for (const Bytes& bytes : {Bytes{}, Bytes{1}, Bytes{100, 0}, Bytes{100, 0, 0x66, 0x66},
-                            Bytes{100, 0, 0xFF}, Bytes{100, 0, 0x6F, 0x12}, Bytes{100, 0, 0xEF}})
+                             Bytes{100, 0, 0xFF}, Bytes{100, 0, 0x6F, 0x12}, Bytes{100, 0, 0xEF}})
     EXPECT_THROW(decoded(bytes, 3), Error);
   EXPECT_THROW(decoded({0, 0, 0, 0}, 1, true), Error) << "an empty table";
   EXPECT_THROW(decoded({9, 0, 0, 0}, 1, true), Error) << "a table that is cut off";
   EXPECT_THROW(decoded({1, 0, 0, 0, 1, 0}, 1, true), Error) << "a place beyond the table";
-  EXPECT_THROW(decode_oni_depth(Bytes{1, 0}, 30000, 4000, false), Error) << "too short for its size";
+  EXPECT_THROW(decode_oni_depth(Bytes{1, 0}, 30000, 4000, false), Error)
+      << "too short for its size";
 }
 
 TEST(OniDepth, AnyBytesAreReadOrRefused) {

@@ -6,7 +6,8 @@
 
 namespace ovimap {
 
-PinholeCamera camera_of_view(int width, int height, double horizontal_fov_rad, double vertical_fov_rad) {
+PinholeCamera camera_of_view(int width, int height, double horizontal_fov_rad,
+                             double vertical_fov_rad) {
   const auto focal_px = [](int side, double fov) {
     return static_cast<float>(side / 2. / std::tan(fov / 2));
   };

@@ -8,6 +8,7 @@ namespace ovimap {
 
 /// The camera that sees so much, with its axis through the middle of the image. Angles in radians,
 /// above 0 and below pi.
-PinholeCamera camera_of_view(int width, int height, double horizontal_fov_rad, double vertical_fov_rad);
+PinholeCamera camera_of_view(int width, int height, double horizontal_fov_rad,
+                             double vertical_fov_rad);
 
 }  // namespace ovimap

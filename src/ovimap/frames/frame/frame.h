@@ -27,7 +27,7 @@ struct Frame {
   PinholeCamera depth_camera;
   Pose color_from_depth = Pose::Identity();   ///< x_in_color = color_from_depth * x_in_depth
   Pose world_from_camera = Pose::Identity();  ///< of the depth camera
-  bool posed = true;  ///< world_from_camera is known
+  bool posed = true;                          ///< world_from_camera is known
   /// Of the depth camera, world_from_camera, as a gyroscope's turns add up, in a world of their own
   /// that drifts: what two frames near each other in time differ by is how the camera turned.
   std::optional<Eigen::Quaterniond> orientation;

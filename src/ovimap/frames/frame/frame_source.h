@@ -18,9 +18,9 @@ class ConfigFields;
 
 /// What a recording's poses are to a caller.
 enum class PoseNeed {
-  kAll,       ///< a frame without a pose is a faulty one
-  kAllOrNone, ///< likewise, unless no frame of the recording has one
-  kNone,      ///< poses are not read
+  kAll,        ///< a frame without a pose is a faulty one
+  kAllOrNone,  ///< likewise, unless no frame of the recording has one
+  kNone,       ///< poses are not read
 };
 
 struct FrameSourceConfig {

@@ -10,8 +10,8 @@ namespace {
 
 Eigen::Vector2d brown_conrady(const std::array<double, 8>& c, const Eigen::Vector2d& ray) {
   const double x = ray.x(), y = ray.y(), r2 = ray.squaredNorm();
-  const double radial = (1 + r2 * (c[0] + r2 * (c[1] + r2 * c[4]))) /
-                        (1 + r2 * (c[5] + r2 * (c[6] + r2 * c[7])));
+  const double radial =
+      (1 + r2 * (c[0] + r2 * (c[1] + r2 * c[4]))) / (1 + r2 * (c[5] + r2 * (c[6] + r2 * c[7])));
   return {x * radial + 2 * c[2] * x * y + c[3] * (r2 + 2 * x * x),
           y * radial + c[2] * (r2 + 2 * y * y) + 2 * c[3] * x * y};
 }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kRectifiedRowsPerTask = 32;
 constexpr std::int64_t kMostPixels = std::int64_t{1} << 24;  ///< each takes 8 bytes of table
-constexpr double kLeastShown = 0.25;  ///< of the pinhole's picture
+constexpr double kLeastShown = 0.25;                         ///< of the pinhole's picture
 
 std::optional<Rectification> rectification(const PinholeCamera& camera, const Lens& lens,
                                            const char* name) {
@@ -43,9 +43,8 @@ Rectification::Rectification(const PinholeCamera& camera, const Lens& lens, cons
   origins_.resize(static_cast<std::size_t>(pixels));
   parallel_for(static_cast<std::size_t>(height_), kRectifiedRowsPerTask, [&](std::size_t row) {
     for (int u = 0; u < width_; ++u) {
-      const Eigen::Vector2d bent =
-          lens.bend({(u - double{camera.cx}) / camera.fx,
-                     (static_cast<double>(row) - camera.cy) / camera.fy});
+      const Eigen::Vector2d bent = lens.bend({(u - double{camera.cx}) / camera.fx,
+                                              (static_cast<double>(row) - camera.cy) / camera.fy});
       const double x = bent.x() * camera.fx + camera.cx, y = bent.y() * camera.fy + camera.cy;
       Origin& origin =
           origins_[row * static_cast<std::size_t>(width_) + static_cast<std::size_t>(u)];

@@ -73,14 +73,12 @@ double worst_line_px(const RgbImage& image) {
   double worst = 0;
   for (double line = kFirst_px; line < kCamera.width - 10; line += kSpacing_px)
     for (int v = 12; v < kCamera.height - 12; ++v)
-      worst = std::max(worst, std::abs(line - centre(line, [&](int u) {
-                                         return 255. - image.at(u, v).r;
-                                       })));
+      worst = std::max(
+          worst, std::abs(line - centre(line, [&](int u) { return 255. - image.at(u, v).r; })));
   for (double line = kFirst_px; line < kCamera.height - 10; line += kSpacing_px)
     for (int u = 12; u < kCamera.width - 12; ++u)
-      worst = std::max(worst, std::abs(line - centre(line, [&](int v) {
-                                         return 255. - image.at(u, v).g;
-                                       })));
+      worst = std::max(
+          worst, std::abs(line - centre(line, [&](int v) { return 255. - image.at(u, v).g; })));
   return worst;
 }
 

@@ -77,8 +77,7 @@ TEST_F(Folder, PosesAsTumByRank) {
 TEST_F(Folder, PosesAsFilesOfEqualName) {
   fs::create_directories(path() / "pose");
   for (int i = 0; i < 11; ++i)
-    write_text(path() / "pose" / concat(i, ".txt"),
-                        fixture::matrix_text(sequence_.pose(i)));
+    write_text(path() / "pose" / concat(i, ".txt"), fixture::matrix_text(sequence_.pose(i)));
   expect_all_read();
   fs::remove(path() / "pose" / "4.txt");
   EXPECT_EQ(open_frame_source(path())->read(4).fault, "4.txt: is missing");
@@ -136,10 +135,9 @@ TEST_F(Folder, TwoIntrinsicsAsScanNetExportsThem) {
   for (int i = 0; i < 11; ++i)
     write_file(path() / "color" / concat(i, ".png"), encode_png(RgbImage(160, 121)));
   write_text(path() / "intrinsic" / "intrinsic_depth.txt",
-                      "70 0 39.5 0 0 70 29.5 0 0 0 1 0 0 0 0 1");
+             "70 0 39.5 0 0 70 29.5 0 0 0 1 0 0 0 0 1");
   EXPECT_NE(error().find("give both depth_camera and color_camera"), std::string::npos);
-  write_text(path() / "intrinsic" / "intrinsic_color.txt",
-                      "140 0 80 0 0 140 60 0 0 0 1 0 0 0 0 1");
+  write_text(path() / "intrinsic" / "intrinsic_color.txt", "140 0 80 0 0 140 60 0 0 0 1 0 0 0 0 1");
   const FrameRead read = open_frame_source(path())->read(0);
   ASSERT_TRUE(read.frame) << read.fault;
   EXPECT_EQ(read.frame->color_camera, (PinholeCamera{160, 121, 140.f, 140.f, 80.f, 60.f}));

@@ -35,7 +35,8 @@ bool is_oni(const fs::path& source) {
 
 void check_stream(const fs::path& path, const OniStream& stream, const char* name) {
   if (stream.codec.empty() || stream.images.empty())
-    throw Error(concat(path.string(), " holds no ", name, " images; record depth and colour together"));
+    throw Error(
+        concat(path.string(), " holds no ", name, " images; record depth and colour together"));
   if (stream.width == 0)
     throw Error(concat(path.string(), " does not say how large its ", name, " images are"));
   if (stream.cropped)
@@ -61,8 +62,9 @@ ColorEncoding color_encoding(const fs::path& path, const OniStream& stream) {
   if (stream.codec == "JPEG") return ColorEncoding::kImageFile;
   if (stream.codec == "NONE" && (stream.pixel_format == 0 || stream.pixel_format == kRgb888))
     return ColorEncoding::kRgb;
-  throw Error(concat(path.string(), ": colour is stored as '", stream.codec, "' of the pixel format ",
-                     stream.pixel_format, "; accepted are JPEG and RGB888 (200)"));
+  throw Error(concat(path.string(), ": colour is stored as '", stream.codec,
+                     "' of the pixel format ", stream.pixel_format,
+                     "; accepted are JPEG and RGB888 (200)"));
 }
 
 PinholeCamera camera_of(const OniStream& stream) {
@@ -83,14 +85,16 @@ bool plausible_part(const FilePart& part, const OniStream& stream) {
   return plausible_image_size(part.size, stream.width, stream.height);
 }
 
-RecordedFrame frame_of(const fs::path& path, const OniFile& file, std::size_t color, std::size_t depth) {
+RecordedFrame frame_of(const fs::path& path, const OniFile& file, std::size_t color,
+                       std::size_t depth) {
   RecordedFrame frame;
   frame.name = std::to_string(depth);
   frame.timestamp_s = file.depth.images[depth].time_s;
   frame.color = frame.depth = path;
   frame.color_part = file.color.images[color].part;
   frame.depth_part = file.depth.images[depth].part;
-  if (!plausible_part(*frame.color_part, file.color) || !plausible_part(*frame.depth_part, file.depth))
+  if (!plausible_part(*frame.color_part, file.color) ||
+      !plausible_part(*frame.depth_part, file.depth))
     frame.fault = concat(path.filename().string(), " frame ", depth,
                          ": its images are larger than they can be");
   return frame;

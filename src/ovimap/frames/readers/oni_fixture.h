@@ -24,7 +24,8 @@ class OniWriter {
   }
 
   void add_node(std::uint32_t node, std::uint32_t type, const char* codec) {
-    std::string fields = text(node == kDepth ? "Depth" : "Image") + raw(type) + std::string(codec, 4);
+    std::string fields =
+        text(node == kDepth ? "Depth" : "Image") + raw(type) + std::string(codec, 4);
     fields.append(28, '\0');  // counts, times, where the seek table is
     record(0x0D, node, fields);
   }
@@ -35,7 +36,8 @@ class OniWriter {
   void add_number(std::uint32_t node, const char* name, std::uint64_t value) {
     record(0x03, node, text(name) + raw(std::uint32_t{8}) + raw(value));
   }
-  void add_image(std::uint32_t node, std::uint64_t time_us, std::uint32_t number, const std::string& image) {
+  void add_image(std::uint32_t node, std::uint64_t time_us, std::uint32_t number,
+                 const std::string& image) {
     record(0x0A, node, raw(time_us) + raw(number), image);
   }
   void end() { record(0x0B, 0, {}); }
@@ -88,8 +90,9 @@ inline OniWriter begin_oni(const Sequence& sequence, const OniStyle& style) {
     writer.add_node(node, depth ? 2 : 3, !depth && style.jpeg ? "JPEG" : "NONE");
     writer.add_property(node, "xnMapOutputMode",
                         Size{std::uint32_t(camera.width), std::uint32_t(camera.height), 30});
-    writer.add_property(node, "xnFOV", std::array{2 * std::atan(camera.width / 2. / camera.fx),
-                                                  2 * std::atan(camera.height / 2. / camera.fy)});
+    writer.add_property(node, "xnFOV",
+                        std::array{2 * std::atan(camera.width / 2. / camera.fx),
+                                   2 * std::atan(camera.height / 2. / camera.fy)});
     writer.add_number(node, "oniPixelFormat", depth ? 100 : 200);
     writer.add_number(node, "xnMirror", style.mirrored);
   }

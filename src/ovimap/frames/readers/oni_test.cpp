@@ -125,7 +125,8 @@ TEST_F(Oni, AnyDamageIsReadOrRefused) {
     write_file(file(), bytes);
     try {
       const auto source = open();
-      for (std::int64_t k = 0; k < source->size(); ++k) EXPECT_TRUE(source->read(k).frame || !source->read(k).fault.empty());
+      for (std::int64_t k = 0; k < source->size(); ++k)
+        EXPECT_TRUE(source->read(k).frame || !source->read(k).fault.empty());
     } catch (const Error&) {
     }
   }

@@ -11,10 +11,9 @@ namespace ovimap {
 namespace {
 
 /// Most particular layout first.
-const Reader* const kReaders[] = {&kReplicaReader, &kSevenScenesReader, &kIclNuimReader,
-                                  &kTumReader,     &kScanNetReader,     &kSensReader,
-                                  &kOniReader,     &kRedwoodReader,     &kRecord3dReader,
-                                  &kFolderReader};
+const Reader* const kReaders[] = {
+    &kReplicaReader, &kSevenScenesReader, &kIclNuimReader, &kTumReader,      &kScanNetReader,
+    &kSensReader,    &kOniReader,         &kRedwoodReader, &kRecord3dReader, &kFolderReader};
 /// Layouts of one file.
 const Reader* const kFileReaders[] = {&kSensReader, &kOniReader};
 
@@ -91,8 +90,9 @@ std::unique_ptr<FrameSource> open_frame_source(const std::filesystem::path& path
     throw Error(concat(path.string(), " is a zip file; unzip it, and give the folder"));
   const Reader* file_reader = is_folder ? nullptr : reader_of_file(path);
   if (!is_folder && !file_reader)
-    throw Error(concat(path.string(), " is a file; give the folder that holds the frames, or a .sens "
-                                      "or .oni file"));
+    throw Error(concat(path.string(),
+                       " is a file; give the folder that holds the frames, or a .sens "
+                       "or .oni file"));
   const std::filesystem::path folder = is_folder ? path : path.parent_path();
   if (!(config.min_depth_m < config.max_depth_m))
     throw Error(concat("min_depth_m is ", config.min_depth_m, " and max_depth_m ",

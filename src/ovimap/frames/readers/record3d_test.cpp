@@ -121,8 +121,7 @@ TEST_F(Record3d, EachFrameHasItsOwnFocusAndTime) {
 
 TEST_F(Record3d, CalibrationGoesBeforeTheFocusOfFrames) {
   write_metadata(R"(, "perFrameIntrinsicCoeffs": [[280, 280, 158, 118], [281, 282, 159, 119]])");
-  write_text(path() / "calibration.yaml",
-                      "color_camera: {fx: 300}\ndepth_camera: {fx: 75}");
+  write_text(path() / "calibration.yaml", "color_camera: {fx: 300}\ndepth_camera: {fx: 75}");
   const FrameRead read = open_frame_source(path())->read(1);
   ASSERT_TRUE(read.frame) << read.fault;
   EXPECT_FLOAT_EQ(read.frame->color_camera.fx, 300);
@@ -189,15 +188,13 @@ TEST_F(Record3d, BadFramesAreFaults) {
 TEST_F(Record3d, BrokenDescriptionsAreNamed) {
   write_text(path() / "metadata", R"({"w": 320})");
   EXPECT_NE(error().find("expected are K, w, h, dw and dh"), std::string::npos);
-  write_text(path() / "metadata",
-                      R"({"K": [1], "w": 1, "h": 1, "dw": 1, "dh": 1, "poses": []})");
+  write_text(path() / "metadata", R"({"K": [1], "w": 1, "h": 1, "dw": 1, "dh": 1, "poses": []})");
   EXPECT_NE(error().find("K has 1 numbers"), std::string::npos);
-  write_text(
-      path() / "metadata",
-      R"({"K": [1,0,0,0,1,0,1,1,1], "w": 1, "h": 1, "dw": 0, "dh": 1, "poses": []})");
+  write_text(path() / "metadata",
+             R"({"K": [1,0,0,0,1,0,1,1,1], "w": 1, "h": 1, "dw": 0, "dh": 1, "poses": []})");
   EXPECT_NE(error().find("is not above 0"), std::string::npos);
   write_text(path() / "metadata",
-                      R"({"K": [1,0,0,0,1,0,1,1,1], "w": 1, "h": 1, "dw": 2147483647,
+             R"({"K": [1,0,0,0,1,0,1,1,1], "w": 1, "h": 1, "dw": 2147483647,
                           "dh": 2147483647, "poses": []})");
   EXPECT_NE(error().find("2147483647x2147483647 are too large"), std::string::npos);
   write_metadata("");

@@ -24,7 +24,7 @@ class Redwood : public testing::Test {
     }
     write_log("trajectory.log", [](int i) { return i + 1; });
     write_text(path() / "camera_intrinsic.json",
-                        R"({"width": 80, "height": 60, "intrinsic_matrix":
+               R"({"width": 80, "height": 60, "intrinsic_matrix":
                             [70, 0, 0, 0, 70, 0, 39.5, 29.5, 1]})");
   }
 

@@ -89,8 +89,7 @@ TEST_F(Replica, BrokenDescriptionsAreNamed) {
 }
 
 TEST_F(Replica, ShortOrBrokenTrajectoryIsAFaultOfItsFrames) {
-  write_text(scene_ / "traj.txt",
-                      fixture::matrix_text(sequence_.pose(0), ' ') + "1 0 0\n");
+  write_text(scene_ / "traj.txt", fixture::matrix_text(sequence_.pose(0), ' ') + "1 0 0\n");
   const auto source = open_frame_source(scene_);
   EXPECT_TRUE(source->read(0).frame.has_value());
   EXPECT_EQ(source->read(1).fault, "traj.txt line 2: holds no pose");

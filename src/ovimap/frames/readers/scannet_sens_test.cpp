@@ -131,7 +131,8 @@ TEST_F(Sens, MoreFramesPromisedThanThereAre) {
 TEST_F(Sens, ClaimedSizesCostNothing) {
   sequence_.frames = 1;
   Bytes bytes = fixture::sens_bytes(sequence_, content_);
-  const std::size_t sizes = 4 + 8 + content_.sensor.size() + 4 * 64 + 2 * 4;  // of colour, then depth
+  const std::size_t sizes =
+      4 + 8 + content_.sensor.size() + 4 * 64 + 2 * 4;  // of colour, then depth
   const auto claim = [&](std::size_t at, std::uint32_t side_px) {
     for (std::size_t i = 0; i < 8; ++i)
       bytes[at + i] = static_cast<std::uint8_t>(side_px >> 8 * (i % 4));

@@ -98,7 +98,7 @@ TEST_F(ScanNet, LostAndIncompleteFramesAreFaults) {
 
 TEST_F(ScanNet, CalibrationOverrides) {
   write_text(path() / "calibration.yaml",
-                      "depth_camera: {fx: 71, depth_scale: 500}\ncolor_camera: {fy: 150}");
+             "depth_camera: {fx: 71, depth_scale: 500}\ncolor_camera: {fy: 150}");
   const FrameRead read = open_frame_source(path())->read(1);
   ASSERT_TRUE(read.frame) << read.fault;
   EXPECT_FLOAT_EQ(read.frame->depth_camera.fx, 71);

@@ -51,7 +51,7 @@ TEST_F(Tum, DefaultsAreThePublishedCamera) {
 TEST_F(Tum, EachImageIsUsedOnceAndTheNearestWins) {
   // Two depth images near the second colour image (1305031102.133): 10 ms and 3 ms away.
   write_text(folder_.path() / "depth.txt",
-                      "1305031102.143 depth/far.png\n1305031102.136 depth/near.png\n");
+             "1305031102.143 depth/far.png\n1305031102.136 depth/near.png\n");
   write_file(folder_.path() / "depth" / "near.png", encode_png(Image<std::uint16_t>(80, 60, 5000)));
   const auto source = open_frame_source(folder_.path());
   ASSERT_EQ(source->size(), 1);
@@ -62,8 +62,7 @@ TEST_F(Tum, EachImageIsUsedOnceAndTheNearestWins) {
 
 TEST_F(Tum, FrameWithoutAPoseInReachIsAFault) {
   const Eigen::Matrix4d pose = sequence_.pose(0);
-  write_text(folder_.path() / "groundtruth.txt",
-                      "1305031102.112 " + fixture::tum_text(pose));
+  write_text(folder_.path() / "groundtruth.txt", "1305031102.112 " + fixture::tum_text(pose));
   const auto source = open_frame_source(folder_.path());
   ASSERT_EQ(source->size(), 4);
   EXPECT_TRUE(source->read(0).frame.has_value());

@@ -12,7 +12,7 @@ namespace ovimap {
 
 namespace {
 
-constexpr double kLongestGap_s = 0.1;     // between samples; in a longer one anything may happen
+constexpr double kLongestGap_s = 0.1;      // between samples; in a longer one anything may happen
 constexpr double kFastest_rad_per_s = 50;  // more than gyroscopes of 2000 degrees a second measure
 
 TurnRate parse_rate(const TextLine& line, const std::filesystem::path& file) {

@@ -88,11 +88,12 @@ class RecordReader {
       : path_(path), stream_(path, std::ios::binary), size_(std::filesystem::file_size(path)) {
     std::string magic(kFileMagic.size(), '\0');
     Version version{};
-    if (!read(magic.data(), magic.size()) || !read(&version, sizeof(version)) || magic != kFileMagic)
+    if (!read(magic.data(), magic.size()) || !read(&version, sizeof(version)) ||
+        magic != kFileMagic)
       throw Error(concat(path.string(), " is no OpenNI recording"));
     if (version.major != 1 || version.minor != 0)
-      throw Error(concat(path.string(), " has version ", int{version.major}, ".", int{version.minor},
-                         "; accepted are .oni files of version 1.0"));
+      throw Error(concat(path.string(), " has version ", int{version.major}, ".",
+                         int{version.minor}, "; accepted are .oni files of version 1.0"));
     position_ = 24;  // a time and a count follow
     wide_ = version.maintenance > 0;
   }
@@ -178,7 +179,8 @@ OniFile list_oni_file(const std::filesystem::path& path) {
   while (const std::optional<Record> record = reader.next()) {
     const RecordHeader& header = record->header;
     if (header.type == kEnd) break;
-    if (header.type == kNodeAdded || header.type == kNodeAddedOld || header.type == kNodeAddedOldest)
+    if (header.type == kNodeAdded || header.type == kNodeAddedOld ||
+        header.type == kNodeAddedOldest)
       nodes.emplace(header.node, stream_of(*record, file));
     const auto node = nodes.find(header.node);
     if (node == nodes.end() || !node->second) continue;

@@ -165,11 +165,16 @@ class RecordingSource : public FrameSource {
   Image<std::uint16_t> decode_depth_units(const Bytes& bytes) const {
     const PinholeCamera& camera = recording_.rig.depth_camera;
     switch (recording_.depth_encoding) {
-      case DepthEncoding::kZlibUnits: return decode_zlib_depth(bytes, camera.width, camera.height);
-      case DepthEncoding::kRawUnits: return decode_raw_depth(bytes, camera.width, camera.height);
-      case DepthEncoding::kOni: return decode_oni_depth(bytes, camera.width, camera.height, false);
-      case DepthEncoding::kOniTable: return decode_oni_depth(bytes, camera.width, camera.height, true);
-      default: return decode_stored_depth(bytes, camera);
+      case DepthEncoding::kZlibUnits:
+        return decode_zlib_depth(bytes, camera.width, camera.height);
+      case DepthEncoding::kRawUnits:
+        return decode_raw_depth(bytes, camera.width, camera.height);
+      case DepthEncoding::kOni:
+        return decode_oni_depth(bytes, camera.width, camera.height, false);
+      case DepthEncoding::kOniTable:
+        return decode_oni_depth(bytes, camera.width, camera.height, true);
+      default:
+        return decode_stored_depth(bytes, camera);
     }
   }
 
@@ -192,12 +197,11 @@ class RecordingSource : public FrameSource {
 
   DepthImage load_depth(const RecordedFrame& record) const {
     const std::string name = label(record.depth, record.depth_part, record);
-    DepthImage depth = recording_.depth_encoding == DepthEncoding::kMetres
-                           ? depth_of_metres(record, name)
-                           : units_.metres(load(name, record.depth, record.depth_part,
-                                                [&](const Bytes& bytes) {
-                                                  return decode_depth_units(bytes);
-                                                }));
+    DepthImage depth =
+        recording_.depth_encoding == DepthEncoding::kMetres
+            ? depth_of_metres(record, name)
+            : units_.metres(load(name, record.depth, record.depth_part,
+                                 [&](const Bytes& bytes) { return decode_depth_units(bytes); }));
     if (recording_.depth_mirrored) mirror(depth);
     if (!has_depth(depth))
       fail(name,

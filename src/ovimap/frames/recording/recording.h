@@ -53,8 +53,8 @@ struct RecordedFrame {
   std::optional<Eigen::Matrix4d> pose;  ///< as stored, unchecked
   std::string pose_origin;              ///< "traj.txt line 7"; names the pose in a fault
   std::optional<Eigen::Quaterniond> orientation;  ///< as Frame has it
-  std::filesystem::path truth;          ///< true instance ids, 16-bit PNG; empty: none
-  std::string fault;                    ///< "FILE: PHRASE" when listing already found one
+  std::filesystem::path truth;                    ///< true instance ids, 16-bit PNG; empty: none
+  std::string fault;                              ///< "FILE: PHRASE" when listing already found one
 };
 
 /// Where a layout gives no times, frames are taken to be this far apart; times only inform.

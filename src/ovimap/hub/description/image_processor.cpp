@@ -60,9 +60,8 @@ void read_resize(const Json& processor, const std::filesystem::path& file, Image
 
 void read_values(const Json& processor, const std::filesystem::path& file, ImageInputSpec& spec) {
   // In double, so that 0.5 of 255 is 127.5.
-  const double scale = flag(processor, "do_rescale", true)
-                           ? processor.value("rescale_factor", 1. / kBrightest)
-                           : 1.;
+  const double scale =
+      flag(processor, "do_rescale", true) ? processor.value("rescale_factor", 1. / kBrightest) : 1.;
   if (!(scale > 0)) refuse_model(file, "'rescale_factor' must be positive");
   const bool normalised = flag(processor, "do_normalize", true);
   for (std::size_t i = 0; i < 3; ++i) {

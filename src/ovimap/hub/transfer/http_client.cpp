@@ -121,8 +121,9 @@ TransferClient::TransferClient(const HubConfig& config, const HubAccess& access)
 
 TransferClient::~TransferClient() = default;
 
-TransferReply TransferClient::get(const std::string& url, std::uint64_t first_byte, const ByteSink& sink,
-                          const std::function<bool()>& keep_going) const {
+TransferReply TransferClient::get(const std::string& url, std::uint64_t first_byte,
+                                  const ByteSink& sink,
+                                  const std::function<bool()>& keep_going) const {
   std::string at = url;
   for (int i = 0; i <= kMostRedirects; ++i) {
     std::string redirect;
@@ -138,8 +139,8 @@ TransferReply TransferClient::get(const std::string& url, std::uint64_t first_by
 }
 
 TransferReply TransferClient::request(const std::string& url, std::uint64_t first_byte,
-                              const ByteSink& sink, const std::function<bool()>& keep_going,
-                              std::string& redirect) const {
+                                      const ByteSink& sink, const std::function<bool()>& keep_going,
+                                      std::string& redirect) const {
   CURL* handle = handle_.get();
   Transfer transfer{handle, sink, keep_going, {}, false};
   set_up(handle, config_, url, transfer);

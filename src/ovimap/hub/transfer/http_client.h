@@ -48,7 +48,7 @@ class TransferClient {
 
  private:
   TransferReply request(const std::string& url, std::uint64_t first_byte, const ByteSink& sink,
-                    const std::function<bool()>& keep_going, std::string& redirect) const;
+                        const std::function<bool()>& keep_going, std::string& redirect) const;
 
   HubConfig config_;
   std::string token_origin_, token_;

@@ -38,7 +38,8 @@ bool may_pass(const TransferReply& reply) {
   return !reply.fault.empty() || status == kTimedOut || status == kTooMany || status / 100 == 5;
 }
 
-[[noreturn]] void refuse(const std::string& url, const TransferReply& reply, int tries, bool token) {
+[[noreturn]] void refuse(const std::string& url, const TransferReply& reply, int tries,
+                         bool token) {
   const long status = reply.head.status;
   const std::string tried = tries > 1 ? concat(" (tried ", tries, " times)") : "";
   if (reply.fault == kStopped)
@@ -125,7 +126,7 @@ bool Hub::answers() const {
 }
 
 TransferReply Hub::ask(const std::string& url, const std::function<TransferReply()>& request,
-                   const std::function<bool()>& keep_going) const {
+                       const std::function<bool()>& keep_going) const {
   double wait_s = config_.first_wait_s;
   for (int tries = 1;; ++tries, wait_s *= 2) {
     const TransferReply reply = request();

@@ -54,7 +54,7 @@ class Hub {
  private:
   std::string get_text(const std::string& url, std::string* next_url) const;
   TransferReply ask(const std::string& url, const std::function<TransferReply()>& request,
-                const std::function<bool()>& keep_going) const;
+                    const std::function<bool()>& keep_going) const;
   void transfer(const std::string& url, const HubFile& file, const std::filesystem::path& target,
                 const FetchProgress& progress) const;
 

@@ -166,9 +166,8 @@ Embeddings DualEncoder::encode_images(std::span<const RgbImage> images) {
 
 Embeddings DualEncoder::encode_texts(std::span<const std::string> texts) {
   const Network& network = this->texts(use_of(texts.size()));
-  return in_batches(texts, network.at_once, spec_.dimension, [&](auto items, auto rows) {
-    run_texts(*network.session, items, rows);
-  });
+  return in_batches(texts, network.at_once, spec_.dimension,
+                    [&](auto items, auto rows) { run_texts(*network.session, items, rows); });
 }
 
 void DualEncoder::run_images(std::span<const RgbImage> images, std::span<float> rows) {

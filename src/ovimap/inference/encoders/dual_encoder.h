@@ -22,8 +22,8 @@ namespace ovimap {
 /// of kind dual_encoder.
 class DualEncoder : public ImageTextEncoder {
  public:
-  /// The first few texts are encoded by the text network as its file has it, which opens faster. The other
-  /// form opens when more are asked for; their embeddings differ by rounding alone.
+  /// The first few texts are encoded by the text network as its file has it, which opens faster.
+  /// The other form opens when more are asked for; their embeddings differ by rounding alone.
   ///
   /// Opens what `use` needs; the rest when it is first asked for, which then throws likewise.
   /// Throws Error when the folder is of another kind, a file is missing or altered, or a network's

@@ -56,8 +56,8 @@ void write_rows(const std::filesystem::path& file, const Embeddings& rows) {
   std::filesystem::remove(partial, fault);
 }
 
-/// Rows of lists of texts; the one that was not asked for the longest goes first. Whole lists, since
-/// a text encoded beside others may differ in its last bits. Thread-safe.
+/// Rows of lists of texts; the one that was not asked for the longest goes first. Whole lists,
+/// since a text encoded beside others may differ in its last bits. Thread-safe.
 class RecentLists {
  public:
   std::optional<Embeddings> find(const std::string& key) {

@@ -48,8 +48,7 @@ GtMaskSource::GtMaskSource(const FrameSource& frames) : frames_(frames) {
                      " source has none; choose none, sam, a folder of masks or a model"));
 }
 
-std::optional<Entities> GtMaskSource::entities(const Frame& frame,
-                                               std::span<const MaskPrompt>) {
+std::optional<Entities> GtMaskSource::entities(const Frame& frame, std::span<const MaskPrompt>) {
   if (frame.index < 0 || frame.index >= frames_.size())
     throw FrameError(concat("masks 'gt' know frames 0 to ", frames_.size() - 1,
                             " of their recording, and this frame's index is ", frame.index));
@@ -96,8 +95,7 @@ const fs::path* DirMaskSource::file_of(const std::string& name, std::int64_t ind
   return found == by_index_.end() ? nullptr : &found->second;
 }
 
-std::optional<Entities> DirMaskSource::entities(const Frame& frame,
-                                                std::span<const MaskPrompt>) {
+std::optional<Entities> DirMaskSource::entities(const Frame& frame, std::span<const MaskPrompt>) {
   const fs::path* file = file_of(frame.name, frame.index);
   if (!file) return std::nullopt;
   const GrayPng mask = of_this_frame([&] { return read_gray(*file); });

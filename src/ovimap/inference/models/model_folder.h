@@ -83,19 +83,19 @@ std::optional<std::filesystem::path> user_model_folder();
 /// A folder on the search path that holds a model.yaml.
 struct ModelListing {
   std::filesystem::path folder;
-  std::string name;   ///< the folder's name: what `--masks NAME` takes
-  std::string kind;   ///< empty when model.yaml cannot be read
-  std::string fault;  ///< why model.yaml cannot be read; empty when it can
-  int preference = 0;  ///< of encoders: `auto` takes the greatest; model.yaml's key
-  std::string variant;     ///< of a fetched model: full, fp16 or quantized
-  bool doubtful = false;   ///< its self-test said that it may be wrong
+  std::string name;       ///< the folder's name: what `--masks NAME` takes
+  std::string kind;       ///< empty when model.yaml cannot be read
+  std::string fault;      ///< why model.yaml cannot be read; empty when it can
+  int preference = 0;     ///< of encoders: `auto` takes the greatest; model.yaml's key
+  std::string variant;    ///< of a fetched model: full, fp16 or quantized
+  bool doubtful = false;  ///< its self-test said that it may be wrong
 };
 
 /// All models on the search path, the first of each name only, sorted by name within a folder.
 std::vector<ModelListing> list_models(const std::vector<std::filesystem::path>& search_path);
 
-/// The folder of the model that a user calls `name`: a folder that holds one, or a model's name on the
-/// search path. Throws as find_model.
+/// The folder of the model that a user calls `name`: a folder that holds one, or a model's name on
+/// the search path. Throws as find_model.
 std::filesystem::path named_model(const std::string& name,
                                   const std::vector<std::filesystem::path>& search_path);
 

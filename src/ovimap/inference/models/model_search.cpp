@@ -107,11 +107,11 @@ fs::path find_model(const std::string& name, const std::vector<fs::path>& search
   std::string searched;
   for (const fs::path& place : search_path)
     searched += (searched.empty() ? "" : ", ") + place.string();
-  throw Error(concat("model '", name, "' was not found in ",
-                     searched.empty() ? "any folder" : searched,
-                     "; `ovimap models list` says what is there and what `ovimap models fetch NAME` "
-                     "gets (in a checkout tools/setup.sh gets the small ones), and --model-dir or "
-                     "OVIMAP_MODELS name other folders"));
+  throw Error(
+      concat("model '", name, "' was not found in ", searched.empty() ? "any folder" : searched,
+             "; `ovimap models list` says what is there and what `ovimap models fetch NAME` "
+             "gets (in a checkout tools/setup.sh gets the small ones), and --model-dir or "
+             "OVIMAP_MODELS name other folders"));
 }
 
 }  // namespace ovimap

@@ -205,8 +205,8 @@ const TensorInfo& OnnxSession::output(const std::string& name) const {
 
 std::string OnnxSession::metadata(const std::string& key) const {
   const Ort::AllocatorWithDefaultOptions allocator;
-  const auto value = impl_->session.GetModelMetadata().LookupCustomMetadataMapAllocated(
-      key.c_str(), allocator);
+  const auto value =
+      impl_->session.GetModelMetadata().LookupCustomMetadataMapAllocated(key.c_str(), allocator);
   return value ? value.get() : "";
 }
 

@@ -50,8 +50,8 @@ struct FloatTensor {
   std::vector<float> values;
 };
 
-/// How often a network will be run. For a few runs its weights are left as the file has them, half as many bytes
-/// for instance, and converted at each run: it opens in a third of the time.
+/// How often a network will be run. For a few runs its weights are left as the file has them, half
+/// as many bytes for instance, and converted at each run: it opens in a third of the time.
 enum class SessionUse { kManyRuns, kFewRuns };
 
 /// One ONNX file ready to run. Running is thread-safe.

@@ -30,8 +30,8 @@ TEST(MaskInBox, IsTheProposalThatTheNetworkBelievesInMost) {
   RgbImage image(16, 16, {0, 0, 0});
   fill_box(image, 0, 0, 8, 16, {255, 0, 0});
   fill_box(image, 12, 0, 16, 16, {0, 0, 255});
-  const Image<std::uint8_t> mask =
-      mask_in_box(network, network.encode(image), {Eigen::Vector2f(0, 0), Eigen::Vector2f(7, 15)}, 16, 16);
+  const Image<std::uint8_t> mask = mask_in_box(
+      network, network.encode(image), {Eigen::Vector2f(0, 0), Eigen::Vector2f(7, 15)}, 16, 16);
   EXPECT_EQ(mask.at(2, 3), 1);
   EXPECT_EQ(mask.at(5, 12), 1);
   EXPECT_EQ(mask.at(11, 3), 0) << "neither red nor most of the image";

@@ -32,8 +32,7 @@ class InverseDepth {
         const std::int32_t index = registration.color_index().at(u, v);
         if (index == Registration::kNoColor) continue;
         const Eigen::Vector2i pixel(index % frame.color.width(), index / frame.color.width());
-        const Eigen::Vector2f at =
-            (pixel.cast<float>().array() + 0.5f) * grid_from_image.array();
+        const Eigen::Vector2f at = (pixel.cast<float>().array() + 0.5f) * grid_from_image.array();
         add(static_cast<int>(at.x()), static_cast<int>(at.y()), around, 1 / frame.depth.at(u, v));
       }
   }

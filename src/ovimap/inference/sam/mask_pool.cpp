@@ -28,8 +28,7 @@ float iou(const AcceptedMask& a, const AcceptedMask& b) {
 
 }  // namespace
 
-MaskPool::MaskPool(const SamConfig& config, const LogitGrid& grid,
-                   std::optional<ThingCells> cells)
+MaskPool::MaskPool(const SamConfig& config, const LogitGrid& grid, std::optional<ThingCells> cells)
     : config_(config), grid_(grid), cells_(std::move(cells)) {}
 
 std::optional<AcceptedMask> MaskPool::test(const MaskProposals& proposals, int token,
@@ -168,7 +167,8 @@ void MaskPool::locate(AcceptedMask& mask) const {
 }
 
 /// Asks the places in the smaller one which box is theirs: those in a mug say the mug's and not the
-/// table's, those in a sofa's seat the sofa's. Where no finder tells, the configured margins decide.
+/// table's, those in a sofa's seat the sofa's. Where no finder tells, the configured margins
+/// decide.
 bool MaskPool::is_part(const AcceptedMask& mask, const AcceptedMask& larger) const {
   const auto inside = static_cast<float>(mask.mask.overlap(larger.mask));
   if (inside <= config_.part_inside_share * static_cast<float>(mask.area)) return false;

@@ -16,13 +16,13 @@ namespace ovimap {
 
 /// A mask that passed the quality tests.
 struct AcceptedMask {
-  BitMask mask;               ///< on the logit grid
-  int area = 0;               ///< grid pixels
-  float stability = 0;        ///< IoU between the masks at a raised and a lowered threshold
-  float score = 0;            ///< predicted IoU, as far as it is believed, times stability
-  bool own_region = false;    ///< fills the geometric region that prompted it
-  std::vector<float> logits;  ///< size x size, for painting at full resolution
-  Eigen::AlignedBox2f extent_px;       ///< in the colour image
+  BitMask mask;                   ///< on the logit grid
+  int area = 0;                   ///< grid pixels
+  float stability = 0;            ///< IoU between the masks at a raised and a lowered threshold
+  float score = 0;                ///< predicted IoU, as far as it is believed, times stability
+  bool own_region = false;        ///< fills the geometric region that prompted it
+  std::vector<float> logits;      ///< size x size, for painting at full resolution
+  Eigen::AlignedBox2f extent_px;  ///< in the colour image
   std::vector<Eigen::Vector2i> cells;  ///< of a finder: those whose middles it covers
 };
 
@@ -51,9 +51,10 @@ class MaskPool {
   BitMask covered() const;
   const LogitGrid& grid() const { return grid_; }
 
-  /// Entities of the colour image: parts dropped, small masks painted over large ones. A mask most of
-  /// which smaller ones hide is none: what is left of it shows through where those have their gaps (a
-  /// mask of the whole scene between the things on a desk) and belongs together by no evidence.
+  /// Entities of the colour image: parts dropped, small masks painted over large ones. A mask most
+  /// of which smaller ones hide is none: what is left of it shows through where those have their
+  /// gaps (a mask of the whole scene between the things on a desk) and belongs together by no
+  /// evidence.
   Entities entities() const;
 
  private:

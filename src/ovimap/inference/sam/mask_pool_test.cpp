@@ -173,8 +173,8 @@ TEST(MaskPool, KeepsAThingOnItsSupport) {
   EXPECT_EQ(entities.ids.at(40, 40), 1);
 }
 
-// A mask of the whole scene beneath those of a wall and a desk whose mask leaves out what lies on it:
-// the pens and papers in its gaps are not one entity with each other and the floor's rim.
+// A mask of the whole scene beneath those of a wall and a desk whose mask leaves out what lies on
+// it: the pens and papers in its gaps are not one entity with each other and the floor's rim.
 TEST(MaskPool, AMaskThatOthersHideIsNoEntityAndExplainsNothing) {
   SamConfig config = test_config();
   config.min_shown_share = 0.5f;

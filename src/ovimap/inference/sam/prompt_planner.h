@@ -20,10 +20,10 @@ struct PlannedPrompt {
 /// Points in the middle of side x side equal cells of the image, row by row.
 std::vector<PromptPoints> grid_prompts(int width_px, int height_px, int side);
 
-/// Chooses where to ask the network next, given the masks so far: objects that a map knows, by their
-/// boxes; then the largest unexplained areas: geometric regions that no mask covers, by a point inside; regions whose point did not
-/// explain them and small regions on much larger masks (a mug on a table), by their box; uncovered
-/// discs, by their centre.
+/// Chooses where to ask the network next, given the masks so far: objects that a map knows, by
+/// their boxes; then the largest unexplained areas: geometric regions that no mask covers, by a
+/// point inside; regions whose point did not explain them and small regions on much larger masks (a
+/// mug on a table), by their box; uncovered discs, by their centre.
 class PromptPlanner {
  public:
   PromptPlanner(const SamConfig& config, const LogitGrid& grid,

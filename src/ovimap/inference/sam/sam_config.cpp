@@ -45,8 +45,9 @@ void list_fields(SamConfig& config, ConfigFields& fields) {
              "score a mask loses per doubling or halving of the prompting region's size");
   fields.add("duplicate_iou", config.duplicate_iou, 0.f, 1.f,
              "of two masks that overlap more, the better is kept");
-  fields.add("part_inside_share", config.part_inside_share, 0.f, 1.f,
-             "a mask this much inside a larger one may be its part: a finder tells, or the next three");
+  fields.add(
+      "part_inside_share", config.part_inside_share, 0.f, 1.f,
+      "a mask this much inside a larger one may be its part: a finder tells, or the next three");
   fields.add("better_margin", config.better_margin, 0.f, 1.f,
              "a mask that scores this much more than the larger one is no part");
   fields.add("own_region_iou", config.own_region_iou, 0.f, 1.f,

@@ -13,8 +13,8 @@ enum class Prompting {
 
 /// Which things that a finder sees are asked for.
 struct FinderConfig {
-  int max_prompts = 30;     ///< a frame; 0: no finder is asked
-  float min_depth = 0.3f;   ///< of a thing's middle, from 0 at a border to 1; lower peaks are none
+  int max_prompts = 30;    ///< a frame; 0: no finder is asked
+  float min_depth = 0.3f;  ///< of a thing's middle, from 0 at a border to 1; lower peaks are none
   float min_mask_iou = 0.75f;  ///< as a finder rates its own mask; of a lesser one SAM is asked
   float decoder_trust = 0.5f;  ///< of SAM's own rating, beside the finder's, which is the true IoU
 };
@@ -38,12 +38,13 @@ struct SamConfig {
   float region_size_penalty = 0.05f;  ///< with one: score lost per doubling or halving of its size
 
   // Which masks become entities.
-  float duplicate_iou = 0.7f;       ///< of two masks that overlap more, the better is kept
-  float part_inside_share = 0.8f;   ///< so much inside a larger one it may be a part: a finder tells;
-  float better_margin = 0.1f;       ///< without one it is, unless it scores so much more, or
-  float own_region_iou = 0.5f;      ///< ... fills a geometric region of its own to this degree and
+  float duplicate_iou = 0.7f;  ///< of two masks that overlap more, the better is kept
+  float part_inside_share =
+      0.8f;                     ///< so much inside a larger one it may be a part: a finder tells;
+  float better_margin = 0.1f;   ///< without one it is, unless it scores so much more, or
+  float own_region_iou = 0.5f;  ///< ... fills a geometric region of its own to this degree and
   float own_region_margin = 0.05f;  ///< scores at most this much less
-  float min_shown_share = 0.f;   ///< a mask of which smaller ones leave less in sight is no entity
+  float min_shown_share = 0.f;  ///< a mask of which smaller ones leave less in sight is no entity
 
   // Where the network is asked.
   int min_region_px = 500;       ///< smaller geometric regions prompt nothing

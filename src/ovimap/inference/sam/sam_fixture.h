@@ -35,18 +35,20 @@ inline void write_model(const ScratchFolder& scratch, int grid, OnnxGraph decode
   scratch.write("decoder.onnx", decoder.file());
   scratch.write(
       "model.yaml",
-      concat("kind: sam\nname: n\nlicense: l\nsource: s\n"
-             "input: {size: ", kSide, ", resize: stretch, mean: [", mean, ", ", mean, ", ", mean,
-             "], std: [1, 1, 1]}\n"
-             "networks:\n"
-             "  encoder: {file: encoder.onnx, inputs: {image: pixel_values}, outputs: {embedding: "
-             "image_embeddings}}\n"
-             "  decoder:\n    file: decoder.onnx\n"
-             "    inputs: {embedding: image_embeddings, points: input_points, labels: input_labels, "
-             "boxes: input_boxes}\n"
-             "    outputs: {masks: pred_masks, scores: iou_scores}\n",
-             keys, "sha256:\n  encoder.onnx: ", sha256_of_file(scratch.path() / "encoder.onnx"),
-             "\n  decoder.onnx: ", sha256_of_file(scratch.path() / "decoder.onnx"), "\n"));
+      concat(
+          "kind: sam\nname: n\nlicense: l\nsource: s\n"
+          "input: {size: ",
+          kSide, ", resize: stretch, mean: [", mean, ", ", mean, ", ", mean,
+          "], std: [1, 1, 1]}\n"
+          "networks:\n"
+          "  encoder: {file: encoder.onnx, inputs: {image: pixel_values}, outputs: {embedding: "
+          "image_embeddings}}\n"
+          "  decoder:\n    file: decoder.onnx\n"
+          "    inputs: {embedding: image_embeddings, points: input_points, labels: input_labels, "
+          "boxes: input_boxes}\n"
+          "    outputs: {masks: pred_masks, scores: iou_scores}\n",
+          keys, "sha256:\n  encoder.onnx: ", sha256_of_file(scratch.path() / "encoder.onnx"),
+          "\n  decoder.onnx: ", sha256_of_file(scratch.path() / "decoder.onnx"), "\n"));
 }
 
 }  // namespace ovimap::sam_fixture

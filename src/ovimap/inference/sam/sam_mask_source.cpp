@@ -41,8 +41,7 @@ std::vector<MaskPrompt> SamMaskSource::things_to_ask(const std::vector<Thing>& t
                                                      MaskPool& pool) const {
   std::vector<MaskPrompt> open;
   for (const Thing& thing : things)
-    if (masks.empty() ||
-        !pool.offer_unasked(masks.mask_at(thing.cell, pool.grid()), thing.prompt))
+    if (masks.empty() || !pool.offer_unasked(masks.mask_at(thing.cell, pool.grid()), thing.prompt))
       open.push_back(thing.prompt);
   return open;
 }
@@ -62,8 +61,8 @@ void SamMaskSource::ask_where_expected(const ImageFeatures& features,
 }
 
 void SamMaskSource::ask_where_unexplained(const ImageFeatures& features,
-                                          std::span<const MaskPrompt> regions,
-                                          int prompts_allowed, MaskPool& pool) const {
+                                          std::span<const MaskPrompt> regions, int prompts_allowed,
+                                          MaskPool& pool) const {
   PromptPlanner planner(config_, pool.grid(), regions);
   for (int budget = prompts_allowed; budget > 0;) {
     const std::vector<PlannedPrompt> batch =

@@ -73,8 +73,8 @@ class SamNetwork {
   std::vector<std::string> feature_roles_;    ///< encoder outputs that the decoder wants
   std::vector<std::string> feature_outputs_;  ///< their names in the encoder
   int grid_size_ = 0;
-  bool batches_ = false;  ///< the number of prompts is open
-  bool nested_ = false;   ///< points are [1, prompts, points, 2], as EfficientSAM has them
+  bool batches_ = false;       ///< the number of prompts is open
+  bool nested_ = false;        ///< points are [1, prompts, points, 2], as EfficientSAM has them
   bool box_corners_ = true;    ///< the decoder knows the labels of box corners
   bool adds_padding_ = false;  ///< the decoder adds the padding point itself
 };

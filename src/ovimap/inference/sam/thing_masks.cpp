@@ -31,8 +31,8 @@ ThingMasks::ThingMasks(FinderMaps maps, int grid_size) : maps_(std::move(maps)) 
 }
 
 float ThingMasks::kernel(int term, const Eigen::Vector2i& cell) const {
-  return maps_.kernels[static_cast<std::size_t>((term * maps_.rows + cell.y()) * maps_.columns +
-                                                cell.x())];
+  return maps_
+      .kernels[static_cast<std::size_t>((term * maps_.rows + cell.y()) * maps_.columns + cell.x())];
 }
 
 MaskProposals ThingMasks::mask_at(const Eigen::Vector2i& cell, const LogitGrid& grid) const {

@@ -15,11 +15,13 @@ namespace ovimap {
 /// pixel lies seen from that cell.
 class ThingMasks {
  public:
-  /// Of a finder that gives no masks, none. Throws Error where they are not on grids of `grid_size`.
+  /// Of a finder that gives no masks, none. Throws Error where they are not on grids of
+  /// `grid_size`.
   ThingMasks(FinderMaps maps, int grid_size);
 
   bool empty() const { return maps_.basis.empty(); }
-  /// The mask of the thing in whose middle the cell lies, and how good the finder believes it to be.
+  /// The mask of the thing in whose middle the cell lies, and how good the finder believes it to
+  /// be.
   MaskProposals mask_at(const Eigen::Vector2i& cell, const LogitGrid& grid) const;
 
  private:

@@ -51,7 +51,7 @@ TEST(ThingMasks, AreSumsOfTheBasisAsTheCellWeighsIt) {
 TEST(ThingMasks, KnowWhereAPixelLiesSeenFromTheCell) {
   const Eigen::Vector2i cell(1, 1);  // its middle is at 2.5, 2.5 of the grid
   FinderMaps maps = drawn_maps();
-  set(maps, kImages + 1, cell, 32);        // x
+  set(maps, kImages + 1, cell, 32);       // x
   set(maps, kImages + 4, cell, 32 * 32);  // y squared
   const MaskProposals mask = ThingMasks(maps, kGridPx).mask_at(cell, grid());
   EXPECT_FLOAT_EQ(mask.logits.at(0), -2.5f + 6.25f);

@@ -90,13 +90,16 @@ std::unique_ptr<PersonFinder> make_person_finder(
     const std::vector<std::filesystem::path>& model_dirs) {
   const auto search_path = model_search_path(model_dirs);
   const std::vector<ModelListing> models = list_models(search_path);
-  const bool folder = std::filesystem::is_regular_file(std::filesystem::path(detector) / "model.yaml");
+  const bool folder =
+      std::filesystem::is_regular_file(std::filesystem::path(detector) / "model.yaml");
   if (!folder && std::none_of(models.begin(), models.end(),
                               [&](const ModelListing& model) { return model.name == detector; }))
-    throw Error(concat("people are found by the detector '", detector,
-                       "', which is not installed; run `ovimap models fetch default` (in a checkout: "
-                       "tools/setup.sh), or name another by --set people.detector=NAME"));
-  return std::make_unique<PersonFinder>(read_model_folder(named_model(detector, search_path)), runtime);
+    throw Error(
+        concat("people are found by the detector '", detector,
+               "', which is not installed; run `ovimap models fetch default` (in a checkout: "
+               "tools/setup.sh), or name another by --set people.detector=NAME"));
+  return std::make_unique<PersonFinder>(read_model_folder(named_model(detector, search_path)),
+                                        runtime);
 }
 
 }  // namespace ovimap

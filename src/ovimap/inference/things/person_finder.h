@@ -22,9 +22,9 @@ class PersonFinder {
   PersonFinder(const ModelFolder& model, const RuntimeConfig& runtime);
 
   const std::string& name() const { return detector_.name(); }
-  /// Boxes of at least that score, the surest first, each with all that overlap with it by more than
-  /// half. Looks at the whole picture, and at the squares at both ends of one that is no square,
-  /// where people are larger and as slim as they are. Throws Error when the network fails.
+  /// Boxes of at least that score, the surest first, each with all that overlap with it by more
+  /// than half. Looks at the whole picture, and at the squares at both ends of one that is no
+  /// square, where people are larger and as slim as they are. Throws Error when the network fails.
   std::vector<PersonBox> find(const RgbImage& picture, float min_score) const;
 
  private:
@@ -39,6 +39,7 @@ class PersonFinder {
 /// By the detector of that name on the search path, or in that folder. Throws Error with the remedy
 /// when it is not there.
 std::unique_ptr<PersonFinder> make_person_finder(
-    const std::string& detector, const RuntimeConfig& runtime, const std::vector<std::filesystem::path>& model_dirs = {});
+    const std::string& detector, const RuntimeConfig& runtime,
+    const std::vector<std::filesystem::path>& model_dirs = {});
 
 }  // namespace ovimap

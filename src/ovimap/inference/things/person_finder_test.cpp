@@ -45,7 +45,8 @@ TEST(PersonFinder, LooksAtTheSquaresAtBothEndsAsWell) {
 
 TEST(PersonFinder, ADetectorWithoutPeopleIsRefused) {
   const auto model = read_model_folder(inference_testdata() / "golden_detector");
-  EXPECT_TRUE(contains(error_of([&] { PersonFinder finder(model, {}); }), "knows no thing called 'person'"));
+  EXPECT_TRUE(contains(error_of([&] { PersonFinder finder(model, {}); }),
+                       "knows no thing called 'person'"));
   const std::string absent = error_of([] { make_person_finder("no-such-detector", {}); });
   EXPECT_TRUE(contains(absent, "'no-such-detector', which is not installed")) << absent;
   EXPECT_TRUE(contains(absent, "tools/setup.sh")) << absent;

@@ -68,7 +68,8 @@ ThingDetector::ThingDetector(const ModelFolder& model, const RuntimeConfig& runt
   ratio_.slope = number_in(text_of(model, "slope"), model, "'slope'", 0.f, 100.f);
   ratio_.offset = number_in(text_of(model, "offset"), model, "'offset'", -100.f, 100.f);
   network_.input(input_);
-  const TensorShape &boxes = network_.output(boxes_).shape, &scores = network_.output(scores_).shape;
+  const TensorShape &boxes = network_.output(boxes_).shape,
+                    &scores = network_.output(scores_).shape;
   if (boxes.size() != 2 || scores.size() != 2 || boxes[1] != kCorners || boxes[0] != scores[0] ||
       scores[1] != static_cast<std::int64_t>(things_.size()))
     throw Error(concat("model ", model.folder.string(), " answers boxes ", to_text(boxes),
@@ -113,8 +114,7 @@ Eigen::VectorXf ThingDetector::log_ratios(const Found& found,
     if (overlap(box_of(found.boxes, row), box) >= kLeastOverlap)
       best = best.cwiseMax(found.scores.row(row).transpose());
   for (Eigen::Index thing = 0; thing < best.size(); ++thing)
-    best[thing] =
-        ratio_.log_ratio(best[thing], background_[static_cast<std::size_t>(thing)]);
+    best[thing] = ratio_.log_ratio(best[thing], background_[static_cast<std::size_t>(thing)]);
   return best;
 }
 

@@ -83,8 +83,7 @@ TEST_F(GoldenDetector, SeveralDetectorsAnswerOneAfterTheOther) {
   const auto recognizer = make_thing_recognizer(folder + "," + folder, {});
   ASSERT_NE(recognizer, nullptr);
   EXPECT_EQ(recognizer->identity().things.size(), 6u);
-  const Eigen::VectorXf ratios =
-      recognizer->look(picture_)->log_ratios(box(0, 0, 0.5f, 0.5f));
+  const Eigen::VectorXf ratios = recognizer->look(picture_)->log_ratios(box(0, 0, 0.5f, 0.5f));
   ASSERT_EQ(ratios.size(), 6);
   EXPECT_EQ(ratios.head(3), ratios.tail(3));
 }

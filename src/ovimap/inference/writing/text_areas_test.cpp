@@ -55,8 +55,8 @@ TEST(TextAreas, GrowByTheRatioOfAreaToOutline) {
   const TextArea truth = turned_by(0);
   const TextArea tight = find_text_areas(drawn(truth), {.growth = 0.f}).at(0);
   const TextArea grown = find_text_areas(drawn(truth), {.growth = 1.5f}).at(0);
-  const float more = 1.5f * tight.length_px * tight.height_px /
-                     (2 * (tight.length_px + tight.height_px));
+  const float more =
+      1.5f * tight.length_px * tight.height_px / (2 * (tight.length_px + tight.height_px));
   EXPECT_NEAR(grown.length_px - tight.length_px, 2 * more, 1e-3f);
   EXPECT_NEAR(grown.height_px - tight.height_px, 2 * more, 1e-3f);
 }

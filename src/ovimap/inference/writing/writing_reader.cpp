@@ -14,10 +14,10 @@ namespace ovimap {
 
 namespace {
 
-constexpr int kDetectorStep = 32;       // sides of its input are multiples of it
-constexpr float kLongestLine = 40.f;    // lengths by heights; longer areas are no line
-constexpr int kShortestLinePx = 16;     // of what the speller sees
-constexpr float kSureEnough = 0.9f;     // a line read so well is not read upside down as well
+constexpr int kDetectorStep = 32;     // sides of its input are multiples of it
+constexpr float kLongestLine = 40.f;  // lengths by heights; longer areas are no line
+constexpr int kShortestLinePx = 16;   // of what the speller sees
+constexpr float kSureEnough = 0.9f;   // a line read so well is not read upside down as well
 constexpr const char* kCharacters = "character";  // key of the speller's own list
 
 float number_of(const ModelFolder& model, const char* key, float least, float most) {
@@ -76,10 +76,12 @@ Rgb8 sample(const RgbImage& image, const Eigen::Vector2f& at) {
   const int bottom = std::min(top + 1, image.height() - 1);
   const float u = x - static_cast<float>(left), v = y - static_cast<float>(top);
   const auto mix = [&](auto channel) {
-    const auto value = [&](int cx, int cy) { return static_cast<float>(image.at(cx, cy).*channel); };
-    return static_cast<std::uint8_t>((1 - v) * ((1 - u) * value(left, top) + u * value(right, top)) +
-                                     v * ((1 - u) * value(left, bottom) + u * value(right, bottom)) +
-                                     0.5f);
+    const auto value = [&](int cx, int cy) {
+      return static_cast<float>(image.at(cx, cy).*channel);
+    };
+    return static_cast<std::uint8_t>(
+        (1 - v) * ((1 - u) * value(left, top) + u * value(right, top)) +
+        v * ((1 - u) * value(left, bottom) + u * value(right, bottom)) + 0.5f);
   };
   return {mix(&Rgb8::r), mix(&Rgb8::g), mix(&Rgb8::b)};
 }
@@ -165,9 +167,9 @@ Image<float> WritingReader::text_probability(const RgbImage& image) const {
   const RgbImage input = resize_bilinear(image, side(image.width()), side(image.height()));
   const FloatTensor output = run_on(detector_, detector_input_, detector_output_, input);
   if (output.shape != TensorShape{1, 1, input.height(), input.width()})
-    throw Error(concat("model ", folder_.string(), ": the detector answers ",
-                       to_text(output.shape), " to an image of ", input.width(), "x",
-                       input.height(), "; expected is a probability for each pixel"));
+    throw Error(concat("model ", folder_.string(), ": the detector answers ", to_text(output.shape),
+                       " to an image of ", input.width(), "x", input.height(),
+                       "; expected is a probability for each pixel"));
   Image<float> probability(input.width(), input.height());
   std::copy(output.values.begin(), output.values.end(), probability.begin());
   return probability;

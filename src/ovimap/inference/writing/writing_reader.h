@@ -18,9 +18,9 @@ namespace ovimap {
 
 /// A line of writing that was read in an image.
 struct WrittenLine {
-  std::string text;                ///< UTF-8, not empty
-  float confidence = 0;            ///< mean over the characters, in [0, 1]
-  Eigen::AlignedBox2i box_px;      ///< around it in the image, both corners included
+  std::string text;            ///< UTF-8, not empty
+  float confidence = 0;        ///< mean over the characters, in [0, 1]
+  Eigen::AlignedBox2i box_px;  ///< around it in the image, both corners included
 };
 
 /// Reads what is written in a picture: a network finds lines (probabilities by pixel), another one
@@ -48,9 +48,9 @@ class WritingReader {
   std::string detector_input_, detector_output_, speller_input_, speller_output_;
   std::vector<std::string> characters_;  ///< [class]; class 0 is none
   TextAreaRule rule_;
-  int longest_side_px_ = 0;     ///< of what the detector sees
-  float largest_scale_ = 1;     ///< small pictures are enlarged by no more
-  int line_height_px_ = 0;      ///< of what the speller sees
+  int longest_side_px_ = 0;  ///< of what the detector sees
+  float largest_scale_ = 1;  ///< small pictures are enlarged by no more
+  int line_height_px_ = 0;   ///< of what the speller sees
   float least_confidence_ = 0;
 };
 

@@ -85,7 +85,8 @@ TEST(WritingReader, SaysWhatIsWrongWithAModel) {
   swapped.networks["speller"].inputs["line"] = "x";
   swapped.networks["speller"].outputs["characters"] = "ink";
   EXPECT_TRUE(contains(error_of([&] { WritingReader(swapped, {}); }), "characters"));
-  EXPECT_TRUE(contains(error_of([] { make_writing_reader("no-such-model", {}); }), "no-such-model"));
+  EXPECT_TRUE(
+      contains(error_of([] { make_writing_reader("no-such-model", {}); }), "no-such-model"));
 }
 
 }  // namespace

@@ -70,8 +70,8 @@ Evidence evidence_between(const Presences& a, const Presences& b) {
 /// no others can come to speak for joining.
 ///
 /// How often two clusters met is counted when their edge comes first in the queue. Until then the
-/// edge knows of fewer meetings and speaks more for joining than it will. So a cluster that takes in
-/// a hundred super-points does not count anew, each time, how often it met each neighbour.
+/// edge knows of fewer meetings and speaks more for joining than it will. So a cluster that takes
+/// in a hundred super-points does not count anew, each time, how often it met each neighbour.
 class EdgeContraction {
  public:
   EdgeContraction(std::vector<Presences> nodes, std::span<const std::pair<Node, Node>> tied,
@@ -127,8 +127,7 @@ class EdgeContraction {
     bool operator==(const Queued&) const = default;
     /// Among equal weights the older labels go first.
     bool operator<(const Queued& other) const {
-      return std::tie(weight, other.older, other.younger) <
-             std::tie(other.weight, older, younger);
+      return std::tie(weight, other.older, other.younger) < std::tie(other.weight, older, younger);
     }
   };
 
@@ -157,8 +156,7 @@ class EdgeContraction {
   }
 
   Evidence& between(Node a, Node b) {
-    const auto [at, is_new] =
-        edges_of_[a].try_emplace(b, static_cast<EdgeIndex>(edges_.size()));
+    const auto [at, is_new] = edges_of_[a].try_emplace(b, static_cast<EdgeIndex>(edges_.size()));
     if (is_new) {
       edges_.push_back({a, b, {}});
       edges_of_[b].emplace(a, at->second);

@@ -33,9 +33,10 @@ struct EntityConsensus::Graph {
 void EntityConsensus::observe(const std::map<Label, std::uint16_t>& entity_of_root,
                               std::span<const float> ratings) {
   for (const auto& [root, entity] : entity_of_root) {
-    const float rating = entity <= ratings.size() ? std::clamp(ratings[entity - 1u], 0.f, 1.f) : 1.f;
-    add_sighting(root, {frames_, entity,
-                        static_cast<std::uint8_t>(std::lround(kHighestRating * rating))});
+    const float rating =
+        entity <= ratings.size() ? std::clamp(ratings[entity - 1u], 0.f, 1.f) : 1.f;
+    add_sighting(
+        root, {frames_, entity, static_cast<std::uint8_t>(std::lround(kHighestRating * rating))});
     shown_.insert(root);
   }
   ++frames_;

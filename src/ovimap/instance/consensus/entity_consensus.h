@@ -36,16 +36,16 @@ struct RegroupedObject {
 ///
 /// A frame joins two super-points when one entity shows both, and keeps them apart when different
 /// entities do. Objects are the clusters of greedy additive edge contraction over joined -
-/// apart_weight * apart. Unlike votes that are cast frame by frame, the result does not depend on the
-/// order of the frames, and a mask that once spans two objects does no lasting harm.
+/// apart_weight * apart. Unlike votes that are cast frame by frame, the result does not depend on
+/// the order of the frames, and a mask that once spans two objects does no lasting harm.
 ///
-/// That is what settle() finds. While frames come, update() asks of the super-points in sight alone: a
-/// chain of single mistakes soon links everything that was ever seen, and what a frame costs must not
-/// grow with it. The others of an object rest: they stay together, and with those in sight unless these
-/// are kept apart from them more often than joined with them.
+/// That is what settle() finds. While frames come, update() asks of the super-points in sight
+/// alone: a chain of single mistakes soon links everything that was ever seen, and what a frame
+/// costs must not grow with it. The others of an object rest: they stay together, and with those in
+/// sight unless these are kept apart from them more often than joined with them.
 ///
-/// Kept are sightings, by super-point and by frame, not pairs: their number grows with what is seen,
-/// that of pairs with its square.
+/// Kept are sightings, by super-point and by frame, not pairs: their number grows with what is
+/// seen, that of pairs with its square.
 class EntityConsensus {
  public:
   explicit EntityConsensus(const ConsensusConfig& config = {}) : config_(config) {}
@@ -69,8 +69,8 @@ class EntityConsensus {
   const std::set<Label>& object_with(Label root) const { return members_.at(object_of_.at(root)); }
   std::uint32_t frames() const { return frames_; }
   /// Goes on where another stopped. `frames`: how many were observed; more than the sightings tell
-  /// when the last showed nothing. `objects`: any root of each root's object; those that are missing
-  /// are objects of their own.
+  /// when the last showed nothing. `objects`: any root of each root's object; those that are
+  /// missing are objects of their own.
   void restore(EntitySightings sightings, std::uint32_t frames,
                const std::map<Label, Label>& objects);
 
@@ -87,7 +87,8 @@ class EntityConsensus {
   void add_sighting(Label root, const EntitySighting& sighting);
   Graph graph_of(const std::set<Label>& shown) const;
   std::vector<Presences> presences_in(const Graph& graph) const;
-  void see_resting(const Graph& graph, std::uint32_t frame, std::vector<Presences>& presences) const;
+  void see_resting(const Graph& graph, std::uint32_t frame,
+                   std::vector<Presences>& presences) const;
   RegroupedObject regroup(const Graph& graph, std::span<const Node> cluster);
   void move(Label root, Object object);
 

@@ -162,7 +162,8 @@ TEST(EntityConsensus, WhatRestsStaysTogetherUntilFramesSpeakAgainstIt) {
   updated(consensus);
   EXPECT_EQ(consensus.object_with(3), (std::set<Label>{1, 3})) << "by three frames against one";
   EXPECT_EQ(consensus.object_with(2), (std::set<Label>{2}));
-  EXPECT_EQ(consensus.settle(), (std::map<Label, Label>{{1, 1}, {2, 1}, {3, 1}})) << "by all frames";
+  EXPECT_EQ(consensus.settle(), (std::map<Label, Label>{{1, 1}, {2, 1}, {3, 1}}))
+      << "by all frames";
 }
 
 /// An endless floor, with ever new pieces of it and things on it.

@@ -154,8 +154,8 @@ class JudgedContraction {
       const Meetings met = meetings_of(a, b);
       return static_cast<float>(std::log1p(met.joined) - std::log1p(apart_weight_ * met.apart));
     }
-    return judge_.log_odds(pair_features(a, b, borders_of_[old].at(young), agreement_),
-                           roots_[old], roots_[young]);
+    return judge_.log_odds(pair_features(a, b, borders_of_[old].at(young), agreement_), roots_[old],
+                           roots_[young]);
   }
 
   void contract(Node old, Node young) {

@@ -19,13 +19,13 @@ class PairJudge {
   virtual void united(Label old, Label young) { (void)old, (void)young; }
 };
 
-/// Clusters of these roots (ascending, with sightings): the two that are most surely one thing become
-/// one, and what is around them is judged anew, until no two are more likely one than not
+/// Clusters of these roots (ascending, with sightings): the two that are most surely one thing
+/// become one, and what is around them is judged anew, until no two are more likely one than not
 /// (agglomeration by a learned judge, as in connectomics: Nunez-Iglesias et al., PLOS ONE 2013).
 /// Judged are clusters that touch and those that some entity shows together. `shapes`: of the map's
-/// surface by now. Of super-points without any, which left, masks alone tell: a frame that keeps two
-/// apart weighs `apart_weight` against one that joins them. Returns the oldest
-/// (lowest) root of each one's cluster.
+/// surface by now. Of super-points without any, which left, masks alone tell: a frame that keeps
+/// two apart weighs `apart_weight` against one that joins them. Returns the oldest (lowest) root of
+/// each one's cluster.
 std::map<Label, Label> contract_by_judge(std::span<const Label> roots,
                                          const EntitySightings& sightings,
                                          const SuperPointShapes& shapes, double apart_weight,

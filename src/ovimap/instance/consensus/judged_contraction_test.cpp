@@ -52,8 +52,8 @@ std::map<Label, Label> plain_objects(const EntitySightings& sightings,
   for (auto& [root, group] : groups)
     for (EntityShare& share : group.cluster.shares)
       for (const auto& [other, seen] : sightings)
-        share.entity_vertices += shapes.of.at(other).vertices *
-                                 std::count(seen.begin(), seen.end(), share.sighting);
+        share.entity_vertices +=
+            shapes.of.at(other).vertices * std::count(seen.begin(), seen.end(), share.sighting);
   const auto neighbours = [&](const Group& a, const Group& b, SuperPointBorder& border) {
     bool near = false;
     for (const Label x : a.members)
@@ -123,9 +123,8 @@ TEST(JudgedContraction, IsThePlainOneOnRandomSightings) {
 }
 
 TEST(JudgedContraction, WhatHasNoSurfaceIsToldByMasksAlone) {
-  const EntitySightings sightings = {{1, {{0, 1}, {1, 1}}},
-                                     {2, {{0, 1}, {1, 2}}},
-                                     {3, {{0, 2}, {1, 3}}}};
+  const EntitySightings sightings = {
+      {1, {{0, 1}, {1, 1}}}, {2, {{0, 1}, {1, 2}}}, {3, {{0, 2}, {1, 3}}}};
   class Refusing : public PairJudge {
    public:
     float log_odds(const PairFeatures&, Label, Label) override { return -1; }

@@ -96,9 +96,8 @@ PointCluster united(const PointCluster& a, const PointCluster& b) {
   both.shape += b.shape;
   both.shares.reserve(a.shares.size() + b.shares.size());
   std::merge(a.shares.begin(), a.shares.end(), b.shares.begin(), b.shares.end(),
-             std::back_inserter(both.shares), [](const EntityShare& x, const EntityShare& y) {
-               return x.sighting < y.sighting;
-             });
+             std::back_inserter(both.shares),
+             [](const EntityShare& x, const EntityShare& y) { return x.sighting < y.sighting; });
   std::size_t kept = 0;
   for (std::size_t i = 1; i < both.shares.size(); ++i) {
     if (both.shares[i].sighting == both.shares[kept].sighting)
@@ -122,8 +121,7 @@ PairFeatures pair_features(const PointCluster& a, const PointCluster& b,
       (small.color_sum / small_size - large.color_sum / large_size).cwiseAbs();
   const Eigen::Vector3d small_normal = small.normal_sum / small_size;
   const Eigen::Vector3d large_normal = large.normal_sum / large_size;
-  const Eigen::Vector3d between =
-      large.position_sum / large_size - small.position_sum / small_size;
+  const Eigen::Vector3d between = large.position_sum / large_size - small.position_sum / small_size;
   const double all = volume(small.box.merged(large.box));
   const double small_volume = volume(small.box), large_volume = volume(large.box);
 
@@ -136,8 +134,7 @@ PairFeatures pair_features(const PointCluster& a, const PointCluster& b,
   set(PairFeature::kJoinedShare, (met.joined + 0.5) / (met.joined + met.apart + 1));
   set(PairFeature::kSmallSize, std::log(small_size));
   set(PairFeature::kLargeSize, std::log(large_size));
-  set(PairFeature::kContact,
-      std::log1p(static_cast<double>(border.edges) / std::sqrt(small_size)));
+  set(PairFeature::kContact, std::log1p(static_cast<double>(border.edges) / std::sqrt(small_size)));
   set(PairFeature::kTouching, border.edges > 0);
   set(PairFeature::kFold, mean_over(border.fold, border.edges));
   set(PairFeature::kStep, mean_over(border.color_step, border.edges) / 64);

@@ -27,31 +27,31 @@ PointCluster united(const PointCluster& a, const PointCluster& b);
 
 /// What tells whether two clusters are one thing. The smaller one is named first.
 enum class PairFeature {
-  kJoined,        ///< log(1 + frames in which one entity shows both)
-  kApart,         ///< log(1 + frames in which different entities do)
-  kJoinedShare,   ///< the former's share of both
-  kSmallSize,     ///< log of its vertices
+  kJoined,       ///< log(1 + frames in which one entity shows both)
+  kApart,        ///< log(1 + frames in which different entities do)
+  kJoinedShare,  ///< the former's share of both
+  kSmallSize,    ///< log of its vertices
   kLargeSize,
-  kContact,       ///< log(1 + edges between them, in roots of the smaller one's vertices)
-  kTouching,      ///< 1 where there are any
-  kFold,          ///< mean change of the normal across the border, positive where convex
-  kStep,          ///< mean change of colour across the border
-  kColor,         ///< difference of their mean colours
-  kTone,          ///< the same of red against blue, which light changes less
-  kAlign,         ///< product of their mean normals
-  kSmallFlat,     ///< length of its mean normal: 1 where it is plane
+  kContact,    ///< log(1 + edges between them, in roots of the smaller one's vertices)
+  kTouching,   ///< 1 where there are any
+  kFold,       ///< mean change of the normal across the border, positive where convex
+  kStep,       ///< mean change of colour across the border
+  kColor,      ///< difference of their mean colours
+  kTone,       ///< the same of red against blue, which light changes less
+  kAlign,      ///< product of their mean normals
+  kSmallFlat,  ///< length of its mean normal: 1 where it is plane
   kLargeFlat,
-  kSmallOffset,   ///< of the large one's middle from the small one's plane, metres
+  kSmallOffset,  ///< of the large one's middle from the small one's plane, metres
   kLargeOffset,
-  kGap,           ///< between their boxes, metres
-  kLargerBox,     ///< log of the common box's volume over that of the larger box
-  kBothBoxes,     ///< log of the common box's volume over that of both
-  kLargeVolume,   ///< log of the larger one's box's volume
-  kFitBoth,       ///< mean over the frames that show both of the best overlap of an entity with both
-                  ///< together (intersection over union),
-  kFitSmall,      ///< ... with the small one alone,
-  kFitLarge,      ///< ... with the large one alone
-  kAgreement,     ///< how well the map's masks agree with each other: 1 where they never differ
+  kGap,          ///< between their boxes, metres
+  kLargerBox,    ///< log of the common box's volume over that of the larger box
+  kBothBoxes,    ///< log of the common box's volume over that of both
+  kLargeVolume,  ///< log of the larger one's box's volume
+  kFitBoth,      ///< mean over the frames that show both of the best overlap of an entity with both
+                 ///< together (intersection over union),
+  kFitSmall,     ///< ... with the small one alone,
+  kFitLarge,     ///< ... with the large one alone
+  kAgreement,    ///< how well the map's masks agree with each other: 1 where they never differ
   kCount
 };
 using PairFeatures = std::array<float, static_cast<std::size_t>(PairFeature::kCount)>;

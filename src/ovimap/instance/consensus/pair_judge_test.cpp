@@ -37,12 +37,14 @@ float at(const PairFeatures& features, PairFeature feature) {
 TEST(PairJudge, MeetingsAreSharedOutByWhatAFrameShows) {
   const PointCluster a = cluster(piece(0, 100, 50), {{0, 1}, {1, 1}, {2, 5}});
   PointCluster b = cluster(piece(0.4f, 50, 50), {{0, 1}, {1, 2}, {3, 1}});
-  b.shares.insert(b.shares.begin() + 1, {{0, 9}, 150, 150});  // three quarters of it in another entity
+  b.shares.insert(b.shares.begin() + 1,
+                  {{0, 9}, 150, 150});  // three quarters of it in another entity
   const Meetings met = meetings_of(a, b);
   EXPECT_DOUBLE_EQ(met.joined, 0.25);
   EXPECT_DOUBLE_EQ(met.apart, 0.75 + 1);
   EXPECT_DOUBLE_EQ(met.fit_a, 2 * 100. / 300);
-  EXPECT_DOUBLE_EQ(met.fit_b, 0.75 + 50. / 300) << "three quarters in an entity of its own, then little";
+  EXPECT_DOUBLE_EQ(met.fit_b, 0.75 + 50. / 300)
+      << "three quarters in an entity of its own, then little";
   EXPECT_DOUBLE_EQ(met.fit_both, 150. / 300 + 100. / 350);
 }
 
@@ -83,10 +85,10 @@ TEST(PairJudge, TellsPiecesOfAPlaneFromAThingOnIt) {
     other.push_back({frame, 2});
   }
   const SuperPointBorder seam{.edges = 80, .fold = 0, .color_step = 80};
-  EXPECT_GT(log_odds_of_one(pair_features(cluster(piece(0, 1600, 90), one, 3200),
-                                          cluster(piece(0.4f, 1600, 90), same, 3200), seam,
-                                          kAgreement)),
-            1);
+  EXPECT_GT(
+      log_odds_of_one(pair_features(cluster(piece(0, 1600, 90), one, 3200),
+                                    cluster(piece(0.4f, 1600, 90), same, 3200), seam, kAgreement)),
+      1);
   SuperPointShape mug = piece(0.1f, 300, 220);
   mug.normal_sum *= 0.2;
   mug.box = {Eigen::Vector3f(0.1f, 0.1f, 0), Eigen::Vector3f(0.18f, 0.18f, 0.1f)};

@@ -7,13 +7,15 @@
 namespace ovimap {
 namespace {
 
-/// A step up: a floor (label 1) that meets a wall (label 2) in an edge of the mesh, seen from above.
+/// A step up: a floor (label 1) that meets a wall (label 2) in an edge of the mesh, seen from
+/// above.
 Mesh floor_and_wall() {
   Mesh mesh;
   mesh.vertices = {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}, {1.1f, 0, 1}, {1.1f, 1, 1}};
   mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {2, 4, 5}, {2, 5, 3}};
   mesh.normals = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {-1, 0, 0}, {-1, 0, 0}};
-  mesh.colors = {{10, 10, 10}, {10, 10, 10}, {10, 10, 10}, {10, 10, 10}, {20, 30, 10}, {20, 30, 10}};
+  mesh.colors = {{10, 10, 10}, {10, 10, 10}, {10, 10, 10},
+                 {10, 10, 10}, {20, 30, 10}, {20, 30, 10}};
   mesh.labels = {1, 1, 1, 1, 2, 2};
   return mesh;
 }

@@ -31,8 +31,9 @@ void write_flags(SQLite::Database& database, const MapRecord& corrected) {
 
 void write_corrections(SQLite::Database& database, const MapRecord& found,
                        const LabelForest& forest, const VoxelSource& voxels) {
-  for (const MapTable& table : {kEdits, kCorrectedInstances, kCorrectedSuperPoints, kCorrectedNames,
-                                kCorrectedConfidences, kCorrectedSurfaces, kCorrectedEmbeddings, kCorrectedFlags})
+  for (const MapTable& table :
+       {kEdits, kCorrectedInstances, kCorrectedSuperPoints, kCorrectedNames, kCorrectedConfidences,
+        kCorrectedSurfaces, kCorrectedEmbeddings, kCorrectedFlags})
     drop_table(database, table);
   if (found.edits.empty()) return;
   write_edits(database, found.edits);

@@ -69,7 +69,8 @@ TaughtThing thing_of(const json& line) {
 class WriteLock {
  public:
   explicit WriteLock(const fs::path& file)
-      : descriptor_(::open(concat(file.string(), ".lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0600)) {
+      : descriptor_(
+            ::open(concat(file.string(), ".lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0600)) {
     if (descriptor_ < 0) fail_to_keep(file, errno);
     while (::flock(descriptor_, LOCK_EX) != 0)
       if (errno != EINTR) {
@@ -110,10 +111,12 @@ std::vector<TaughtThing> read_taught_file(const fs::path& file) {
   std::vector<TaughtThing> things;
   try {
     if (document.at("format").get<int>() != kFormat)
-      throw Error(concat("format ", document.at("format").dump(), ", this program reads ", kFormat));
+      throw Error(
+          concat("format ", document.at("format").dump(), ", this program reads ", kFormat));
     for (const json& line : document.at("things")) things.push_back(thing_of(line));
   } catch (const std::exception& fault_of_file) {
-    throw Error(concat("'", file.string(), "' holds nothing that was taught (", fault_of_file.what(),
+    throw Error(concat("'", file.string(), "' holds nothing that was taught (",
+                       fault_of_file.what(),
                        "); name another file with --teach FILE, or delete it"));
   }
   return things;
@@ -131,7 +134,8 @@ void replace_taught_things(const fs::path& file, const std::string& map,
   for (const TaughtThing& thing : things) lines.push_back(json_of(thing));
   // A line a thing, so that people can look through it and delete what they like.
   std::string text = concat("{\"format\":", kFormat, ",\"things\":[");
-  for (std::size_t i = 0; i < lines.size(); ++i) text += concat(i == 0 ? "\n" : ",\n", lines[i].dump());
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    text += concat(i == 0 ? "\n" : ",\n", lines[i].dump());
   write_whole(file, text + "\n]}\n");
 }
 

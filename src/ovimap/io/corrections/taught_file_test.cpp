@@ -89,12 +89,16 @@ TEST_F(TaughtFileTest, RefusesWhatIsNoSuchFile) {
       R"({"name":"mug","map":"/a","object":1,"encoder":{"name":"e","digest":"d"},"look":[1,2]})";
   write(R"({"format":1,"things":[)" + good + "]}");
   EXPECT_EQ(read_taught_file(file_).size(), 1u);
-  for (const std::string& text :
-       {std::string("no json"), std::string(R"({"format":2,"things":[]})"),
-        std::string(R"({"things":[]})"), std::string(R"({"format":1,"things":[{"name":"mug"}]})"),
-        std::string(R"({"format":1,"things":[{"name":"","map":"/a","object":1,"encoder":{"name":"e","digest":"d"},"look":[1]}]})"),
-        std::string(R"({"format":1,"things":[{"name":"m","map":"/a","object":1,"encoder":{"name":"e","digest":"d"},"look":[0,0]}]})"),
-        std::string(R"({"format":1,"things":[{"name":"m","map":"/a","object":1,"encoder":{"name":"e","digest":"d"},"look":[]}]})")}) {
+  for (
+      const std::string& text :
+      {std::string("no json"), std::string(R"({"format":2,"things":[]})"),
+       std::string(R"({"things":[]})"), std::string(R"({"format":1,"things":[{"name":"mug"}]})"),
+       std::string(
+           R"({"format":1,"things":[{"name":"","map":"/a","object":1,"encoder":{"name":"e","digest":"d"},"look":[1]}]})"),
+       std::string(
+           R"({"format":1,"things":[{"name":"m","map":"/a","object":1,"encoder":{"name":"e","digest":"d"},"look":[0,0]}]})"),
+       std::string(
+           R"({"format":1,"things":[{"name":"m","map":"/a","object":1,"encoder":{"name":"e","digest":"d"},"look":[]}]})")}) {
     write(text);
     EXPECT_THROW(read_taught_file(file_), Error) << text;
     EXPECT_THROW(replace_taught_things(file_, "/b", {}), Error) << text;

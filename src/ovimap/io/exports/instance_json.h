@@ -13,16 +13,18 @@
 namespace ovimap {
 
 /// Instances as a JSON object {"instances": [...]}, each {"id", "name", "box": {"min", "max"},
-/// "centroid", "points", "views", "confidence" where masks are rated, "superpoints"}; metres in the world frame. The name is "" when it
-/// has none; what is not UTF-8 in it is replaced.
+/// "centroid", "points", "views", "confidence" where masks are rated, "superpoints"}; metres in the
+/// world frame. The name is "" when it has none; what is not UTF-8 in it is replaced.
 std::string instances_json(std::span<const InstanceSummary> instances,
                            const std::map<InstanceId, std::string>& names);
 
 /// What a map file is, as a JSON object: {"map", "schema", "frames", "mask_frames", "instances" (as
 /// above), "hidden" and "locked" (ids, as people corrected the map), "history" ({"visits",
-/// "events"}, docs/changes.md), "voxel_size_m", "blocks", "size_bytes", "content_hash" (16 hexadecimal
-/// digits), "source", "version", "config"}; an instance of which parts are known has "parts", a list of
-/// {"name", "box", "centroid", "points", "views", "confidence", "superpoints"}. And, where it was read, "writing": {"reader", "objects":
+/// "events"}, docs/changes.md), "voxel_size_m", "blocks", "size_bytes", "content_hash" (16
+/// hexadecimal digits), "source", "version", "config"}; an instance of which parts are known has
+/// "parts", a list of
+/// {"name", "box", "centroid", "points", "views", "confidence", "superpoints"}. And, where it was
+/// read, "writing": {"reader", "objects":
 /// {"ID": [{"text", "confidence"}]}}. `path` is how the map is called in it.
 std::string info_json(const std::filesystem::path& path, const MapInfo& info);
 

@@ -18,8 +18,8 @@ nlohmann::ordered_json json_number(float value);
 nlohmann::ordered_json json_vector(const Eigen::Vector3f& v);
 
 /// An instance as every JSON of ours shows it: {"id", "name", "box": {"min", "max"}, "centroid",
-/// "points", "views", "confidence" where masks are rated, "superpoints"}. For sources that build documents; kept out of other headers,
-/// which spares their readers the JSON library.
+/// "points", "views", "confidence" where masks are rated, "superpoints"}. For sources that build
+/// documents; kept out of other headers, which spares their readers the JSON library.
 nlohmann::ordered_json instance_json_value(const InstanceSummary& instance,
                                            const std::map<InstanceId, std::string>& names);
 

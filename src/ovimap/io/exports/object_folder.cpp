@@ -127,8 +127,7 @@ void write_object_folder(const fs::path& folder, const MapRecord& map, const Mes
       write_ply(place / "mesh.ply", piece->second);
     Json entry = instance_json_value(instance, map.names);
     entry["relations"] = relations_of(instance.id, relations);
-    entry["crops"] =
-        write_crops(place, appearance_of(map.semantics.looks, instance.super_points));
+    entry["crops"] = write_crops(place, appearance_of(map.semantics.looks, instance.super_points));
     write_text(place / "object.json",
                entry.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   }

@@ -21,9 +21,9 @@ struct MapCheck {
 /// at all, as load_map does.
 MapCheck check_map(const std::filesystem::path& path);
 
-/// The tables in which two maps differ, by their stored hashes, in order; none: they are the same map.
-/// The table `meta`, with when and by which version it was made, does not count. Throws Error as
-/// check_map does.
+/// The tables in which two maps differ, by their stored hashes, in order; none: they are the same
+/// map. The table `meta`, with when and by which version it was made, does not count. Throws Error
+/// as check_map does.
 std::vector<std::string> differing_tables(const std::filesystem::path& a,
                                           const std::filesystem::path& b);
 

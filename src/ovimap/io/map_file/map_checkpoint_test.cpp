@@ -140,8 +140,8 @@ TEST_F(Checkpoints, AFolderThatCannotBeWrittenIsNamed) {
             std::string::npos);
 }
 
-/// Writes checkpoints until it is killed, a byte to `begun` after the first. The state after n of them
-/// is known from n alone.
+/// Writes checkpoints until it is killed, a byte to `begun` after the first. The state after n of
+/// them is known from n alone.
 [[noreturn]] void write_for_ever(const fs::path& path, int begun) {
   std::mt19937 random(4);
   MapDocument document = random_document(60, 4);

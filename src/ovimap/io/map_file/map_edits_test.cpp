@@ -288,7 +288,8 @@ TEST_F(MapEditing, AKilledEditLeavesTheOldMapOrTheNewOne) {
   std::mt19937 random(3);
   std::size_t interrupted = 0, edited = 0;
   // A busy machine takes longer for an edit, so the time grows until both have happened.
-  for (unsigned round = 0; round < 25 || (round < 500 && (interrupted == 0 || edited == 0)); ++round) {
+  for (unsigned round = 0; round < 25 || (round < 500 && (interrupted == 0 || edited == 0));
+       ++round) {
     const pid_t child = ::fork();
     if (child == 0) {
       for (int i = 0;; ++i) edit_map(path_, renamed(1, "name " + std::to_string(i)));

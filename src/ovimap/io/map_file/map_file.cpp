@@ -13,9 +13,9 @@
 #include "ovimap/io/corrections/map_edit_log.h"
 #include "ovimap/io/corrections/map_file_corrections.h"
 #include "ovimap/io/map_file/map_file_access.h"
+#include "ovimap/io/map_file/map_file_by_instance.h"
 #include "ovimap/io/map_file/map_file_parts.h"
 #include "ovimap/io/map_tables/map_file_blocks.h"
-#include "ovimap/io/map_file/map_file_by_instance.h"
 #include "ovimap/io/map_tables/map_file_frames.h"
 #include "ovimap/io/map_tables/map_file_history.h"
 #include "ovimap/io/map_tables/map_file_motion.h"
@@ -333,8 +333,7 @@ MapIdentity read_map_identity(const std::filesystem::path& path) {
     MapRecord record;
     const MapMeta meta = read_meta(database, record);
     TableHash revision;
-    SQLite::Statement checks(database,
-                             "SELECT name, rows, hash FROM checks WHERE name <> 'meta'");
+    SQLite::Statement checks(database, "SELECT name, rows, hash FROM checks WHERE name <> 'meta'");
     while (checks.executeStep()) {
       revision.add(checks.getColumn(0).getString());
       revision.add(std::int64_t{checks.getColumn(1).getInt64()});

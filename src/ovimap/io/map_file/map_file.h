@@ -23,10 +23,10 @@ struct MapInfo {
   std::set<InstanceId> locked;             ///< objects that must stay as they are
   std::vector<ObjectPart> parts;           ///< of objects, by id; parts_by_object() says of which
   std::map<InstanceId, std::string> names;
-  std::string writing_reader;              ///< what read the writing; empty: nothing did
+  std::string writing_reader;  ///< what read the writing; empty: nothing did
   std::map<InstanceId, std::vector<WrittenLine>> writing;  ///< of those on which some was read
-  RecognizerIdentity recognizer;           ///< what recognized things; no name: nothing did
-  std::map<InstanceId, Eigen::VectorXf> things;  ///< things_of() the objects that it looked at
+  RecognizerIdentity recognizer;                  ///< what recognized things; no name: nothing did
+  std::map<InstanceId, Eigen::VectorXf> things;   ///< things_of() the objects that it looked at
   MapHistory history;                             ///< empty in maps of earlier schemas
   EncoderIdentity encoder;                        ///< of the embeddings; no name: there are none
   Eigen::Vector3f up = Eigen::Vector3f::UnitZ();  ///< in the world
@@ -76,9 +76,9 @@ MapIdentity read_map_identity(const std::filesystem::path& path);
 /// What a search in a map needs.
 struct SearchableMap {
   MapInfo info;
-  Embeddings embeddings;      ///< row i belongs to info.instances[i]; zeros: it has none
+  Embeddings embeddings;       ///< row i belongs to info.instances[i]; zeros: it has none
   Embeddings part_embeddings;  ///< likewise of info.parts
-  InstanceSurfaces surfaces;  ///< of the instances
+  InstanceSurfaces surfaces;   ///< of the instances
   std::vector<FrameLogEntry> frames;
 };
 

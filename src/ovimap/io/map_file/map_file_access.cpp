@@ -144,9 +144,8 @@ int pragma(SQLite::Database& database, const char* name) {
 
 std::unique_ptr<SQLite::Database> open_through(const fs::path& file, bool immutable) {
   constexpr int kPatience_ms = 5000;  // for a change to be written
-  auto database =
-      open_guarded(read_uri(file, immutable), SQLite::OPEN_READONLY | SQLite::OPEN_URI,
-                   longest_value_in(file), kPatience_ms);
+  auto database = open_guarded(read_uri(file, immutable), SQLite::OPEN_READONLY | SQLite::OPEN_URI,
+                               longest_value_in(file), kPatience_ms);
   (void)pragma(*database, "user_version");
   return database;
 }
@@ -259,8 +258,8 @@ fs::path writable_target(const fs::path& path) {
 
 std::unique_ptr<SQLite::Database> open_growing_map(const fs::path& path) {
   check_journal(path);
-  auto database = open_guarded(path.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE,
-                               kLongestValue);
+  auto database =
+      open_guarded(path.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kLongestValue);
   // A log written ahead: a transaction that is cut off never was.
   database->exec(
       "PRAGMA page_size = 4096; PRAGMA locking_mode = EXCLUSIVE; PRAGMA journal_mode = WAL; "

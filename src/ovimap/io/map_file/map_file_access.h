@@ -52,8 +52,8 @@ std::unique_ptr<SQLite::Database> open_growing_map(const std::filesystem::path& 
 inline constexpr const char* kCheckpointEnding = ".partial";
 
 /// Makes a map whole beside which a change that was cut short left SQLite's log: an unfinished
-/// change is taken back, a finished one taken in. Returns whether there was a log. Throws Error when
-/// the file is no map, in use, or cannot be written.
+/// change is taken back, a finished one taken in. Returns whether there was a log. Throws Error
+/// when the file is no map, in use, or cannot be written.
 bool recover_map(const std::filesystem::path& path);
 
 /// Deletes a map file and SQLite's files beside it.

@@ -81,8 +81,7 @@ struct OldLook {
   ViewDirections directions;
 };
 
-std::map<InstanceId, OldLook> read_old_looks(SQLite::Database& database,
-                                             const MapRecord& record) {
+std::map<InstanceId, OldLook> read_old_looks(SQLite::Database& database, const MapRecord& record) {
   const SphereGrid grid = record.semantics.views.grid(record.depth_camera);
   std::map<InstanceId, OldLook> result;
   RowReader rows(database, kAppearances);
@@ -129,9 +128,9 @@ void inherit(OldLook old, Label heir, SuperPointLook& into) {
 void read_by_instance(SQLite::Database& database, int schema, LabelForest& forest,
                       MapRecord& record) {
   const Heirs heirs(forest, record);
-  record.registry.frames = static_cast<int>(
-      std::count_if(record.frames.begin(), record.frames.end(),
-                    [](const FrameLogEntry& frame) { return frame.labelled; }));
+  record.registry.frames =
+      static_cast<int>(std::count_if(record.frames.begin(), record.frames.end(),
+                                     [](const FrameLogEntry& frame) { return frame.labelled; }));
   read_records(database, heirs, record.registry);
   if (schema < kSchemaWithSemantics) return;
   for (auto& [id, old] : read_old_looks(database, record))

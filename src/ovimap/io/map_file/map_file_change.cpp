@@ -29,8 +29,7 @@ std::filesystem::path changeable(const std::filesystem::path& path) {
   if (::access(target.c_str(), W_OK) != 0 || ::access(target.parent_path().c_str(), W_OK) != 0)
     refuse(path, std::generic_category().message(errno) +
                      "; copy it into a folder that you can write to");
-  if (has_wal(target))
-    refuse(path, "it is being mapped; try again when that is done");
+  if (has_wal(target)) refuse(path, "it is being mapped; try again when that is done");
   return target;
 }
 
@@ -40,8 +39,7 @@ MapChange::MapChange(const std::filesystem::path& path)
     : path_(path), schema_(OpenMap(path).schema()) {
   const std::filesystem::path target = changeable(path);
   guarded([&] {
-    database_ =
-        open_guarded(target.string(), SQLite::OPEN_READWRITE, kLongestValue, kPatience_ms);
+    database_ = open_guarded(target.string(), SQLite::OPEN_READWRITE, kLongestValue, kPatience_ms);
     database_->exec("PRAGMA journal_mode = DELETE; PRAGMA synchronous = EXTRA");
     transaction_ =
         std::make_unique<SQLite::Transaction>(*database_, SQLite::TransactionBehavior::IMMEDIATE);

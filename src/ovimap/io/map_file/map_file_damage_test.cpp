@@ -69,7 +69,8 @@ TEST_F(MapFileDamage, AFlippedBitIsFoundOrHarmless) {
   constexpr int kTrials = 1000;
   for (int trial = 0; trial < kTrials; ++trial) {
     Bytes bytes = intact;
-    const std::size_t at = trial % 3 == 0 ? random_() % bytes.size() : used[random_() % used.size()];
+    const std::size_t at =
+        trial % 3 == 0 ? random_() % bytes.size() : used[random_() % used.size()];
     bytes[at] = static_cast<std::uint8_t>(bytes[at] ^ (1u << random_() % 8));
     refusals += refused(bytes, concat("byte ", at));
   }

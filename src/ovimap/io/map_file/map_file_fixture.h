@@ -238,14 +238,14 @@ inline bool same_registry(const InstanceRegistry::State& a, const InstanceRegist
   };
   return std::equal(a.super_points.begin(), a.super_points.end(), b.super_points.begin(),
                     b.super_points.end(), same_point) &&
-         a.frames == b.frames &&
-         a.aliases == b.aliases && a.pair_counts == b.pair_counts &&
+         a.frames == b.frames && a.aliases == b.aliases && a.pair_counts == b.pair_counts &&
          a.entity_sightings == b.entity_sightings && a.last_id == b.last_id;
 }
 
 inline bool same_view(const ObjectView& a, const ObjectView& b) {
   return a.frame == b.frame && a.visible_px == b.visible_px && a.embedding == b.embedding &&
-         a.super_point == b.super_point && a.things == b.things && a.directions.bins == b.directions.bins &&
+         a.super_point == b.super_point && a.things == b.things &&
+         a.directions.bins == b.directions.bins &&
          a.directions.center_in_world == b.directions.center_in_world &&
          a.crop.image_jpeg == b.crop.image_jpeg && a.crop.mask_png == b.crop.mask_png &&
          (a.crop.empty() || (a.crop.object_px.min() == b.crop.object_px.min() &&
@@ -268,8 +268,8 @@ inline bool same_semantics(const SemanticRecord& a, const SemanticRecord& b) {
   const auto same_entry = [](const auto& x, const auto& y) {
     return x.first == y.first && same_look(x.second, y.second);
   };
-  return a.encoder == b.encoder && a.recognizer == b.recognizer && a.views.theta_novel == b.views.theta_novel &&
-         a.crops.kept_views == b.crops.kept_views &&
+  return a.encoder == b.encoder && a.recognizer == b.recognizer &&
+         a.views.theta_novel == b.views.theta_novel && a.crops.kept_views == b.crops.kept_views &&
          std::equal(a.looks.begin(), a.looks.end(), b.looks.begin(), b.looks.end(), same_entry);
 }
 
@@ -291,9 +291,8 @@ inline bool same_past(const PastObject& a, const PastObject& b) {
 inline bool same_event(const ObjectEvent& a, const ObjectEvent& b) {
   if ((a.was == nullptr) != (b.was == nullptr)) return false;
   if (a.was && !same_past(*a.was, *b.was)) return false;
-  return a.instance == b.instance && a.kind == b.kind && a.visit == b.visit &&
-         a.frame == b.frame && a.may_be == b.may_be && same_box(a.before, b.before) &&
-         same_box(a.after, b.after);
+  return a.instance == b.instance && a.kind == b.kind && a.visit == b.visit && a.frame == b.frame &&
+         a.may_be == b.may_be && same_box(a.before, b.before) && same_box(a.after, b.after);
 }
 
 /// What two documents differ in; empty when in nothing.

@@ -101,8 +101,8 @@ TEST_F(HostileMap, ComputedColumnsAreNeverComputed) {
   // The values of one row: gigabytes, in a file of some hundred kilobytes.
   const std::string big = "BLOB AS (zeroblob(999999999))";
   const std::string fault = fault_after(
-      "DROP TABLE kept_frames; CREATE TABLE kept_frames (position INTEGER PRIMARY KEY, depth " + big +
-      ", color " + big + ", segments " + big + ", labels " + big +
+      "DROP TABLE kept_frames; CREATE TABLE kept_frames (position INTEGER PRIMARY KEY, depth " +
+      big + ", color " + big + ", segments " + big + ", labels " + big +
       "); INSERT INTO kept_frames (position) VALUES (0)");
   EXPECT_NE(fault.find("table kept_frames is not defined as in a map"), std::string::npos) << fault;
   EXPECT_NE(fault_after("CREATE TABLE more (a, b AS (zeroblob(999999999))); INSERT INTO more (a) "
@@ -127,9 +127,10 @@ TEST_F(HostileMap, TablesAreThoseOfAMap) {
   expect("ALTER TABLE frames ADD COLUMN big AS (zeroblob(9))", "table frames is not defined");
   expect("DROP TABLE votes; CREATE TABLE VOTES (label, instance, votes)",
          "table votes is not defined");
-  expect("DROP TABLE meta; CREATE TABLE meta (key TEXT PRIMARY KEY CHECK (length(randomblob(9)) > "
-         "0), value TEXT NOT NULL) WITHOUT ROWID",
-         "table meta is not defined");
+  expect(
+      "DROP TABLE meta; CREATE TABLE meta (key TEXT PRIMARY KEY CHECK (length(randomblob(9)) > "
+      "0), value TEXT NOT NULL) WITHOUT ROWID",
+      "table meta is not defined");
   EXPECT_EQ(fault_after("CREATE TABLE notes (text)"), "") << "what a newer program may add";
   EXPECT_EQ(fault_after("ANALYZE"), "");
 }

@@ -6,8 +6,8 @@
 
 namespace ovimap {
 
-/// One thing that a live run did, by what it had time for. All of them, in order, tell how to make its
-/// map again, however long things take then.
+/// One thing that a live run did, by what it had time for. All of them, in order, tell how to make
+/// its map again, however long things take then.
 struct LiveStep {
   enum class Kind {
     kFrame,    ///< took in a frame: fused it, or lost the camera in it

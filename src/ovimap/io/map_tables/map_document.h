@@ -41,7 +41,8 @@ struct SemanticRecord {
   CropConfig crops;
   SuperPointLooks looks;
   std::string writing_reader = {};  ///< what read the writing in the crops; empty: nothing did
-  RecognizerIdentity recognizer = {};  ///< what recognized things in the views; no name: nothing did
+  RecognizerIdentity recognizer =
+      {};  ///< what recognized things in the views; no name: nothing did
 };
 
 /// What a map says that no frame changes: where it comes from, and what people told it.
@@ -70,7 +71,7 @@ struct MapRecord : MapHeader {
   InstanceConfig instance_config;
   InstanceRegistry::State registry;
   std::vector<InstanceSummary> instances;  ///< as summarised when the map was saved
-  std::vector<ObjectPart> parts;  ///< of objects, by id, as mapping found them
+  std::vector<ObjectPart> parts;           ///< of objects, by id, as mapping found them
   InstanceSurfaces surfaces;  ///< of `instances`, thinned: what relations are judged by
   Eigen::Vector3f up = Eigen::Vector3f::UnitZ();  ///< in the world
   std::vector<InstanceSummary> hidden;            ///< corrected maps: objects that people hid
@@ -79,11 +80,11 @@ struct MapRecord : MapHeader {
   std::vector<FrameLogEntry> frames;  ///< in the order they were fused
   KeptFrames kept_frames;             ///< of those; mostly none
   PinholeCamera depth_camera;
-  std::string timings;      ///< of the run, a line "stage p50_ms p95_ms count" each; may be empty
+  std::string timings;        ///< of the run, a line "stage p50_ms p95_ms count" each; may be empty
   SeenFree seen_free;         ///< in the last visit: what may come into it moves
   std::vector<Mover> movers;  ///< what moved while it was seen, by id; mostly none
   std::vector<LiveStep> live_steps;  ///< of a live run that made all of the map; else none
-  int mask_frames = 0;      ///< frames with 2D masks
+  int mask_frames = 0;               ///< frames with 2D masks
   bool unfinished = false;  ///< a checkpoint: `instances`, `surfaces` and `up` are yet to be found
   std::string version;      ///< of the program that wrote the map
   std::uint64_t content_hash = 0;  ///< VoxelMap::content_hash; set by load_map, ignored by save_map

@@ -37,8 +37,8 @@ class KeptFramesTable {
 /// Writes MapRecord::live_steps.
 void write_live_steps(SQLite::Database& database, const std::vector<LiveStep>& steps);
 
-/// The way back; nothing for the map of a run that was not live. Throws Error with a phrase when the
-/// file does not hold what was written.
+/// The way back; nothing for the map of a run that was not live. Throws Error with a phrase when
+/// the file does not hold what was written.
 std::vector<LiveStep> read_live_steps(SQLite::Database& database);
 
 }  // namespace ovimap

@@ -63,8 +63,7 @@ std::vector<MapVisit> read_visits(SQLite::Database& database, std::int64_t frame
     if (rows.integer<std::size_t>() != visits.size() + 1) rows.fail("has a gap");
     MapVisit visit;
     visit.source = rows.text();
-    visit.first_frame =
-        take_within(rows, visits.empty() ? 0 : visits.back().first_frame, frames);
+    visit.first_frame = take_within(rows, visits.empty() ? 0 : visits.back().first_frame, frames);
     visit.first_index = rows.integer<std::int64_t>();
     visits.push_back(std::move(visit));
   }
@@ -134,7 +133,8 @@ PastObject take_past(RowReader& rows, const LabelForest& forest) {
   was.surface = take_surface(rows);
   const std::span<const std::uint8_t> colors = rows.blob();
   if (colors.size() != 3 * was.surface.size())
-    rows.fail(concat("has ", colors.size(), " bytes of colours for ", was.surface.size(), " points"));
+    rows.fail(
+        concat("has ", colors.size(), " bytes of colours for ", was.surface.size(), " points"));
   was.colors.resize(was.surface.size());
   for (std::size_t i = 0; i < colors.size(); ++i) was.colors[i / 3][i % 3] = colors[i];
   return was;

@@ -15,9 +15,9 @@ inline constexpr int kSchemaWithHistory = 6;
 
 void write_history(SQLite::Database& database, const MapHistory& history);
 
-/// The way back, but for what objects were; empty for a map of an earlier schema. `frames`, `last_id`:
-/// how many frames and the highest instance that it may speak of. Throws Error with a phrase when the
-/// file does not hold what was written.
+/// The way back, but for what objects were; empty for a map of an earlier schema. `frames`,
+/// `last_id`: how many frames and the highest instance that it may speak of. Throws Error with a
+/// phrase when the file does not hold what was written.
 MapHistory read_history(SQLite::Database& database, int schema, std::int64_t frames,
                         InstanceId last_id);
 

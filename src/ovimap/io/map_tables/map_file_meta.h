@@ -23,8 +23,8 @@ struct MapMeta {
 };
 
 void write_meta(SQLite::Database& database, const MapRecord& record, const MapMeta& meta);
-/// Fills the plain values of `record`. Throws Error with a phrase when the file does not hold what was
-/// written.
+/// Fills the plain values of `record`. Throws Error with a phrase when the file does not hold what
+/// was written.
 MapMeta read_meta(SQLite::Database& database, MapRecord& record);
 
 /// 16 hexadecimal digits.

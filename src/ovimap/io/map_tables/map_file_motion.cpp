@@ -42,8 +42,7 @@ SpaceRegion take_region(RowReader& rows) {
       ZSTD_decompress(bytes.data(), bytes.size(), packed.data(), packed.size());
   if (ZSTD_isError(size) || size != bytes.size()) rows.fail("has cells that do not decompress");
   SpaceRegion region;
-  for (std::size_t i = 0; i < region.size(); ++i)
-    region[i] = {bytes[i], bytes[region.size() + i]};
+  for (std::size_t i = 0; i < region.size(); ++i) region[i] = {bytes[i], bytes[region.size() + i]};
   return region;
 }
 
@@ -98,7 +97,8 @@ void write_motion(SQLite::Database& database, const MapRecord& record) {
   if (regions) regions->finish();
   for (const auto& [key, region] : record.seen_free.regions()) {
     const Bytes bits = suspect_bits(region);
-    if (std::all_of(bits.begin(), bits.end(), [](std::uint8_t byte) { return byte == 0; })) continue;
+    if (std::all_of(bits.begin(), bits.end(), [](std::uint8_t byte) { return byte == 0; }))
+      continue;
     if (!suspects) suspects.emplace(database, kSuspectSpace);
     suspects->insert(static_cast<std::int64_t>(key), std::span<const std::uint8_t>(bits));
   }

@@ -21,9 +21,8 @@ ObjectPart take_part(RowReader& rows) {
   ObjectPart part;
   part.id = rows.integer<InstanceId>();
   part.super_points = words_of<Label>(rows.blob(), rows);
-  const bool disordered =
-      std::adjacent_find(part.super_points.begin(), part.super_points.end(),
-                         std::greater_equal<>()) != part.super_points.end();
+  const bool disordered = std::adjacent_find(part.super_points.begin(), part.super_points.end(),
+                                             std::greater_equal<>()) != part.super_points.end();
   if (part.super_points.empty() || disordered || part.super_points.front() != part.id)
     rows.fail("has a part that is none");
   for (Eigen::Vector3f* corner : {&part.box.min(), &part.box.max(), &part.centroid})

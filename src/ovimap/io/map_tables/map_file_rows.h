@@ -68,8 +68,8 @@ inline constexpr MapTable kEntitySightings{
     "label INTEGER NOT NULL, frame INTEGER NOT NULL, entity INTEGER NOT NULL, "
     "PRIMARY KEY (label, frame)",
     "WITHOUT ROWID"};
-/// How good its source rated the mask of an entity, of 255; not in maps whose masks are all taken for
-/// true.
+/// How good its source rated the mask of an entity, of 255; not in maps whose masks are all taken
+/// for true.
 inline constexpr MapTable kEntityRatings{
     "entity_ratings", "frame, entity, rating",
     "frame INTEGER NOT NULL, entity INTEGER NOT NULL, rating INTEGER NOT NULL, "
@@ -211,13 +211,51 @@ inline constexpr MapTable kChecks{
     "checks", "name, rows, hash",
     "name TEXT PRIMARY KEY, rows INTEGER NOT NULL, hash INTEGER NOT NULL", "WITHOUT ROWID"};
 /// All of them.
-inline constexpr const MapTable* kAll[] = {
-    &kMeta, &kInstances, &kInstanceSuperPoints, &kInstanceNames, &kInstanceConfidences, &kInstanceAliases, &kSuperPoints,
-    &kSuperPointFrames, &kVotes, &kLabelPairs, &kEntitySightings, &kEntityRatings, &kLabelForest, &kFrames,
-    &kSuperPointLooks, &kSuperPointViews, &kWriting, &kThings, &kRecognized, &kEmbeddings, &kSurfaces, &kObjectParts, &kPartEmbeddings, &kBlocks, &kKeptFrames,
-    &kInstanceRecords, &kAppearances, &kViews, &kVisits, &kVisitTimes, &kObjectEvents, &kPastObjects, &kSeenFree, &kSuspectSpace, &kMovers, &kLiveSteps, &kEdits, &kCorrectedInstances,
-    &kCorrectedSuperPoints, &kCorrectedNames, &kCorrectedConfidences, &kCorrectedSurfaces, &kCorrectedEmbeddings,
-    &kCorrectedFlags, &kChecks};
+inline constexpr const MapTable* kAll[] = {&kMeta,
+                                           &kInstances,
+                                           &kInstanceSuperPoints,
+                                           &kInstanceNames,
+                                           &kInstanceConfidences,
+                                           &kInstanceAliases,
+                                           &kSuperPoints,
+                                           &kSuperPointFrames,
+                                           &kVotes,
+                                           &kLabelPairs,
+                                           &kEntitySightings,
+                                           &kEntityRatings,
+                                           &kLabelForest,
+                                           &kFrames,
+                                           &kSuperPointLooks,
+                                           &kSuperPointViews,
+                                           &kWriting,
+                                           &kThings,
+                                           &kRecognized,
+                                           &kEmbeddings,
+                                           &kSurfaces,
+                                           &kObjectParts,
+                                           &kPartEmbeddings,
+                                           &kBlocks,
+                                           &kKeptFrames,
+                                           &kInstanceRecords,
+                                           &kAppearances,
+                                           &kViews,
+                                           &kVisits,
+                                           &kVisitTimes,
+                                           &kObjectEvents,
+                                           &kPastObjects,
+                                           &kSeenFree,
+                                           &kSuspectSpace,
+                                           &kMovers,
+                                           &kLiveSteps,
+                                           &kEdits,
+                                           &kCorrectedInstances,
+                                           &kCorrectedSuperPoints,
+                                           &kCorrectedNames,
+                                           &kCorrectedConfidences,
+                                           &kCorrectedSurfaces,
+                                           &kCorrectedEmbeddings,
+                                           &kCorrectedFlags,
+                                           &kChecks};
 }  // namespace map_tables
 
 /// XXH64 with seed 0, as SQLite can hold it.
@@ -251,8 +289,8 @@ void create_table(SQLite::Database& database, const MapTable& table);
 
 bool has_table(SQLite::Database& database, const MapTable& table);
 
-/// The same of a table that not every map has. Throws Error with a phrase when there was one, as its
-/// check says.
+/// The same of a table that not every map has. Throws Error with a phrase when there was one, as
+/// its check says.
 bool holds_table(SQLite::Database& database, const MapTable& table);
 
 /// Throws Error with a phrase unless the table's rows are those that were written, whatever they

@@ -138,8 +138,7 @@ TEST_F(MapFileSemantics, ObjectsOfOldMapsWithoutSuperPointsGetOne) {
   const MapDocument map = load_map(path);
   const SearchableMap stored = read_searchable_map(path);
   ASSERT_FALSE(map.instances.empty());
-  for (const InstanceSummary& instance : map.instances)
-    ASSERT_EQ(instance.super_points.size(), 1u);
+  for (const InstanceSummary& instance : map.instances) ASSERT_EQ(instance.super_points.size(), 1u);
   EXPECT_GT(stored.embeddings.norm(), 0);
   EXPECT_TRUE(fused_embeddings(map.semantics.looks, map.instances, map.semantics.views.fusion,
                                map.semantics.encoder.dimension)

@@ -20,7 +20,8 @@ struct MapVisit {
   std::string source;            ///< where its frames came from
   std::int64_t first_frame = 0;  ///< its first in MapRecord::frames, by place
   std::int64_t first_index = 0;  ///< FrameLogEntry::index of position 0 of the recording
-  std::optional<double> recorded_s = {};  ///< when it was made, seconds since 1970 (UTC), as people said
+  std::optional<double> recorded_s =
+      {};  ///< when it was made, seconds since 1970 (UTC), as people said
 
   bool operator==(const MapVisit&) const = default;
 };
@@ -46,17 +47,19 @@ struct ObjectEvent {
   InstanceId instance = 0;
   ObjectEventKind kind = ObjectEventKind::kAppeared;
   int visit = 1;           ///< in which it was noticed, from 1
-  std::int64_t frame = 0;  ///< place in MapRecord::frames of the frame that showed it first there, or
-                           ///< of the visit's last frame where there is none (kGone)
+  std::int64_t frame = 0;  ///< place in MapRecord::frames of the frame that showed it first there,
+                           ///< or of the visit's last frame where there is none (kGone)
   Eigen::AlignedBox3f before, after;  ///< where it was and is; empty: nowhere
-  InstanceId may_be = 0;  ///< kAppeared: the gone object that it resembles, without certainty; 0: none
+  InstanceId may_be =
+      0;  ///< kAppeared: the gone object that it resembles, without certainty; 0: none
   std::shared_ptr<const PastObject> was = {};  ///< what it was at `before`; null: nobody kept it
 };
 
 /// Where something that moved was in one frame.
 struct MoverStep {
   std::int64_t frame = 0;  ///< FrameLogEntry::index
-  Eigen::Vector3f place = Eigen::Vector3f::Zero();  ///< middle of what was seen of it; world, metres
+  Eigen::Vector3f place =
+      Eigen::Vector3f::Zero();  ///< middle of what was seen of it; world, metres
 
   bool operator==(const MoverStep&) const = default;
 };

@@ -16,7 +16,7 @@ namespace {
 using Rgb = std::array<std::uint8_t, 3>;
 
 constexpr Rgb kObject = {220, 30, 30};
-constexpr int kPale = 225;      // half way to this grey
+constexpr int kPale = 225;  // half way to this grey
 constexpr int kLongestSidePx = 720;
 constexpr float kAboveM = 0.01f;  // half a voxel and noise
 

@@ -25,7 +25,7 @@ void list_fields(ReplicaPackConfig& config, ConfigFields& fields);
 struct PackInstance {
   std::uint32_t id = 0, class_id = 0;
   std::string class_name;
-  std::string room = {};  ///< which room it is in; empty: not said
+  std::string room = {};       ///< which room it is in; empty: not said
   std::string substance = {};  ///< what most of it is made of; empty: not said
 };
 

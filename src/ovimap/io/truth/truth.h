@@ -30,16 +30,16 @@ enum class ScanNetClasses {
 };
 
 /// Loads the truth that belongs to a recording, of the Replica layout when SCENE_mesh.ply lies
-/// beside the folder, else of ScanNet's (io/truth/truth_scannet.h). `source` of the Replica layout is
-/// the scene's folder ROOT/SCENE (the one with results/ and traj.txt); the truth lies in ROOT:
+/// beside the folder, else of ScanNet's (io/truth/truth_scannet.h). `source` of the Replica layout
+/// is the scene's folder ROOT/SCENE (the one with results/ and traj.txt); the truth lies in ROOT:
 ///   SCENE_mesh.ply (triangles or quads), instance_labels_SCENE.txt and, when there is one,
 ///   semantic_labels_SCENE.txt (one whole number per vertex), and for names either labels.json
 ///   {"instances": {"12": "sofa"}, "classes": {"1": "sofa"}, "unscored": [12]} or the data set's
 ///   own info_semantic.json.
 /// A labels.json in ROOT/SCENE goes before the one in ROOT; info_semantic.json comes last. Labels
 /// may also lie in ROOT/replica_gt_instances and ROOT/replica_gt_semantics. Without those of the
-/// instances the data set's own mesh_semantic.ply is taken (io/truth/truth_replica.h, which says where).
-/// Throws Error naming the file that is missing or broken.
+/// instances the data set's own mesh_semantic.ply is taken (io/truth/truth_replica.h, which says
+/// where). Throws Error naming the file that is missing or broken.
 Truth load_truth(const std::filesystem::path& source,
                  ScanNetClasses scannet_classes = ScanNetClasses::kScanNet200);
 

@@ -43,7 +43,8 @@ TrueChange change_from(const nlohmann::json& entry, std::size_t visits) {
 TrueMover mover_from(const nlohmann::json& entry, std::size_t visits) {
   const TrueMover mover{entry.at("visit").get<int>(), entry.at("object").get<std::int32_t>()};
   if (mover.visit < 1 || static_cast<std::size_t>(mover.visit) > visits)
-    throw Error(concat("has something that moves in visit ", mover.visit, ", and there are ", visits));
+    throw Error(
+        concat("has something that moves in visit ", mover.visit, ", and there are ", visits));
   return mover;
 }
 
@@ -65,8 +66,8 @@ TrueChanges load_true_changes(const std::filesystem::path& folder) {
       for (const auto& mover : *moving)
         truth.moving.push_back(mover_from(mover, truth.visits.size()));
   } catch (const nlohmann::json::exception& fault) {
-    throw Error(concat(file.string(), ": is not what `ovimap synth --visits` writes (", fault.what(),
-                       ")"));
+    throw Error(
+        concat(file.string(), ": is not what `ovimap synth --visits` writes (", fault.what(), ")"));
   } catch (const Error& fault) {
     throw Error(concat(file.string(), ": ", fault.what()));
   }

@@ -39,7 +39,8 @@ class ReplicaTruth : public ::testing::Test {
     std::string text =
         "ply\nformat ascii 1.0\nelement vertex 10\nproperty float x\nproperty float y\n"
         "property float z\nelement face 4\nproperty list uchar int vertex_indices\n"
-        "property int " + property + "\nend_header\n";
+        "property int " +
+        property + "\nend_header\n";
     for (const char* row : {" 0 0\n", " 1 0\n"})
       for (int column = 0; column < 5; ++column) text += std::to_string(column) + row;
     return text + "4 0 1 6 5 4\n4 1 2 7 6 4\n4 2 3 8 7 9\n4 3 4 9 8 0\n";

@@ -145,8 +145,7 @@ TEST_F(TruthFolder, RefusesAMeshWithoutVertices) {
 }
 
 TEST_F(TruthFolder, RefusesBrokenNames) {
-  for (const char* text :
-       {"[1]", R"({"instances": {"sofa": "12"}})", R"({"classes": {"1": 2}})"}) {
+  for (const char* text : {"[1]", R"({"instances": {"sofa": "12"}})", R"({"classes": {"1": 2}})"}) {
     write("labels.json", text);
     EXPECT_TRUE(fault_names("is not of the form")) << text;
   }

@@ -77,8 +77,7 @@ OVIMAP_INLINE bool observe(const FusionView& view, const ProjectedRow& row, Obse
       row.inside & (depth > 0.f) & (in_front * in_front * row.range_squared < reach * reach);
   if (!any(near)) return false;
   seen.distance_m = in_front * slopes(view, row, near);
-  const Floats falloff =
-      smaller(broadcast(1.f), (seen.distance_m + band) * view.inverse_falloff);
+  const Floats falloff = smaller(broadcast(1.f), (seen.distance_m + band) * view.inverse_falloff);
   // Adding a number drops what lies below its last bit: the steps of a weight.
   const Floats weight = falloff / variance(view, depth, seen.sigma_m);
   const Floats rounded = weight + kWeightRounder - kWeightRounder;

@@ -46,8 +46,7 @@ OVIMAP_VECTORIZE void find_doubted(const FusionView& view, const Image<float>& f
     const Ints observed = claims & (load(block.weight.data() + i * kBlockSide) > 0.f);
     if (!any(observed)) continue;
     project(view.camera, start, steps, row);
-    const Ints through =
-        observed & row.inside & (row.z_m < gather(free_m.data(), row.pixel));
+    const Ints through = observed & row.inside & (row.z_m < gather(free_m.data(), row.pixel));
     if (!any(through)) continue;
     for (int lane = 0; lane < kLanes; ++lane) {
       if (!through[lane]) continue;
@@ -74,8 +73,7 @@ std::size_t doubt(const Doubted& doubted, int frames, VoxelBlock& block) {
   block.doubts.resize(kBlockVoxels);
   for (std::size_t row = 0; row < doubted.rows.size(); ++row)
     for (unsigned bits = doubted.rows[row]; bits != 0; bits &= bits - 1) {
-      const std::size_t voxel =
-          row * kBlockSide + static_cast<std::size_t>(std::countr_zero(bits));
+      const std::size_t voxel = row * kBlockSide + static_cast<std::size_t>(std::countr_zero(bits));
       if (++block.doubts[voxel] < frames) continue;
       block.doubts[voxel] = 0;
       forget(block, voxel);
@@ -106,8 +104,7 @@ void list_fields(FreeSpaceConfig& config, ConfigFields& fields) {
              "where a larger share of those has no depth, nothing goes");
   fields.add("least_step_m", config.least_step_m, 0.f, 10.f,
              "frames count as several when the camera has moved this far in between, metres");
-  fields.add("least_turn_rad", config.least_turn_rad, 0.f, 3.f,
-             "or turned this far, radians");
+  fields.add("least_turn_rad", config.least_turn_rad, 0.f, 3.f, "or turned this far, radians");
 }
 
 ClearedSpace clear_free_space(VoxelMap& map, const Observation& observation,

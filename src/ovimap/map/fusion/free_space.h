@@ -16,14 +16,14 @@ class ConfigFields;
 /// When a surface is taken back because frames see through it.
 struct FreeSpaceConfig {
   bool enabled = true;
-  int frames = 3;             ///< so many frames on end must see through a voxel, none its surface
-  float margin_voxels = 3.f;  ///< nothing goes that is nearer to the plane that is seen
-  float sigmas = 5.f;         ///< the same in standard deviations of the depth, along the ray
-  float least_slope = 0.2f;   ///< what is seen at more of a slant says nothing
+  int frames = 3;              ///< so many frames on end must see through a voxel, none its surface
+  float margin_voxels = 3.f;   ///< nothing goes that is nearer to the plane that is seen
+  float sigmas = 5.f;          ///< the same in standard deviations of the depth, along the ray
+  float least_slope = 0.2f;    ///< what is seen at more of a slant says nothing
   float unknown_slope = 0.5f;  ///< how a plane that is not known is taken to lie
-  int guard_px = 2;       ///< the rays so far around, and up to twice as far, must be as free
-  float holes = 0.05f;    ///< where more of those have no answer, nothing is known
-  float least_step_m = 0.01f;   ///< frames count as several where the camera has moved this far
+  int guard_px = 2;            ///< the rays so far around, and up to twice as far, must be as free
+  float holes = 0.05f;         ///< where more of those have no answer, nothing is known
+  float least_step_m = 0.01f;  ///< frames count as several where the camera has moved this far
   float least_turn_rad = 0.01f;  ///< or turned this far in between
 };
 void list_fields(FreeSpaceConfig& config, ConfigFields& fields);
@@ -55,9 +55,9 @@ Image<float> free_depth(const VoxelMapConfig& map, const Observation& observatio
 ClearedSpace clear_free_space(VoxelMap& map, const Observation& observation,
                               const FreeSpaceConfig& config);
 
-/// Takes back at once what lies in front of `free_m` in these blocks, as clear_free_space does after
-/// several frames. `slots`: in block-index order; returns those of blocks that changed likewise. The
-/// observation must have sigma_m.
+/// Takes back at once what lies in front of `free_m` in these blocks, as clear_free_space does
+/// after several frames. `slots`: in block-index order; returns those of blocks that changed
+/// likewise. The observation must have sigma_m.
 std::vector<std::uint32_t> clear_blocks(VoxelMap& map, const Observation& observation,
                                         const Image<float>& free_m,
                                         std::span<const std::uint32_t> slots);

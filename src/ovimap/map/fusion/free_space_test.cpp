@@ -38,8 +38,9 @@ std::size_t voxels_of_box(const VoxelMap& map) {
   std::size_t count = 0;
   for (std::uint32_t slot = 0; slot < map.block_count(); ++slot)
     for (int v = 0; v < kBlockVoxels; ++v) {
-      const float z = (static_cast<float>(map.block_index(slot).z() * kBlockSide + (v >> 6)) + 0.5f) *
-                      map.config().voxel_size_m;
+      const float z =
+          (static_cast<float>(map.block_index(slot).z() * kBlockSide + (v >> 6)) + 0.5f) *
+          map.config().voxel_size_m;
       count += z < 2.f && map.distance_m(map.block(slot), v) < 0.005f &&
                map.block(slot).weight[static_cast<std::size_t>(v)] > 0.f;
     }

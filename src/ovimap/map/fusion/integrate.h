@@ -18,11 +18,11 @@ struct Observation {
   const DepthImage& depth;      ///< metres, 0 = invalid
   const PinholeCamera& camera;  ///< of the depth
   const Pose& world_from_camera;
-  const RgbImage* color = nullptr;             ///< registered to the depth; black = unknown
-  const Image<float>* plane_slope = nullptr;   ///< see DepthSurface::plane_slope; 0 = unknown
+  const RgbImage* color = nullptr;            ///< registered to the depth; black = unknown
+  const Image<float>* plane_slope = nullptr;  ///< see DepthSurface::plane_slope; 0 = unknown
   const Image<float>* sigma_m = nullptr;  ///< standard deviation of the depth; null: unknown, it
                                           ///< is taken to grow with depth
-  const IdImage* segment_ids = nullptr;        ///< segment of each pixel; 0 = none
+  const IdImage* segment_ids = nullptr;   ///< segment of each pixel; 0 = none
   std::span<const Label> segment_labels = {};  ///< label of segment id, at [id - 1]
   const BlockChoice* blocks = nullptr;  ///< the only ones that the frame may change; null: all
 };
@@ -50,8 +50,8 @@ inline constexpr float kBandSigmas = 3.f, kMostBand_m = 1.f;
 /// that of a robust estimator. Labels go to voxels within one sigma of the surface, or
 /// label_band_voxels.
 ///
-/// The only writer of voxels, with vote_labels and clear_free_space. Returns the slots of the blocks it visited, in
-/// block-index order.
+/// The only writer of voxels, with vote_labels and clear_free_space. Returns the slots of the
+/// blocks it visited, in block-index order.
 std::vector<std::uint32_t> integrate(VoxelMap& map, const Observation& observation);
 
 /// The frame's label votes alone, for masks that come after their frame was fused: the same voxels
@@ -60,8 +60,8 @@ std::vector<std::uint32_t> integrate(VoxelMap& map, const Observation& observati
 std::vector<std::uint32_t> vote_labels(VoxelMap& map, const Observation& observation);
 
 /// Creates the blocks within the truncation of the observed surface and returns their slots, and
-/// those of other blocks that are there within the band of an uncertain depth, in block-index order;
-/// of Observation::blocks alone.
+/// those of other blocks that are there within the band of an uncertain depth, in block-index
+/// order; of Observation::blocks alone.
 std::vector<std::uint32_t> allocate_blocks(VoxelMap& map, const Observation& observation);
 
 }  // namespace ovimap

@@ -92,7 +92,8 @@ TEST(Integrate, DepthThatErrsByMoreThanTheTruncationLeavesOneSurface) {
     for (int frame = 0; frame < kFrames; ++frame) {
       const float spread = 0.08f * 3.4641016f;  // uniform, of that deviation
       const DepthImage depth(
-          64, 48, 4.f + spread * (static_cast<float>(frame * 17 % kFrames) / (kFrames - 1.f) - 0.5f));
+          64, 48,
+          4.f + spread * (static_cast<float>(frame * 17 % kFrames) / (kFrames - 1.f) - 0.5f));
       integrate(map, {.depth = depth,
                       .camera = camera,
                       .world_from_camera = pose,

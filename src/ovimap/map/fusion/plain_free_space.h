@@ -31,8 +31,9 @@ inline Image<float> free_depth(const VoxelMapConfig& map, const Observation& see
           ++pixels;
           holes += hole;
           if (!hole)
-            least = std::min(least, depth - std::max(config.margin_voxels * map.voxel_size_m / slope,
-                                                     config.sigmas * seen.sigma_m->at(u, v)));
+            least =
+                std::min(least, depth - std::max(config.margin_voxels * map.voxel_size_m / slope,
+                                                 config.sigmas * seen.sigma_m->at(u, v)));
         }
       if (static_cast<float>(holes) <= config.holes * static_cast<float>(pixels))
         result.at(x, y) = std::max(least, 0.f);

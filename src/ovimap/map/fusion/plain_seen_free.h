@@ -31,8 +31,10 @@ inline bool looks_through(const PinholeCamera& camera, const Pose& world_from_ca
     return false;
   constexpr int kTile = LeastTiles::kTile_px;
   const auto tile = [](float pixel) { return static_cast<int>(pixel + 0.5f) / kTile; };
-  for (int y = tile(low.y()) * kTile; y < std::min((tile(high.y()) + 1) * kTile, camera.height); ++y)
-    for (int x = tile(low.x()) * kTile; x < std::min((tile(high.x()) + 1) * kTile, camera.width); ++x)
+  for (int y = tile(low.y()) * kTile; y < std::min((tile(high.y()) + 1) * kTile, camera.height);
+       ++y)
+    for (int x = tile(low.x()) * kTile; x < std::min((tile(high.x()) + 1) * kTile, camera.width);
+         ++x)
       if (free_m.at(x, y) <= center.z() + radius) return false;
   return true;
 }

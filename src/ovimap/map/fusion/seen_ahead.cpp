@@ -13,7 +13,7 @@ namespace ovimap {
 
 namespace {
 
-constexpr int kTile_px = 8;           // blocks are held against these
+constexpr int kTile_px = 8;            // blocks are held against these
 constexpr int kTilesOfRegionTile = 4;  // and regions against so many at once, each way
 constexpr int kSampleStep_px = 8;
 constexpr float kBeside_m = 0.05f;
@@ -115,9 +115,10 @@ double confirmed_px(const VoxelMap& map, const Observation& observation) {
       const float depth_m = observation.depth.at(x, y);
       if (depth_m <= 0.f) continue;
       const Eigen::Vector3f point =
-          world_from_camera * observation.camera.unproject(static_cast<float>(x),
-                                                           static_cast<float>(y), depth_m);
-      confirmed += finder.seek(point) && finder.observed() && std::fabs(finder.distance_m()) < near_m;
+          world_from_camera *
+          observation.camera.unproject(static_cast<float>(x), static_cast<float>(y), depth_m);
+      confirmed +=
+          finder.seek(point) && finder.observed() && std::fabs(finder.distance_m()) < near_m;
     }
   return static_cast<double>(confirmed) * kSampleStep_px * kSampleStep_px;
 }

@@ -15,9 +15,9 @@ struct BlockAhead {
   float free_m;  ///< the rays through it run through empty space no further than this depth
 };
 
-/// The blocks of which a part may lie in front of `free_m` (free_depth), in block-index order: those
-/// between the camera and what it sees, of Observation::blocks. Costs one projection per block in
-/// view.
+/// The blocks of which a part may lie in front of `free_m` (free_depth), in block-index order:
+/// those between the camera and what it sees, of Observation::blocks. Costs one projection per
+/// block in view.
 std::vector<BlockAhead> blocks_ahead(const VoxelMap& map, const Observation& observation,
                                      const Image<float>& free_m);
 

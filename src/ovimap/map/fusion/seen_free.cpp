@@ -84,8 +84,8 @@ void SeenFree::look(const PinholeCamera& camera, const Pose& world_from_camera,
     SpaceRegion& region = regions_[look.key];
     for (std::size_t i = 0; i < region.size(); ++i) {
       if (!look.through[i]) continue;
-      region[i].looks = static_cast<std::uint8_t>(
-          std::min<int>(region[i].looks + 1, SpaceCell::kMost));
+      region[i].looks =
+          static_cast<std::uint8_t>(std::min<int>(region[i].looks + 1, SpaceCell::kMost));
       region[i].taken = 0;
     }
   }
@@ -118,7 +118,9 @@ void SeenFree::stand(std::span<const BlockIndex> cells, int ticks, int known) {
   }
 }
 
-void SeenFree::suspect(const BlockIndex& cell) { cell_at(cell).suspect = true; }
+void SeenFree::suspect(const BlockIndex& cell) {
+  cell_at(cell).suspect = true;
+}
 
 std::vector<BlockIndex> SeenFree::suspects() const {
   std::vector<BlockIndex> cells;

@@ -64,7 +64,8 @@ struct SphereScene {
     const std::array<Label, 1> labels{label};
     for (int i = 0; i < views; ++i) {
       const Pose world_from_camera = pose(2 * M_PI * i / views);
-      integrate(map, {image, camera, world_from_camera, &colors, &slopes, nullptr, &segments, labels});
+      integrate(map,
+                {image, camera, world_from_camera, &colors, &slopes, nullptr, &segments, labels});
     }
   }
 };

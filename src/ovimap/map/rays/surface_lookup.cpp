@@ -32,7 +32,7 @@ OVIMAP_VECTORIZE void find_row_voxels(const float* depth, const PixelRays::Row& 
   const float rx = rays.part.x(), ry = rays.part.y(), rz = rays.part.z();
   int *x = voxels.x.data(), *y = voxels.y.data(), *z = voxels.z.data();
   OVIMAP_NO_OVERLAP  // the arrays never overlap
-  for (int i = 0; i < width; ++i) {
+      for (int i = 0; i < width; ++i) {
     x[i] = floor_of((ox + (rays.column_x[i] + rx) * depth[i]) * inverse_voxel_size);
     y[i] = floor_of((oy + (rays.column_y[i] + ry) * depth[i]) * inverse_voxel_size);
     z[i] = floor_of((oz + (rays.column_z[i] + rz) * depth[i]) * inverse_voxel_size);

@@ -33,6 +33,8 @@ std::uint8_t error_byte(std::optional<float> error_m) {
   return static_cast<std::uint8_t>(std::lround(std::clamp(*error_m * kStepsPerMetre, 1.f, 255.f)));
 }
 
-float error_of_byte(std::uint8_t byte) { return static_cast<float>(byte) / kStepsPerMetre; }
+float error_of_byte(std::uint8_t byte) {
+  return static_cast<float>(byte) / kStepsPerMetre;
+}
 
 }  // namespace ovimap

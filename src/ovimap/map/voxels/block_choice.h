@@ -8,8 +8,8 @@
 
 namespace ovimap {
 
-/// Some of a map's blocks: of those that were there when the choice began, the ones that were added,
-/// and all that were created since.
+/// Some of a map's blocks: of those that were there when the choice began, the ones that were
+/// added, and all that were created since.
 class BlockChoice {
  public:
   /// `blocks`: how many the map has (VoxelMap::block_count).

@@ -22,12 +22,12 @@ class ConfigFields;
 
 struct VoxelMapConfig {
   float voxel_size_m = 0.01f;
-  int truncation_voxels = 5;      ///< the band around the surface is this wide to either side
-  float max_weight = 1000.f;      ///< weights are capped here, so that the map follows change
+  int truncation_voxels = 5;       ///< the band around the surface is this wide to either side
+  float max_weight = 1000.f;       ///< weights are capped here, so that the map follows change
   float min_mesh_weight = 0.125f;  ///< lighter voxels make no surface: their standard error is over
                                    ///< 2.8 voxels (see integrate)
   float label_band_voxels =
-      1.f;  ///< voxels this near to the observed surface take the segment's label
+      1.f;                  ///< voxels this near to the observed surface take the segment's label
   bool pixel_votes = true;  ///< a frame's vote counts as the pixels along a voxel's side, so that
                             ///< who sees it from near tells more than who sees it from afar; false:
                             ///< as one (the paper)
@@ -169,8 +169,8 @@ class VoxelMap {
     if (store_) store_->trim(*this);
   }
 
-  /// Tells the store, if there is one, of blocks that were written to since it was told last; before
-  /// the next `trim`.
+  /// Tells the store, if there is one, of blocks that were written to since it was told last;
+  /// before the next `trim`.
   void note_changes(std::span<const std::uint32_t> slots) const {
     if (store_) store_->note_changes(*this, slots);
   }

@@ -20,7 +20,7 @@ constexpr std::array kFarReaches_m = {0.4f, 0.2f};
 constexpr std::array kNearReaches_m = {0.2f, 0.1f, 0.06f};
 constexpr int kFarRounds = 6, kNearRounds = 8;
 constexpr double kSameShift_m = 0.2, kSameTurn_rad = 0.1;
-constexpr float kRoughSpacing = 2;     // as large as the fine one
+constexpr float kRoughSpacing = 2;  // as large as the fine one
 constexpr int kRoughViews = 12;
 constexpr std::size_t kFineAnswers = 6;
 
@@ -44,7 +44,10 @@ PlaceConfig rough(PlaceConfig config) {
 class Judge {
  public:
   Judge(const MapDocument& a, const MapDocument& b, const PlaceConfig& config)
-      : a_(a), b_(b), config_(config), views_a_(place_views(a, config)),
+      : a_(a),
+        b_(b),
+        config_(config),
+        views_a_(place_views(a, config)),
         views_b_(place_views(b, config)) {}
 
   /// Gives an answer's overlap and fit.

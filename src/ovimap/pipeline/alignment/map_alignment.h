@@ -25,9 +25,9 @@ void list_fields(AlignmentConfig& config, ConfigFields& fields);
 /// How one map lies in the frame of another.
 struct MapAlignment {
   Pose a_from_b = Pose::Identity();
-  float overlap = 0;    ///< of what the cameras of one map saw, the share that the other map has: of
-                        ///< the map that has the larger share
-  float fit = 0;        ///< of upright surface where both maps looked, the share that agrees
+  float overlap = 0;  ///< of what the cameras of one map saw, the share that the other map has: of
+                      ///< the map that has the larger share
+  float fit = 0;      ///< of upright surface where both maps looked, the share that agrees
   float runner_up = 0;  ///< score of the best other answer
   int objects = 0;      ///< that proposed it; 0: it was given
   /// What meets, less as much of it as is contradicted: half of a fit is what chance gives.
@@ -43,7 +43,8 @@ MapAlignment judge_alignment(const MapDocument& a, const MapDocument& b, const P
 std::vector<MapAlignment> alignments(const MapDocument& a, const MapDocument& b,
                                      const AlignmentConfig& config = {});
 
-/// The best of them, and what speaks against believing it, with the figures; empty when nothing does.
+/// The best of them, and what speaks against believing it, with the figures; empty when nothing
+/// does.
 struct AlignmentSearch {
   MapAlignment best;
   std::string doubt;

@@ -46,8 +46,7 @@ class Looks {
       for (const Landmark& landmark : layout->landmarks) {
         if (landmark.look.size() == 0) continue;
         // Made apart and moved: GCC 12 takes a resizing here for a use of freed memory.
-        if (mean_.size() == 0)
-          mean_ = Eigen::VectorXf(Eigen::VectorXf::Zero(landmark.look.size()));
+        if (mean_.size() == 0) mean_ = Eigen::VectorXf(Eigen::VectorXf::Zero(landmark.look.size()));
         mean_ += landmark.look, ++count_;
       }
     if (count_ > 0) mean_ /= static_cast<float>(count_);
@@ -142,7 +141,8 @@ UprightPose fitted(const std::vector<const Partner*>& pairs) {
 /// Poses by votes of all partners.
 class Ballot {
  public:
-  Ballot(const std::vector<Partner>& partners, std::size_t objects, const ObjectLayoutConfig& config)
+  Ballot(const std::vector<Partner>& partners, std::size_t objects,
+         const ObjectLayoutConfig& config)
       : partners_(partners), objects_(objects), config_(config) {}
 
   /// All that two partners propose, in their order.
@@ -232,8 +232,7 @@ ObjectLayout layout_of(const MapRecord& map) {
     Landmark& landmark = layout.landmarks.emplace_back(
         landmark_of(known ? shape_of_points(turn, surface->second)
                           : shape_of_box(turn, instance.box, instance.centroid)));
-    landmark.look =
-        fuse_views(appearance_of(map, instance.id).views, map.semantics.views.fusion);
+    landmark.look = fuse_views(appearance_of(map, instance.id).views, map.semantics.views.fusion);
   }
   return layout;
 }
@@ -244,9 +243,8 @@ std::vector<LayoutProposal> propose_poses(const ObjectLayout& a, const ObjectLay
   if (partners.empty()) return {};
   const Ballot ballot(partners, b.landmarks.size(), config);
   std::vector<UprightPose> all = ballot.all();
-  std::stable_sort(all.begin(), all.end(), [](const UprightPose& x, const UprightPose& y) {
-    return x.votes > y.votes;
-  });
+  std::stable_sort(all.begin(), all.end(),
+                   [](const UprightPose& x, const UprightPose& y) { return x.votes > y.votes; });
   const auto most = static_cast<std::size_t>(config.max_proposals);
   std::vector<UprightPose> kept;
   for (std::size_t i = 0; i < all.size() && kept.size() < most; ++i) {

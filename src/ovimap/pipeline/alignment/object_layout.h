@@ -12,19 +12,19 @@ namespace ovimap {
 class ConfigFields;
 
 struct ObjectLayoutConfig {
-  float min_likeness = 0.3f;   ///< of size, for two objects that may be the same
-  int max_partners = 8;        ///< objects of the first map that one of the second may be
-  float nearest_m = 0.5f;      ///< two objects nearer to each other say too little of a turn
-  float slack_m = 0.25f;       ///< by which distances may differ: maps see parts of an object
+  float min_likeness = 0.3f;  ///< of size, for two objects that may be the same
+  int max_partners = 8;       ///< objects of the first map that one of the second may be
+  float nearest_m = 0.5f;     ///< two objects nearer to each other say too little of a turn
+  float slack_m = 0.25f;      ///< by which distances may differ: maps see parts of an object
   int max_proposals = 48;
 };
 void list_fields(ObjectLayoutConfig& config, ConfigFields& fields);
 
 /// An object as a landmark.
 struct Landmark {
-  Eigen::Vector3d at = Eigen::Vector3d::Zero();          ///< its middle in the ground frame, metres
-  Eigen::Vector3f sizes_m = Eigen::Vector3f::Zero();     ///< long side, short side, height
-  Eigen::VectorXf look;                                  ///< fused embedding; empty: none
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();       ///< its middle in the ground frame, metres
+  Eigen::Vector3f sizes_m = Eigen::Vector3f::Zero();  ///< long side, short side, height
+  Eigen::VectorXf look;                               ///< fused embedding; empty: none
 };
 
 /// Where a map's objects stand to each other.

@@ -17,7 +17,8 @@ class ChanceRoom {
     for (int i = 0; i < objects; ++i) {
       Landmark& landmark = layout_.landmarks.emplace_back();
       landmark.at = {between(-3, 3), between(-3, 3), between(0, 1.5)};
-      const auto longest = static_cast<float>(between(0.2, 2)), other = static_cast<float>(between(0.2, 1));
+      const auto longest = static_cast<float>(between(0.2, 2)),
+                 other = static_cast<float>(between(0.2, 1));
       landmark.sizes_m << longest, longest * other, static_cast<float>(between(0.1, 1.5));
       if (looks) landmark.look = look();
     }

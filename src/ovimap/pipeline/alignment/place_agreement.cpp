@@ -13,8 +13,9 @@ namespace ovimap {
 
 namespace {
 
-constexpr float kLevel = 0.8f;    // cosine to the vertical of what counts as level
-constexpr float kBreak = 0.1f;    // depths of neighbours that differ by a larger share are two surfaces
+constexpr float kLevel = 0.8f;  // cosine to the vertical of what counts as level
+constexpr float kBreak =
+    0.1f;  // depths of neighbours that differ by a larger share are two surfaces
 constexpr float kFewTelling = 0.05f;  // share of pixels that must not be level
 
 Eigen::Vector3f point_at(const DepthImage& depth, const PinholeCamera& camera, int x, int y) {
@@ -26,11 +27,13 @@ Eigen::Vector3f normal_at(const DepthImage& depth, const PinholeCamera& camera, 
   if (x < 1 || y < 1 || x + 1 >= depth.width() || y + 1 >= depth.height())
     return Eigen::Vector3f::Zero();
   const float here = depth.row(y)[x];
-  for (const float other : {depth.row(y)[x - 1], depth.row(y)[x + 1], depth.row(y - 1)[x],
-                            depth.row(y + 1)[x]})
+  for (const float other :
+       {depth.row(y)[x - 1], depth.row(y)[x + 1], depth.row(y - 1)[x], depth.row(y + 1)[x]})
     if (!(std::fabs(other - here) < kBreak * here)) return Eigen::Vector3f::Zero();
-  const Eigen::Vector3f right = point_at(depth, camera, x + 1, y) - point_at(depth, camera, x - 1, y),
-                        down = point_at(depth, camera, x, y + 1) - point_at(depth, camera, x, y - 1);
+  const Eigen::Vector3f right =
+                            point_at(depth, camera, x + 1, y) - point_at(depth, camera, x - 1, y),
+                        down =
+                            point_at(depth, camera, x, y + 1) - point_at(depth, camera, x, y - 1);
   return down.cross(right).normalized();  // towards the camera
 }
 
@@ -58,8 +61,8 @@ PlaceView view_from(const MapDocument& map, const PinholeCamera& camera, const P
   view.telling = Image<std::uint8_t>(camera.width, camera.height);
   const Eigen::Vector3f up = pose.linear().cast<float>().transpose() * map.up;
   for (std::size_t i = 0; i < view.telling.size(); ++i)
-    view.telling[i] = view.normals[i] != Eigen::Vector3f::Zero() &&
-                      std::fabs(view.normals[i].dot(up)) < kLevel;
+    view.telling[i] =
+        view.normals[i] != Eigen::Vector3f::Zero() && std::fabs(view.normals[i].dot(up)) < kLevel;
   return view;
 }
 

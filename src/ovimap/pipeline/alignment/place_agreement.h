@@ -12,9 +12,9 @@ namespace ovimap {
 class ConfigFields;
 
 struct PlaceConfig {
-  int width_px = 80;         ///< of the images that stand for frames
-  int max_views = 48;        ///< frames that are looked at, evenly spread
-  float max_range_m = 8.f;   ///< farther surface does not count
+  int width_px = 80;          ///< of the images that stand for frames
+  int max_views = 48;         ///< frames that are looked at, evenly spread
+  float max_range_m = 8.f;    ///< farther surface does not count
   float tolerance_m = 0.05f;  ///< surfaces nearer to each other agree
 };
 void list_fields(PlaceConfig& config, ConfigFields& fields);

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "ovimap/eval/geometry/nearest.h"
-#include "ovimap/geometry/pose.h"
 #include "ovimap/geometry/mesh.h"
+#include "ovimap/geometry/pose.h"
 
 namespace ovimap {
 

@@ -23,9 +23,8 @@ void for_neighbours(const BlockIndex& cell, const Visit& visit) {
 
 bool near_surface(const SurfaceErrors& surface, const BlockIndex& cell) {
   bool near = surface.contains(pack_index(cell));
-  for_neighbours(cell, [&](const BlockIndex& other) {
-    near = near || surface.contains(pack_index(other));
-  });
+  for_neighbours(
+      cell, [&](const BlockIndex& other) { near = near || surface.contains(pack_index(other)); });
   return near;
 }
 
@@ -63,8 +62,7 @@ std::vector<std::vector<BlockIndex>> pieces_of(Cells cells) {
     cells.erase(cells.begin());
     for (std::size_t i = 0; i < piece.size(); ++i)
       for_neighbours(BlockIndex(piece[i]), [&](const BlockIndex& next) {
-        if (in_one_cube(piece[i], next) && cells.erase(pack_index(next)) > 0)
-          piece.push_back(next);
+        if (in_one_cube(piece[i], next) && cells.erase(pack_index(next)) > 0) piece.push_back(next);
       });
   }
   return pieces;
@@ -79,8 +77,8 @@ Gap gap_of(const std::vector<BlockIndex>& piece, GapKind kind, float cell_m) {
     gap.box.extend((cell.array() + 1).cast<float>().matrix() * cell_m);
     mean += cell.cast<double>() / static_cast<double>(piece.size());
   }
-  const auto nearest = std::min_element(
-      piece.begin(), piece.end(), [&](const BlockIndex& a, const BlockIndex& b) {
+  const auto nearest =
+      std::min_element(piece.begin(), piece.end(), [&](const BlockIndex& a, const BlockIndex& b) {
         return (a.cast<double>() - mean).squaredNorm() < (b.cast<double>() - mean).squaredNorm();
       });
   gap.middle = (nearest->cast<float>().array() + 0.5f) * cell_m;

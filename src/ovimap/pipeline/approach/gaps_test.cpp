@@ -19,8 +19,9 @@ struct OpenBox {
     regions[pack_index({0, 0, 0})].fill({6, 0, false});
     for (int a = -1; a <= kSide; ++a)
       for (int b = -1; b <= kSide; ++b)
-        for (const BlockIndex& block : {BlockIndex(-1, a, b), BlockIndex(a, -1, b), BlockIndex(a, kSide, b),
-                                        BlockIndex(a, b, -1), BlockIndex(a, b, kSide)})
+        for (const BlockIndex& block :
+             {BlockIndex(-1, a, b), BlockIndex(a, -1, b), BlockIndex(a, kSide, b),
+              BlockIndex(a, b, -1), BlockIndex(a, b, kSide)})
           walls[pack_index(block)] = 0.002f;
   }
   std::vector<Gap> gaps(const GapsConfig& config = {}) const {

@@ -55,8 +55,8 @@ class LookedThrough {
       if (const FrameRead read = source.read(i); read.frame) add(*read.frame);
   }
   std::size_t count(int frames) const {
-    return static_cast<std::size_t>(std::count_if(counts_.begin(), counts_.end(),
-                                                  [&](int count) { return count >= frames; }));
+    return static_cast<std::size_t>(
+        std::count_if(counts_.begin(), counts_.end(), [&](int count) { return count >= frames; }));
   }
   Points at_least(int frames) const {
     Points points;
@@ -295,7 +295,8 @@ ChangeScores score_changes(const MapDocument& map, const std::filesystem::path& 
   const std::size_t visits = std::max<std::size_t>(map.history.visits.size(), 1);
   if (visits != truth.visits.size())
     throw Error(concat("the map is of ", visits, " visits, and ", folder.string(), " has ",
-                       truth.visits.size(), "; go on with it by `ovimap run VISIT --continue MAP`"));
+                       truth.visits.size(),
+                       "; go on with it by `ovimap run VISIT --continue MAP`"));
   std::vector<Truth> truths;
   for (const auto& visit : truth.visits) truths.push_back(load_truth(visit));
   ChangeScores scores;

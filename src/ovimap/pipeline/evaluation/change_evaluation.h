@@ -13,10 +13,10 @@ namespace ovimap {
 class ConfigFields;
 
 struct ChangeScoresConfig {
-  float near_m = 0.02f;        ///< surface of the map this near to a point is there
-  float apart_m = 0.05f;       ///< points of things that left count where nothing stands this near now
-  int frames = 5;              ///< and where so many frames looked through
-  float through_m = 0.05f;     ///< by this much
+  float near_m = 0.02f;     ///< surface of the map this near to a point is there
+  float apart_m = 0.05f;    ///< points of things that left count where nothing stands this near now
+  int frames = 5;           ///< and where so many frames looked through
+  float through_m = 0.05f;  ///< by this much
   float mover_cell_m = 0.02f;  ///< of what moves one point in each such cube counts, in every frame
   int seen_frames = 5;         ///< things count as changed that so many frames show, in each visit
   int seen_px = 100;           ///< in which they are, by at least so many pixels
@@ -24,8 +24,8 @@ struct ChangeScoresConfig {
 };
 void list_fields(ChangeScoresConfig& config, ConfigFields& fields);
 
-/// Changes of one kind. What is told in doubt (ObjectEvent::may_be, and what is gone of which another
-/// may be it) counts as told only where it is right.
+/// Changes of one kind. What is told in doubt (ObjectEvent::may_be, and what is gone of which
+/// another may be it) counts as told only where it is right.
 struct ChangeCounts {
   std::size_t real = 0, told = 0, right = 0;
   double precision() const { return told == 0 ? 1. : double(right) / double(told); }
@@ -34,12 +34,12 @@ struct ChangeCounts {
 
 /// What a map says of a place that changed.
 struct ChangeScores {
-  std::size_t left_points = 0;   ///< of things where they were, that frames looked through since
-  std::size_t ghost_points = 0;  ///< of those, where the map still has surface
-  std::size_t static_points = 0;  ///< of what never changed and was seen in the last visit
-  std::size_t kept_points = 0;    ///< of those, where the map has surface
-  std::size_t mover_points = 0;  ///< of what moved while it was seen, where nothing else is
-  std::size_t mover_left = 0;    ///< of those, where the map has surface
+  std::size_t left_points = 0;      ///< of things where they were, that frames looked through since
+  std::size_t ghost_points = 0;     ///< of those, where the map still has surface
+  std::size_t static_points = 0;    ///< of what never changed and was seen in the last visit
+  std::size_t kept_points = 0;      ///< of those, where the map has surface
+  std::size_t mover_points = 0;     ///< of what moved while it was seen, where nothing else is
+  std::size_t mover_left = 0;       ///< of those, where the map has surface
   std::size_t knowable_points = 0;  ///< of mover_points, those that `frames` others looked through
   ChangeCounts moved, removed, added;
   std::size_t ids_kept = 0;  ///< of moved.real: things whose move is told under the id they had
@@ -57,9 +57,9 @@ struct ChangeScores {
 };
 
 /// Scores a map that was continued through all visits of `folder` (load_true_changes). Things that
-/// the visits saw too little of (seen_frames, seen_px) are no changes that a map could tell; they count
-/// where it told them all the same. Throws Error where the
-/// map was not made from that many visits, and what the parts throw.
+/// the visits saw too little of (seen_frames, seen_px) are no changes that a map could tell; they
+/// count where it told them all the same. Throws Error where the map was not made from that many
+/// visits, and what the parts throw.
 ChangeScores score_changes(const MapDocument& map, const std::filesystem::path& folder,
                            const ChangeScoresConfig& config = {});
 

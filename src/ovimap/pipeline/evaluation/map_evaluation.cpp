@@ -74,13 +74,14 @@ Prediction load_prediction(const Truth& truth, const MapAndTruth& paths) {
   return {std::move(mesh), std::move(map)};
 }
 
-/// Of each object; none where nobody rated the masks: pieces of depth fit what is made of them. What a person put
-/// together is surest.
+/// Of each object; none where nobody rated the masks: pieces of depth fit what is made of them.
+/// What a person put together is surest.
 std::map<InstanceId, float> confidences(const Prediction& predicted) {
   std::map<InstanceId, float> confidence;
   if (!predicted.map) return confidence;
   const std::vector<InstanceSummary>& instances = predicted.map->instances;
-  if (std::none_of(instances.begin(), instances.end(), [](const auto& one) { return one.confidence.has_value(); }))
+  if (std::none_of(instances.begin(), instances.end(),
+                   [](const auto& one) { return one.confidence.has_value(); }))
     return confidence;
   for (const InstanceSummary& instance : instances)
     confidence[instance.id] = instance.confidence.value_or(1.f);

@@ -48,10 +48,10 @@ struct MapAndTruth {
 
 /// What a map says at the vertices of its truth.
 struct EvaluatedScene {
-  std::string name;                      ///< the map's path
-  SemanticScene labels;                  ///< classes are empty where there are no semantic figures;
-                                         ///< things that are not scored are unlabelled in it
-  SizedScene sized;                      ///< the same with everything
+  std::string name;      ///< the map's path
+  SemanticScene labels;  ///< classes are empty where there are no semantic figures;
+                         ///< things that are not scored are unlabelled in it
+  SizedScene sized;      ///< the same with everything
   std::map<std::uint32_t, std::int32_t> picture_classes;  ///< predicted as the paper does, by the
                                                           ///< nearest name alone
   std::vector<std::uint32_t> few_views;  ///< objects with too few embedded views; empty for a map

@@ -20,8 +20,8 @@ std::span<const Cell> steps(Corners corners) {
 
 }  // namespace
 
-std::vector<std::vector<Cell>> connected_parts(const Image<std::uint8_t>& cells,
-                                               std::uint8_t value, Corners corners) {
+std::vector<std::vector<Cell>> connected_parts(const Image<std::uint8_t>& cells, std::uint8_t value,
+                                               Corners corners) {
   const std::span<const Cell> around = steps(corners);
   std::vector<std::vector<Cell>> parts;
   Image<std::uint8_t> seen(cells.width(), cells.height());

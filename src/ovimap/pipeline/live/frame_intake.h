@@ -35,8 +35,8 @@ class FrameIntake {
   Answer offer(Frame frame, Offer offer = Offer::kFirst);
   /// What `offer` would answer now; kFull counts as it does there, so ask for one frame once.
   Answer room(Offer offer);
-  /// Corrects poses of frames that were taken before. Only the latest correction waits: a graph says
-  /// all that those before it said. False once finish() was called.
+  /// Corrects poses of frames that were taken before. Only the latest correction waits: a graph
+  /// says all that those before it said. False once finish() was called.
   bool correct(PoseUpdate update);
   /// No more frames come. Those that wait are still handed out.
   void finish();

@@ -130,8 +130,8 @@ TEST(FrameIntake, CorrectedPosesMoveTheMap) {
   const LiveRunResult result = run_pushed(intake, live);
   EXPECT_EQ(result.statistics.pose_updates, 1);
   for (const FrameLogEntry& frame : result.sequence.frames)
-    EXPECT_TRUE(frame.world_from_camera.isApprox(
-        fixture::room_pose(static_cast<int>(frame.index)), 1e-9))
+    EXPECT_TRUE(
+        frame.world_from_camera.isApprox(fixture::room_pose(static_cast<int>(frame.index)), 1e-9))
         << frame.index;
   const Mapper made = live.take();
   EXPECT_GT(shown, made.map().block_count() * 9 / 10) << "whoever shows the map hears of all";

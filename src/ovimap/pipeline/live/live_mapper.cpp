@@ -32,8 +32,9 @@ void list_fields(LiveConfig& config, ConfigFields& fields) {
              "frames that wait at most; then new ones are dropped");
   fields.add("mask_backlog", config.mask_backlog, 0, 1000000,
              "no new masks while more frames than this wait");
-  fields.add("mask_wishes", config.mask_wishes, 1, 100000,
-             "frames that wait for the mask network at most; what waits at the end gets masks then");
+  fields.add(
+      "mask_wishes", config.mask_wishes, 1, 100000,
+      "frames that wait for the mask network at most; what waits at the end gets masks then");
   fields.add("view_backlog", config.view_backlog, 0, 1000000,
              "no looks at objects while more frames than this wait");
   fields.add("wait_for_masks", config.wait_for_masks, "hold each frame until its masks are there");

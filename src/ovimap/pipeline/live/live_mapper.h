@@ -24,11 +24,11 @@ namespace ovimap {
 
 struct LiveConfig {
   MaskScheduleConfig masks;
-  int view_interval = 10;       ///< objects are looked at in every n-th frame
-  int queue = 8;                ///< frames that wait at most; then new ones are dropped
-  int mask_backlog = 2;         ///< no new masks while more frames than this wait
-  int mask_wishes = 24;         ///< frames that wait for the network at most, also after the last one
-  int view_backlog = 4;         ///< no views while more frames than this wait
+  int view_interval = 10;  ///< objects are looked at in every n-th frame
+  int queue = 8;           ///< frames that wait at most; then new ones are dropped
+  int mask_backlog = 2;    ///< no new masks while more frames than this wait
+  int mask_wishes = 24;    ///< frames that wait for the network at most, also after the last one
+  int view_backlog = 4;    ///< no views while more frames than this wait
   bool wait_for_masks = false;  ///< hold the frame until its masks are there, as Mapper does
 };
 void list_fields(LiveConfig& config, ConfigFields& fields);
@@ -54,9 +54,10 @@ struct LiveStatistics {
 /// Mapper for a camera that does not wait. Frames go through threads of their own: one prepares
 /// (registration, surface, and regions where there are no masks), one fuses, one runs the mask
 /// network, one the encoder. Masks that come late are applied with the depth and pose of their own
-/// frame, those of frames that waited too long after the last frame. When it falls behind it puts off
-/// masks first, leaves out views second, frames last, and counts them. Bad masks and an encoder that throws cost what they were asked for, and are counted too;
-/// whatever else throws ends the run. All calls but `statistics` come from one thread.
+/// frame, those of frames that waited too long after the last frame. When it falls behind it puts
+/// off masks first, leaves out views second, frames last, and counts them. Bad masks and an encoder
+/// that throws cost what they were asked for, and are counted too; whatever else throws ends the
+/// run. All calls but `statistics` come from one thread.
 class LiveMapper {
  public:
   LiveMapper(const MapperConfig& config, const LiveConfig& live,
@@ -82,9 +83,9 @@ class LiveMapper {
   /// Frames are not fused meanwhile. Throws what a stage threw.
   void move_and_wait(PoseUpdate update);
 
-  /// Does what another live run did (MapRecord::live_steps), instead of what there is time for: takes
-  /// in masks, asks for them and looks at objects when that run did, and so makes the same map. Push
-  /// the frames that it took, in that order, and wait. Before the first push only.
+  /// Does what another live run did (MapRecord::live_steps), instead of what there is time for:
+  /// takes in masks, asks for them and looks at objects when that run did, and so makes the same
+  /// map. Push the frames that it took, in that order, and wait. Before the first push only.
   void repeat(std::vector<LiveStep> steps);
 
   /// Goes on where a stored map stopped, made with the same config. Before the first push only.
@@ -93,8 +94,8 @@ class LiveMapper {
   void number_from(std::int64_t first) { mapper_->number_from(first); }
 
   /// Waits until everything pushed is in the map, with its masks and embeddings; then no more
-  /// frames are taken. `go_on`, which may be null, is asked now and then; once it says no, frames that
-  /// still wait for masks stay without. Throws what a stage threw.
+  /// frames are taken. `go_on`, which may be null, is asked now and then; once it says no, frames
+  /// that still wait for masks stay without. Throws what a stage threw.
   void drain(const std::function<bool()>& go_on = nullptr);
   /// Stops as soon as each stage has finished what it is at. What was fused stays.
   void cancel();
@@ -114,7 +115,8 @@ class LiveMapper {
   /// Called after every frame and every change of labels, on the fusing thread, with all frames so
   /// far. For checkpoints; set before the first push. What it throws ends the run.
   std::function<void(Mapper&, const std::vector<FrameLogEntry>&, const PinholeCamera&)> after_frame;
-  /// Called with what the tracker made of each frame, on the fusing thread; set before the first push.
+  /// Called with what the tracker made of each frame, on the fusing thread; set before the first
+  /// push.
   std::function<void(const TrackedFrame&)> after_tracking;
 
  private:
@@ -174,7 +176,7 @@ class LiveMapper {
   LiveConfig live_;
   std::shared_ptr<MaskSource> mask_source_;
   std::shared_ptr<PoseFinder> finder_;  ///< null: frames have poses; the fusing thread's
-  std::unique_ptr<Mapper> mapper_;  ///< the fusing thread's, until that ends
+  std::unique_ptr<Mapper> mapper_;      ///< the fusing thread's, until that ends
   MaskSchedule schedule_;
   StageTimers prepare_timers_, mask_timers_;
 
@@ -192,7 +194,7 @@ class LiveMapper {
 
   std::atomic<bool> cancelled_ = false, repeating_ = false;
   std::atomic<bool> masks_suffice_ = false;  ///< frames that wait for them stay without
-  mutable std::mutex mutex_;  ///< guards what follows
+  mutable std::mutex mutex_;                 ///< guards what follows
   LiveStatistics statistics_;
   StageTimers lags_;
   std::exception_ptr failure_;

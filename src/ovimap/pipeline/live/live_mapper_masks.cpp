@@ -27,8 +27,8 @@ bool LiveMapper::wants_masks(const Frame& frame) {
   return true;
 }
 
-/// Has them, or puts the frame among those that wait. Where too many do, of the two that came soonest
-/// after each other the older goes: what is left is spread over the way.
+/// Has them, or puts the frame among those that wait. Where too many do, of the two that came
+/// soonest after each other the older goes: what is left is spread over the way.
 void LiveMapper::ask_for_masks(Prepared& prepared) {
   if (live_.wait_for_masks) {
     prepared.cut = masks_for(prepared);
@@ -47,8 +47,8 @@ void LiveMapper::ask_for_masks(Prepared& prepared) {
   ++statistics_.masks_skipped;
 }
 
-/// Takes in masks that are there, and gives the network the newest of the frames that wait: it shows
-/// where the camera is.
+/// Takes in masks that are there, and gives the network the newest of the frames that wait: it
+/// shows where the camera is.
 void LiveMapper::apply_late_masks() {
   if (network_busy_)
     if (auto late = found_masks_.try_pop()) take_answer(std::move(late));
@@ -71,9 +71,8 @@ void LiveMapper::apply_masks(Prepared late, const LiveStep* told) {
   mapper_->note(step);
   if (!late.cut) return schedule_.went_without();
   begin("apply_masks");
-  const auto entry = std::find_if(frames_.rbegin(), frames_.rend(), [&](const FrameLogEntry& e) {
-    return e.index == step.frame;
-  });
+  const auto entry = std::find_if(frames_.rbegin(), frames_.rend(),
+                                  [&](const FrameLogEntry& e) { return e.index == step.frame; });
   if (entry != frames_.rend()) {
     entry->labelled = true;
     move_to(entry->world_from_camera, *late.frame);
@@ -87,8 +86,8 @@ void LiveMapper::apply_masks(Prepared late, const LiveStep* told) {
   lags_.add("masks", milliseconds_since(late.pushed));
 }
 
-/// No frame comes any more: those that wait for masks get them, the oldest first. Here and not on the
-/// network's thread, which lets all others go first: somebody waits for the map.
+/// No frame comes any more: those that wait for masks get them, the oldest first. Here and not on
+/// the network's thread, which lets all others go first: somebody waits for the map.
 void LiveMapper::catch_up() {
   catching_up_ = true;
   if (network_busy_) take_answer(found_masks_.pop());

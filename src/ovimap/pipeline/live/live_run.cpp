@@ -115,7 +115,8 @@ void require_repeatable(const std::vector<LiveStep>& steps, bool tracked) {
     throw Error(concat("the map cannot be made again: ", why));
   };
   if (count(Kind::kFrame) == 0) refuse("it does not say how a live run made all of it");
-  if (steps.front().kind == Kind::kResumed) refuse("the live run went on with a map of another run");
+  if (steps.front().kind == Kind::kResumed)
+    refuse("the live run went on with a map of another run");
   if (count(Kind::kMoved) > 0) refuse("its poses were corrected from outside, which is not kept");
   if (tracked && count(Kind::kResumed) > 0)
     refuse("the live run was resumed, and the camera found its place anew");

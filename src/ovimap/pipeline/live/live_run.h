@@ -16,8 +16,8 @@ struct LiveRunResult {
 };
 
 /// Called after every frame is handed over, and now and then while those that wait get their masks
-/// after the last one. Returning false ends the former, and the next time the latter; what was fused
-/// stays.
+/// after the last one. Returning false ends the former, and the next time the latter; what was
+/// fused stays.
 using LiveProgress = std::function<bool(std::size_t done, std::size_t total)>;
 
 /// Feeds a recording to the mapper as a camera of `fps` frames a second would, whatever the mapper
@@ -26,13 +26,13 @@ using LiveProgress = std::function<bool(std::size_t done, std::size_t total)>;
 LiveRunResult run_live(const FrameSource& source, const std::vector<std::int64_t>& positions,
                        LiveMapper& mapper, double fps, const LiveProgress& progress = nullptr);
 
-/// Throws Error when these steps of a live run (MapRecord::live_steps) do not tell how to make its map
-/// again. `tracked`: poses are found.
+/// Throws Error when these steps of a live run (MapRecord::live_steps) do not tell how to make its
+/// map again. `tracked`: poses are found.
 void require_repeatable(const std::vector<LiveStep>& steps, bool tracked);
 
 /// Maps a recording as another live run did, by its steps, and makes its map, bit for bit, however
-/// long it takes now; drains the mapper, which must be set as that one was. Throws Error when a frame
-/// is not there or cannot be read, and as run_live does.
+/// long it takes now; drains the mapper, which must be set as that one was. Throws Error when a
+/// frame is not there or cannot be read, and as run_live does.
 LiveRunResult repeat_live(const FrameSource& source, const std::vector<LiveStep>& steps,
                           LiveMapper& mapper, const LiveProgress& progress = nullptr);
 

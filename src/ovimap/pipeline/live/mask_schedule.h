@@ -19,9 +19,9 @@ struct MaskScheduleConfig {
   MaskRule rule = MaskRule::kNeed;
   int interval = 30;  ///< kInterval: frames
   float unexplained_share =
-      0.25f;             ///< kNeed: share of the view without a label that asks for masks
-  float motion = 0.1f;   ///< ... or this much motion since the last masks (MaskMotion)
-  int min_gap = 5;       ///< ... but not before this many frames
+      0.25f;            ///< kNeed: share of the view without a label that asks for masks
+  float motion = 0.1f;  ///< ... or this much motion since the last masks (MaskMotion)
+  int min_gap = 5;      ///< ... but not before this many frames
 };
 void list_fields(MaskScheduleConfig& config, ConfigFields& fields);
 

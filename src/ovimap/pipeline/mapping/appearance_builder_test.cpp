@@ -141,11 +141,10 @@ class Wall {
       ids[i] = registry.instance_of(roots[i]);
     }
     ++frame_.index;
-    const int chosen = builder.choose(
-        frame_,
-        {depth_, ids, roots, depth_, color_index_, frame_.depth_camera, Pose::Identity(),
-         frame_.index},
-        registry, forest);
+    const int chosen = builder.choose(frame_,
+                                      {depth_, ids, roots, depth_, color_index_,
+                                       frame_.depth_camera, Pose::Identity(), frame_.index},
+                                      registry, forest);
     builder.submit();
     return chosen;
   }

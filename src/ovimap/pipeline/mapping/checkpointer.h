@@ -72,7 +72,7 @@ class Checkpointer {
   // The checkpoint under way.
   std::optional<MapCheckpoint> next_;
   std::shared_ptr<PendingLooks> looks_;  ///< of next_, until the encoder has answered
-  std::future<void> writing_;                  ///< valid while next_ is being written
+  std::future<void> writing_;            ///< valid while next_ is being written
 };
 
 }  // namespace ovimap

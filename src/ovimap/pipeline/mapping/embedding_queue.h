@@ -29,14 +29,15 @@ void list_fields(EmbeddingQueueConfig& config, ConfigFields& fields);
 struct EmbeddingRequest {
   ViewKey view;
   ObjectCrop crop;
-  std::shared_ptr<const RgbImage> picture = nullptr;  ///< of the frame, for the recognizer; null: none
+  std::shared_ptr<const RgbImage> picture =
+      nullptr;  ///< of the frame, for the recognizer; null: none
 };
 
 struct EmbeddingAnswer {
   ViewKey view;
-  Eigen::VectorXf embedding;  ///< empty without an encoder, or when it gave nothing finite
-  StoredCrop crop;            ///< empty when CropConfig::kept_views is 0
-  double milliseconds = 0;    ///< its share of the batch's time; 0 without an encoder
+  Eigen::VectorXf embedding;    ///< empty without an encoder, or when it gave nothing finite
+  StoredCrop crop;              ///< empty when CropConfig::kept_views is 0
+  double milliseconds = 0;      ///< its share of the batch's time; 0 without an encoder
   Eigen::VectorXf things = {};  ///< log ratios; empty without a recognizer
 };
 

@@ -96,9 +96,8 @@ std::vector<EmbeddingRequest> two_of_one_picture(std::int64_t frame) {
   const auto picture = std::make_shared<const RgbImage>(8, 8, Rgb8{200, 0, 0});
   std::vector<EmbeddingRequest> requests;
   for (const float left : {0.25f, 0.5f}) {
-    EmbeddingRequest request{{frame, requests.empty() ? 1u : 2u},
-                             crop_of(RgbImage(4, 4, {200, 0, 0})),
-                             picture};
+    EmbeddingRequest request{
+        {frame, requests.empty() ? 1u : 2u}, crop_of(RgbImage(4, 4, {200, 0, 0})), picture};
     request.crop.in_frame = {Eigen::Vector2f(left, 0), Eigen::Vector2f(left + 0.25f, 1)};
     requests.push_back(std::move(request));
   }

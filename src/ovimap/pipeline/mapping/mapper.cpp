@@ -34,8 +34,8 @@ Observation observation_of(const PreparedFrame& prepared, const FrameSegments* c
   return observation_of(prepared, cut, labels, prepared.estimate.depth_m);
 }
 
-/// All that the sensor saw, what was taken out of the frame included: holes would hide what is empty,
-/// and whose the rest of somebody is.
+/// All that the sensor saw, what was taken out of the frame included: holes would hide what is
+/// empty, and whose the rest of somebody is.
 Observation whole_of(const PreparedFrame& prepared) {
   const std::optional<DepthReading>& whole = prepared.whole;
   const DepthEstimate& estimate = whole ? whole->estimate : prepared.estimate;
@@ -103,8 +103,7 @@ FrameReport Mapper::process(const Frame& frame) {
   const std::shared_ptr<const Frame> borrowed(std::shared_ptr<const Frame>(), &frame);
   const PreparedFrame prepared = prepare_frame(borrowed, config_, timers_);
   std::optional<FrameSegments> cut;
-  if (wants_masks(frame))
-    cut = cut_segments(prepared, masks_.get(), config_, timers_);
+  if (wants_masks(frame)) cut = cut_segments(prepared, masks_.get(), config_, timers_);
   FrameReport report = fuse(prepared, cut ? &*cut : nullptr);
   if (frames_ % config_.view_interval == 0) report.views = look_at_objects(frame);
   return report;
@@ -259,7 +258,9 @@ const std::vector<Mover>& Mapper::movers() const {
   return motion_->movers();
 }
 
-const SeenFree& Mapper::seen_free() const { return motion_->space(); }
+const SeenFree& Mapper::seen_free() const {
+  return motion_->space();
+}
 
 MapRecord Mapper::record(MapHeader header, std::vector<FrameLogEntry> frames,
                          const PinholeCamera& depth_camera) const {

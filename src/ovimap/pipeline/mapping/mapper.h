@@ -87,9 +87,9 @@ class Mapper {
 
   /// Moves the map to where its frames are by now: `poses` of all frames so far (world_from_camera
   /// of their depth camera). What a frame shows that moved visibly from where it was fused
-  /// (FrameStoreConfig::still_voxels) is fused anew from what is kept (fuse_moved); labels stay what
-  /// they are, and so do objects. touched_blocks() are those that were made anew. Frames must be
-  /// kept. A map with a store stays within its bound; its blocks may not be frozen then.
+  /// (FrameStoreConfig::still_voxels) is fused anew from what is kept (fuse_moved); labels stay
+  /// what they are, and so do objects. touched_blocks() are those that were made anew. Frames must
+  /// be kept. A map with a store stays within its bound; its blocks may not be frozen then.
   /// `progress(done, total)`: after each kept frame. Throws Error when one is damaged.
   FusedAgain fuse_again(const std::vector<Pose>& poses, const PinholeCamera& depth_camera,
                         const std::function<void(std::size_t, std::size_t)>& progress = nullptr);

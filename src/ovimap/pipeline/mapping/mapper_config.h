@@ -35,9 +35,9 @@ struct MapperConfig {
   int view_interval = 0;  ///< objects are looked at in every n-th frame; 0: in every frame with an
                           ///< encoder, in every stored_view_interval-th without
   int stored_view_interval = 5;  ///< what view_interval 0 means when crops are only kept
-  int mask_interval = 0;  ///< 2D masks are asked for every n-th frame, the frames between add
-                          ///< geometry and colour; 0: by mask_motion where the source is slow (a
-                          ///< network), every frame otherwise
+  int mask_interval = 0;     ///< 2D masks are asked for every n-th frame, the frames between add
+                             ///< geometry and colour; 0: by mask_motion where the source is slow (a
+                             ///< network), every frame otherwise
   float mask_motion = 0.1f;  ///< what moves by less of the picture's width since the last masks
                              ///< needs no new ones (MaskMotion); 0: every frame
   float occlusion_margin_m =

@@ -175,8 +175,8 @@ TEST(Mapper, MasksOnSomeFramesAloneTellAllObjectsApart) {
     int masked_every, mask_frames;
     std::size_t least_found;
   };
-  for (const Expected& e : {Expected{1, 60, 6}, Expected{5, 12, 6}, Expected{11, 6, 5},
-                            Expected{20, 3, 4}}) {
+  for (const Expected& e :
+       {Expected{1, 60, 6}, Expected{5, 12, 6}, Expected{11, 6, 5}, Expected{20, 3, 4}}) {
     const Mapper mapper = map_boxes(room, e.masked_every);
     EXPECT_GE(boxes_found(room, mapper), e.least_found) << "every " << e.masked_every;
     EXPECT_EQ(mapper.frames(), 60);

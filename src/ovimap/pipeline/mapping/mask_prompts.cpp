@@ -20,8 +20,9 @@ std::vector<ShownRegion> shown_regions(const DepthRegions& regions,
   for (std::size_t i = 0; i < regions.ids.size(); ++i) {
     if (regions.ids[i] == 0 || color_index[i] == Registration::kNoColor) continue;
     ShownRegion& region = shown[regions.ids[i] - 1u];
-    region.extent_px.extend(Eigen::Vector2f(static_cast<float>(color_index[i] % color_camera.width),
-                                            static_cast<float>(color_index[i] / color_camera.width)));
+    region.extent_px.extend(
+        Eigen::Vector2f(static_cast<float>(color_index[i] % color_camera.width),
+                        static_cast<float>(color_index[i] / color_camera.width)));
     ++region.area_px;
   }
   return shown;
@@ -36,8 +37,7 @@ std::vector<MaskPrompt> region_prompts(const DepthRegions& regions,
   const std::vector<Eigen::Vector2i> interiors = deepest_pixels(regions);
   std::vector<MaskPrompt> prompts;
   for (std::size_t i = 0; i < shown.size(); ++i) {
-    const std::int32_t index =
-        registration.color_index().at(interiors[i].x(), interiors[i].y());
+    const std::int32_t index = registration.color_index().at(interiors[i].x(), interiors[i].y());
     if (shown[i].area_px == 0 || index == Registration::kNoColor) continue;
     prompts.push_back({.interior_px = {static_cast<float>(index % color_camera.width),
                                        static_cast<float>(index / color_camera.width)},

@@ -33,9 +33,8 @@ class MovedSpace {
   /// From where a kept frame was and from where it is.
   void add(const KeptFrame& kept, const Pose& before, const Pose& after) {
     const DepthEstimate estimate = PreparedKept(kept, config_, camera_).estimate;
-    const Image<float> reach =
-        reach_of(estimate.depth_m, estimate.sigma_m.empty() ? nullptr : &estimate.sigma_m,
-                 map_.config());
+    const Image<float> reach = reach_of(
+        estimate.depth_m, estimate.sigma_m.empty() ? nullptr : &estimate.sigma_m, map_.config());
     add(reach, before);
     add(reach, after);
   }
@@ -131,8 +130,7 @@ PoseChange change_of(std::vector<Pose> fused_from, const std::vector<Pose>& pose
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Pose between = change.before[i].inverse() * poses[i];
     const double turned_rad = Eigen::AngleAxisd(between.linear()).angle();
-    change.moved[i] =
-        between.translation().norm() + 2 * std::sin(turned_rad / 2) * at_m > still_m;
+    change.moved[i] = between.translation().norm() + 2 * std::sin(turned_rad / 2) * at_m > still_m;
     if (change.moved[i] == 0) change.after[i] = change.before[i];
   }
   return change;
@@ -142,8 +140,7 @@ FusedAgain fuse_moved(VoxelMap& map, const KeptFrames& kept, const PoseChange& c
                       const MapperConfig& config, const PinholeCamera& camera,
                       const std::function<void(std::size_t, std::size_t)>& progress) {
   FusedAgain result;
-  result.moved =
-      static_cast<std::size_t>(std::count(change.moved.begin(), change.moved.end(), 1));
+  result.moved = static_cast<std::size_t>(std::count(change.moved.begin(), change.moved.end(), 1));
   const std::vector<std::uint8_t> changed = changed_frames(kept, change, config.free_space);
   const MovedSpace space = moved_space(map, kept, change, changed, config, camera);
   map.empty_blocks(space.blocks());
@@ -162,8 +159,7 @@ FusedAgain fuse_moved(VoxelMap& map, const KeptFrames& kept, const PoseChange& c
     if (progress) progress(++done, kept.size());
   }
   result.slots = map.ordered_slots();
-  std::erase_if(result.slots,
-                [&](std::uint32_t slot) { return !space.blocks().contains(slot); });
+  std::erase_if(result.slots, [&](std::uint32_t slot) { return !space.blocks().contains(slot); });
   result.looks = fusion.looks();
   return result;
 }

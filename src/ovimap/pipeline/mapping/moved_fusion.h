@@ -8,8 +8,8 @@
 
 namespace ovimap {
 
-/// Where the frames of a map were fused from, and where they are to be fused from (world_from_camera
-/// of the depth camera).
+/// Where the frames of a map were fused from, and where they are to be fused from
+/// (world_from_camera of the depth camera).
 struct PoseChange {
   std::vector<Pose> before, after;
   std::vector<std::uint8_t> moved;  ///< by frame; `after` is `before` of those that did not
@@ -36,8 +36,8 @@ struct FusedAgain {
 /// now, not as they were then. Of a moved frame that is not kept, all is taken to have changed that
 /// it may have seen as far as the kept frame before it saw.
 ///
-/// A map with a store stays within its bound. `progress(done, total)`: after each kept frame. Throws
-/// Error when a kept frame is damaged.
+/// A map with a store stays within its bound. `progress(done, total)`: after each kept frame.
+/// Throws Error when a kept frame is damaged.
 FusedAgain fuse_moved(VoxelMap& map, const KeptFrames& kept, const PoseChange& change,
                       const MapperConfig& config, const PinholeCamera& camera,
                       const std::function<void(std::size_t, std::size_t)>& progress = nullptr);

@@ -8,8 +8,9 @@ namespace ovimap {
 
 namespace {
 
-constexpr int kColumns = 40;       // of the grid of pixels that are looked at
-constexpr float kPatience = 1.5f;  // a slow frame is waited for until so many times the least motion
+constexpr int kColumns = 40;  // of the grid of pixels that are looked at
+constexpr float kPatience =
+    1.5f;  // a slow frame is waited for until so many times the least motion
 constexpr std::size_t kWalk = 30;  // poses; as many as a camera takes in a second
 
 bool sees(const PinholeCamera& camera, const Eigen::Vector3f& point) {
@@ -39,9 +40,8 @@ float picture_motion(const Frame& frame, const Pose& earlier_from_now) {
       if (z <= 0.f) continue;
       const Eigen::Vector2f now(static_cast<float>(x), static_cast<float>(y));
       const Eigen::Vector3f point = motion * camera.unproject(now.x(), now.y(), z);
-      moved.push_back(sees(camera, point)
-                          ? std::min(1.f, (camera.project(point) - now).norm() / width)
-                          : 1.f);
+      moved.push_back(
+          sees(camera, point) ? std::min(1.f, (camera.project(point) - now).norm() / width) : 1.f);
     }
   }
   return moved.empty() ? 0.f : median(moved);
@@ -76,9 +76,8 @@ bool MaskMotion::slow(const Frame& frame) const {
   for (std::size_t i = 1; i < walk_.size(); ++i)
     steps.push_back(picture_motion(
         frame, walk_[i - 1].world_from_camera.inverse() * walk_[i].world_from_camera));
-  return steps.empty() ||
-         picture_motion(frame, walk_.back().world_from_camera.inverse() *
-                                   frame.world_from_camera) <= median(steps);
+  return steps.empty() || picture_motion(frame, walk_.back().world_from_camera.inverse() *
+                                                    frame.world_from_camera) <= median(steps);
 }
 
 }  // namespace ovimap

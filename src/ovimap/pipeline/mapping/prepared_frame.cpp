@@ -42,12 +42,8 @@ PreparedFrame prepare_frame(std::shared_ptr<const Frame> frame, const MapperConf
   DepthReading read = read_depth(frame->depth, frame->depth_camera, config, timers);
   std::optional<DepthReading> whole = read_whole(*frame, config, timers);
   RgbImage color = registration.color_at_depth(frame->color);
-  return {std::move(frame),
-          std::move(registration),
-          std::move(read.surface),
-          std::move(read.estimate),
-          std::move(color),
-          std::move(whole)};
+  return {std::move(frame),         std::move(registration), std::move(read.surface),
+          std::move(read.estimate), std::move(color),        std::move(whole)};
 }
 
 std::optional<FrameSegments> cut_segments(const PreparedFrame& prepared, MaskSource* masks,
@@ -65,8 +61,8 @@ std::optional<FrameSegments> cut_segments(const PreparedFrame& prepared, MaskSou
   }
   const std::optional<Entities> entities = [&] {
     auto t = timers.measure("masks");
-    return masks->entities(
-        frame, region_prompts(regions, prepared.registration, frame.color_camera));
+    return masks->entities(frame,
+                           region_prompts(regions, prepared.registration, frame.color_camera));
   }();
   if (!entities) return std::nullopt;
   if (!entities->ids.same_size(frame.color))

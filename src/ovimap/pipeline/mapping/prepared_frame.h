@@ -24,7 +24,7 @@ struct PreparedFrame {
   Registration registration;
   DepthSurface surface;
   DepthEstimate estimate;  ///< what is fused
-  RgbImage color;  ///< registered to the depth
+  RgbImage color;          ///< registered to the depth
   /// Of the depth with what was taken out of the frame (Frame::taken_out), where something was: for
   /// what moves and what is empty.
   std::optional<DepthReading> whole = std::nullopt;

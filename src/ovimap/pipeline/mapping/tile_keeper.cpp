@@ -192,7 +192,8 @@ void TileKeeper::report(StageTimers& timers) {
   timers_ = {};
 }
 
-MapDocument load_map_in(const std::shared_ptr<TileKeeper>& tiles, const std::filesystem::path& map) {
+MapDocument load_map_in(const std::shared_ptr<TileKeeper>& tiles,
+                        const std::filesystem::path& map) {
   if (!tiles->bounded()) return load_map(map);
   MapDocument document = load_map_without_voxels(map);
   if (map != tiles->path()) tiles->adopt(map);

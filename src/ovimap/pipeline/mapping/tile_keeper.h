@@ -85,7 +85,8 @@ class TileKeeper : public BlockStore {
 };
 
 /// The map of a file, with `tiles` as its store where they have a bound on memory: then its voxels
-/// stay in their file, to which they are taken first where that is another. Throws what load_map throws.
+/// stay in their file, to which they are taken first where that is another. Throws what load_map
+/// throws.
 MapDocument load_map_in(const std::shared_ptr<TileKeeper>& tiles, const std::filesystem::path& map);
 
 }  // namespace ovimap

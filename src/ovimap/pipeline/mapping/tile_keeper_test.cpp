@@ -185,8 +185,8 @@ TEST_F(TileKeeperTest, FramesAreFusedAgainWithinTheBound) {
     Checkpointer checkpoints(
         std::make_shared<TileKeeper>(partial_, TileKeeper::Start::kAnew, MemoryConfig{max_mb}),
         {0.f, 7}, {}, 0);
-    const SequenceResult sequence = run_sequence(row_, positions({}, row_.size()), mapped, nullptr,
-                                                 {}, &checkpoints);
+    const SequenceResult sequence =
+        run_sequence(row_, positions({}, row_.size()), mapped, nullptr, {}, &checkpoints);
     std::vector<Pose> poses = poses_of(sequence.frames);
     for (std::size_t i = 0; i < poses.size(); ++i)
       poses[i].translation().x() += 0.0007 * static_cast<double>(i);

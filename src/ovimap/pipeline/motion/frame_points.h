@@ -18,7 +18,9 @@ class FramePoints {
         rays_(seen.camera, seen.world_from_camera.linear().cast<float>()),
         origin_(seen.world_from_camera.translation().cast<float>()) {}
 
-  Eigen::Vector3f at(int x, int y, float depth_m) const { return origin_ + rays_.at(x, y) * depth_m; }
+  Eigen::Vector3f at(int x, int y, float depth_m) const {
+    return origin_ + rays_.at(x, y) * depth_m;
+  }
   /// Of a pixel by its place in the image, row by row.
   Eigen::Vector3f at(int pixel) const {
     const int x = pixel % depth_.width(), y = pixel / depth_.width();

@@ -83,7 +83,8 @@ std::vector<std::uint32_t> MotionFilter::take_back(VoxelMap& map, const Observat
                                                    const MovingPixels& moving,
                                                    const FreeSpaceConfig& free_space) {
   if (suspects_.empty() || moving.refused || observation.sigma_m == nullptr) return {};
-  std::erase_if(suspects_, [this](std::uint64_t key) { return !space_.at(unpack_index(key)).suspect; });
+  std::erase_if(suspects_,
+                [this](std::uint64_t key) { return !space_.at(unpack_index(key)).suspect; });
   std::vector<std::uint32_t> blocks;
   for (const std::uint64_t key : suspects_)
     if (const std::uint32_t slot = map.find_slot(unpack_index(key)); slot != kNoBlock)

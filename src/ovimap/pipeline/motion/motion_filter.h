@@ -36,8 +36,8 @@ class MotionFilter {
                                        const MovingPixels& moving,
                                        const FreeSpaceConfig& free_space);
 
-  /// What moved in one of the last frames, for labels that come late; nullptr: nothing, or it is too
-  /// long ago.
+  /// What moved in one of the last frames, for labels that come late; nullptr: nothing, or it is
+  /// too long ago.
   const IdImage* moved_in(std::int64_t number) const;
 
   /// The poses of all frames were other ones than was thought: nothing was seen empty.

@@ -47,8 +47,8 @@ class Scene {
                     .sigma_m = &sigma});
     return moving;
   }
-  /// The next frame, in which nobody can see how deep it is below the middle; or a post stands there,
-  /// or a box at the middle.
+  /// The next frame, in which nobody can see how deep it is below the middle; or a post stands
+  /// there, or a box at the middle.
   MovingPixels frame_below(bool post, bool box) {
     depth.fill(kWall_m);
     for (int y = 75; y < 105; ++y)
@@ -242,8 +242,8 @@ TEST(MotionFilter, WhatWasTakenOutNeverStands) {
   for (int i = 0; i < 60; ++i)
     EXPECT_EQ(scene.frame_below(true, false).ids.at(80, 90), MovingPixels::kTakenOut);
   EXPECT_FALSE(scene.has_post());
-  const BlockIndex cell = block_at(scene.camera.unproject(80, 90, kPost_m),
-                                   1.f / scene.map.config().block_size_m());
+  const BlockIndex cell =
+      block_at(scene.camera.unproject(80, 90, kPost_m), 1.f / scene.map.config().block_size_m());
   EXPECT_EQ(scene.filter.space().at(cell).taken, 0);
 }
 

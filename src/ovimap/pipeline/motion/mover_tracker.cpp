@@ -87,7 +87,8 @@ void MoverTracker::follow(Live& live, const MovingPatch& thing, double timestamp
 
 void MoverTracker::begin(const MovingPatch& thing, double timestamp_s, std::int64_t number) {
   live_.push_back({movers_.size(), timestamp_s, Eigen::Vector3f::Zero()});
-  movers_.push_back({static_cast<int>(movers_.size()) + 1, thing.box.sizes(), {{number, thing.centroid}}});
+  movers_.push_back(
+      {static_cast<int>(movers_.size()) + 1, thing.box.sizes(), {{number, thing.centroid}}});
 }
 
 void MoverTracker::restore(std::vector<Mover> movers, const std::vector<FrameLogEntry>& frames) {

@@ -119,7 +119,8 @@ class PatchFinder {
            is_fresh(space_.at(block_at(next, inverse_cell_)), config_);
   }
   bool is_known(const Eigen::Vector3f& point) {
-    return !is_fresh(space_.at(block_at(point, inverse_cell_)), config_) && finder_.seek(point) && finder_.observed() && std::fabs(finder_.distance_m()) < near_m_;
+    return !is_fresh(space_.at(block_at(point, inverse_cell_)), config_) && finder_.seek(point) &&
+           finder_.observed() && std::fabs(finder_.distance_m()) < near_m_;
   }
 
   void take_edges() {
@@ -171,8 +172,7 @@ std::vector<BlockIndex> cells_of(const Image<std::uint8_t>& seeds, const Observa
   std::vector<std::uint64_t> keys;
   for (std::size_t i = 0; i < seeds.size(); ++i)
     if (seeds[i]) {
-      const std::uint64_t key =
-          pack_index(block_at(points.at(static_cast<int>(i)), 1.f / cell_m));
+      const std::uint64_t key = pack_index(block_at(points.at(static_cast<int>(i)), 1.f / cell_m));
       if (keys.empty() || keys.back() != key) keys.push_back(key);
     }
   std::sort(keys.begin(), keys.end());
@@ -185,10 +185,12 @@ std::vector<BlockIndex> cells_of(const Image<std::uint8_t>& seeds, const Observa
 }  // namespace
 
 void list_fields(MotionConfig& config, ConfigFields& fields) {
-  fields.add_choice("mode", config.mode,
-                    {{"off", DynamicMode::kOff}, {"drop", DynamicMode::kDrop}, {"track", DynamicMode::kTrack}},
-                    "things that move are fused (off), left out (drop), or left out and followed");
-  fields.add("looks", config.looks, 1, 255, "so many looks through a place, then surface in it moves");
+  fields.add_choice(
+      "mode", config.mode,
+      {{"off", DynamicMode::kOff}, {"drop", DynamicMode::kDrop}, {"track", DynamicMode::kTrack}},
+      "things that move are fused (off), left out (drop), or left out and followed");
+  fields.add("looks", config.looks, 1, 255,
+             "so many looks through a place, then surface in it moves");
   fields.add("look_step_m", config.look_step_m, 0.f, 10.f,
              "frames are looks of their own when the camera has moved this far, metres");
   fields.add("look_turn_rad", config.look_turn_rad, 0.f, 3.f, "or turned this far, radians");
@@ -210,7 +212,8 @@ void list_fields(MotionConfig& config, ConfigFields& fields) {
              "and goes as soon as it is seen through, where something moved so near, metres");
   fields.add("back_guard_px", config.back_guard_px, 1, 64,
              "by rays so far around, up to twice as far, pixels");
-  fields.add("edge_px", config.edge_px, 0, 64, "pixels around what moves that are left out as well");
+  fields.add("edge_px", config.edge_px, 0, 64,
+             "pixels around what moves that are left out as well");
   fields.add("stays_s", config.stays_s, 0.1f, 8.f,
              "what stands still for so long is part of the place, seconds");
   fields.add("same_thing_m", config.same_thing_m, 0.f, 10.f,

@@ -22,24 +22,27 @@ struct MovingPatch {
 
 /// What moves in a frame.
 struct MovingPixels {
-  /// Id of pixels that a filter took out of the frame (Frame::taken_out), where they are of no patch.
+  /// Id of pixels that a filter took out of the frame (Frame::taken_out), where they are of no
+  /// patch.
   static constexpr std::uint16_t kTakenOut = 0xffff;
 
-  IdImage ids;  ///< depth image size, patch of each pixel, [id - 1]; 0: it stands still; empty: all do
+  IdImage
+      ids;  ///< depth image size, patch of each pixel, [id - 1]; 0: it stands still; empty: all do
   std::vector<MovingPatch> patches;
   std::vector<BlockIndex> cells;  ///< of seen-empty space in which surface is seen, whatever it is
   bool refused = false;  ///< more would move than the map confirms: it is the frame that is wrong
 };
 
-/// Finds surface where frames had looked through, and what hangs together with it. `observation` must
-/// have sigma_m and plane_slope; `map` is as it was before the frame. What lies within a voxel or two
-/// of the map's surface stands still. Pure; the same bits for every number of threads.
+/// Finds surface where frames had looked through, and what hangs together with it. `observation`
+/// must have sigma_m and plane_slope; `map` is as it was before the frame. What lies within a voxel
+/// or two of the map's surface stands still. Pure; the same bits for every number of threads.
 MovingPixels find_moving(const VoxelMap& map, const SeenFree& space, const Observation& observation,
                          const MotionConfig& config);
 
 /// The pixels in which surface contradicts seen-empty space: what find_moving begins with. Not 0:
 /// it does.
 Image<std::uint8_t> contradicting_pixels(const VoxelMapConfig& map, const SeenFree& space,
-                                         const Observation& observation, const MotionConfig& config);
+                                         const Observation& observation,
+                                         const MotionConfig& config);
 
 }  // namespace ovimap

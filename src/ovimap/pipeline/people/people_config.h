@@ -18,10 +18,11 @@ enum class PeopleMode {
 struct PeopleConfig {
   PeopleMode mode = PeopleMode::kKeep;
   std::string detector = "nanodet";
-  float min_score = 0.2f;      ///< of a detector's box
-  bool mask_network = true;    ///< a network of --masks is asked for their outline, where it takes boxes
-  float least_fill = 0.5f;     ///< such a mask must fill so much of the box's height and width, else
-                               ///< depth is asked
+  float min_score = 0.2f;  ///< of a detector's box
+  bool mask_network =
+      true;  ///< a network of --masks is asked for their outline, where it takes boxes
+  float least_fill = 0.5f;  ///< such a mask must fill so much of the box's height and width, else
+                            ///< depth is asked
   float margin_share = 0.03f;  ///< pixels around them that go as well, of the box's height
   float seed_m = 0.3f;         ///< by depth: the body is so near to the middle of the box,
   float reach_m = 0.8f;        ///< what is theirs reaches so far from that

@@ -35,7 +35,8 @@ void list_fields(PeopleConfig& config, ConfigFields& fields) {
   fields.add_choice("mode", config.mode, {{"keep", PeopleMode::kKeep}, {"drop", PeopleMode::kDrop}},
                     "people are seen as everything else (keep), or taken out of each frame (drop)");
   fields.add("detector", config.detector, "model of kind detector that finds people");
-  fields.add("min_score", config.min_score, 0.f, 1.f, "score of a detector's box that counts as a person");
+  fields.add("min_score", config.min_score, 0.f, 1.f,
+             "score of a detector's box that counts as a person");
   fields.add("mask_network", config.mask_network,
              "a network of --masks that takes boxes is asked for the outline of people");
   fields.add("least_fill", config.least_fill, 0.f, 1.f,
@@ -80,8 +81,8 @@ PeopleMask PeopleFilter::people_in(const Frame& frame, const Image<std::int32_t>
   PeopleMask all(frame.color.width(), frame.color.height());
   for (const PersonBox& person : people) {
     const Eigen::AlignedBox2f& box = person.in_image_px;
-    const int margin_px =
-        std::max(kLeastMargin_px, static_cast<int>(std::lround(config_.margin_share * box.sizes().y())));
+    const int margin_px = std::max(
+        kLeastMargin_px, static_cast<int>(std::lround(config_.margin_share * box.sizes().y())));
     std::optional<PeopleMask> mask;
     if (features) mask = outline(*features, frame, box);
     if (!mask) mask = pixels_by_depth(frame, places, box, config_);

@@ -14,9 +14,9 @@
 
 namespace ovimap {
 
-/// Takes people out of frames: where they are there is no depth, and the colour is black, so nothing
-/// that is made of the frame shows them. Each frame is looked at by itself: the same frame gives the
-/// same result. Thread-safe.
+/// Takes people out of frames: where they are there is no depth, and the colour is black, so
+/// nothing that is made of the frame shows them. Each frame is looked at by itself: the same frame
+/// gives the same result. Thread-safe.
 class PeopleFilter {
  public:
   /// `outlines` may be null: then depth tells whose a pixel is.
@@ -24,8 +24,8 @@ class PeopleFilter {
                std::shared_ptr<const SamNetwork> outlines = nullptr)
       : config_(config), finder_(std::move(finder)), outlines_(std::move(outlines)) {}
 
-  /// The frame with what was taken out of its depth in Frame::taken_out, or the fault that no depth is
-  /// left. Throws Error when a network fails.
+  /// The frame with what was taken out of its depth in Frame::taken_out, or the fault that no depth
+  /// is left. Throws Error when a network fails.
   FrameRead without_people(Frame frame) const;
 
   /// Frames so far that showed somebody, each counted once by its index.

@@ -48,8 +48,8 @@ float body_depth_m(const DepthImage& depth, std::vector<int> pixels) {
 }
 
 /// Grows from seeds over small steps of depth, within `allowed`; marks what it reaches with 2.
-void grow_body(const DepthImage& depth, std::vector<int> seeds, float body_m, const PeopleConfig& config,
-               Image<std::uint8_t>& allowed) {
+void grow_body(const DepthImage& depth, std::vector<int> seeds, float body_m,
+               const PeopleConfig& config, Image<std::uint8_t>& allowed) {
   for (const int seed : seeds) allowed[static_cast<std::size_t>(seed)] = 2;
   while (!seeds.empty()) {
     const int pixel = seeds.back(), x = pixel % depth.width(), y = pixel / depth.width();
@@ -116,7 +116,8 @@ Image<std::int32_t> color_places(const Frame& frame) {
       const Eigen::Vector2f seen = to.project(point);
       const float limit = static_cast<float>(std::max(to.width, to.height)) + 1;
       if (!(seen.cwiseAbs().maxCoeff() < limit)) continue;
-      const auto x = static_cast<int>(std::lround(seen.x())), y = static_cast<int>(std::lround(seen.y()));
+      const auto x = static_cast<int>(std::lround(seen.x())),
+                 y = static_cast<int>(std::lround(seen.y()));
       if (frame.color.contains(x, y)) places.at(u, v) = y * frame.color.width() + x;
     }
   return places;
@@ -129,7 +130,8 @@ PeopleMask pixels_by_depth(const Frame& frame, const Image<std::int32_t>& places
   PeopleMask mask(frame.color.width(), frame.color.height());
   for (int y = box.min().y(); y <= box.max().y(); ++y)
     std::fill(mask.row(y) + box.min().x(), mask.row(y) + box.max().x() + 1, std::uint8_t{1});
-  for (const std::uint8_t state : {std::uint8_t{1}, std::uint8_t{2}})  // a body hides what is behind
+  for (const std::uint8_t state :
+       {std::uint8_t{1}, std::uint8_t{2}})  // a body hides what is behind
     for (std::size_t i = 0; i < body.size(); ++i)
       if (body[i] == state) mask[static_cast<std::size_t>(places[i])] = state == 2;
   return mask;
@@ -139,11 +141,13 @@ PeopleMask grown(const PeopleMask& mask, int radius_px) {
   PeopleMask result = mask;
   std::vector<std::uint8_t> line(static_cast<std::size_t>(std::max(mask.width(), mask.height())));
   for (int y = 0; y < mask.height(); ++y) {
-    grow_line(mask.width(), radius_px, [&](int x) { return mask.at(x, y) != 0; }, line);
+    grow_line(
+        mask.width(), radius_px, [&](int x) { return mask.at(x, y) != 0; }, line);
     std::copy_n(line.begin(), mask.width(), result.row(y));
   }
   for (int x = 0; x < mask.width(); ++x) {
-    grow_line(mask.height(), radius_px, [&](int y) { return result.at(x, y) != 0; }, line);
+    grow_line(
+        mask.height(), radius_px, [&](int y) { return result.at(x, y) != 0; }, line);
     for (int y = 0; y < mask.height(); ++y) result.at(x, y) = line[static_cast<std::size_t>(y)];
   }
   return result;
@@ -153,7 +157,8 @@ Eigen::AlignedBox2f extent_of(const PeopleMask& mask) {
   Eigen::AlignedBox2f extent;
   for (int y = 0; y < mask.height(); ++y)
     for (int x = 0; x < mask.width(); ++x)
-      if (mask.at(x, y)) extent.extend(Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)));
+      if (mask.at(x, y))
+        extent.extend(Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)));
   return extent;
 }
 

@@ -156,8 +156,7 @@ std::string facts(const MapRecord& map, const InstanceSummary& instance) {
       fact("Points", grouped_number(instance.points)),
       fact("Views", grouped_number(static_cast<std::size_t>(instance.views))),
       instance.confidence ? fact("Whole by its masks", percent_text(*instance.confidence)) : "",
-      fact("Encoder queries", grouped_number(static_cast<std::size_t>(look.queries))),
-      "</dl>\n");
+      fact("Encoder queries", grouped_number(static_cast<std::size_t>(look.queries))), "</dl>\n");
 }
 
 std::string card(const MapRecord& map, const MapReport& report, const InstanceSummary& instance,

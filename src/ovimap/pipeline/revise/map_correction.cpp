@@ -38,8 +38,9 @@ PoseCorrection correct_poses(MapDocument& document, const std::vector<Pose>& pos
         "the map keeps no frames to fuse again; map the recording with --set "
         "frame_store.max_mb=500, or map it anew with the corrected poses");
   if (!document.depth_camera.valid())
-    throw Error("the map does not say which camera took its frames; map the recording anew with "
-                "the corrected poses");
+    throw Error(
+        "the map does not say which camera took its frames; map the recording anew with "
+        "the corrected poses");
   const PoseChange change = change_of(poses_of(document.frames), poses, kStill, 1.);
   PoseCorrection correction = compare(change);
   for (std::size_t i = 0; i < poses.size(); ++i)

@@ -194,21 +194,25 @@ TEST(MapCorrection, KeptFramesThatDoNotFitAreRefused) {
     return {};
   };
   const Bytes small = encode_png(Image<std::uint16_t>(8, 6, 4000));
-  EXPECT_NE(fault_after([&](KeptFrame& frame, auto&) { frame.depth_png = small; })
-                .find("frame 3 cannot be fused again (is 8x6, expected 160x120)"),
+  EXPECT_NE(fault_after([&](KeptFrame& frame, auto&) {
+              frame.depth_png = small;
+            }).find("frame 3 cannot be fused again (is 8x6, expected 160x120)"),
             std::string::npos);
-  EXPECT_NE(fault_after([&](KeptFrame& frame, auto&) { frame.segments_png = small; })
-                .find("is 8x6, expected 160x120"),
+  EXPECT_NE(fault_after([&](KeptFrame& frame, auto&) {
+              frame.segments_png = small;
+            }).find("is 8x6, expected 160x120"),
             std::string::npos);
   EXPECT_NE(fault_after([](KeptFrame& frame, auto&) {
               frame.color_jpeg = encode_jpeg(RgbImage(8, 6), 90);
             }).find("is 8x6, expected 160x120"),
             std::string::npos);
-  EXPECT_NE(fault_after([](KeptFrame& frame, auto&) { frame.labels.resize(1); })
-                .find("but only 1 labels"),
+  EXPECT_NE(fault_after([](KeptFrame& frame, auto&) {
+              frame.labels.resize(1);
+            }).find("but only 1 labels"),
             std::string::npos);
-  EXPECT_NE(fault_after([](KeptFrame&, MapDocument& changed) { changed.depth_camera.fx = 0; })
-                .find("which camera"),
+  EXPECT_NE(fault_after([](KeptFrame&, MapDocument& changed) {
+              changed.depth_camera.fx = 0;
+            }).find("which camera"),
             std::string::npos);
 }
 

@@ -246,7 +246,8 @@ class MapComparison {
   }
 
   static void explain(ObjectChange& change) {
-    const std::string through = percent_text(change.seen_through), there = percent_text(change.surface_there);
+    const std::string through = percent_text(change.seen_through),
+                      there = percent_text(change.surface_there);
     const std::string look = change.cosine ? concat(", looks alike with a cosine of ",
                                                     metres(*change.cosine).substr(0, 4))
                                            : "";

@@ -20,8 +20,8 @@ struct ReadWritingConfig {
 void list_fields(ReadWritingConfig& config, ConfigFields& fields);
 
 struct ReadWritingSummary {
-  std::size_t crops = 0;    ///< read
-  std::size_t lines = 0;    ///< found in them, on their objects
+  std::size_t crops = 0;  ///< read
+  std::size_t lines = 0;  ///< found in them, on their objects
 };
 
 /// Called after every super-point.

@@ -20,7 +20,8 @@ WritingReader golden_reader() {
 
 /// A picture with "RB" in its left half and "BR" in its right; the object is the left half.
 ObjectView view_of(std::int64_t frame, bool flat = false) {
-  ObjectCrop crop{RgbImage(128, 64, kWhite), Image<std::uint8_t>(128, 64),
+  ObjectCrop crop{RgbImage(128, 64, kWhite),
+                  Image<std::uint8_t>(128, 64),
                   {Eigen::Vector2i(0, 0), Eigen::Vector2i(63, 63)}};
   fill_box(crop.image, 16, 24, 24, 40, kRed);
   fill_box(crop.image, 24, 24, 32, 40, kBlue);

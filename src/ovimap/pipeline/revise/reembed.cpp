@@ -18,7 +18,7 @@ bool keeps_crops(const SemanticRecord& record) {
 }
 
 void reembed_views(SuperPointLook& look, const CropConfig& config, ImageTextEncoder& encoder,
-                    ReembedSummary& summary) {
+                   ReembedSummary& summary) {
   std::vector<ObjectCrop> crops;
   std::vector<ObjectView*> views;
   for (ObjectView& view : look.views) {

@@ -14,7 +14,7 @@ namespace ovimap {
 namespace {
 
 constexpr int kTurns = 36;
-constexpr double kNearShare = 0.8;   // of the points; the others were hidden from the other visit
+constexpr double kNearShare = 0.8;  // of the points; the others were hidden from the other visit
 constexpr std::size_t kMostPoints = 400;
 
 /// The colours of a map's voxels at points.
@@ -47,8 +47,8 @@ double distance_to(const std::vector<Eigen::Vector3f>& from, const NearestPoints
     const auto near = to.find(turn * point, most_m);
     distances.push_back(static_cast<double>(near ? near->distance_m : most_m));
   }
-  const auto kept = static_cast<std::ptrdiff_t>(
-      std::ceil(kNearShare * static_cast<double>(distances.size())));
+  const auto kept =
+      static_cast<std::ptrdiff_t>(std::ceil(kNearShare * static_cast<double>(distances.size())));
   std::nth_element(distances.begin(), distances.begin() + kept - 1, distances.end());
   double sum = 0;
   for (auto distance = distances.begin(); distance != distances.begin() + kept; ++distance)

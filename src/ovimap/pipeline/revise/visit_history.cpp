@@ -58,9 +58,12 @@ std::shared_ptr<const PastObject> past_of(const MapDocument& map, InstanceId id)
   const auto surface = map.surfaces.find(id);
   if (instance == nullptr || surface == map.surfaces.end() || surface->second.empty())
     return nullptr;
-  auto was = std::make_shared<PastObject>(PastObject{instance->centroid, instance->points,
-                                                     instance->views, instance->super_points,
-                                                     surface->second, {}});
+  auto was = std::make_shared<PastObject>(PastObject{instance->centroid,
+                                                     instance->points,
+                                                     instance->views,
+                                                     instance->super_points,
+                                                     surface->second,
+                                                     {}});
   VoxelFinder finder(map.map);
   for (const Eigen::Vector3f& point : was->surface) was->colors.push_back(color_at(finder, point));
   map.map.trim();
@@ -97,14 +100,13 @@ class VisitTeller {
     std::vector<FrameLogEntry> all = after_.frames;
     after_.frames.erase(after_.frames.begin(),
                         after_.frames.begin() + after_.history.visits.back().first_frame);
-    std::vector<ObjectChange> changes =
-        diff_maps(before_, after_, Pose::Identity(), config_.diff);
+    std::vector<ObjectChange> changes = diff_maps(before_, after_, Pose::Identity(), config_.diff);
     after_.frames = std::move(all);
     return changes;
   }
 
-  /// Of a thing that is gone, sides may be left that the visit did not look at: they are not it. And
-  /// what shifted by no more than surfaces are rough has not.
+  /// Of a thing that is gone, sides may be left that the visit did not look at: they are not it.
+  /// And what shifted by no more than surfaces are rough has not.
   void find_remains() {
     for (ObjectChange& change : changes_)
       if (change.kind == ChangeKind::kMoved && change.shift_m.norm() < config_.least_shift_m)
@@ -121,14 +123,13 @@ class VisitTeller {
   /// Whether it is known to be gone already, and what is left of it was seen through only now.
   bool told_gone(InstanceId id) const {
     const auto& events = after_.history.events;
-    const auto last = std::find_if(events.rbegin(), events.rend(), [id](const ObjectEvent& event) {
-      return event.instance == id;
-    });
+    const auto last = std::find_if(events.rbegin(), events.rend(),
+                                   [id](const ObjectEvent& event) { return event.instance == id; });
     return last != events.rend() && last->kind == ObjectEventKind::kGone;
   }
 
-  /// Things that the map before did not have: new ones, and those whose places nobody had looked at,
-  /// which are told of only where a thing that is gone fits them.
+  /// Things that the map before did not have: new ones, and those whose places nobody had looked
+  /// at, which are told of only where a thing that is gone fits them.
   static bool may_have_come(const ObjectChange& change) {
     return change.before == 0 && change.after != 0 &&
            (change.kind == ChangeKind::kNew || change.kind == ChangeKind::kUnseen);

@@ -18,21 +18,22 @@ struct VisitHistoryConfig {
                        ///< pairs of things of one shape differ by nearly as much
 };
 
-/// Gives a header, which may name one visit with its date, the history of the map that it goes on with
-/// and its own visit after that: the next frames of the map are of it.
+/// Gives a header, which may name one visit with its date, the history of the map that it goes on
+/// with and its own visit after that: the next frames of the map are of it.
 void begin_visit(const MapRecord& begun, MapHeader& header);
 
 /// Writes down what the last visit of `after` changed against `before`, the same map without that
-/// visit: events of its history, with what each thing was that left its place. An object that is gone from one place and found at another is the
-/// same when its looks (diff_maps), or else its shape and colours, say so, and goes on under the id
-/// that it had. Where several could be it, each found one is a new object that says which gone one
-/// it may be. An object at its old place that the visit took for a new one gets its id back.
+/// visit: events of its history, with what each thing was that left its place. An object that is
+/// gone from one place and found at another is the same when its looks (diff_maps), or else its
+/// shape and colours, say so, and goes on under the id that it had. Where several could be it, each
+/// found one is a new object that says which gone one it may be. An object at its old place that
+/// the visit took for a new one gets its id back.
 void tell_visit(const MapDocument& before, MapDocument& after,
                 const VisitHistoryConfig& config = {});
 
-/// Two instances of a record trade their ids: in its list and surfaces, and in the registry's state.
-/// Of ids that stand for one thing the oldest goes on standing for all. Names and corrections stay
-/// with the ids.
+/// Two instances of a record trade their ids: in its list and surfaces, and in the registry's
+/// state. Of ids that stand for one thing the oldest goes on standing for all. Names and
+/// corrections stay with the ids.
 void swap_instances(MapRecord& record, InstanceId a, InstanceId b);
 
 }  // namespace ovimap

@@ -107,8 +107,7 @@ TEST(VisitHistory, WhatLeftItsPlaceIsKeptAsItWas) {
 TEST(VisitHistory, WhatLeftLeavesNoSurface) {
   const FurnishedRoom evening = room_with({kChest, kRedBox, kBlueBox}),
                       morning = room_with({kChest, kRedBoxAway, kGreenBox});
-  const MapDocument before = map_of(evening),
-                    after = map_of(morning, map_of(evening));
+  const MapDocument before = map_of(evening), after = map_of(morning, map_of(evening));
   for (const Furniture& thing : {kRedBox, kBlueBox}) {
     EXPECT_GT(vertices_in(before, thing), 300u);
     EXPECT_LT(vertices_in(after, thing), vertices_in(before, thing) / 50);
@@ -158,7 +157,8 @@ TEST(VisitHistory, ARoomThatStaysHasNoEvents) {
 TEST(VisitHistory, WithoutEmbeddingsShapeAndColourTell) {
   const FurnishedRoom evening = room_with({kChest, kRedBox, kBlueBox}),
                       morning = room_with({kChest, kRedBoxAway, kGreenBox});
-  const MapDocument before = map_of(evening, MapDocument(), false), after = continued(evening, morning, false);
+  const MapDocument before = map_of(evening, MapDocument(), false),
+                    after = continued(evening, morning, false);
   const ObjectEvent* moved = event_of(after, at(before, kRedBox));
   ASSERT_NE(moved, nullptr);
   EXPECT_EQ(moved->kind, ObjectEventKind::kMoved);
@@ -185,7 +185,8 @@ TEST(VisitHistory, OfTwoAlikeNeitherIsTakenForTheOther) {
                   twin_away = furniture(-0.1f, -1.0f, {0.3f, 0.2f, 0.3f}, {220, 20, 20});
   const FurnishedRoom evening = room_with({kChest, kRedBox, twin}),
                       morning = room_with({kChest, kRedBoxAway, twin_away});
-  const MapDocument before = map_of(evening, MapDocument(), false), after = continued(evening, morning, false);
+  const MapDocument before = map_of(evening, MapDocument(), false),
+                    after = continued(evening, morning, false);
   int doubtful = 0;
   for (const ObjectEvent& event : after.history.events) {
     EXPECT_NE(event.kind, ObjectEventKind::kMoved);

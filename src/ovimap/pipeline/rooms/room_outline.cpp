@@ -24,8 +24,7 @@ using Sides = std::map<Corner, std::vector<Corner>, CornerOrder>;
 Sides sides_of(const RoomPlan& plan, int room) {
   const int width = plan.floor.width(), height = plan.floor.height();
   const auto is_room = [&](int x, int y) {  // y up
-    return x >= 0 && y >= 0 && x < width && y < height &&
-           plan.floor.at(x, height - 1 - y) == room;
+    return x >= 0 && y >= 0 && x < width && y < height && plan.floor.at(x, height - 1 - y) == room;
   };
   Sides sides;
   const auto add = [&](int x0, int y0, int x1, int y1) {
@@ -49,9 +48,9 @@ Corner take_next(Sides& sides, const Corner& from, const Corner& direction) {
     const Corner step = to - from;
     return direction.x() * step.y() - direction.y() * step.x();
   };
-  const auto next = std::max_element(ends.begin(), ends.end(), [&](const Corner& a, const Corner& b) {
-    return turn(a) < turn(b);
-  });
+  const auto next =
+      std::max_element(ends.begin(), ends.end(),
+                       [&](const Corner& a, const Corner& b) { return turn(a) < turn(b); });
   const Corner to = *next;
   ends.erase(next);
   if (ends.empty()) sides.erase(from);
@@ -67,7 +66,8 @@ void keep_corners(const std::vector<Eigen::Vector2f>& line, std::size_t begin, s
   float most = tolerance;
   for (std::size_t i = begin + 1; i < end; ++i) {
     const Eigen::Vector2f arm = line[i] - a, way = b - a;
-    const float off = a == b ? arm.norm() : std::abs(way.x() * arm.y() - way.y() * arm.x()) / length;
+    const float off =
+        a == b ? arm.norm() : std::abs(way.x() * arm.y() - way.y() * arm.x()) / length;
     if (off > most) most = off, farthest = i;
   }
   if (farthest == begin) return;

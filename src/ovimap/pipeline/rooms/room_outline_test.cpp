@@ -10,7 +10,8 @@ namespace {
 /// Rows from the top, as the plan's picture has them; cells of half a metre from (10, 20).
 RoomPlan plan_of(const std::vector<std::string>& rows) {
   RoomPlan plan;
-  plan.floor = Image<std::uint16_t>(static_cast<int>(rows[0].size()), static_cast<int>(rows.size()));
+  plan.floor =
+      Image<std::uint16_t>(static_cast<int>(rows[0].size()), static_cast<int>(rows.size()));
   for (int y = 0; y < plan.floor.height(); ++y)
     for (int x = 0; x < plan.floor.width(); ++x)
       plan.floor.at(x, y) = static_cast<std::uint16_t>(
@@ -48,7 +49,9 @@ TEST(RoomOutline, WhatStandsInARoomIsLeftOut) {
 
 TEST(RoomOutline, StairsOfCellsBecomeLines) {
   std::vector<std::string> rows;
-  for (int y = 0; y < 20; ++y) rows.push_back(std::string(static_cast<std::size_t>(20 - y), '2') + std::string(static_cast<std::size_t>(y), '1'));
+  for (int y = 0; y < 20; ++y)
+    rows.push_back(std::string(static_cast<std::size_t>(20 - y), '2') +
+                   std::string(static_cast<std::size_t>(y), '1'));
   const auto outline = room_outline(plan_of(rows), 2);
   ASSERT_EQ(outline.size(), 1u);
   EXPECT_LE(outline[0].size(), 5u);

@@ -110,8 +110,7 @@ std::vector<RoomDoor> find_doors(const Image<std::uint16_t>& rooms, const Image<
             return room_to_wall.at(a.x(), a.y()) < room_to_wall.at(b.x(), b.y());
           });
       RoomDoor door{pair.first, pair.second, {}, 2 * room_to_wall.at(widest.x(), widest.y())};
-      door.place_m =
-          middle_of_cell(plan.origin, cell_m, reached.height(), widest.x(), widest.y());
+      door.place_m = middle_of_cell(plan.origin, cell_m, reached.height(), widest.x(), widest.y());
       doors.push_back(door);
     }
   return doors;

@@ -51,7 +51,7 @@ HistoryDates::HistoryDates(const MapHistory& history, std::span<const FrameLogEn
 void HistoryDates::require_known(const MapMoment& moment) const {
   if (moment.visit > visits())
     throw MomentUnknown(concat("the map has no visit ", moment.visit, "; it has ", visits(),
-                       ", which `ovimap info --history` lists"));
+                               ", which `ovimap info --history` lists"));
   const bool dated = std::any_of(begins_.begin(), begins_.end(),
                                  [](const auto& date) { return date.has_value(); });
   if (moment.visit == 0 && !std::isinf(moment.time_s) && !dated)
@@ -64,7 +64,7 @@ void HistoryDates::require(const MapMoment& moment) const {
   require_known(moment);
   if (moment.visit == 0 && begins_.front() && moment.time_s < *begins_.front())
     throw MomentUnknown(concat("the map begins on ", date_text(*begins_.front()),
-                       "; nothing is known of ", date_text(moment.time_s)));
+                               "; nothing is known of ", date_text(moment.time_s)));
 }
 
 bool HistoryDates::happened(const MapHistory& history, std::size_t event,

@@ -19,8 +19,8 @@ class MomentUnknown : public Error {
   using Error::Error;
 };
 
-/// When the visits of a map were and its events happened: as people said of a recording, else as its
-/// frames say where their times are dates. Seconds since 1970 (UTC).
+/// When the visits of a map were and its events happened: as people said of a recording, else as
+/// its frames say where their times are dates. Seconds since 1970 (UTC).
 class HistoryDates {
  public:
   HistoryDates(const MapHistory& history, std::span<const FrameLogEntry> frames);

@@ -43,9 +43,7 @@ class HistoryTeller {
                   event.visit, date ? ", " + date_text(*date) + "," : std::string(), " found");
   }
 
-  bool may_be_asked_for(InstanceId id) const {
-    return !phrase_.change || changes_.contains(id);
-  }
+  bool may_be_asked_for(InstanceId id) const { return !phrase_.change || changes_.contains(id); }
   const std::string& reading() const { return reading_; }
 
  private:
@@ -67,8 +65,8 @@ class HistoryTeller {
 
   void bring_back(const HistoryChange& change, const MapMoment& since, PastStates& states) {
     const ObjectEvent& event = record_.history.events[change.last];
-    PastStates then = states_at(record_, dates_,
-                                event.visit > 1 ? MapMoment{event.visit - 1, 0} : since);
+    PastStates then =
+        states_at(record_, dates_, event.visit > 1 ? MapMoment{event.visit - 1, 0} : since);
     if (auto found = then.extract(change.instance)) states.insert(std::move(found));
   }
 
@@ -147,12 +145,14 @@ std::optional<HistoryPhrase> history_of_question(const std::string& text, const 
   std::optional<HistoryPhrase> phrase = parse_history(text, now_s);
   if (at.empty() && since.empty()) return phrase;
   if (phrase && (phrase->at || phrase->since || phrase->before))
-    throw Error(concat("'", text, "' says when already; leave the time out of it or of the options"));
+    throw Error(
+        concat("'", text, "' says when already; leave the time out of it or of the options"));
   if (!phrase) phrase = HistoryPhrase{text.empty() ? "anything" : text, {}, false, {}, {}, {}};
   phrase->place_before = false;  // the option says when
   if (!at.empty()) phrase->at = time_of_text(at, now_s);
   if (!since.empty()) phrase->since = time_of_text(since, now_s);
-  if (!since.empty() && !at.empty()) throw Error("give either a time that it was at, or one since when");
+  if (!since.empty() && !at.empty())
+    throw Error("give either a time that it was at, or one since when");
   if (!since.empty() && !phrase->change) phrase->change = AskedChange::kAny;
   return phrase;
 }
@@ -195,7 +195,8 @@ QueryAnswer ask_history(const HistorySearch& history, const QueryEngine* engine,
   OVIMAP_ASSERT(engine || (history.for_anything() && query.not_texts.empty()));
   QueryAnswer answer =
       history.for_anything() ? list_all(history, engine, query) : engine->find(query);
-  const bool none = std::none_of(history.among.begin(), history.among.end(), [](bool may) { return may; });
+  const bool none =
+      std::none_of(history.among.begin(), history.among.end(), [](bool may) { return may; });
   if (!history.among.empty() && none) answer.reason = "nothing" + history.reading.substr(5);
   if (answer.reading.empty()) answer.reading = concat("[", query.text, "]");
   answer.reading += history.reading;

@@ -20,8 +20,8 @@ Eigen::AlignedBox3f box_at(float x) {
   return {Eigen::Vector3f(x, 0, 0), Eigen::Vector3f(x + 0.2f, 0.2f, 0.2f)};
 }
 
-/// Three visits, one a day: the mug (3) was moved on the second and again on the third, the vase (9)
-/// went on the third, the clock (12) came on the second.
+/// Three visits, one a day: the mug (3) was moved on the second and again on the third, the vase
+/// (9) went on the third, the clock (12) came on the second.
 class HistorySearchTest : public MapFolder {
  protected:
   HistorySearchTest() {
@@ -30,7 +30,8 @@ class HistorySearchTest : public MapFolder {
     for (int visit = 0; visit < 3; ++visit) {
       record_.history.visits.push_back({"/a", visit * 2, visit * 2});
       for (int frame = 0; frame < 2; ++frame)
-        record_.frames.push_back({visit * 2 + frame, kMonday_s + visit * kDay_s + frame, "", {}, true});
+        record_.frames.push_back(
+            {visit * 2 + frame, kMonday_s + visit * kDay_s + frame, "", {}, true});
     }
     record_.history.events = {
         {3, ObjectEventKind::kMoved, 2, 2, box_at(20), box_at(30), 0, was(3, 20)},
@@ -60,8 +61,12 @@ class HistorySearchTest : public MapFolder {
   }
 
   static std::shared_ptr<const PastObject> was(InstanceId id, float x) {
-    return std::make_shared<const PastObject>(PastObject{
-        box_at(x).center(), 90, 3, {id}, {box_at(x).min(), box_at(x).max()}, {{1, 2, 3}, {4, 5, 6}}});
+    return std::make_shared<const PastObject>(PastObject{box_at(x).center(),
+                                                         90,
+                                                         3,
+                                                         {id},
+                                                         {box_at(x).min(), box_at(x).max()},
+                                                         {{1, 2, 3}, {4, 5, 6}}});
   }
 
   HistorySearch search(const std::string& text, const std::string& at = "",
@@ -135,7 +140,9 @@ TEST_F(HistorySearchTest, WhatChanged) {
   EXPECT_EQ(ids(ask("what changed yesterday")), (std::vector<InstanceId>{3, 12}));
   const QueryAnswer moved = ask("what moved since visit 1");
   EXPECT_EQ(moved.reading, "[anything] that moved since visit 1");
-  EXPECT_EQ(moved.matches[0].evidence.find("moved from (20.10, 0.10, 0.10) to (3.10, 0.10, 0.10), visit 3"), 0u)
+  EXPECT_EQ(moved.matches[0].evidence.find(
+                "moved from (20.10, 0.10, 0.10) to (3.10, 0.10, 0.10), visit 3"),
+            0u)
       << moved.matches[0].evidence;
   EXPECT_EQ(ids(ask("which vases are gone")), (std::vector<InstanceId>{9}));
   EXPECT_EQ(ask("mug", "", "visit 2").verdict, Verdict::kFound);
@@ -158,7 +165,8 @@ TEST_F(HistorySearchTest, WhatItMustNotBe) {
 }
 
 TEST_F(HistorySearchTest, WhatCameAndWentIsNoChange) {
-  record_.history.events.push_back({12, ObjectEventKind::kGone, 3, 5, box_at(12), {}, 0, was(12, 12)});
+  record_.history.events.push_back(
+      {12, ObjectEventKind::kGone, 3, 5, box_at(12), {}, 0, was(12, 12)});
   std::erase_if(record_.instances, [](const auto& instance) { return instance.id == 12; });
   EXPECT_EQ(ids(ask("what changed since visit 1")), (std::vector<InstanceId>{3, 9}));
   EXPECT_EQ(ids(ask("what is gone since visit 2")), (std::vector<InstanceId>{9, 12}));

@@ -49,12 +49,11 @@ QueryScene scene_of(const SearchableMap& map, const SearchIndex& index,
   }
   if (!map.info.things.empty()) {
     scene.things.words = map.info.recognizer.things;
-    scene.things.log_ratios = Eigen::MatrixXf::Zero(
-        static_cast<Eigen::Index>(index.size()),
-        static_cast<Eigen::Index>(map.info.recognizer.things.size()));
+    scene.things.log_ratios =
+        Eigen::MatrixXf::Zero(static_cast<Eigen::Index>(index.size()),
+                              static_cast<Eigen::Index>(map.info.recognizer.things.size()));
     for (std::size_t i = 0; i < index.size(); ++i)
-      if (const auto seen = map.info.things.find(index.object(i).id);
-          seen != map.info.things.end())
+      if (const auto seen = map.info.things.find(index.object(i).id); seen != map.info.things.end())
         scene.things.log_ratios.row(static_cast<Eigen::Index>(i)) = seen->second.transpose();
   }
   std::vector<Pose> cameras;
@@ -135,8 +134,8 @@ std::vector<InstanceId> ids_of(const SearchIndex& index) {
 
 MapSearch open_map_search(const std::filesystem::path& map, const ObjectShapeConfig& config) {
   MapSearch search = search_in(read_searchable_map(map), config);
-  search.scene.colors = std::make_shared<const ObjectColors>(
-      [map, instances = search.info.instances] {
+  search.scene.colors =
+      std::make_shared<const ObjectColors>([map, instances = search.info.instances] {
         return crops_of(load_map_without_voxels(map).semantics.looks, instances);
       });
   search.scene.rooms = std::make_shared<const ObjectRooms>([map, ids = ids_of(search.index)] {
@@ -170,12 +169,12 @@ MapSearch make_map_search(const MapRecord& corrected, MapInfo info,
   info.frames = static_cast<std::int64_t>(corrected.frames.size());
   info.mask_frames = corrected.mask_frames;
   info.depth_camera = corrected.depth_camera;
-  map.embeddings = fused_embeddings(corrected.semantics.looks, corrected.instances,
-                                    corrected.semantics.views.fusion,
-                                    corrected.semantics.encoder.dimension);
-  map.part_embeddings = fused_embeddings(corrected.semantics.looks, corrected.parts,
-                                         corrected.semantics.views.fusion,
-                                         corrected.semantics.encoder.dimension);
+  map.embeddings =
+      fused_embeddings(corrected.semantics.looks, corrected.instances,
+                       corrected.semantics.views.fusion, corrected.semantics.encoder.dimension);
+  map.part_embeddings =
+      fused_embeddings(corrected.semantics.looks, corrected.parts, corrected.semantics.views.fusion,
+                       corrected.semantics.encoder.dimension);
   map.surfaces = corrected.surfaces;
   map.frames = corrected.frames;
   map.info = std::move(info);

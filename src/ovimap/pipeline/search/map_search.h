@@ -23,7 +23,8 @@ struct MapSearch {
 /// The objects' ids, by position.
 std::vector<InstanceId> ids_of(const SearchIndex& index);
 
-/// Reads what a search needs, without the voxels, which are read when a query asks for a room. Throws what read_searchable_map throws.
+/// Reads what a search needs, without the voxels, which are read when a query asks for a room.
+/// Throws what read_searchable_map throws.
 MapSearch open_map_search(const std::filesystem::path& map, const ObjectShapeConfig& config = {});
 
 /// The same of a corrected map in memory. `info`: what the record does not tell; the rest of it is

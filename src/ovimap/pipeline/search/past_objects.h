@@ -17,14 +17,14 @@ struct PastState {
 };
 using PastStates = std::map<InstanceId, PastState>;
 
-/// The objects as the map knew them then. An object of which no event tells is taken to have been where it
-/// is; of what left its place in maps that did not keep it, its box alone is known. `corrected`: as
-/// people made it. Throws MomentUnknown.
+/// The objects as the map knew them then. An object of which no event tells is taken to have been
+/// where it is; of what left its place in maps that did not keep it, its box alone is known.
+/// `corrected`: as people made it. Throws MomentUnknown.
 PastStates states_at(const MapRecord& corrected, const HistoryDates& dates,
                      const MapMoment& moment);
 
-/// Where each object was before it came to where it is or went: objects that never moved are as they
-/// are now.
+/// Where each object was before it came to where it is or went: objects that never moved are as
+/// they are now.
 PastStates states_before_last(const MapRecord& corrected);
 
 /// What became of an object between two moments.
@@ -34,8 +34,8 @@ struct HistoryChange {
   std::size_t first = 0, last = 0;  ///< places of the first and the last of its events in between
 };
 
-/// By instance. What came and went in between is left out. `since` may be before the map begins. Throws
-/// MomentUnknown.
+/// By instance. What came and went in between is left out. `since` may be before the map begins.
+/// Throws MomentUnknown.
 std::vector<HistoryChange> changes_between(const MapHistory& history, const HistoryDates& dates,
                                            const MapMoment& since, const MapMoment& until);
 
@@ -45,8 +45,8 @@ struct MapChanges {
   std::vector<HistoryChange> changes;  ///< by instance
 };
 
-/// `since`, `until`: as time_of_text takes them, with `now_s`; empty: before the map begins, and its last
-/// visit. Throws Error for what is no time, and MomentUnknown.
+/// `since`, `until`: as time_of_text takes them, with `now_s`; empty: before the map begins, and
+/// its last visit. Throws Error for what is no time, and MomentUnknown.
 MapChanges changes_between(const MapHistory& history, const HistoryDates& dates,
                            const std::string& since, const std::string& until, double now_s);
 

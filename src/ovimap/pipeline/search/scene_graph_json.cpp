@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/pipeline/search/scene_graph_json.h"
 
-
 #include <nlohmann/json.hpp>
 
 #include "ovimap/io/exports/rounded_json.h"
@@ -17,7 +16,7 @@ using Json = nlohmann::ordered_json;
 
 Json on_floor(const SceneGraph& graph, const Eigen::Vector2f& place) {
   return rounded_point<Json>(graph.grid_from_world.transpose() *
-               Eigen::Vector3f(place.x(), place.y(), graph.floor_m));
+                             Eigen::Vector3f(place.x(), place.y(), graph.floor_m));
 }
 
 Json outline_json(const SceneGraph& graph, int room) {

@@ -39,9 +39,8 @@ TEST(EmbedGeometry, FindsTheObjectsOfAGivenMesh) {
   EXPECT_EQ(document.semantics.encoder.name, "colours");
   EXPECT_EQ(document.frames.size(), static_cast<std::size_t>(DeskScene::kFrames));
   EXPECT_GT(document.up.z(), 0.99f);
-  const Embeddings rows =
-      fused_embeddings(document.semantics.looks, document.instances,
-                       FeatureFusion::kPixelWeighted, 3);
+  const Embeddings rows = fused_embeddings(document.semantics.looks, document.instances,
+                                           FeatureFusion::kPixelWeighted, 3);
   Eigen::Index red = 0, blue = 0;
   rows.col(0).maxCoeff(&red);
   rows.col(2).maxCoeff(&blue);

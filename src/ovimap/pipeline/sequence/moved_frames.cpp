@@ -27,9 +27,8 @@ std::vector<MovedPose> moves_of(const PoseUpdate& update,
     const FrameLogEntry& last = next == frames.begin() ? *next : *std::prev(next);
     const double before = taken_at(last, update.by_time);
     const double share = after > before ? (node.at - before) / (after - before) : 1;
-    moves.push_back(
-        {node.at, pose_between(last.world_from_camera, next->world_from_camera, share),
-         node.world_from_camera});
+    moves.push_back({node.at, pose_between(last.world_from_camera, next->world_from_camera, share),
+                     node.world_from_camera});
   }
   std::stable_sort(moves.begin(), moves.end(),
                    [](const MovedPose& a, const MovedPose& b) { return a.at < b.at; });
@@ -37,8 +36,8 @@ std::vector<MovedPose> moves_of(const PoseUpdate& update,
 }
 
 FusedAgain move_frames(const std::vector<MovedPose>& moves, bool by_time, Mapper& mapper,
-                 std::vector<FrameLogEntry>& frames, const PinholeCamera& depth_camera,
-                 const std::function<void(std::size_t, std::size_t)>& progress) {
+                       std::vector<FrameLogEntry>& frames, const PinholeCamera& depth_camera,
+                       const std::function<void(std::size_t, std::size_t)>& progress) {
   std::vector<Pose> poses;
   std::vector<double> at;
   for (const FrameLogEntry& frame : frames) {

@@ -22,10 +22,10 @@ struct PoseUpdate {
 /// pose between theirs. Nodes before the first and after the last frame say nothing.
 std::vector<MovedPose> moves_of(const PoseUpdate& update, const std::vector<FrameLogEntry>& frames);
 
-/// Moves the frames of a log as `moves` says, whose `at` are indices or times, and the map with them
-/// (Mapper::fuse_again, with `progress`). `moves` may not be empty.
+/// Moves the frames of a log as `moves` says, whose `at` are indices or times, and the map with
+/// them (Mapper::fuse_again, with `progress`). `moves` may not be empty.
 FusedAgain move_frames(const std::vector<MovedPose>& moves, bool by_time, Mapper& mapper,
-                 std::vector<FrameLogEntry>& frames, const PinholeCamera& depth_camera,
-                 const std::function<void(std::size_t, std::size_t)>& progress = nullptr);
+                       std::vector<FrameLogEntry>& frames, const PinholeCamera& depth_camera,
+                       const std::function<void(std::size_t, std::size_t)>& progress = nullptr);
 
 }  // namespace ovimap

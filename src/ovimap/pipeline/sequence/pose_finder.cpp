@@ -27,7 +27,8 @@ bool PoseFinder::close_loops(Mapper& mapper, std::vector<FrameLogEntry>& frames,
                       graph_.path_m() >= corrected_at_m_ + static_cast<double>(config_.pause_m));
     return due ? graph_.solve(keyframes) : LoopClosure();
   }();
-  const double least_m = static_cast<double>(config_.least_voxels * mapper.config().map.voxel_size_m);
+  const double least_m =
+      static_cast<double>(config_.least_voxels * mapper.config().map.voxel_size_m);
   if (closure.closed < static_cast<std::size_t>(config_.agreeing) || closure.furthest_m < least_m)
     return false;
   if (before_correction) before_correction(mapper);

@@ -43,7 +43,7 @@ class PoseFinder {
   Tracker tracker_;
   LoopConfig config_;
   LoopGraph graph_;
-  std::size_t loops_ = 0;   ///< found since the last correction
+  std::size_t loops_ = 0;      ///< found since the last correction
   double corrected_at_m_ = 0;  ///< of the camera's way
   LoopCorrections corrections_;
 };

@@ -57,14 +57,15 @@ struct RoundTrip {
   explicit RoundTrip(const LoopConfig& loops, const MapperConfig& config = finely_keeping())
       : mapper(config), finder(Tracker(TrackConfig{}), loops) {
     const RoundInARoom source;
-    done = run_sequence(source, positions({}, source.size()), mapper, nullptr, {}, nullptr, &finder);
+    done =
+        run_sequence(source, positions({}, source.size()), mapper, nullptr, {}, nullptr, &finder);
   }
   double furthest_m() const {
     double furthest = 0;
     for (const FrameLogEntry& frame : done.frames)
-      furthest = std::max(furthest,
-                          fixture::distance_m(RoundInARoom::truth(0) * frame.world_from_camera,
-                                              RoundInARoom::truth(frame.index)));
+      furthest =
+          std::max(furthest, fixture::distance_m(RoundInARoom::truth(0) * frame.world_from_camera,
+                                                 RoundInARoom::truth(frame.index)));
     return furthest;
   }
 
@@ -91,15 +92,15 @@ TEST(PoseFinder, LeavesLittleToTheEnd) {
   EXPECT_EQ(RoundTrip(loops).finder.corrections().times, 0u);
 }
 
-/// All is left to the end: what is closed there is closed alike when it is done again from a map that
-/// was stored before.
+/// All is left to the end: what is closed there is closed alike when it is done again from a map
+/// that was stored before.
 TEST(PoseFinder, ClosesTheLastLoopsAfterTheLastFrame) {
   LoopConfig loops = eager();
   loops.online = false;
   RoundTrip trip(loops), again(loops);
   const double before = trip.furthest_m();
-  const LoopReport report = close_last_loops(trip.mapper, trip.done.frames, trip.done.depth_camera,
-                                             TrackConfig{}, loops);
+  const LoopReport report =
+      close_last_loops(trip.mapper, trip.done.frames, trip.done.depth_camera, TrackConfig{}, loops);
   EXPECT_GT(report.closed, 0u);
   EXPECT_LE(trip.furthest_m(), std::max(before, 0.03));
   close_last_loops(again.mapper, again.done.frames, again.done.depth_camera, TrackConfig{}, loops);

@@ -63,8 +63,7 @@ VisitFit fit_visit(const VoxelMap& map, const FrameSource& source,
                    const std::vector<std::int64_t>& positions, const TrackConfig& track,
                    const VisitFitConfig& config) {
   std::vector<double> offsets, turns, agreements;
-  const std::size_t count =
-      std::min(positions.size(), static_cast<std::size_t>(config.frames));
+  const std::size_t count = std::min(positions.size(), static_cast<std::size_t>(config.frames));
   for (std::size_t i = 0; i < count; ++i) {
     const FrameRead read = source.read(positions[(2 * i + 1) * positions.size() / (2 * count)]);
     if (!read.frame || !read.frame->posed) continue;

@@ -15,11 +15,11 @@ namespace ovimap {
 /// When a recording's poses are taken to be in a map's world frame.
 struct VisitFitConfig {
   bool enabled = true;
-  int frames = 16;                 ///< of the recording, evenly spread, are held against the map
-  float least_share = 0.2f;        ///< of a frame must see surface of the map for it to count
-  float most_offset_m = 0.015f;    ///< a quarter of the frames may be further off
+  int frames = 16;               ///< of the recording, evenly spread, are held against the map
+  float least_share = 0.2f;      ///< of a frame must see surface of the map for it to count
+  float most_offset_m = 0.015f;  ///< a quarter of the frames may be further off
   float most_turn_rad = 0.0175f;
-  float least_agreement = 0.5f;    ///< share of what is seen that must lie on the map's surface
+  float least_agreement = 0.5f;  ///< share of what is seen that must lie on the map's surface
   // Where nothing places it.
   int object_frames = 150;  ///< are mapped by themselves, to find its place by objects; 0: none
   AlignmentConfig alignment;
@@ -28,10 +28,10 @@ void list_fields(VisitFitConfig& config, ConfigFields& fields);
 
 /// How a recording lies to a map.
 struct VisitFit {
-  int compared = 0;         ///< frames that see the map
-  double offset_m = 0;      ///< three quarters of them lie nearer than this to where the map says
+  int compared = 0;     ///< frames that see the map
+  double offset_m = 0;  ///< three quarters of them lie nearer than this to where the map says
   double turn_rad = 0;
-  double agreement = 0;     ///< median share of what they see that lies on the map's surface then
+  double agreement = 0;  ///< median share of what they see that lies on the map's surface then
 };
 
 /// Aligns some frames of the recording at `positions` to the map's surface, by depth alone and each

@@ -15,8 +15,9 @@ bool shows_known_place(const FrameSource& source, const std::vector<std::int64_t
 
 /// Where a recording lies in a map, as the objects of both say.
 struct ObjectPlacing {
-  AlignmentSearch alignment;     ///< of the recording's map in the other
-  std::vector<Keyframe> places;  ///< of the recording, in the map's world; none where that is doubted
+  AlignmentSearch alignment;  ///< of the recording's map in the other
+  std::vector<Keyframe>
+      places;  ///< of the recording, in the map's world; none where that is doubted
 };
 
 /// Maps the frames at `positions` by themselves, in a world of their own, with a mapper that is

@@ -61,8 +61,8 @@ std::vector<ObjectName> name_objects(const TextEvidence& evidence) {
     for (Eigen::Index word = 0; word < shares.cols(); ++word) {
       if (shares(i, word) < needed[word]) continue;
       const bool narrower = best < 0 || width[word] < width[best];
-      const bool likelier = best >= 0 && width[word] == width[best] &&
-                            shares(i, word) > shares(i, best);
+      const bool likelier =
+          best >= 0 && width[word] == width[best] && shares(i, word) > shares(i, best);
       if (narrower || likelier) best = word;
     }
     if (best >= 0)

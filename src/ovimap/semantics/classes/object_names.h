@@ -20,8 +20,8 @@ struct ObjectName {
 };
 
 /// A name for each object: the narrowest household word whose kinds together have at least
-/// EvidenceConfig::name_share, or wide_name_share where they are many; or the name that a person gave
-/// to what it resembles (taught_name_ratio).
+/// EvidenceConfig::name_share, or wide_name_share where they are many; or the name that a person
+/// gave to what it resembles (taught_name_ratio).
 std::vector<ObjectName> name_objects(const TextEvidence& evidence);
 
 }  // namespace ovimap

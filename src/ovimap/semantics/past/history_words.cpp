@@ -20,23 +20,23 @@ struct WhenWord {
   std::string_view word;
   When when;
 };
-constexpr std::array kWhenWords{
-    WhenWord{"since", When::kSince}, WhenWord{"after", When::kSince},
-    WhenWord{"before", When::kBefore}, WhenWord{"until", When::kBefore},
-    WhenWord{"at", When::kAt}, WhenWord{"on", When::kAt}, WhenWord{"in", When::kAt},
-    WhenWord{"during", When::kAt}, WhenWord{"as of", When::kAt}};
+constexpr std::array kWhenWords{WhenWord{"since", When::kSince},   WhenWord{"after", When::kSince},
+                                WhenWord{"before", When::kBefore}, WhenWord{"until", When::kBefore},
+                                WhenWord{"at", When::kAt},         WhenWord{"on", When::kAt},
+                                WhenWord{"in", When::kAt},         WhenWord{"during", When::kAt},
+                                WhenWord{"as of", When::kAt}};
 
 struct ChangeWord {
   std::string_view word;
   AskedChange change;
 };
 constexpr std::array kChangeWords{
-    ChangeWord{"moved", AskedChange::kMoved},          ChangeWord{"gone", AskedChange::kGone},
-    ChangeWord{"disappeared", AskedChange::kGone},     ChangeWord{"vanished", AskedChange::kGone},
-    ChangeWord{"missing", AskedChange::kGone},         ChangeWord{"removed", AskedChange::kGone},
-    ChangeWord{"appeared", AskedChange::kAppeared},    ChangeWord{"new", AskedChange::kAppeared},
-    ChangeWord{"added", AskedChange::kAppeared},       ChangeWord{"arrived", AskedChange::kAppeared},
-    ChangeWord{"changed", AskedChange::kAny},          ChangeWord{"different", AskedChange::kAny}};
+    ChangeWord{"moved", AskedChange::kMoved},       ChangeWord{"gone", AskedChange::kGone},
+    ChangeWord{"disappeared", AskedChange::kGone},  ChangeWord{"vanished", AskedChange::kGone},
+    ChangeWord{"missing", AskedChange::kGone},      ChangeWord{"removed", AskedChange::kGone},
+    ChangeWord{"appeared", AskedChange::kAppeared}, ChangeWord{"new", AskedChange::kAppeared},
+    ChangeWord{"added", AskedChange::kAppeared},    ChangeWord{"arrived", AskedChange::kAppeared},
+    ChangeWord{"changed", AskedChange::kAny},       ChangeWord{"different", AskedChange::kAny}};
 
 // What may stand before a word of change: "what has been moved", "chairs that are gone".
 constexpr std::array<std::string_view, 8> kBeforeChange{"has", "have", "is",   "are",
@@ -85,7 +85,8 @@ std::optional<AskedChange> take_change(Words& words) {
   return std::nullopt;
 }
 
-/// "what [mugs] ... moved", "mugs that ... moved": what is asked for, where that is how it is asked.
+/// "what [mugs] ... moved", "mugs that ... moved": what is asked for, where that is how it is
+/// asked.
 bool take_changed_things(Words& words, HistoryPhrase& phrase) {
   Words rest = words;
   const auto change = take_change(rest);

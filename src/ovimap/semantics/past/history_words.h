@@ -25,7 +25,8 @@ constexpr MapMoment kBeginning{0, -std::numeric_limits<double>::infinity()};
 /// When a time began, or ended. `last_visit`: which one that is.
 MapMoment beginning_of(const TimeAsked& time, int last_visit);
 MapMoment end_of(const TimeAsked& time, int last_visit);
-/// When what happened "since" then begins: with the first moment of a day, and with the end of a visit.
+/// When what happened "since" then begins: with the first moment of a day, and with the end of a
+/// visit.
 MapMoment since_of(const TimeAsked& time, int last_visit);
 
 enum class AskedChange { kAny, kMoved, kGone, kAppeared };
@@ -33,8 +34,8 @@ enum class AskedChange { kAny, kMoved, kGone, kAppeared };
 /// A question about a map's past: what is asked for, and when.
 struct HistoryPhrase {
   std::string text;  ///< the rest of the question, in the grammar of query_grammar.h
-  std::optional<AskedChange> change;  ///< only what changed so, "mugs that moved"
-  bool place_before = false;          ///< "where was the mug": where it was before where it is
+  std::optional<AskedChange> change;       ///< only what changed so, "mugs that moved"
+  bool place_before = false;               ///< "where was the mug": where it was before where it is
   std::optional<TimeAsked> since, before;  ///< of changes; `before` alone: the map as it was
   std::optional<TimeAsked> at;  ///< the map as it was; with `change`: what changed within that time
 
@@ -42,9 +43,9 @@ struct HistoryPhrase {
 };
 
 /// Reads questions such as "what moved since Monday", "where was the mug", "chairs that are gone",
-/// "mug on Monday", "red chair before visit 2" (docs/query.md has the grammar). Nothing for a text that
-/// asks of the present; what stands between double quotes is never read so. `now_s`: as parse_time
-/// takes it.
+/// "mug on Monday", "red chair before visit 2" (docs/query.md has the grammar). Nothing for a text
+/// that asks of the present; what stands between double quotes is never read so. `now_s`: as
+/// parse_time takes it.
 std::optional<HistoryPhrase> parse_history(std::string_view text, double now_s);
 
 /// "moved", "is gone", "appeared", "changed".

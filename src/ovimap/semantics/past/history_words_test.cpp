@@ -55,9 +55,9 @@ TEST(HistoryWords, WhatWasWhere) {
 TEST(HistoryWords, OtherTextsAskOfThePresent) {
   for (const char* text :
        {"", "mug", "mug on the table", "chair in room 2", "what is on the table", "moved", "new",
-        "new chair", "what", "where was", "where is the mug", "a calendar of Monday", "alarm clock at night",
-        "chair before the window", "\"what moved since Monday\"", "\"mug yesterday\"", "sunday",
-        "mug on Monday on Tuesday on the table"})
+        "new chair", "what", "where was", "where is the mug", "a calendar of Monday",
+        "alarm clock at night", "chair before the window", "\"what moved since Monday\"",
+        "\"mug yesterday\"", "sunday", "mug on Monday on Tuesday on the table"})
     EXPECT_FALSE(parse_history(text, kNow)) << text;
 }
 

@@ -33,7 +33,7 @@ struct Unit {
   double seconds;
 };
 constexpr std::array kTimeUnits{Unit{"minute", 60}, Unit{"hour", 3600}, Unit{"day", kDay_s},
-                                Unit{"week", kDaysOfWeek * kDay_s}};
+                                Unit{"week", kDaysOfWeek* kDay_s}};
 
 std::tm local_time(double time_s) {
   const auto seconds = static_cast<std::time_t>(std::floor(time_s));
@@ -133,7 +133,8 @@ std::optional<TimeAsked> parse_ago(Words words, double now_s) {
   const int count = one ? 1 : number_of(words[0]);
   const std::string unit = lower_case(words[1]);
   for (const Unit& known : kTimeUnits) {
-    if (count == 0 || !unit.starts_with(known.word) || unit.size() > known.word.size() + 1) continue;
+    if (count == 0 || !unit.starts_with(known.word) || unit.size() > known.word.size() + 1)
+      continue;
     const double then_s = now_s - count * known.seconds;
     if (known.seconds < kDay_s) return TimeAsked{0, then_s, then_s + known.seconds};
     return day_before(now_s, static_cast<int>(std::lround(count * known.seconds / kDay_s)));
@@ -197,9 +198,10 @@ std::optional<TimeAsked> parse_time(std::span<const std::string> words, double n
 TimeAsked time_of_text(std::string_view text, double now_s) {
   const std::vector<std::string> words = words_of(text);
   if (const auto time = parse_time(words, now_s)) return *time;
-  throw Error(concat("'", text,
-                     "' is no time; give a visit ('visit 2'), a date (2026-03-14, 2026-03-14T09:30) "
-                     "or words such as 'Monday', 'yesterday evening' or '2 hours ago'"));
+  throw Error(
+      concat("'", text,
+             "' is no time; give a visit ('visit 2'), a date (2026-03-14, 2026-03-14T09:30) "
+             "or words such as 'Monday', 'yesterday evening' or '2 hours ago'"));
 }
 
 double seconds_now() {

@@ -18,10 +18,10 @@ struct TimeAsked {
   bool operator==(const TimeAsked&) const = default;
 };
 
-/// Reads "visit 2", "last visit", "2026-03-14", "2026-03-14T09:30", "9:30", "Monday", "last Monday",
-/// "today", "yesterday evening", "this morning", "2 days ago", in any case of letters; docs/query.md
-/// has all. Nothing for other words. Days and hours are those of this machine's time zone. `now_s`:
-/// seconds since 1970 (UTC).
+/// Reads "visit 2", "last visit", "2026-03-14", "2026-03-14T09:30", "9:30", "Monday", "last
+/// Monday", "today", "yesterday evening", "this morning", "2 days ago", in any case of letters;
+/// docs/query.md has all. Nothing for other words. Days and hours are those of this machine's time
+/// zone. `now_s`: seconds since 1970 (UTC).
 std::optional<TimeAsked> parse_time(std::span<const std::string> words, double now_s);
 
 /// The same of a text that must be a time. Throws Error.

@@ -68,11 +68,35 @@ TEST(TimeWords, NamesDaysAsPeopleDo) {
 }
 
 TEST(TimeWords, OtherWordsAreNoTimes) {
-  for (const char* text :
-       {"", "the", "mug", "table", "visit", "visit 0", "visit two", "visit -1", "room 2", "2", "2026",
-        "2026-13-01", "2026-02-31", "2026-03-14T", "2026-03-14T25:00", "2026-03-14 9:3", "9:60",
-        "25:00", "last", "last mug", "this", "this mug", "Monday mug", "Monday Tuesday", "days ago",
-        "two mugs ago", "evening", "2026-03-14x", "visit 99999999999"})
+  for (const char* text : {"",
+                           "the",
+                           "mug",
+                           "table",
+                           "visit",
+                           "visit 0",
+                           "visit two",
+                           "visit -1",
+                           "room 2",
+                           "2",
+                           "2026",
+                           "2026-13-01",
+                           "2026-02-31",
+                           "2026-03-14T",
+                           "2026-03-14T25:00",
+                           "2026-03-14 9:3",
+                           "9:60",
+                           "25:00",
+                           "last",
+                           "last mug",
+                           "this",
+                           "this mug",
+                           "Monday mug",
+                           "Monday Tuesday",
+                           "days ago",
+                           "two mugs ago",
+                           "evening",
+                           "2026-03-14x",
+                           "visit 99999999999"})
     EXPECT_FALSE(read_time(text)) << text;
 }
 

@@ -32,7 +32,8 @@ void rate_size(const ObjectMeasures& measures, const SizeBound& size, AttributeR
                                                     : measures.depth_m;
   const float excess = std::log(std::max(side_m, 1e-3f) / size.bound_m) / kDeviation;
   rating.score *= 1.f / (1.f + std::exp(size.more ? -excess : excess));
-  add_evidence(rating.evidence, concat(std::round(100.f * side_m) / 100.f, " m ", side_name(size.side)));
+  add_evidence(rating.evidence,
+               concat(std::round(100.f * side_m) / 100.f, " m ", side_name(size.side)));
 }
 
 void rate_writing(std::span<const std::u32string> wanted, std::span<const WrittenLine> lines,

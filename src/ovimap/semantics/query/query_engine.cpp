@@ -75,8 +75,8 @@ QueryEngine::QueryEngine(const SearchIndex& index, ImageTextEncoder* encoder,
   if (scene_.shapes.empty())
     scene_.shapes = scene_of_boxes(index, Eigen::Vector3f::UnitZ(), config.shapes).shapes;
   if (encoder)
-    matcher_.emplace(index, *encoder, config, std::move(vocabulary),
-                     measure_objects(scene_.shapes), scene_.writing, scene_.things, scene_.taught);
+    matcher_.emplace(index, *encoder, config, std::move(vocabulary), measure_objects(scene_.shapes),
+                     scene_.writing, scene_.things, scene_.taught);
 }
 
 const TextMatcher* QueryEngine::part_matcher() const {
@@ -97,10 +97,10 @@ QueryAnswer QueryEngine::find(const Query& query) const {
   QueryPhrase phrase;
   phrase.things = text;
   if (config_.grammar)
-    phrase = parse_query(text,
-                         {.colors = scene_.colors != nullptr, .parts = scene_.parts != nullptr});
-  QueryAnswer result =
-      phrase.free_text() ? find_text(text, negatives, query) : find_phrase(phrase, negatives, query);
+    phrase =
+        parse_query(text, {.colors = scene_.colors != nullptr, .parts = scene_.parts != nullptr});
+  QueryAnswer result = phrase.free_text() ? find_text(text, negatives, query)
+                                          : find_phrase(phrase, negatives, query);
   result.query = text;
   admit_unjudged(phrase, result);
   return result;
@@ -266,8 +266,7 @@ std::vector<QueryMatch> QueryEngine::best_matches(const MatchScores& scores, Ran
 bool QueryEngine::is_found(const MatchScores& scores, const QueryMatch& best,
                            const PValue& p_value) const {
   if (matcher_ && scores.log_odds.size() > 0) return matcher_->is_found(scores, best.position);
-  return !p_value ||
-         p_value(best.standard_score) <= double{config_.verdict.false_positive_rate};
+  return !p_value || p_value(best.standard_score) <= double{config_.verdict.false_positive_rate};
 }
 
 QueryAnswer QueryEngine::answer(const MatchScores& scores, const PValue& p_value,

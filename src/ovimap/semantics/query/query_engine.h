@@ -18,8 +18,8 @@ struct Query {
   std::string text;  ///< free text, terms separated by commas, or a phrase of query_grammar.h
   std::vector<std::string> not_texts;  ///< what it must not be
   bool relevance = false;              ///< whether the answer shall rate every object
-  std::vector<bool> among = {};  ///< [objects] which may be the answer; empty: all. What they stand on or
-                                 ///< near may be any
+  std::vector<bool> among = {};  ///< [objects] which may be the answer; empty: all. What they stand
+                                 ///< on or near may be any
 };
 
 struct QueryMatch {
@@ -46,11 +46,12 @@ struct QueryAnswer {
   std::string reading;  ///< how a phrase was understood: "[mug] on [table]"; empty for free text
   std::string reason;   ///< why a phrase was not found: "no [table] in the map"; and what of it was
                         ///< not judged: "not judged: wooden"
-  bool like_object = false;  ///< asked was what looks like an object, which is not among the matches
+  bool like_object =
+      false;  ///< asked was what looks like an object, which is not among the matches
   Verdict verdict = Verdict::kNotInMap;
-  std::vector<QueryMatch> matches;  ///< best first, also when the verdict is kNotInMap
+  std::vector<QueryMatch> matches;     ///< best first, also when the verdict is kNotInMap
   std::optional<CountEstimate> count;  ///< of "how many" and "two ..."
-  Eigen::VectorXf relevance;        ///< [objects] in [0, 1], for heat maps; empty unless asked for
+  Eigen::VectorXf relevance;  ///< [objects] in [0, 1], for heat maps; empty unless asked for
 };
 
 /// Answers queries on one map with one encoder (method section 11; docs/query.md). The index and
@@ -83,7 +84,7 @@ class QueryEngine {
   const TextMatcher* part_matcher() const;
 
  private:
-  using PValue = std::function<double(float standard_score)>;  // empty: no calibration
+  using PValue = std::function<double(float standard_score)>;       // empty: no calibration
   using Probability = std::function<double(std::size_t position)>;  // empty: by p-value
 
   QueryAnswer find_text(const std::string& text, const std::vector<std::string>& negatives,

@@ -75,7 +75,8 @@ TEST_F(QueryEngineTest, OnlySomeMayBeTheAnswer) {
   query.text = "highest thing";
   EXPECT_EQ(engine.find(query).matches.front().id, 2u) << "of those that may be";
   query.text = "object near the sofa";  // which may be any
-  for (const QueryMatch& match : engine.find(query).matches) EXPECT_TRUE(query.among[match.position]);
+  for (const QueryMatch& match : engine.find(query).matches)
+    EXPECT_TRUE(query.among[match.position]);
   query.among.assign(kRoomThings.size(), false);
   for (const char* text : {"mug", "largest mug", "lowest thing"}) {
     query.text = text;
@@ -260,16 +261,15 @@ class AttributesTest : public ::testing::Test {
   }
 
   WordEncoder encoder_;
-  SearchIndex index_ =
-      map_of({"chair", "chair", "chair", "table", "mug", "lamp", "door", "sofa"},
-             {{Eigen::Vector3f(0, 0, 0), Eigen::Vector3f(0.5f, 0.5f, 0.8f)},
-              {Eigen::Vector3f(2, 0, 0), Eigen::Vector3f(2.5f, 0.5f, 0.8f)},
-              {Eigen::Vector3f(4, 0, 0), Eigen::Vector3f(4.5f, 0.5f, 1.3f)},
-              {Eigen::Vector3f(6, 0, 0), Eigen::Vector3f(8, 1, 0.7f)},
-              {Eigen::Vector3f(6, 0, 0.7f), Eigen::Vector3f(6.1f, 0.1f, 0.8f)},
-              {Eigen::Vector3f(9, 0, 0), Eigen::Vector3f(9.3f, 0.3f, 1.5f)},
-              {Eigen::Vector3f(10, 0, 0), Eigen::Vector3f(11, 0.1f, 2)},
-              {Eigen::Vector3f(12, 0, 0), Eigen::Vector3f(14, 1, 0.8f)}});
+  SearchIndex index_ = map_of({"chair", "chair", "chair", "table", "mug", "lamp", "door", "sofa"},
+                              {{Eigen::Vector3f(0, 0, 0), Eigen::Vector3f(0.5f, 0.5f, 0.8f)},
+                               {Eigen::Vector3f(2, 0, 0), Eigen::Vector3f(2.5f, 0.5f, 0.8f)},
+                               {Eigen::Vector3f(4, 0, 0), Eigen::Vector3f(4.5f, 0.5f, 1.3f)},
+                               {Eigen::Vector3f(6, 0, 0), Eigen::Vector3f(8, 1, 0.7f)},
+                               {Eigen::Vector3f(6, 0, 0.7f), Eigen::Vector3f(6.1f, 0.1f, 0.8f)},
+                               {Eigen::Vector3f(9, 0, 0), Eigen::Vector3f(9.3f, 0.3f, 1.5f)},
+                               {Eigen::Vector3f(10, 0, 0), Eigen::Vector3f(11, 0.1f, 2)},
+                               {Eigen::Vector3f(12, 0, 0), Eigen::Vector3f(14, 1, 0.8f)}});
   std::optional<QueryEngine> engine_;
 };
 

@@ -41,7 +41,8 @@ TEST(QueryGrammar, ReadsColors) {
   EXPECT_EQ(reading("red chair"), "red [chair]");
   EXPECT_EQ(reading("the dark blue mug on the white table"), "blue [mug] on white [table]");
   EXPECT_EQ(reading("gray office chair"), "grey [office chair]");
-  for (const char* text : {"red", "dark red", "orange", "red chair, armchair", "\"white wine\" glass"})
+  for (const char* text :
+       {"red", "dark red", "orange", "red chair, armchair", "\"white wine\" glass"})
     EXPECT_TRUE(parse_query(text).free_text()) << text;
   EXPECT_TRUE(parse_query("red chair", {.colors = false}).free_text());  // a map without colours
 }
@@ -63,7 +64,8 @@ TEST(QueryGrammar, ReadsSizes) {
   EXPECT_EQ(reading("a red box that is shorter than 40cm"), "red [box] less than 0.4 m high");
   EXPECT_EQ(reading("cabinet taller than 2 metres near the door"),
             "[cabinet] more than 2 m high near [door]");
-  for (const char* text : {"table longer than a sofa", "longer than 2 m", "box taller than 3 miles"})
+  for (const char* text :
+       {"table longer than a sofa", "longer than 2 m", "box taller than 3 miles"})
     EXPECT_TRUE(parse_query(text).free_text()) << text;
 }
 

@@ -82,8 +82,8 @@ TextMatcher::TextMatcher(const SearchIndex& index, ImageTextEncoder& encoder,
     weigh_evidence(measures, things, taught);
 }
 
-void TextMatcher::weigh_evidence(std::span<const ObjectMeasures> measures,
-                                 const SeenThings& things, const TaughtThings& taught) {
+void TextMatcher::weigh_evidence(std::span<const ObjectMeasures> measures, const SeenThings& things,
+                                 const TaughtThings& taught) {
   evidence_.emplace(
       measures, things, names_for(index_, taught), encode_word_lists(encoder_, config_),
       [&](const Eigen::VectorXf& row) {
@@ -122,8 +122,7 @@ void TextMatcher::add_writing(const std::string& text, MatchScores& scores) cons
   const std::vector<std::u32string> words = written_words(text);
   for (std::size_t i = 0; i < writing_.size(); ++i) {
     if (writing_[i].empty()) continue;
-    const float said =
-        config_.evidence.writing_weight * match_writing(words, writing_[i]).share;
+    const float said = config_.evidence.writing_weight * match_writing(words, writing_[i]).share;
     scores.standard[static_cast<Eigen::Index>(i)] += said;
     scores.log_odds[static_cast<Eigen::Index>(i)] += said;
   }

@@ -28,13 +28,13 @@ class TextMatcher {
  public:
   /// `vocabulary`: embeddings of vocabulary_texts(); encoded here when it has no rows. Throws Error
   /// when the map has no embeddings or they are of another length than the encoder's or the
-  /// vocabulary's. `measures`: of each object, or none where sizes are not known. `writing`: on each
-  /// object, or none where it was not read. `things`: what a recognizer tells of each object. `taught`:
-  /// what people named elsewhere.
+  /// vocabulary's. `measures`: of each object, or none where sizes are not known. `writing`: on
+  /// each object, or none where it was not read. `things`: what a recognizer tells of each object.
+  /// `taught`: what people named elsewhere.
   TextMatcher(const SearchIndex& index, ImageTextEncoder& encoder, const QueryConfig& config,
               Embeddings vocabulary, std::span<const ObjectMeasures> measures = {},
-              std::span<const std::vector<WrittenLine>> writing = {},
-              const SeenThings& things = {}, const TaughtThings& taught = {});
+              std::span<const std::vector<WrittenLine>> writing = {}, const SeenThings& things = {},
+              const TaughtThings& taught = {});
 
   /// The unrelated words that calibrate the verdict.
   static std::vector<std::string> vocabulary_texts();

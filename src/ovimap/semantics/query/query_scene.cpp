@@ -102,8 +102,7 @@ PhraseMatch PhraseSearch::match(const QueryPhrase& phrase,
 }
 
 PhraseMatch PhraseSearch::match_phrase(const QueryPhrase& phrase,
-                                       const std::vector<std::string>& negatives,
-                                       Role role) const {
+                                       const std::vector<std::string>& negatives, Role role) const {
   if (phrase.relation == Relation::kPartOf && scene_.parts)
     return owners_of(match_parts(phrase, negatives));
   PhraseMatch result = match_things(phrase, negatives, role);
@@ -114,8 +113,7 @@ PhraseMatch PhraseSearch::match_phrase(const QueryPhrase& phrase,
     if (!phrase.negated) add_missing(result, anchors);
     if (*phrase.relation == Relation::kBetween) {
       const bool two = phrase.anchors.size() > 1;
-      const PhraseMatch second =
-          two ? match_phrase(phrase.anchors[1], {}, Role::kAnchor) : anchors;
+      const PhraseMatch second = two ? match_phrase(phrase.anchors[1], {}, Role::kAnchor) : anchors;
       if (two) add_missing(result, second);
       apply_between(anchors, second, !two, result);
     } else if (*phrase.relation == Relation::kNearest || *phrase.relation == Relation::kFarthest) {
@@ -180,8 +178,7 @@ PhraseMatch PhraseSearch::owners_of(const PhraseMatch& parts) const {
 }
 
 PhraseMatch PhraseSearch::match_things(const QueryPhrase& phrase,
-                                       const std::vector<std::string>& negatives,
-                                       Role role) const {
+                                       const std::vector<std::string>& negatives, Role role) const {
   PhraseMatch result;
   result.scores = Eigen::VectorXf::Ones(static_cast<Eigen::Index>(index_.size()));
   result.holds.assign(index_.size(), true);
@@ -204,7 +201,8 @@ PhraseMatch PhraseSearch::match_things(const QueryPhrase& phrase,
 
 void PhraseSearch::apply_attributes(const QueryPhrase& phrase, PhraseMatch& result) const {
   const bool colored = phrase.color && scene_.colors;
-  const auto measures = phrase.size ? measure_objects(scene_.shapes) : std::vector<ObjectMeasures>{};
+  std::vector<ObjectMeasures> measures;
+  if (phrase.size) measures = measure_objects(scene_.shapes);
   const std::vector<std::u32string> written = written_words(phrase.writing);
   if (!phrase.writing.empty()) require_writing(phrase.writing);
   for (const std::size_t i : positive(result.scores)) {
@@ -284,19 +282,20 @@ bool PhraseSearch::apply_room(const QueryPhrase& phrase, PhraseMatch& result) co
   const auto wanted = wanted_room(anchor.things);
   if (!wanted) return false;
   const std::vector<int>& room_of = scene_.rooms->of_objects();
-  const std::vector<RoomFit> rooms = fit_rooms(room_of, index_.objects(), matcher_ ? matcher_->evidence() : nullptr);
+  const std::vector<RoomFit> rooms =
+      fit_rooms(room_of, index_.objects(), matcher_ ? matcher_->evidence() : nullptr);
   bool known = false;
   for (std::size_t r = 0; r < rooms.size(); ++r)
     known = known || chance_of(*wanted, static_cast<int>(r + 1), rooms[r]) >= kBorder;
   if (!known && !phrase.negated) result.missing.push_back(anchor.things);
   for (const std::size_t i : positive(result.scores)) {
     const int room = room_of[i];
-    const float chance =
-        room == 0 ? 0.f : chance_of(*wanted, room, rooms[static_cast<std::size_t>(room - 1)]);
+    const RoomFit* fit = room == 0 ? nullptr : &rooms[static_cast<std::size_t>(room - 1)];
+    const float chance = fit ? chance_of(*wanted, room, *fit) : 0.f;
     at(result.scores, i) *= phrase.negated ? 1.f - chance : chance;
     result.holds[i] = result.holds[i] && (chance >= kBorder) != phrase.negated;
     add_evidence(result.evidence[i],
-                 room == 0 ? "in no room" : "in " + describe_room(room, rooms[static_cast<std::size_t>(room - 1)], index_.objects()));
+                 fit ? "in " + describe_room(room, *fit, index_.objects()) : "in no room");
   }
   return true;
 }

@@ -19,14 +19,14 @@ struct QueryParts;
 
 /// The geometry that relations are judged by.
 struct QueryScene {
-  std::vector<ObjectShape> shapes;  ///< of each object of the index, by position
-  GroundViewpoint viewpoint;        ///< for left, right, in front and behind
-  std::shared_ptr<const ObjectColors> colors;  ///< of each object; null: not known
+  std::vector<ObjectShape> shapes;                ///< of each object of the index, by position
+  GroundViewpoint viewpoint;                      ///< for left, right, in front and behind
+  std::shared_ptr<const ObjectColors> colors;     ///< of each object; null: not known
   std::vector<std::vector<WrittenLine>> writing;  ///< on each object; empty: none was read
-  std::shared_ptr<const ObjectRooms> rooms;  ///< where each object is; null: not known
-  SeenThings things;  ///< of each object; no words: nothing looked
-  TaughtThings taught;  ///< in other maps
-  std::shared_ptr<const QueryParts> parts;  ///< of the objects; null: none are known
+  std::shared_ptr<const ObjectRooms> rooms;       ///< where each object is; null: not known
+  SeenThings things;                              ///< of each object; no words: nothing looked
+  TaughtThings taught;                            ///< in other maps
+  std::shared_ptr<const QueryParts> parts;        ///< of the objects; null: none are known
 
   /// Positions in parts->index of what is of the object at a position, by number.
   std::vector<std::size_t> parts_of(std::size_t position) const;

@@ -14,13 +14,13 @@ namespace ovimap {
 namespace {
 
 // How alike two texts are, in standard deviations of the cosines between household words.
-constexpr float kSoftness = 0.6f;                     // of the choice of things a text is like
-constexpr float kUnlike = 2.f, kAlike = 5.5f;          // a thing whose size says nothing, or all
-constexpr float kRival = 3.6f, kSameThing = 6.f;       // texts that compete, or not at all
-constexpr float kSmallestShare = 1e-3f;                // of a text among the things it is like
+constexpr float kSoftness = 0.6f;                 // of the choice of things a text is like
+constexpr float kUnlike = 2.f, kAlike = 5.5f;     // a thing whose size says nothing, or all
+constexpr float kRival = 3.6f, kSameThing = 6.f;  // texts that compete, or not at all
+constexpr float kSmallestShare = 1e-3f;           // of a text among the things it is like
 constexpr float kLeastLikelihood = 1e-4f;
-constexpr float kLeastRivals = 1e-3f;                  // share of all words that always competes
-constexpr float kPersonsWord = 20.f;  // log likelihood ratio that nothing seen outweighs
+constexpr float kLeastRivals = 1e-3f;  // share of all words that always competes
+constexpr float kPersonsWord = 20.f;   // log likelihood ratio that nothing seen outweighs
 constexpr std::size_t kSizedObjectsPerTask = 64;
 
 const std::vector<ThingSize>& builtin_sizes() {
@@ -28,8 +28,8 @@ const std::vector<ThingSize>& builtin_sizes() {
   return sizes;
 }
 
-/// What a room consists of: encoders of things have seen little of it, and its size and place are like
-/// nothing else's.
+/// What a room consists of: encoders of things have seen little of it, and its size and place are
+/// like nothing else's.
 bool is_structure(const ThingSize& thing) {
   return thing.word == "floor" || thing.word == "wall" || thing.word == "ceiling";
 }
@@ -51,8 +51,9 @@ void list_fields(EvidenceConfig& config, ConfigFields& fields) {
              "weight of size and place beside the picture; 0: the picture alone");
   fields.add("most_size_ratio", config.most_size_ratio, 0.f, 100.f,
              "what size and place may say at most, log likelihood");
-  fields.add("structure_weight", config.structure_weight, 0.f, 10.f,
-             "weight of size and place for floor, wall and ceiling, which they tell better than pictures");
+  fields.add(
+      "structure_weight", config.structure_weight, 0.f, 10.f,
+      "weight of size and place for floor, wall and ceiling, which they tell better than pictures");
   fields.add("most_structure_ratio", config.most_structure_ratio, 0.f, 100.f,
              "what they may say of these at most, log likelihood");
   fields.add("thing_weight", config.thing_weight, 0.f, 10.f,
@@ -135,8 +136,7 @@ TextEvidence::TextEvidence(std::span<const ObjectMeasures> objects, const SeenTh
 
 void TextEvidence::add_size(const Eigen::VectorXf& row, Eigen::VectorXf& scores) const {
   if (sizes_.cols() == 0 || config_.size_weight == 0.f) return;
-  const Eigen::VectorXf alike =
-      ((thing_rows_ * row).array() - mean_cosine_) / cosine_deviation_;
+  const Eigen::VectorXf alike = ((thing_rows_ * row).array() - mean_cosine_) / cosine_deviation_;
   const float nearest = alike.maxCoeff(), certainty = ramp(nearest, kUnlike, kAlike);
   if (certainty == 0.f) return;
   Eigen::VectorXf fit = Eigen::VectorXf::Zero(sizes_.rows());
@@ -183,9 +183,8 @@ Eigen::VectorXf TextEvidence::competitors(const std::string& text,
   Eigen::VectorXf rivals = total_;
   for (Eigen::Index word = 0; word < alike.size(); ++word) {
     const auto kind = concepts_.household()[static_cast<std::size_t>(word)].kind;
-    const float same = concepts_.compatible(kinds, {kind})
-                           ? 1.f
-                           : ramp(alike[word], kRival, kSameThing);
+    const float same =
+        concepts_.compatible(kinds, {kind}) ? 1.f : ramp(alike[word], kRival, kSameThing);
     if (same > 0.f) rivals -= same * weights_.col(word);
   }
   return rivals.cwiseMax(kLeastRivals * total_);

@@ -20,23 +20,23 @@ namespace ovimap {
 class ConfigFields;
 
 struct EvidenceConfig {
-  float size_weight = 0.5f;        ///< of size and place beside the picture; 0: the picture alone
-  float most_size_ratio = 3.f;     ///< what they may say at most, in log likelihood
+  float size_weight = 0.5f;          ///< of size and place beside the picture; 0: the picture alone
+  float most_size_ratio = 3.f;       ///< what they may say at most, in log likelihood
   float structure_weight = 2.f;      ///< of size and place for floor, wall and ceiling
   float most_structure_ratio = 6.f;  ///< what they may say of these at most
-  float thing_weight = 0.25f;     ///< of what a recognizer of things tells; 0: nothing
-  float most_thing_ratio = 6.f;    ///< what it may say at most, in log likelihood
-  float taught_weight = 1.f;       ///< of what people named; 0: nothing
-  float most_taught_ratio = 6.f;   ///< what it may say at most, in log likelihood
-  float taught_name_ratio = 4.f;   ///< log likelihood that shows an example's own name
-  float writing_weight = 3.f;      ///< of words that are written on the object; 0: none
-  float competition = 0.5f;        ///< how much other words for an object take from a text; 0: none
-  float odds_scale = 1.f;          ///< probability of a match: sigmoid(scale * log odds + offset)
-  float odds_offset = 2.3f;        ///< fitted on generated rooms (docs/experiments.md)
+  float thing_weight = 0.25f;        ///< of what a recognizer of things tells; 0: nothing
+  float most_thing_ratio = 6.f;      ///< what it may say at most, in log likelihood
+  float taught_weight = 1.f;         ///< of what people named; 0: nothing
+  float most_taught_ratio = 6.f;     ///< what it may say at most, in log likelihood
+  float taught_name_ratio = 4.f;     ///< log likelihood that shows an example's own name
+  float writing_weight = 3.f;        ///< of words that are written on the object; 0: none
+  float competition = 0.5f;  ///< how much other words for an object take from a text; 0: none
+  float odds_scale = 1.f;    ///< probability of a match: sigmoid(scale * log odds + offset)
+  float odds_offset = 2.3f;  ///< fitted on generated rooms (docs/experiments.md)
   float found_probability = 0.35f;  ///< a match with less does not count as found
-  float name_share = 0.4f;         ///< of all household words, that a name needs to be shown
-  float wide_name_share = 0.6f;    ///< ... a name of more than three kinds ("furniture")
-  int max_objects = 50000;         ///< larger maps are searched by pictures alone
+  float name_share = 0.4f;          ///< of all household words, that a name needs to be shown
+  float wide_name_share = 0.6f;     ///< ... a name of more than three kinds ("furniture")
+  int max_objects = 50000;          ///< larger maps are searched by pictures alone
 };
 void list_fields(EvidenceConfig& config, ConfigFields& fields);
 
@@ -68,8 +68,7 @@ class TextEvidence {
   /// them, with `encode` for the prompts. `seen`: what a recognizer tells of each object. `taught`:
   /// what people named.
   TextEvidence(std::span<const ObjectMeasures> objects, const SeenThings& seen, TaughtNames taught,
-               const WordLists& lists, const PictureScores& pictures,
-               const EvidenceConfig& config);
+               const WordLists& lists, const PictureScores& pictures, const EvidenceConfig& config);
 
   /// The texts that WordLists holds.
   static std::vector<std::string> texts();

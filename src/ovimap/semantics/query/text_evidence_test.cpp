@@ -23,11 +23,10 @@ InstanceId first_for(const QueryEngine& engine, const std::string& text) {
 /// Two things that look the same, one the size of a cup on a table, one that of a wardrobe.
 TEST(TextEvidence, SizeDecidesWherePicturesCannot) {
   WordEncoder encoder;
-  const SearchIndex index =
-      map_of({"cup wardrobe", "wardrobe cup", "lamp", "door", "floor"},
-             {box_of(0.1f, 0.1f, 0.75f, 0.84f), box_of(1.2f, 0.6f, 0.f, 2.f),
-              box_of(0.3f, 0.3f, 0.8f, 1.2f), box_of(0.8f, 0.1f, 0.f, 2.f),
-              box_of(4.f, 4.f, -0.02f, 0.f)});
+  const SearchIndex index = map_of({"cup wardrobe", "wardrobe cup", "lamp", "door", "floor"},
+                                   {box_of(0.1f, 0.1f, 0.75f, 0.84f), box_of(1.2f, 0.6f, 0.f, 2.f),
+                                    box_of(0.3f, 0.3f, 0.8f, 1.2f), box_of(0.8f, 0.1f, 0.f, 2.f),
+                                    box_of(4.f, 4.f, -0.02f, 0.f)});
   const QueryEngine engine(index, &encoder);
   EXPECT_EQ(first_for(engine, "cup"), 1u);
   EXPECT_EQ(first_for(engine, "wardrobe"), 2u);
@@ -59,7 +58,8 @@ TEST(TextEvidence, WhatIsRatherSomethingElseIsLeftBehind) {
   EXPECT_EQ(first_for(QueryEngine(index, &encoder, config), "keyboard"), 1u);
   config.evidence.competition = 1.f;
   const QueryEngine engine(index, &encoder, config);
-  const QueryAnswer monitor = engine.find({"monitor", {}}), keyboard = engine.find({"keyboard", {}});
+  const QueryAnswer monitor = engine.find({"monitor", {}}),
+                    keyboard = engine.find({"keyboard", {}});
   EXPECT_EQ(monitor.matches[0].id, 1u);
   EXPECT_EQ(keyboard.matches[0].id, 2u);
   for (const QueryMatch& match : keyboard.matches) {

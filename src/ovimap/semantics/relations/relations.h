@@ -14,7 +14,8 @@ namespace ovimap {
 class ConfigFields;
 
 /// What one object is to another. kNearest and kFarthest compare several objects, kBetween needs
-/// two anchors, kPartOf is known (ObjectPart) and not judged; the others hold or not for a pair alone.
+/// two anchors, kPartOf is known (ObjectPart) and not judged; the others hold or not for a pair
+/// alone.
 enum class Relation {
   kOn,
   kUnder,

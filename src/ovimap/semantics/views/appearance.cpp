@@ -26,9 +26,8 @@ void keep_largest(ViewRefs& views, int count) {
   const auto wanted = static_cast<std::size_t>(count);
   if (count == 0 || views.size() <= wanted) return;
   ViewRefs by_size = views;
-  std::stable_sort(by_size.begin(), by_size.end(), [](const auto* a, const auto* b) {
-    return a->visible_px > b->visible_px;
-  });
+  std::stable_sort(by_size.begin(), by_size.end(),
+                   [](const auto* a, const auto* b) { return a->visible_px > b->visible_px; });
   by_size.resize(wanted);
   std::erase_if(views, [&](const ObjectView* view) {
     return std::find(by_size.begin(), by_size.end(), view) == by_size.end();

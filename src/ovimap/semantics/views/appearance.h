@@ -89,8 +89,8 @@ Appearance appearance_of(const SuperPointLooks& looks, std::span<const Label> su
 /// One embedding of the views that have one, of length 1; empty when none has.
 Eigen::VectorXf fuse_views(std::span<const ObjectView* const> views, const ViewFusion& fusion);
 
-/// [things] the log ratios that the views of an object amount to; empty when no recognizer looked at
-/// any of them.
+/// [things] the log ratios that the views of an object amount to; empty when no recognizer looked
+/// at any of them.
 Eigen::VectorXf things_of(std::span<const ObjectView* const> views);
 /// What correlated log ratios amount to, of which these are the sum.
 float joint_log_ratio(float sum, std::size_t count);

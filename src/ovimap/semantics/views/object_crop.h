@@ -34,8 +34,8 @@ void list_fields(CropConfig& config, ConfigFields& fields);
 /// its pixels, so that nothing refers back to the frame.
 struct ObjectCrop {
   RgbImage image;
-  Image<std::uint8_t> mask;       ///< of `image`'s size: 1 on the object
-  Eigen::AlignedBox2i object_px;  ///< the object's box in `image`, both corners included
+  Image<std::uint8_t> mask;           ///< of `image`'s size: 1 on the object
+  Eigen::AlignedBox2i object_px;      ///< the object's box in `image`, both corners included
   Eigen::AlignedBox2f in_frame = {};  ///< the same as shares of the frame's sides; empty: not known
 };
 

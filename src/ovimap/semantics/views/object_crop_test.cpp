@@ -30,7 +30,9 @@ class CutObject : public ::testing::Test {
   /// As the colour camera sees it now.
   ObjectPixels square() {
     registration_.emplace(frame_, depth_, 0.05f);
-    return {registration_->color_index(), instances_, 7,
+    return {registration_->color_index(),
+            instances_,
+            7,
             {Eigen::Vector2i(30, 20), Eigen::Vector2i(49, 39)}};
   }
 

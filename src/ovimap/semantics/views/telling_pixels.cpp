@@ -10,8 +10,8 @@ namespace ovimap {
 
 namespace {
 
-constexpr int kFewEdges = 40;  // fewer may all be shading, or what noise made
-constexpr int kLines = 30;     // rows, and columns, that are enough of a picture
+constexpr int kFewEdges = 40;                  // fewer may all be shading, or what noise made
+constexpr int kLines = 30;                     // rows, and columns, that are enough of a picture
 constexpr int kDarkest = 4, kBrightest = 251;  // JPEG moves what is clipped by a little
 
 bool is_clipped(Rgb8 pixel) {
@@ -59,8 +59,8 @@ int TellingPixels::count(int visible_px, const ObjectCrop& crop) {
 
 bool TellingPixels::weigh(ObjectView& view, const ObjectCrop& crop, bool first) {
   const int telling = count(view.visible_px, crop);
-  const bool poor = static_cast<float>(telling) <
-                    config_.least_share * static_cast<float>(view.visible_px);
+  const bool poor =
+      static_cast<float>(telling) < config_.least_share * static_cast<float>(view.visible_px);
   if (poor && !first) return false;
   view.visible_px = telling;
   if (poor) view.directions.bins = {};

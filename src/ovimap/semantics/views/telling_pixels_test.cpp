@@ -31,7 +31,8 @@ Frame frame_of(RgbImage color) {
 
 ObjectCrop crop_of(RgbImage image) {
   const int width = image.width(), height = image.height();
-  return {std::move(image), Image<std::uint8_t>(width, height, 1),
+  return {std::move(image),
+          Image<std::uint8_t>(width, height, 1),
           {Eigen::Vector2i(0, 0), Eigen::Vector2i(width - 1, height - 1)}};
 }
 

@@ -171,9 +171,8 @@ void ViewSelector::cover(const SeenObjects& seen, Candidate& object) const {
       object.most = label;
   // Views whose centre is where the object's is now, or nearly so, say what has been covered. The
   // latest of them gives the origin, so that an object keeps it until its centre has moved.
-  const float limit = config_.recentre_share > 0.f
-                          ? config_.recentre_share * box.diagonal().norm()
-                          : std::numeric_limits<float>::infinity();
+  const float limit = config_.recentre_share > 0.f ? config_.recentre_share * box.diagonal().norm()
+                                                   : std::numeric_limits<float>::infinity();
   Eigen::Vector3f& center = object.directions.center_in_world;
   const auto is_near = [&](const ObjectView* view) {
     return (view->directions.center_in_world - center).norm() <= limit;

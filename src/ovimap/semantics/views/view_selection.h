@@ -36,7 +36,7 @@ struct ViewSelectionConfig {
       2.f;  ///< a view this many times larger than any before counts as new; 0: none
   float recentre_share = 0.2f;  ///< coverage starts anew when the centre of what was seen has moved
                                 ///< by this share of its diagonal; 0: never
-  int min_mask_px = 250;         ///< smaller views show too little, in pixels that have colour
+  int min_mask_px = 250;        ///< smaller views show too little, in pixels that have colour
   int min_first_depth_px = 150;  ///< measured depth pixels an object's first view needs
   int min_depth_px = 50;         ///< ... and every later one
   int min_frames_seen = 2;       ///< an object seen in fewer frames may yet be merged away
@@ -72,8 +72,8 @@ struct SeenObjects {
 /// A view that was chosen.
 struct ChosenView {
   InstanceId id = 0;
-  Eigen::AlignedBox2i box_px;  ///< of the object in the depth camera's image, corners included
-  ObjectView view;             ///< without embedding and crop
+  Eigen::AlignedBox2i box_px;       ///< of the object in the depth camera's image, corners included
+  ObjectView view;                  ///< without embedding and crop
   std::optional<ViewKey> replaced;  ///< a view of the object whose place it takes
 };
 

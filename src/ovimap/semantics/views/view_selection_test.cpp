@@ -49,10 +49,10 @@ class BallViews {
     for (int y = 0; y < kCamera.height; ++y)
       for (int x = 0; x < colorless_columns; ++x) color.at(x, y) = -1;
     // Super-points are called as their instances here.
-    std::vector<ChosenView> chosen = selector.select(
-        {depth, instances, instances, blind ? DepthImage(160, 120) : depth, color, kCamera, pose,
-         frame++},
-        registry, looks);
+    std::vector<ChosenView> chosen =
+        selector.select({depth, instances, instances, blind ? DepthImage(160, 120) : depth, color,
+                         kCamera, pose, frame++},
+                        registry, looks);
     if (pictured)
       for (const ChosenView& view : chosen) ViewSelector::commit(view, {}, looks);
     return chosen;
@@ -205,9 +205,9 @@ TEST(ViewSelection, StartsAnewWhenAnObjectTurnsOutLarger) {
   SuperPointLook& look = ball.looks.at(1);
   look.seen_in_world.extend(Eigen::Vector3f(5, 5, 5));  // as another view found
   EXPECT_EQ(ball.look(selector, 0).size(), 1u);
-  EXPECT_GT((look.views[1].directions.center_in_world - look.views[0].directions.center_in_world)
-                .norm(),
-            1.f);
+  EXPECT_GT(
+      (look.views[1].directions.center_in_world - look.views[0].directions.center_in_world).norm(),
+      1.f);
 }
 
 TEST(ViewSelection, WhatOnlyColourDoesNotShowIsNeitherWeighedNorCovered) {
@@ -257,8 +257,14 @@ class WallView {
     registry.restore(state);
     Image<InstanceId> ids(120, 90);
     for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = registry.instance_of(labels_[i]);
-    auto chosen = selector_.select({depth_, ids, labels_, depth_, color_,
-                                    {120, 90, 100, 100, 59.5f, 44.5f}, Pose::Identity(), frame_++},
+    auto chosen = selector_.select({depth_,
+                                    ids,
+                                    labels_,
+                                    depth_,
+                                    color_,
+                                    {120, 90, 100, 100, 59.5f, 44.5f},
+                                    Pose::Identity(),
+                                    frame_++},
                                    registry, looks);
     for (const ChosenView& view : chosen) ViewSelector::commit(view, {}, looks);
     return chosen.size();

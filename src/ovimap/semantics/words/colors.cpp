@@ -35,26 +35,26 @@ struct FocalColor {
   std::uint8_t r, g, b;
 };
 constexpr std::array kFocal{
-    FocalColor{Color::kBlack, 12, 12, 12},       FocalColor{Color::kBlack, 40, 40, 42},
-    FocalColor{Color::kGrey, 95, 95, 97},        FocalColor{Color::kGrey, 140, 140, 142},
-    FocalColor{Color::kGrey, 180, 180, 182},     FocalColor{Color::kWhite, 225, 225, 225},
-    FocalColor{Color::kWhite, 250, 250, 250},    FocalColor{Color::kRed, 205, 30, 40},
-    FocalColor{Color::kRed, 125, 20, 28},        FocalColor{Color::kOrange, 240, 125, 25},
-    FocalColor{Color::kYellow, 245, 215, 45},    FocalColor{Color::kYellow, 200, 170, 30},
-    FocalColor{Color::kGreen, 45, 150, 60},      FocalColor{Color::kGreen, 25, 75, 35},
-    FocalColor{Color::kGreen, 140, 200, 110},    FocalColor{Color::kTurquoise, 40, 175, 170},
-    FocalColor{Color::kBlue, 35, 85, 195},       FocalColor{Color::kBlue, 25, 40, 100},
-    FocalColor{Color::kBlue, 120, 180, 235},     FocalColor{Color::kPurple, 115, 45, 150},
-    FocalColor{Color::kPurple, 165, 120, 215},   FocalColor{Color::kPink, 245, 165, 190},
-    FocalColor{Color::kPink, 230, 70, 150},      FocalColor{Color::kBrown, 110, 65, 35},
-    FocalColor{Color::kBrown, 155, 105, 65},     FocalColor{Color::kBrown, 70, 42, 28},
-    FocalColor{Color::kBeige, 222, 203, 168},    FocalColor{Color::kBeige, 190, 165, 130}};
+    FocalColor{Color::kBlack, 12, 12, 12},     FocalColor{Color::kBlack, 40, 40, 42},
+    FocalColor{Color::kGrey, 95, 95, 97},      FocalColor{Color::kGrey, 140, 140, 142},
+    FocalColor{Color::kGrey, 180, 180, 182},   FocalColor{Color::kWhite, 225, 225, 225},
+    FocalColor{Color::kWhite, 250, 250, 250},  FocalColor{Color::kRed, 205, 30, 40},
+    FocalColor{Color::kRed, 125, 20, 28},      FocalColor{Color::kOrange, 240, 125, 25},
+    FocalColor{Color::kYellow, 245, 215, 45},  FocalColor{Color::kYellow, 200, 170, 30},
+    FocalColor{Color::kGreen, 45, 150, 60},    FocalColor{Color::kGreen, 25, 75, 35},
+    FocalColor{Color::kGreen, 140, 200, 110},  FocalColor{Color::kTurquoise, 40, 175, 170},
+    FocalColor{Color::kBlue, 35, 85, 195},     FocalColor{Color::kBlue, 25, 40, 100},
+    FocalColor{Color::kBlue, 120, 180, 235},   FocalColor{Color::kPurple, 115, 45, 150},
+    FocalColor{Color::kPurple, 165, 120, 215}, FocalColor{Color::kPink, 245, 165, 190},
+    FocalColor{Color::kPink, 230, 70, 150},    FocalColor{Color::kBrown, 110, 65, 35},
+    FocalColor{Color::kBrown, 155, 105, 65},   FocalColor{Color::kBrown, 70, 42, 28},
+    FocalColor{Color::kBeige, 222, 203, 168},  FocalColor{Color::kBeige, 190, 165, 130}};
 
 constexpr float kLightnessWeight = 0.6f;
 constexpr float kNameDeviation = 0.05f;  // in OKLab: about twice what is seen at a glance
 constexpr int kMostSamples = 400;        // of one object
 constexpr float kGreyNorm = 6.f;
-constexpr float kMostTint = 1.6f;        // of the light, between channels
+constexpr float kMostTint = 1.6f;  // of the light, between channels
 constexpr float kBright = 0.75f, kLeastExposure = 0.8f, kMostExposure = 3.f;
 constexpr std::size_t kCropsPerTask = 4;
 
@@ -131,10 +131,10 @@ std::optional<Color> color_of_word(std::string_view word) {
 
 Eigen::Vector3f oklab(const Eigen::Vector3f& linear_rgb) {
   Eigen::Matrix3f cones, lab;
-  cones << 0.4122214708f, 0.5363325363f, 0.0514459929f, 0.2119034982f, 0.6806995451f,
-      0.1073969566f, 0.0883024619f, 0.2817188376f, 0.6299787005f;
-  lab << 0.2104542553f, 0.7936177850f, -0.0040720468f, 1.9779984951f, -2.4285922050f,
-      0.4505937099f, 0.0259040371f, 0.7827717662f, -0.8086757660f;
+  cones << 0.4122214708f, 0.5363325363f, 0.0514459929f, 0.2119034982f, 0.6806995451f, 0.1073969566f,
+      0.0883024619f, 0.2817188376f, 0.6299787005f;
+  lab << 0.2104542553f, 0.7936177850f, -0.0040720468f, 1.9779984951f, -2.4285922050f, 0.4505937099f,
+      0.0259040371f, 0.7827717662f, -0.8086757660f;
   const Eigen::Vector3f responses = (cones * linear_rgb).cwiseMax(0.f);
   return lab * responses.unaryExpr([](float value) { return std::cbrt(value); });
 }
@@ -152,8 +152,7 @@ ColorShares name_colors(std::span<const Eigen::Vector3f> linear_rgb) {
     const float nearest = *std::min_element(distances.begin(), distances.end());
     float sum = 0.f;
     for (float& distance : distances)
-      sum += distance =
-          std::exp((nearest - distance) / (2.f * kNameDeviation * kNameDeviation));
+      sum += distance = std::exp((nearest - distance) / (2.f * kNameDeviation * kNameDeviation));
     for (std::size_t k = 0; k < kFocal.size(); ++k)
       shares[static_cast<std::size_t>(kFocal[k].color)] +=
           distances[k] / sum / static_cast<float>(linear_rgb.size());
@@ -170,8 +169,7 @@ const std::vector<ColorShares>& ObjectColors::shares() const {
     const Eigen::Array3f gain = light_gain(samples);
     shares_.resize(crops.size());
     parallel_for(crops.size(), kCropsPerTask, [&](std::size_t i) {
-      for (Eigen::Vector3f& sample : samples[i])
-        sample = (sample.array() * gain).min(1.f).matrix();
+      for (Eigen::Vector3f& sample : samples[i]) sample = (sample.array() * gain).min(1.f).matrix();
       shares_[i] = name_colors(samples[i]);
     });
   });

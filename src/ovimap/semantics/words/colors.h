@@ -19,8 +19,19 @@ namespace ovimap {
 
 /// The eleven basic colour terms of English (Berlin and Kay 1969), beige and turquoise.
 enum class Color {
-  kBlack, kGrey, kWhite, kRed, kOrange, kYellow, kGreen, kTurquoise, kBlue, kPurple, kPink,
-  kBrown, kBeige
+  kBlack,
+  kGrey,
+  kWhite,
+  kRed,
+  kOrange,
+  kYellow,
+  kGreen,
+  kTurquoise,
+  kBlue,
+  kPurple,
+  kPink,
+  kBrown,
+  kBeige
 };
 inline constexpr std::size_t kColorCount = 13;
 

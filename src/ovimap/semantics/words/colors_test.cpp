@@ -36,9 +36,9 @@ std::string main_color(const ColorShares& shares) {
 }
 
 const std::vector<std::pair<const char*, Rgb8>> kPatches{
-    {"red", {190, 30, 40}},    {"green", {40, 140, 60}},   {"blue", {40, 80, 180}},
+    {"red", {190, 30, 40}},     {"green", {40, 140, 60}},   {"blue", {40, 80, 180}},
     {"yellow", {235, 205, 50}}, {"white", {240, 240, 240}}, {"black", {20, 20, 20}},
-    {"grey", {130, 130, 130}}, {"brown", {105, 65, 40}},   {"orange", {235, 125, 35}}};
+    {"grey", {130, 130, 130}},  {"brown", {105, 65, 40}},   {"orange", {235, 125, 35}}};
 
 TEST(ObjectColors, NamesPlainColors) {
   const ObjectColors colors([] {

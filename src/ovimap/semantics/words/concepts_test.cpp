@@ -21,12 +21,20 @@ class ConceptsTest : public ::testing::Test {
 };
 
 TEST_F(ConceptsTest, KnowsSynonymsAndKinds) {
-  for (const auto& [a, b] : {std::pair{"sofa", "couch"}, {"armchair", "chair"}, {"seat", "stool"},
-                             {"tv", "television"}, {"desk", "furniture"}, {"mug", "container"},
-                             {"trash can", "waste bin"}, {"monitor", "computer screen"}})
+  for (const auto& [a, b] : {std::pair{"sofa", "couch"},
+                             {"armchair", "chair"},
+                             {"seat", "stool"},
+                             {"tv", "television"},
+                             {"desk", "furniture"},
+                             {"mug", "container"},
+                             {"trash can", "waste bin"},
+                             {"monitor", "computer screen"}})
     EXPECT_TRUE(both(a, b)) << a << ", " << b;
-  for (const auto& [a, b] : {std::pair{"monitor", "keyboard"}, {"mouse", "laptop"},
-                             {"armchair", "sofa"}, {"chair", "table"}, {"mug", "plate"}})
+  for (const auto& [a, b] : {std::pair{"monitor", "keyboard"},
+                             {"mouse", "laptop"},
+                             {"armchair", "sofa"},
+                             {"chair", "table"},
+                             {"mug", "plate"}})
     EXPECT_FALSE(both(a, b)) << a << ", " << b;
 }
 
@@ -59,7 +67,8 @@ TEST(Concepts, RefusesWhatIsNoTable) {
 
 TEST_F(ConceptsTest, KnowsWholeTextsAndNotTheirEnds) {
   for (const char* text : {"mug", "Mugs", "trash can"}) EXPECT_TRUE(table_.knows(text)) << text;
-  for (const char* text : {"Anna's mug", "", "zeppelin hangar"}) EXPECT_FALSE(table_.knows(text)) << text;
+  for (const char* text : {"Anna's mug", "", "zeppelin hangar"})
+    EXPECT_FALSE(table_.knows(text)) << text;
 }
 
 }  // namespace

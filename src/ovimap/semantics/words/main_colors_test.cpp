@@ -18,7 +18,9 @@ TEST(MainColors, AreTheLargestFirst) {
   EXPECT_EQ(colors[1], std::pair(Color::kRed, 0.3f));
 }
 
-TEST(MainColors, AreNoneWhereNotKnown) { EXPECT_TRUE(main_colors({}).empty()); }
+TEST(MainColors, AreNoneWhereNotKnown) {
+  EXPECT_TRUE(main_colors({}).empty());
+}
 
 }  // namespace
 }  // namespace ovimap

@@ -14,8 +14,9 @@ namespace ovimap {
 
 /// What a recognizer tells of the objects of a map.
 struct SeenThings {
-  std::vector<std::string> words;  ///< of each thing that it knows, separated by |; none: no recognizer
-  Eigen::MatrixXf log_ratios;      ///< [objects, things] as things_of() gives them; 0: it did not look
+  std::vector<std::string>
+      words;                   ///< of each thing that it knows, separated by |; none: no recognizer
+  Eigen::MatrixXf log_ratios;  ///< [objects, things] as things_of() gives them; 0: it did not look
 };
 
 /// Takes what a recognizer tells by its own names to any text, by what words mean: a screen is what
@@ -35,8 +36,8 @@ class NamedThings {
   Eigen::VectorXf of_named(const Kinds& kinds) const;
 
   const Concepts& concepts_;
-  std::vector<Kinds> kinds_;  ///< of each thing that a recognizer knows
-  Eigen::MatrixXf ratios_;    ///< [objects, things]
+  std::vector<Kinds> kinds_;   ///< of each thing that a recognizer knows
+  Eigen::MatrixXf ratios_;     ///< [objects, things]
   Eigen::MatrixXf household_;  ///< [objects, household words] likelihood ratios; 1: not known
   std::vector<bool> known_;    ///< of each household word: whether the recognizer has a name for it
 };

@@ -12,8 +12,9 @@ namespace ovimap {
 
 namespace {
 
-// How much more often looks of one kind are so alike than looks of different kinds, as logarithm, of the
-// standard deviations above the mean of different things (tools/models/calibrate_teaching.py).
+// How much more often looks of one kind are so alike than looks of different kinds, as logarithm,
+// of the standard deviations above the mean of different things
+// (tools/models/calibrate_teaching.py).
 constexpr float kSquare = 0.45f, kLinear = 0.9f, kConstant = -0.6f;
 constexpr float kLeastAlike = -1.f;          // below that nothing more is told
 constexpr Eigen::Index kLeastStrangers = 8;  // objects that say how alike different things are

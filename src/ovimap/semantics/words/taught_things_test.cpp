@@ -12,8 +12,8 @@
 namespace ovimap {
 namespace {
 
-const std::vector<std::string> kThings = {"zeppelin hangar", "mug",    "door", "chair", "lamp",
-                                          "desk",            "window", "bed",  "sofa",  "keyboard"};
+const std::vector<std::string> kThings = {
+    "zeppelin hangar", "mug", "door", "chair", "lamp", "desk", "window", "bed", "sofa", "keyboard"};
 
 /// As the fixture's map, with a person's names for some positions.
 SearchIndex named_map(const std::vector<std::pair<std::size_t, std::string>>& names) {
@@ -92,7 +92,8 @@ TEST(TaughtNames, CanBeSwitchedOff) {
 
 TEST(TaughtNames, AKindSpeaksForWhatIsAboveItAndNotBeside) {
   const SearchIndex index = map_of(kThings);
-  const TaughtNames names(builtin_concepts(), objects_of(index), example("Anna's vase", "zeppelin hangar"));
+  const TaughtNames names(builtin_concepts(), objects_of(index),
+                          example("Anna's vase", "zeppelin hangar"));
   EXPECT_GT(names.log_ratios("Anna's vase").size(), 0);
   EXPECT_GT(names.log_ratios("vase").size(), 0);
   EXPECT_GT(names.log_ratios("VASES").size(), 0);
@@ -106,7 +107,8 @@ TEST(TaughtNames, AKindSpeaksForWhatIsAboveItAndNotBeside) {
 
 TEST(TaughtNames, OfTheAlikeTheMostAlikeSpeaks) {
   const SearchIndex index = map_of(kThings);
-  const TaughtNames names(builtin_concepts(), objects_of(index), example("vase", "zeppelin hangar"));
+  const TaughtNames names(builtin_concepts(), objects_of(index),
+                          example("vase", "zeppelin hangar"));
   const Eigen::VectorXf ratios = names.log_ratios("vase");
   EXPECT_GT(ratios[0], 10.f);
   for (Eigen::Index i = 1; i < ratios.size(); ++i) EXPECT_LT(ratios[i], 4.f) << i;
@@ -124,7 +126,8 @@ TEST(TaughtNames, ObjectsWithoutALookAreLeftAlone) {
   std::vector<std::string> things = kThings;
   things[2].clear();
   const SearchIndex index = map_of(things);
-  const TaughtNames names(builtin_concepts(), objects_of(index), example("vase", "zeppelin hangar"));
+  const TaughtNames names(builtin_concepts(), objects_of(index),
+                          example("vase", "zeppelin hangar"));
   EXPECT_EQ(names.log_ratios("vase")[2], 0.f);
 }
 

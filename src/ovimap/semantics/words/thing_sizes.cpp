@@ -17,7 +17,7 @@ namespace {
 
 // Deviations were chosen on generated rooms that are no test (docs/experiments.md).
 constexpr float kSmallerDeviation = 0.6f, kLargerDeviation = 0.45f;  // of logarithms
-constexpr float kDepthWeight = 0.5f;      // the side away from the camera is seen least
+constexpr float kDepthWeight = 0.5f;  // the side away from the camera is seen least
 constexpr float kBottomDeviation_m = 0.25f;
 constexpr float kMostPenalty = 2.5f;       // of one size in log likelihood: maps merge and cut
 constexpr float kMostBottomPenalty = 3.f;  // ... and anything can be put anywhere
@@ -33,8 +33,8 @@ float log_term(float object_m, float usual_m) {
 }
 
 float quantile_in_place(std::vector<float>& values, float share) {
-  const auto at = values.begin() +
-                  static_cast<std::ptrdiff_t>(share * static_cast<float>(values.size() - 1));
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<float>(values.size() - 1));
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }
@@ -107,15 +107,15 @@ std::vector<ThingSize> read_thing_sizes(const std::vector<std::string>& lines) {
 
 float size_likelihood(const ObjectMeasures& object, const ThingSize& thing) {
   const ObjectMeasures& usual = thing.usual;
-  const float away_m = std::max({0.f, usual.bottom_m - object.bottom_m,
-                                 object.bottom_m - thing.highest_bottom_m}) /
-                       kBottomDeviation_m;
+  const float away_m =
+      std::max({0.f, usual.bottom_m - object.bottom_m, object.bottom_m - thing.highest_bottom_m}) /
+      kBottomDeviation_m;
   // A thing that may be anywhere says less about where it is.
   const float spread = std::log(thing.highest_bottom_m - usual.bottom_m + kBottomDeviation_m);
-  const float log_likelihood =
-      log_term(object.height_m, usual.height_m) + log_term(object.length_m, usual.length_m) +
-      kDepthWeight * log_term(object.depth_m, usual.depth_m) -
-      std::min(0.5f * away_m * away_m, kMostBottomPenalty) - spread;
+  const float log_likelihood = log_term(object.height_m, usual.height_m) +
+                               log_term(object.length_m, usual.length_m) +
+                               kDepthWeight * log_term(object.depth_m, usual.depth_m) -
+                               std::min(0.5f * away_m * away_m, kMostBottomPenalty) - spread;
   return std::exp(std::max(log_likelihood, kLeastLogLikelihood));
 }
 

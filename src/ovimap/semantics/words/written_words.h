@@ -22,12 +22,13 @@ std::vector<WrittenLine> writing_of(const Appearance& appearance);
 std::vector<std::u32string> written_words(std::string_view text);
 
 struct WritingMatch {
-  float share = 0;                   ///< how much of the words was read, in [0, 1]
+  float share = 0;                    ///< how much of the words was read, in [0, 1]
   const WrittenLine* line = nullptr;  ///< where the best of them was read; null: nowhere
 };
 
-/// How well `wanted` is written in `lines`: the mean over its words of the best reading's confidence
-/// times likeness. A reading may err in one character of four; of words of up to three none.
+/// How well `wanted` is written in `lines`: the mean over its words of the best reading's
+/// confidence times likeness. A reading may err in one character of four; of words of up to three
+/// none.
 WritingMatch match_writing(std::span<const std::u32string> wanted,
                            std::span<const WrittenLine> lines);
 

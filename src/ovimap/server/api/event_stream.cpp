@@ -30,8 +30,7 @@ class EventStream : public ReplyStream {
     const auto event = hub_.next(last_);
     if (!event) return {};
     last_ = event->number;
-    return concat("id: ", event->number, "\nevent: ", event->type, "\ndata: ", event->data,
-                  "\n\n");
+    return concat("id: ", event->number, "\nevent: ", event->type, "\ndata: ", event->data, "\n\n");
   }
   std::string sign_of_life() const override { return ": quiet\n\n"; }
   bool ended() const override { return hub_.closed(); }

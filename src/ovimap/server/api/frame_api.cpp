@@ -18,7 +18,7 @@ using nlohmann::json;
 constexpr const char* kRetry = "ovimap-retry";  // header of a frame that was refused before
 constexpr const char* kOtherCamera =
     "the map's frames are of another camera; send that one's, or finish and start a new map";
-constexpr double kQuaternionOff = 1e-3;  // by which its length may miss 1: texts have few digits
+constexpr double kQuaternionOff = 1e-3;    // by which its length may miss 1: texts have few digits
 constexpr std::size_t kLongestName = 200;  // bytes; it names files of masks
 
 using Parts = std::map<std::string, std::string_view>;
@@ -62,15 +62,13 @@ std::vector<double> numbers_of(const json& value, std::size_t count) {
 std::optional<Eigen::Matrix4d> pose_of(const json& about) {
   if (!about.contains("pose")) return std::nullopt;
   const std::vector<double> numbers = numbers_of(about["pose"], 16);
-  if (numbers.empty())
-    throw BadRequest(400, "'pose' must be 16 numbers, the rows of a 4x4 matrix");
+  if (numbers.empty()) throw BadRequest(400, "'pose' must be 16 numbers, the rows of a 4x4 matrix");
   Eigen::Matrix4d pose;
   for (int i = 0; i < 16; ++i) pose(i / 4, i % 4) = numbers[static_cast<std::size_t>(i)];
   return pose;
 }
 
-constexpr const char* kNoRotation =
-    "'orientation' must be a unit quaternion, 4 numbers x, y, z, w";
+constexpr const char* kNoRotation = "'orientation' must be a unit quaternion, 4 numbers x, y, z, w";
 
 /// Nullopt where none is given. Its length is whatever was sent.
 std::optional<Eigen::Quaterniond> orientation_of(const json& about) {
@@ -101,7 +99,8 @@ PoseUpdate::Node node_of(const json& item, const char* key, const CameraRig& rig
   const std::optional<Eigen::Matrix4d> pose = pose_of(item);
   if (!pose) throw BadRequest(400, "each of 'poses' needs 'pose'");
   if (const std::string bad = pose_fault(*pose); !bad.empty())
-    throw BadRequest(400, concat("the pose at ", item[key].dump(), " is no rigid transform: ", bad));
+    throw BadRequest(400,
+                     concat("the pose at ", item[key].dump(), " is no rigid transform: ", bad));
   return {item[key].get<double>(), rig.world_from_depth_camera(*pose)};
 }
 
@@ -177,12 +176,12 @@ HttpReply FrameApi::frame(const HttpRequest& request) {
   const std::optional<Eigen::Quaterniond> orientation = orientation_of(about);
   const double timestamp_s = time_of(about);
   const std::string name = name_of(about);
-  const auto color = bytes_of(part_of(parts, "color")),
-             depth = bytes_of(part_of(parts, "depth"));
+  const auto color = bytes_of(part_of(parts, "color")), depth = bytes_of(part_of(parts, "depth"));
   intake();
   if (!pose && config_.poses != PoseNeed::kNone)
-    throw BadRequest(400, "'pose' is missing; send 16 numbers, the rows of a 4x4 matrix, or start "
-                          "the server with --poses track");
+    throw BadRequest(400,
+                     "'pose' is missing; send 16 numbers, the rows of a 4x4 matrix, or start "
+                     "the server with --poses track");
   const auto offer = offer_of(request);
   // One frame at a time: they stay in order, the camera stays the same, and large images are
   // decoded one by one, and not at all where there is no room.
@@ -213,8 +212,9 @@ HttpReply FrameApi::poses(const HttpRequest& request) {
   const json body = body_of(request);
   intake();
   if (!moves_frames_)
-    throw BadRequest(409, "poses of this map cannot be corrected; start the server with --set "
-                          "frame_store.max_mb=1000, and without --poses and memory.max_mb");
+    throw BadRequest(409,
+                     "poses of this map cannot be corrected; start the server with --set "
+                     "frame_store.max_mb=1000, and without --poses and memory.max_mb");
   const std::lock_guard lock(mutex_);
   if (!decoder_) throw BadRequest(409, "no camera is known yet; POST /api/camera first");
   if (!intake_->correct(update_of(body, decoder_->rig())))

@@ -246,8 +246,9 @@ TEST_F(PoseApiTest, WhereNoFramesAreKeptItSaysHowToKeepThem) {
   FrameIntake intake(4);
   serve(&intake);
   set_camera(camera(), 200);
-  EXPECT_NE(post({{"poses", {node(1)}}}, 409)["error"].get<std::string>().find("frame_store.max_mb"),
-            std::string::npos);
+  EXPECT_NE(
+      post({{"poses", {node(1)}}}, 409)["error"].get<std::string>().find("frame_store.max_mb"),
+      std::string::npos);
 }
 
 TEST_F(FrameApiTest, WithoutAnIntakeItSaysHowToGetOne) {

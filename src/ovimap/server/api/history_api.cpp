@@ -30,8 +30,9 @@ json visits_json(const MapRecord& record, const HistoryDates& dates) {
   if (visits.empty()) visits.push_back({record.source, 0, 0});
   json list = json::array();
   for (std::size_t i = 0; i < visits.size(); ++i) {
-    const std::int64_t end = i + 1 < visits.size() ? visits[i + 1].first_frame
-                                                   : static_cast<std::int64_t>(record.frames.size());
+    const std::int64_t end = i + 1 < visits.size()
+                                 ? visits[i + 1].first_frame
+                                 : static_cast<std::int64_t>(record.frames.size());
     const int visit = static_cast<int>(i) + 1;
     list.push_back({{"visit", visit},
                     {"source", visits[i].source},
@@ -54,7 +55,8 @@ const ObjectEvent* event_of(const MapSnapshot& now, const HttpRequest& request) 
 }
 
 HttpReply nothing_kept() {
-  return fault(404, "the map keeps nothing of that event; GET /api/history lists those of which it does");
+  return fault(
+      404, "the map keeps nothing of that event; GET /api/history lists those of which it does");
 }
 
 /// The largest picture among an object's looks of that time; null: none.
@@ -158,8 +160,9 @@ HttpReply show_past_surface(const ServedMap& map, const HttpRequest& request) {
     for (const float value : p) points.push_back(rounded_json(double{value}));
   for (const auto& color : event->was->colors)
     for (const std::uint8_t channel : color) colors.push_back(channel);
-  return text_reply(200, "application/json",
-                    json{{"instance", event->instance}, {"points", points}, {"colors", colors}}.dump());
+  return text_reply(
+      200, "application/json",
+      json{{"instance", event->instance}, {"points", points}, {"colors", colors}}.dump());
 }
 
 HttpReply show_past_crop(const ServedMap& map, const HttpRequest& request) {

@@ -230,8 +230,7 @@ Router map_api(ServedMap& map, FrameApi& frames, StandingQueries& standing) {
   get("/api/map", [&map](Request) { return json_reply(map_json(map)); });
   get("/api/instances", [&map](Request) { return json_reply(instances_json(map)); });
   get("/api/instances/{id}", [&map](Request r) { return show_instance(map, r); });
-  get_large("/api/instances/{id}/crops/{ordinal}",
-            [&map](Request r) { return show_crop(map, r); });
+  get_large("/api/instances/{id}/crops/{ordinal}", [&map](Request r) { return show_crop(map, r); });
   add("GET", "/api/instances/{id}/place", BodyType::kNone, RouteCost::kWork,
       [&map](Request r) { return show_place(map, r); });
   add("GET", "/api/relations", BodyType::kNone, RouteCost::kWork,
@@ -242,7 +241,8 @@ Router map_api(ServedMap& map, FrameApi& frames, StandingQueries& standing) {
       [&map](Request) { return show_history(map); });
   add("GET", "/api/changes", BodyType::kNone, RouteCost::kWork,
       [&map](Request r) { return show_changes(map, r); });
-  get_large("/api/history/{event}/surface", [&map](Request r) { return show_past_surface(map, r); });
+  get_large("/api/history/{event}/surface",
+            [&map](Request r) { return show_past_surface(map, r); });
   get_large("/api/history/{event}/crop", [&map](Request r) { return show_past_crop(map, r); });
   add("GET", "/api/gaps", BodyType::kNone, RouteCost::kWork,
       [&map](Request) { return show_gaps(map); });

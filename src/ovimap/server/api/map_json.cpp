@@ -56,8 +56,8 @@ std::span<const ClassGuess> guesses_of(const MapSnapshot& now, InstanceId id) {
 json guesses_json(const MapSnapshot& now, InstanceId id) {
   json list = json::array();
   for (const ClassGuess& guess : guesses_of(now, id))
-    list.push_back(
-        {{"name", now.guesses->set.labels[guess.label].name}, {"cosine", rounded_json(guess.score)}});
+    list.push_back({{"name", now.guesses->set.labels[guess.label].name},
+                    {"cosine", rounded_json(guess.score)}});
   return list;
 }
 
@@ -251,8 +251,8 @@ json answer_json(const MapAnswer& answered) {
   if (answer.relevance.size() > 0) {
     result["heat"] = json::array();
     for (std::size_t i = 0; i < answered.index().size(); ++i)
-      result["heat"].push_back(
-          {answered.index().object(i).id, rounded_json(answer.relevance[static_cast<Eigen::Index>(i)])});
+      result["heat"].push_back({answered.index().object(i).id,
+                                rounded_json(answer.relevance[static_cast<Eigen::Index>(i)])});
   }
   return result;
 }

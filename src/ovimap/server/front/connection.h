@@ -93,9 +93,9 @@ class Connection : public std::enable_shared_from_this<Connection> {
   std::uint64_t body_left_ = 0, piece_left_ = 0;
 
   HttpReply reply_;
-  std::string out_;                ///< head, or piece of a stream
-  std::string_view body_out_;      ///< what is left of the body
-  bool writing_ = false;           ///< ... a piece of a stream
+  std::string out_;            ///< head, or piece of a stream
+  std::string_view body_out_;  ///< what is left of the body
+  bool writing_ = false;       ///< ... a piece of a stream
   /// The stream's sign is on its way. Who gives the sign must hold no more of a connection.
   const std::shared_ptr<std::atomic<bool>> woken_ = std::make_shared<std::atomic<bool>>(false);
 };

@@ -226,8 +226,7 @@ TEST_F(HttpClientsTest, EndlessHeadsAreRefused) {
 }
 
 TEST_F(HttpClientsTest, OldClientsAreAnsweredOnce) {
-  const std::string all =
-      answers("GET /api/map HTTP/1.0\r\nHost: localhost\r\n\r\n" + kLast);
+  const std::string all = answers("GET /api/map HTTP/1.0\r\nHost: localhost\r\n\r\n" + kLast);
   EXPECT_EQ(count_of("HTTP/1.1 200 OK", all), 1u);
   EXPECT_NE(all.find("Connection: close"), std::string::npos);
 }
@@ -242,9 +241,10 @@ TEST_F(HttpClientsTest, ManySlowClientsLockNobodyOut) {
   for (int i = 2; i < 150; ++i) {
     const std::string from = "127.0.0." + std::to_string(i);
     for (int k = 0; k < 2; ++k) slow.push_back(saying("GET /api/map HT", from));
-    slow.push_back(saying("POST /api/query HTTP/1.1\r\nHost: localhost\r\n"
-                          "Content-Type: application/json\r\nContent-Length: 50\r\n\r\n{",
-                          from));
+    slow.push_back(
+        saying("POST /api/query HTTP/1.1\r\nHost: localhost\r\n"
+               "Content-Type: application/json\r\nContent-Length: 50\r\n\r\n{",
+               from));
     if (i % 10 == 0) expect_alive();
   }
   expect_alive();

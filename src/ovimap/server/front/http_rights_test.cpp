@@ -12,8 +12,7 @@ TEST_F(HttpServerTest, KeepsOtherPagesOut) {
   EXPECT_EQ(client.get("/api/map", {{"Origin", "http://evil.example"}})->status, 403);
   const auto reply = client.get("/api/map");
   EXPECT_EQ(reply->field("access-control-allow-origin"), "");
-  EXPECT_NE(reply->field("content-security-policy").find("script-src 'self'"),
-            std::string::npos);
+  EXPECT_NE(reply->field("content-security-policy").find("script-src 'self'"), std::string::npos);
 }
 
 TEST_F(HttpServerTest, DemandsTheToken) {

@@ -60,10 +60,14 @@ struct HttpServer::Parts : ConnectionHost {
   }
   WorkerPool& pool_of(RouteCost cost) {
     switch (cost) {
-      case RouteCost::kLittle: return little;
-      case RouteCost::kLarge: return large;
-      case RouteCost::kWork: return much;
-      case RouteCost::kFrame: break;
+      case RouteCost::kLittle:
+        return little;
+      case RouteCost::kLarge:
+        return large;
+      case RouteCost::kWork:
+        return much;
+      case RouteCost::kFrame:
+        break;
     }
     return frames;
   }

@@ -14,16 +14,16 @@
 namespace ovimap {
 
 struct ServerConfig {
-  std::string host = "127.0.0.1";  ///< address to bind
-  int port = 8080;                 ///< 0: any free one
-  std::string token;               ///< who does not show it is refused; empty: nobody is asked
+  std::string host = "127.0.0.1";       ///< address to bind
+  int port = 8080;                      ///< 0: any free one
+  std::string token;                    ///< who does not show it is refused; empty: nobody is asked
   std::vector<std::string> host_names;  ///< by which this machine is called beside its own ones
   std::filesystem::path tls_certificate, tls_key;  ///< PEM; empty: nothing is encrypted
-  std::filesystem::path viewer;    ///< folder of the web page; empty: none
+  std::filesystem::path viewer;                    ///< folder of the web page; empty: none
 
   // Half as many where they are encrypted: an unfinished handshake takes 130 kB.
-  int max_connections = 512;         ///< open at once; one that does little goes for a new one
-  int max_connections_of_one = 256;  ///< of these, from one address
+  int max_connections = 512;           ///< open at once; one that does little goes for a new one
+  int max_connections_of_one = 256;    ///< of these, from one address
   std::size_t max_event_streams = 64;  ///< of these connections
   std::size_t max_event_streams_of_one = 32;
   std::size_t max_standing_queries = 4000;  ///< of all clients that watch for something
@@ -34,10 +34,10 @@ struct ServerConfig {
   double request_burst = 2000;             ///< ... and at once: a large map's chunks
   double work_per_second = 10;             ///< queries, corrections, exports, which cost the most
   double work_burst = 40;
-  FrameSourceConfig frames;  ///< limits of the depth in pushed frames
+  FrameSourceConfig frames;   ///< limits of the depth in pushed frames
   bool moves_frames = false;  ///< whether their poses can be corrected: the run keeps its frames
-  int patience_s = 5;        ///< for a whole head, and for each piece of a body, read or written
-  int idle_s = 5;            ///< that a connection rests between two requests
+  int patience_s = 5;         ///< for a whole head, and for each piece of a body, read or written
+  int idle_s = 5;             ///< that a connection rests between two requests
 
   bool encrypted() const { return !tls_certificate.empty(); }
 };

@@ -38,7 +38,7 @@ class HttpServerTest : public MapFolder {
   }
 
   nlohmann::json post(const std::string& path, const std::string& body, int status,
-            const std::string& type = "application/json") {
+                      const std::string& type = "application/json") {
     const auto reply = running_->client().post(path, body, type);
     EXPECT_TRUE(reply) << path;
     if (!reply) return {};

@@ -45,7 +45,8 @@ TEST_F(HttpServerTest, DescribesTheMap) {
 TEST_F(HttpServerTest, SaysWhereToLookNext) {
   MapDocument document = random_document(40, 3);
   SeenFree::Regions looked_through;
-  looked_through[pack_index({30, 0, 0})].fill({5, 0});  // far from any surface: its faces are frontiers
+  looked_through[pack_index({30, 0, 0})].fill(
+      {5, 0});  // far from any surface: its faces are frontiers
   document.seen_free.restore(looked_through);
   save_map(map_, document);
   serve();
@@ -245,7 +246,8 @@ TEST_F(HttpServerTest, AMapThatWasReplacedUnderneathIsLeftAlone) {
   const std::filesystem::path other = root_ / "other.ovimap";
   save_map(other, random_document(41, 3));
   std::filesystem::rename(other, map_);
-  const auto refused = post("/api/corrections", R"({"kind":"rename","instance":1,"name":"mug"})", 409);
+  const auto refused =
+      post("/api/corrections", R"({"kind":"rename","instance":1,"name":"mug"})", 409);
   EXPECT_NE(refused["error"].get<std::string>().find("replaced by another map"), std::string::npos);
   post("/api/approach", R"({"instance":1})", 409);
   get("/api/rooms", 409);
@@ -307,8 +309,7 @@ TEST_F(HttpServerTest, SavesTheTripAndBytes) {
   auto client = running_->client();
   const auto first = client.get("/api/cameras");
   ASSERT_TRUE(first);
-  const auto again =
-      client.get("/api/cameras", {{"If-None-Match", first->field("etag")}});
+  const auto again = client.get("/api/cameras", {{"If-None-Match", first->field("etag")}});
   ASSERT_TRUE(again);
   EXPECT_EQ(again->status, 304);
   EXPECT_TRUE(again->body.empty());

@@ -132,8 +132,7 @@ std::optional<HttpReply> RequestDesk::shortage(const HttpRequest& head, const Ro
   // A camera's frames are held back by the queue that they go into.
   const bool frame = route.cost == RouteCost::kFrame && frames_.takes_frames();
   const bool reads = route.cost == RouteCost::kLittle || route.cost == RouteCost::kLarge;
-  if (!frame && !reads && !work_.admits(client))
-    return too_many("queries or corrections");
+  if (!frame && !reads && !work_.admits(client)) return too_many("queries or corrections");
   place = (frame ? frame_bytes_ : body_bytes_).take(client, head.content_length.value_or(0));
   if (!place) return busy("too many bodies are on their way; send this one again");
   return frame ? frames_.early_refusal(head) : std::nullopt;

@@ -115,9 +115,8 @@ bool AccessRule::knows_token(const HttpRequest& request) const {
 bool AccessRule::is_called_rightly(const HttpRequest& request) const {
   const std::string host(host_of(request.header("host")));
   const auto is_host = [&](const std::string& name) { return same_name(host, name); };
-  return is_loopback(host) ||
-         (!host.empty() &&
-          std::any_of(config_.host_names.begin(), config_.host_names.end(), is_host));
+  return is_loopback(host) || (!host.empty() && std::any_of(config_.host_names.begin(),
+                                                            config_.host_names.end(), is_host));
 }
 
 std::optional<HttpReply> AccessRule::refusal(const HttpRequest& request) const {

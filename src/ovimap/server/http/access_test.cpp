@@ -35,11 +35,26 @@ TEST(AccessRuleTest, WithoutTokenOnlyThisMachineIsAnswered) {
 
 TEST(AccessRuleTest, NamesThatOnlyLookLocalAreRefused) {
   const AccessRule open({.token = "", .host_names = {"map.example"}});
-  for (const char* host :
-       {"127.0.0.1.rebind.example", "127.0.0.1.rebind.example:80", "[::1].evil", "[::1]evil:80",
-        "127.0.0.1@evil.example", "localhost.evil.example", "127.evil.example", "127.1", "[::1",
-        "::1", "[127.0.0.1]", "localhost:", "localhost:80x", "localhost:80:80", "localhost:123456",
-        " localhost", "", "0.0.0.0", "xmap.example", "map.example.evil"})
+  for (const char* host : {"127.0.0.1.rebind.example",
+                           "127.0.0.1.rebind.example:80",
+                           "[::1].evil",
+                           "[::1]evil:80",
+                           "127.0.0.1@evil.example",
+                           "localhost.evil.example",
+                           "127.evil.example",
+                           "127.1",
+                           "[::1",
+                           "::1",
+                           "[127.0.0.1]",
+                           "localhost:",
+                           "localhost:80x",
+                           "localhost:80:80",
+                           "localhost:123456",
+                           " localhost",
+                           "",
+                           "0.0.0.0",
+                           "xmap.example",
+                           "map.example.evil"})
     EXPECT_EQ(refused(open, request_of({{"host", host}})), 403) << host;
   for (const char* host : {"LocalHost", "127.9.8.7:1", "[::1]", "[0:0:0:0:0:0:0:1]:80",
                            "map.example", "MAP.example:8080"})
@@ -110,9 +125,8 @@ TEST(AccessRuleTest, TokensAreLongAndNew) {
 TEST(AccessRuleTest, KnowsLoopback) {
   for (const char* host : {"127.0.0.1", "localhost", "LOCALHOST", "::1", "[::1]", "127.1.2.3"})
     EXPECT_TRUE(is_loopback(host)) << host;
-  for (const char* host :
-       {"0.0.0.0", "::", "192.168.0.1", "", "localhost.example", "127.evil.example", "127.",
-        "127.1", "[::1", "[127.0.0.1]", "::1.evil"})
+  for (const char* host : {"0.0.0.0", "::", "192.168.0.1", "", "localhost.example",
+                           "127.evil.example", "127.", "127.1", "[::1", "[127.0.0.1]", "::1.evil"})
     EXPECT_FALSE(is_loopback(host)) << host;
 }
 

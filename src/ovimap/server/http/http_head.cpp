@@ -105,8 +105,7 @@ std::variant<HttpRequest, HttpReply> request_of(const Fields& fields) {
   if (auto refused = ambiguity(fields)) return *refused;
   HttpRequest request;
   request.method = view(fields.method_string());
-  if (!fields.target().starts_with('/'))
-    return ending(400, "the address must begin with a slash");
+  if (!fields.target().starts_with('/')) return ending(400, "the address must begin with a slash");
   read_target(view(fields.target()), request);
   for (const auto& field : fields)
     request.headers.try_emplace(lower_case(view(field.name_string())), view(field.value()));

@@ -13,8 +13,8 @@ namespace ovimap {
 // Heads of requests and replies as bytes (RFC 9112).
 
 struct HeadLimits {
-  std::size_t bytes = 16 << 10;       ///< of the whole head, its empty line included
-  std::size_t line_bytes = 8 << 10;   ///< of the request line
+  std::size_t bytes = 16 << 10;      ///< of the whole head, its empty line included
+  std::size_t line_bytes = 8 << 10;  ///< of the request line
   std::size_t headers = 100;
 };
 

@@ -116,8 +116,7 @@ asio::ssl::context tls_of(const IoConfig& config) {
 
 struct IoLoop::Sockets {
   explicit Sockets(const IoConfig& config) {
-    if (!config.certificate.empty())
-      tls = std::make_unique<asio::ssl::context>(tls_of(config));
+    if (!config.certificate.empty()) tls = std::make_unique<asio::ssl::context>(tls_of(config));
     listen(config);
   }
 

@@ -13,9 +13,10 @@
 namespace ovimap {
 
 struct HttpRequest {
-  std::string method, path;                    ///< path: decoded, without the query string
-  std::map<std::string, std::string> query;    ///< decoded; of a name that comes again, the first
-  std::multimap<std::string, std::string> parameters;  ///< ... all of them, those of a name in order
+  std::string method, path;                  ///< path: decoded, without the query string
+  std::map<std::string, std::string> query;  ///< decoded; of a name that comes again, the first
+  std::multimap<std::string, std::string>
+      parameters;                              ///< ... all of them, those of a name in order
   std::map<std::string, std::string> headers;  ///< names in lower case
   std::string body, remote_address;
   std::vector<std::string> segments;  ///< what stands in the path for {...} of the route

@@ -52,8 +52,8 @@ std::optional<Value> field(const nlohmann::json& body, const char* name) {
   return value.get<Value>();
 }
 
-/// Likewise a list, of texts (at most so many, none where the field is missing) or of whole numbers (at
-/// least one).
+/// Likewise a list, of texts (at most so many, none where the field is missing) or of whole numbers
+/// (at least one).
 std::vector<std::string> texts_field(const nlohmann::json& body, const char* name,
                                      std::size_t most = 100);
 template <class Number>

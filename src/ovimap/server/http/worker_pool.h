@@ -13,8 +13,8 @@
 
 namespace ovimap {
 
-/// A few threads that do what must not hold up the sockets. Clients take turns, a job a turn, so that
-/// nobody waits for more than one job of each other client. Thread-safe.
+/// A few threads that do what must not hold up the sockets. Clients take turns, a job a turn, so
+/// that nobody waits for more than one job of each other client. Thread-safe.
 class WorkerPool {
  public:
   WorkerPool(int threads, std::size_t most_waiting);

@@ -153,9 +153,9 @@ void LiveFeed::hand_over_surface(Mapper& mapper) {
     if (patch == nullptr && !shown_[slot]) continue;
     shown_[slot] = patch != nullptr;
     const VoxelMap& map = mapper.map();
-    patches.push_back({map.block_index(slot), 0,
-                       patch ? std::make_shared<Mesh>(patch->mesh) : nullptr,
-                       patch ? error_byte(surface_error_m(map, map.block(slot))) : std::uint8_t{0}});
+    patches.push_back(
+        {map.block_index(slot), 0, patch ? std::make_shared<Mesh>(patch->mesh) : nullptr,
+         patch ? error_byte(surface_error_m(map, map.block(slot))) : std::uint8_t{0}});
     if (patch) vertices += patch->mesh.vertices.size();
   }
   allowance_ -= static_cast<double>(vertices);

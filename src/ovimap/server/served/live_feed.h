@@ -40,8 +40,8 @@ class LiveFeed {
   /// Call after every frame and every change of labels, on the fusing thread.
   void after_frame(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
                    const PinholeCamera& depth_camera);
-  /// Call with what the tracker made of each frame, on the fusing thread: clients hear when the camera is
-  /// lost and from where it can be found again, and when it is found.
+  /// Call with what the tracker made of each frame, on the fusing thread: clients hear when the
+  /// camera is lost and from where it can be found again, and when it is found.
   void after_tracking(const TrackedFrame& frame);
 
  private:

@@ -54,7 +54,8 @@ class LiveFeedTest : public MapFolder {
   std::size_t objects() const { return map_->snapshot()->record->instances.size(); }
   MapDocument end() {
     feed_.reset();
-    MapDocument document = make_document(std::move(*mapper_), sequence_, MapHeader{"desk", "", {}, {}});
+    MapDocument document =
+        make_document(std::move(*mapper_), sequence_, MapHeader{"desk", "", {}, {}});
     document.edits = map_->close_log();
     save_map(path_, document);
     return document;

@@ -46,7 +46,7 @@ struct MapSnapshot {
   std::shared_ptr<const ObjectGuesses> guesses;  ///< null: likewise
   std::vector<ObjectName> names;                 ///< by position; empty: not known
   SearchState search = SearchState::kPreparing;
-  std::string why_no_search;  ///< a sentence
+  std::string why_no_search;       ///< a sentence
   bool waits_for_objects = false;  ///< it cannot be searched because none has an embedding yet
 
   const SearchIndex& index() const { return objects->index; }

@@ -19,8 +19,8 @@ namespace ovimap {
 
 namespace {
 
-/// The voxels of a map file, read when they are needed: where an object was taken apart. Without a path
-/// none are: parts of what was taken apart are measured on the surface.
+/// The voxels of a map file, read when they are needed: where an object was taken apart. Without a
+/// path none are: parts of what was taken apart are measured on the surface.
 VoxelSource voxels_of(const std::filesystem::path& path, std::optional<VoxelMap>& place) {
   return [path, &place]() -> const VoxelMap& {
     if (!place) place = path.empty() ? VoxelMap() : std::move(load_map(path).map);
@@ -110,7 +110,8 @@ MapRecord ServedMap::corrected() const {
   MapRecord record = found_->record;
   record.edits = log_;
   std::optional<VoxelMap> place;
-  apply_edits(record, found_->forest, voxels_of(found_->live ? std::filesystem::path() : path_, place));
+  apply_edits(record, found_->forest,
+              voxels_of(found_->live ? std::filesystem::path() : path_, place));
   return record;
 }
 
@@ -228,8 +229,8 @@ void ServedMap::show(const Teaching& teaching) {
   teaching_ = teaching;
 }
 
-/// What other maps taught by now. A file that cannot be read takes nothing from the map. `changing_` is
-/// held.
+/// What other maps taught by now. A file that cannot be read takes nothing from the map.
+/// `changing_` is held.
 void ServedMap::learn_names() {
   if (config_.taught.empty() || !encoder_) return;
   Teaching now;
@@ -242,8 +243,8 @@ void ServedMap::learn_names() {
   show(now);
 }
 
-/// What people named in this map is an example for others. A correction that teaches nothing stands.
-/// `changing_` is held.
+/// What people named in this map is an example for others. A correction that teaches nothing
+/// stands. `changing_` is held.
 void ServedMap::teach_names() {
   if (config_.taught.empty()) return;
   Teaching now = teaching();

@@ -42,14 +42,16 @@ class SearchUnavailable : public Error {
 struct MapQuestion {
   Query query;                     ///< what to look for in words
   std::optional<InstanceId> like;  ///< instead: what looks like this object
-  std::optional<HistoryPhrase> past = {};  ///< instead of the query's text: what is asked of the past
+  std::optional<HistoryPhrase> past =
+      {};  ///< instead of the query's text: what is asked of the past
 };
 
 /// An answer, and the state of the map that it speaks of.
 struct MapAnswer {
   QueryAnswer answer;
   std::shared_ptr<const MapSnapshot> map;
-  std::shared_ptr<const HistorySearch> past = {};  ///< whose objects it speaks of; null: those of `map`
+  std::shared_ptr<const HistorySearch> past =
+      {};  ///< whose objects it speaks of; null: those of `map`
 
   const SearchIndex& index() const { return past ? past->search.index : map->index(); }
 };
@@ -105,8 +107,8 @@ class ServedMap {
   CameraTracking tracking() const;
   Teaching teaching() const;
 
-  /// What a text asks of the past, or it and times that history_of_question takes; nothing: it asks of
-  /// the present. Throws Error for what is no query and no time.
+  /// What a text asks of the past, or it and times that history_of_question takes; nothing: it asks
+  /// of the present. Throws Error for what is no query and no time.
   std::optional<HistoryPhrase> past_of(const std::string& text, const std::string& at,
                                        const std::string& since) const;
 
@@ -114,8 +116,8 @@ class ServedMap {
   /// this map cannot be searched, MomentUnknown for times that it knows nothing of.
   MapAnswer ask(const MapQuestion& question) const;
 
-  /// What each object clearly is, those that are gone included; empty where search is not ready. Kept
-  /// until the map changes.
+  /// What each object clearly is, those that are gone included; empty where search is not ready.
+  /// Kept until the map changes.
   WordsOfObjects words_with_gone(const MapSnapshot& now) const;
 
   /// Where somebody who scans should look next, of a map that is being made too.
@@ -181,8 +183,8 @@ class ServedMap {
   mutable std::shared_ptr<const StandingSpace> standing_;
   mutable std::size_t standing_edits_ = 0;  ///< how many corrections it has
 
-  mutable std::mutex words_mutex_;  ///< guards what follows; held while they are found
-  mutable WordsOfObjects words_;    ///< of the objects that are and were
+  mutable std::mutex words_mutex_;           ///< guards what follows; held while they are found
+  mutable WordsOfObjects words_;             ///< of the objects that are and were
   mutable std::uint64_t words_version_ = 0;  ///< of the snapshot that they speak of
   std::thread preparation_;
 };

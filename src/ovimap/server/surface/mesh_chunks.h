@@ -42,7 +42,8 @@ struct SurfacePatch {
   BlockIndex block = BlockIndex::Zero();
   std::uint64_t version = 0;  ///< of the update that made it
   std::shared_ptr<const Mesh> mesh;
-  std::uint8_t error = 0;  ///< of its block, error_byte (map/surface/surface_precision.h); 0: unknown
+  std::uint8_t error =
+      0;  ///< of its block, error_byte (map/surface/surface_precision.h); 0: unknown
 };
 
 struct MeshChunk {

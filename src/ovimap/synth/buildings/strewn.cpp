@@ -19,7 +19,7 @@ constexpr float kSheet_m = 0.016f;      // thinner things may half cover each ot
 constexpr float kCarriedShare = 0.75f;  // of a thing's extent that what carries it must hold
 constexpr float kHighest_m = 0.22f;     // of a stack
 constexpr float kTurned_rad = 0.25f;    // most things lie about square to their table
-constexpr float kOpenDeck_m = 1.f;  // with more space above it a thing may lie at any angle
+constexpr float kOpenDeck_m = 1.f;      // with more space above it a thing may lie at any angle
 
 OrientedBox world_deck(const Carrier& carrier, const Deck& deck) {
   OrientedBox box = carrier.box;

@@ -15,11 +15,11 @@ class ConfigFields;
 /// What happens between two visits to a room.
 struct VisitsConfig {
   int moved = 3, removed = 1, added = 1;  ///< things, as far as the room has such
-  float least_height_m = 0.06f;    ///< lower things, as papers and rugs, stay where they are
-  float least_side_m = 0.06f;      ///< likewise, of the longer side of their footprint
-  float largest_footprint_m2 = 1;  ///< larger pieces stay where they are
-  float tallest_m = 1.5f;          ///< taller ones likewise, as doors and cupboards
-  float least_way_m = 0.3f;        ///< a thing that moves goes at least so far
+  float least_height_m = 0.06f;           ///< lower things, as papers and rugs, stay where they are
+  float least_side_m = 0.06f;             ///< likewise, of the longer side of their footprint
+  float largest_footprint_m2 = 1;         ///< larger pieces stay where they are
+  float tallest_m = 1.5f;                 ///< taller ones likewise, as doors and cupboards
+  float least_way_m = 0.3f;               ///< a thing that moves goes at least so far
 };
 void list_fields(VisitsConfig& config, ConfigFields& fields);
 
@@ -28,8 +28,8 @@ enum class RoomChangeKind { kMoved, kRemoved, kAdded };
 /// What became of one thing since the visit before.
 struct RoomChange {
   RoomChangeKind kind = RoomChangeKind::kMoved;
-  std::uint16_t object = 0;                    ///< RoomObject::id, the same in all visits
-  Eigen::AlignedBox3f from, to;                ///< where it was, where it is; empty: nowhere
+  std::uint16_t object = 0;              ///< RoomObject::id, the same in all visits
+  Eigen::AlignedBox3f from, to;          ///< where it was, where it is; empty: nowhere
   Pose new_from_old = Pose::Identity();  ///< of a thing that moved, in the world frame
 };
 

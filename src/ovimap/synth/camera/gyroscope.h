@@ -16,7 +16,7 @@ class ConfigFields;
 /// BMI055, which depth cameras have, calls typical: 0.014 degrees a second per root hertz, and 1
 /// degree a second at rest.
 struct GyroscopeConfig {
-  float rate_hz = 0;  ///< samples a second; 0: there is none
+  float rate_hz = 0;                   ///< samples a second; 0: there is none
   float noise_rad_s_rthz = 0.000244f;  ///< density of white noise, radians a second per root hertz
   float offset_rad_s = 0.01745f;  ///< standard deviation of what it shows at rest, about each axis
 };

@@ -112,8 +112,8 @@ float measured(const RenderedView& view, const SensorNoiseConfig& config,
   if (grazing >= answers) return 0;
   const float offset = depth - config.sigma_nearest_m;
   const float sigma = config.sigma_base_m + config.sigma_growth_per_m * offset * offset;
-  const float disparity_px = config.focal_baseline_px_m / (depth + sigma * draws.depth) +
-                             errors.lens_bias_px(x, y);
+  const float disparity_px =
+      config.focal_baseline_px_m / (depth + sigma * draws.depth) + errors.lens_bias_px(x, y);
   const float steps = std::round(disparity_px / config.disparity_step_px);
   const float answer = config.focal_baseline_px_m / (steps * config.disparity_step_px);
   return answer >= config.min_depth_m && answer <= config.max_depth_m ? answer : 0;

@@ -25,8 +25,8 @@ struct SensorNoiseConfig {
   /// Disparities are matched over windows of this width, so that neighbours err alike: depth noise
   /// and sideways jitter change as smoothly. 0: each pixel errs by itself.
   float correlation_px = 0.f;
-  /// What a lens that nobody calibrated adds to disparities: a smooth field, the same in each frame,
-  /// of this size. 0.1 is 2 cm at 3 m (z^2 / focal_baseline_px_m).
+  /// What a lens that nobody calibrated adds to disparities: a smooth field, the same in each
+  /// frame, of this size. 0.1 is 2 cm at 3 m (z^2 / focal_baseline_px_m).
   float lens_bias_px = 0.f;
   float edge_jump = 0.03f;         ///< of the depth, between neighbours: an edge
   float edge_loss = 0.6f;          ///< share of edge pixels without an answer

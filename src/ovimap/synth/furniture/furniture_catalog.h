@@ -46,8 +46,9 @@ class FurnitureCatalog {
   std::vector<FurnitureEntry> entries_;
 };
 
-/// The entries described by a PluginFurnitureCatalog.properties text (ISO 8859-1, other letters escaped as
-/// Java does); entries without a model or a size are left out. Strings come back as UTF-8.
+/// The entries described by a PluginFurnitureCatalog.properties text (ISO 8859-1, other letters
+/// escaped as Java does); entries without a model or a size are left out. Strings come back as
+/// UTF-8.
 std::vector<FurnitureEntry> parse_furniture_properties(const std::string& text,
                                                        const std::filesystem::path& archive);
 

@@ -37,8 +37,9 @@ std::optional<Bytes> ZipArchive::read(const std::string& name) const {
   unz_file_info64 info{};
   unzGetCurrentFileInfo64(handle_->file, &info, nullptr, 0, nullptr, 0, nullptr, 0);
   // An entry cannot hold more than its file, unpacked, whatever it claims.
-  const bool plausible = info.uncompressed_size <= kLargestEntry &&
-                         deflate_can_hold(std::filesystem::file_size(path_), info.uncompressed_size);
+  const bool plausible =
+      info.uncompressed_size <= kLargestEntry &&
+      deflate_can_hold(std::filesystem::file_size(path_), info.uncompressed_size);
   Bytes bytes(plausible ? info.uncompressed_size : 0);
   bool intact = plausible && unzOpenCurrentFile(handle_->file) == UNZ_OK;
   if (intact) {

@@ -65,7 +65,8 @@ Weave weave(Split split, std::uint64_t seed) {
   const LatticeNoise noise(random.bits());
   const std::size_t style = random.index(4);  // half of all cloths are plain
   static constexpr const char* kTunedStyles[] = {"striped cloth", "dotted cloth", "cloth", "cloth"};
-  static constexpr const char* kUnseenStyles[] = {"checked cloth", "zigzag cloth", "cloth", "cloth"};
+  static constexpr const char* kUnseenStyles[] = {"checked cloth", "zigzag cloth", "cloth",
+                                                  "cloth"};
   const auto paint = [=](float x, float y) {
     const float thread = 0.93f + 0.1f * noise.at(x * 128, y * 128, 128, 128);
     bool figure = false;
@@ -84,15 +85,14 @@ Weave weave(Split split, std::uint64_t seed) {
 }  // namespace
 
 std::uint32_t Craft::wood(TexturedMesh& mesh) {
-  return add_material(mesh,
-                      textured(painted(kMaterial_px, kMaterial_px, grain(split, random.bits())), 0,
-                               "wood"));
+  return add_material(
+      mesh, textured(painted(kMaterial_px, kMaterial_px, grain(split, random.bits())), 0, "wood"));
 }
 
 std::uint32_t Craft::cloth(TexturedMesh& mesh) {
   const Weave woven = weave(split, random.bits());
-  return add_material(mesh, textured(painted(kMaterial_px, kMaterial_px, woven.paint), 0,
-                                     woven.substance));
+  return add_material(
+      mesh, textured(painted(kMaterial_px, kMaterial_px, woven.paint), 0, woven.substance));
 }
 
 std::uint32_t Craft::plain(TexturedMesh& mesh, const PaintColor& srgb, float emission,
@@ -108,19 +108,20 @@ std::uint32_t Craft::plain(TexturedMesh& mesh, const PaintColor& srgb, float emi
 
 std::uint32_t Craft::lacquer(TexturedMesh& mesh) {
   const PaintColor tint{between(-1, 1), between(-1, 1), between(-1, 1)};
-  return plain(mesh, PaintColor::Constant(one_in(4) ? between(0.25f, 0.6f) : between(0.8f, 0.95f)) +
-                         0.06f * tint, 0, "lacquer");
+  return plain(
+      mesh,
+      PaintColor::Constant(one_in(4) ? between(0.25f, 0.6f) : between(0.8f, 0.95f)) + 0.06f * tint,
+      0, "lacquer");
 }
 
 std::uint32_t Craft::metal(TexturedMesh& mesh) {
-  return plain(mesh, PaintColor::Constant(one_in(2) ? between(0.08f, 0.2f) : between(0.5f, 0.8f)), 0,
-               "metal");
+  return plain(mesh, PaintColor::Constant(one_in(2) ? between(0.08f, 0.2f) : between(0.5f, 0.8f)),
+               0, "metal");
 }
 
 std::uint32_t Craft::plastic(TexturedMesh& mesh) {
-  return plain(mesh,
-               PaintColor::Constant(one_in(3) ? between(0.75f, 0.93f) : between(0.06f, 0.3f)), 0,
-               "plastic");
+  return plain(mesh, PaintColor::Constant(one_in(3) ? between(0.75f, 0.93f) : between(0.06f, 0.3f)),
+               0, "plastic");
 }
 
 std::uint32_t Craft::glaze(TexturedMesh& mesh) {
@@ -131,11 +132,15 @@ std::uint32_t Craft::glaze(TexturedMesh& mesh) {
   const std::size_t style = random.index(3);
   const float low = between(0.2f, 0.5f), high = low + between(0.1f, 0.4f);
   const bool speckled = split == Split::kUnseen;
-  return add_material(mesh, textured(painted(128, 128, [=](float x, float y) {
-                        if (style == 0) return body;
-                        if (speckled) return noise.at(x * 40, y * 40, 40, 40) > 0.74f ? mark : body;
-                        return y > low && y < high ? mark : body;
-                      }), 0, "ceramic"));
+  return add_material(
+      mesh, textured(painted(128, 128,
+                             [=](float x, float y) {
+                               if (style == 0) return body;
+                               if (speckled)
+                                 return noise.at(x * 40, y * 40, 40, 40) > 0.74f ? mark : body;
+                               return y > low && y < high ? mark : body;
+                             }),
+                     0, "ceramic"));
 }
 
 std::uint32_t Craft::print(TexturedMesh& mesh, float width_m, float height_m, const Paint& paint,

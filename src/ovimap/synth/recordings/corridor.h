@@ -14,7 +14,7 @@ struct CorridorConfig {
   int frames = 5000;
   float step_m = 0.06f;           ///< forward motion from frame to frame
   int width = 320, height = 240;  ///< pixels
-  bool hung = false;  ///< small boxes hang on the walls as well, some 2.5 a metre
+  bool hung = false;              ///< small boxes hang on the walls as well, some 2.5 a metre
   std::uint32_t seed = 1;
 };
 

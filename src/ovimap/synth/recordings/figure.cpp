@@ -89,12 +89,14 @@ std::vector<Eigen::Vector2f> plan_way(const SynthRoom& room, const FigureConfig&
   Random random(seed, kFigureStream);
   std::vector<Eigen::Vector2f> corners;
   for (int i = 0; i < kCorners; ++i) {
-    const Eigen::Vector2f point(random.uniform(0, room.size_m.x()), random.uniform(0, room.size_m.y()));
+    const Eigen::Vector2f point(random.uniform(0, room.size_m.x()),
+                                random.uniform(0, room.size_m.y()));
     if (const auto free = map.nearest_free(point)) corners.push_back(*free);
   }
   auto way = corners.empty() ? corners : even_loop(map, corners, kWaySpacing_m);
   if (static_cast<float>(way.size()) * kWaySpacing_m < kLeastWay_m)
-    throw Error(concat("room '", room.name, "' has no floor on which a figure could walk; leave "
+    throw Error(concat("room '", room.name,
+                       "' has no floor on which a figure could walk; leave "
                        "--figure away, or give another --room or --seed"));
   return way;
 }
@@ -134,8 +136,7 @@ MovingThing Figure::at(double time_s) const {
   const double place_m = std::fmod(gone_m, along_m_.back());
   const auto after = std::upper_bound(along_m_.begin(), along_m_.end() - 1, place_m);
   const auto next = static_cast<std::size_t>(after - along_m_.begin()), at = next - 1;
-  const auto part =
-      static_cast<float>((place_m - along_m_[at]) / (along_m_[next] - along_m_[at]));
+  const auto part = static_cast<float>((place_m - along_m_[at]) / (along_m_[next] - along_m_[at]));
   const Eigen::Vector2f point = way_[at] + part * (way_[next % way_.size()] - way_[at]);
   const Eigen::Vector2f ahead = way_[(at + 4) % way_.size()] - point;
   const double turns = gone_m / (2 * static_cast<double>(config_.stride_m));

@@ -29,8 +29,8 @@ void list_fields(FigureConfig& config, ConfigFields& fields);
 /// on every machine.
 class Figure {
  public:
-  /// The figure's truth has the id after the room's last, what it carries the next one. Throws Error
-  /// where there is no floor to walk on.
+  /// The figure's truth has the id after the room's last, what it carries the next one. Throws
+  /// Error where there is no floor to walk on.
   Figure(const SynthRoom& room, const FigureConfig& config, const TrajectoryConfig& walk,
          std::uint64_t seed);
 

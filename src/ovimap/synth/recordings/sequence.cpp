@@ -72,8 +72,7 @@ struct SynthSequence::State {
   }
 
   void add_figure() {
-    if (config.figure.enabled)
-      figure.emplace(room, config.figure, config.trajectory, room.seed);
+    if (config.figure.enabled) figure.emplace(room, config.figure, config.trajectory, room.seed);
   }
 
   struct Video {
@@ -198,8 +197,7 @@ std::optional<IdImage> SynthSequence::truth_ids(std::int64_t position) const {
 
 std::vector<TurnRate> SynthSequence::turn_rates() const {
   if (!state_->video) return {};
-  return gyroscope_samples(state_->video->walk, state_->video->config.gyroscope,
-                           state_->room.seed);
+  return gyroscope_samples(state_->video->walk, state_->video->config.gyroscope, state_->room.seed);
 }
 
 std::vector<TruthInstance> SynthSequence::instances() const {

@@ -44,7 +44,7 @@ struct TruthInstance {
   std::string name;
   std::uint32_t class_id = 0;  ///< room_class_id(class_name)
   std::string class_name;
-  std::string room = {};  ///< of a floor plan; else empty
+  std::string room = {};       ///< of a floor plan; else empty
   std::string substance = {};  ///< what most of it is made of; empty: not said
 };
 

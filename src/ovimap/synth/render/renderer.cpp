@@ -86,8 +86,8 @@ struct Renderer::State {
                      bool with_color, const MovingThing& thing) const {
     SurfacePoint point = tracer.trace(camera, pose, u, v, with_color);
     if (thing.tracer == nullptr) return point;
-    SurfacePoint moving = thing.tracer->trace(camera, thing.world_from_thing.inverse() * pose, u, v,
-                                              with_color);
+    SurfacePoint moving =
+        thing.tracer->trace(camera, thing.world_from_thing.inverse() * pose, u, v, with_color);
     if (moving.id == 0 || (point.id != 0 && point.depth <= moving.depth)) return point;
     const Eigen::Isometry3f world_from_thing = thing.world_from_thing.cast<float>();
     moving.position = world_from_thing * moving.position;

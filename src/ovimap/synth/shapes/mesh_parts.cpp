@@ -84,12 +84,12 @@ std::string main_substance(const TexturedMesh& mesh) {
   std::map<std::string, float> areas;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const auto& [a, b, c] = mesh.triangles[i];
-    const Eigen::Vector3f u = mesh.vertices[b] - mesh.vertices[a], v = mesh.vertices[c] - mesh.vertices[a];
+    const Eigen::Vector3f u = mesh.vertices[b] - mesh.vertices[a],
+                          v = mesh.vertices[c] - mesh.vertices[a];
     areas[mesh.materials[mesh.triangle_materials[i]].substance] += u.cross(v).norm();
   }
-  const auto most = std::max_element(areas.begin(), areas.end(), [](const auto& a, const auto& b) {
-    return a.second < b.second;
-  });
+  const auto most = std::max_element(
+      areas.begin(), areas.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   return most == areas.end() ? "" : most->first;
 }
 

@@ -35,8 +35,9 @@ struct Reference {
 Image<float> cast_inverse_depth(const VoxelMap& map, const PinholeCamera& camera,
                                 const Pose& world_from_camera, float max_range_m);
 
-/// Takes depth out of a level where the map (`model`, as cast_inverse_depth gives it) has no surface,
-/// so that only what both have holds the frame in place. Returns the share of its depth that is left.
+/// Takes depth out of a level where the map (`model`, as cast_inverse_depth gives it) has no
+/// surface, so that only what both have holds the frame in place. Returns the share of its depth
+/// that is left.
 double keep_what_map_has(const Image<float>& model, TrackLevel& level);
 
 /// The reference of a frame at a pose. `model`: inverse depth of the map at the pyramid's level 1

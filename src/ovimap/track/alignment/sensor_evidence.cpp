@@ -32,7 +32,7 @@ struct Sums {
 /// Both the frame's point and the surface, which was seen by the same camera, move sideways when
 /// the focal length grows: towards the optical axis of each.
 Row geometric_row(const ReferencePoint& point, const PointResidual& at,
-                       const Pose& reference_from_frame) {
+                  const Pose& reference_from_frame) {
   const Eigen::Vector3d normal = point.normal.cast<double>(), hit = at.hit.cast<double>(),
                         place = point.point.cast<double>();
   const Eigen::Vector3d in_frame = reference_from_frame.inverse() * hit;
@@ -44,15 +44,15 @@ Row geometric_row(const ReferencePoint& point, const PointResidual& at,
   return row;
 }
 
-/// Derivatives of the frame's intensity where a point projects. Colour that comes a frame late shows
-/// the scene from a pose that is `motion_change` farther on.
+/// Derivatives of the frame's intensity where a point projects. Colour that comes a frame late
+/// shows the scene from a pose that is `motion_change` farther on.
 Row photometric_row(const ReferencePoint& point, const PinholeCamera& camera,
                     const Pose& reference_from_frame, const Vector6d& motion_change) {
   const Eigen::Vector3d place = point.point.cast<double>();
   const double inverse = 1 / place.z(), du = static_cast<double>(point.gradient.x() * camera.fx),
                dv = static_cast<double>(point.gradient.y() * camera.fy);
-  const Eigen::Vector3d by_point(
-      du * inverse, dv * inverse, -(du * place.x() + dv * place.y()) * inverse * inverse);
+  const Eigen::Vector3d by_point(du * inverse, dv * inverse,
+                                 -(du * place.x() + dv * place.y()) * inverse * inverse);
   Vector6d motion;
   motion << -by_point, -place.cross(by_point);
   // What the point's own sideways motion does, and the frame's larger picture of it.
@@ -90,12 +90,12 @@ Sums sums_of(const ReferenceLevel& reference, const TrackLevel& frame,
 
 /// Adds what a frame says of one unknown where the pose is whatever fits best.
 void learn(const Sums& sums, int unknown, UnknownEvidence& evidence) {
-  // A little of each direction is known beforehand, so that one that is not seen is no division by 0.
+  // A little of each direction is known beforehand, so that one that is not seen is no division by
+  // 0.
   const Eigen::LDLT<Matrix6d> pose(sums.h.topLeftCorner<6, 6>() + Matrix6d::Identity());
   const Vector6d shared = sums.h.col(unknown).head<6>(), solved = pose.solve(shared);
   const double information = sums.h(unknown, unknown) - shared.dot(solved);
-  if (information > 0)
-    evidence.add(information, sums.b[unknown] - solved.dot(sums.b.head<6>()));
+  if (information > 0) evidence.add(information, sums.b[unknown] - solved.dot(sums.b.head<6>()));
 }
 
 }  // namespace
@@ -123,8 +123,8 @@ void SensorEvidence::add(const ReferenceLevel& reference, const TrackLevel& fram
                          const std::optional<Vector6d>& motion_change,
                          const FrameAlignmentConfig& config) {
   ResidualScale scale;
-  scale = sum_residuals(reference, frame, reference_from_frame, scale, config, false)
-              .next_scale(scale);
+  scale =
+      sum_residuals(reference, frame, reference_from_frame, scale, config, false).next_scale(scale);
   const Sums sums = sums_of(reference, frame, reference_from_frame,
                             motion_change.value_or(Vector6d::Zero()), scale, config);
   learn(sums, kFocal, focal_);

@@ -90,8 +90,7 @@ std::optional<PoseEdge> verified(std::span<const Keyframe> way, const Keyframe& 
   seen.image = place_view(way, later.image.camera, later.world_from_camera);
   std::optional<PoseEdge> edge = verified(seen, later, track);
   if (edge)
-    edge->from_to =
-        place.world_from_camera.inverse() * later.world_from_camera * edge->from_to;
+    edge->from_to = place.world_from_camera.inverse() * later.world_from_camera * edge->from_to;
   return edge;
 }
 

@@ -19,7 +19,7 @@ struct LoopConfig {
   float most_sigmas = 8.f;  ///< loops that the poses of all contradict more are dropped
   // While frames come.
   bool online = true;
-  int agreeing = 2;         ///< loops that agree before the map is corrected
+  int agreeing = 2;          ///< loops that agree before the map is corrected
   float least_voxels = 2.f;  ///< keyframes that moved less are left to the end
   float pause_m = 2.f;       ///< the camera goes so far before the next correction
 };
@@ -32,7 +32,8 @@ struct LoopClosure {
   double furthest_m = 0;  ///< largest move of a keyframe
 };
 
-/// Keyframes as they come, how the camera went from each to the next, and which places it saw again.
+/// Keyframes as they come, how the camera went from each to the next, and which places it saw
+/// again.
 class LoopGraph {
  public:
   LoopGraph(const TrackConfig& track, const LoopConfig& config) : track_(track), config_(config) {}
@@ -40,10 +41,10 @@ class LoopGraph {
   /// Takes those of `keyframes`, which are in the order in which they were taken, that came since
   /// the last time. Finds places that they show again (their codes, or poses that the drift makes
   /// possible), aligns the frames of each pair and believes what a lost frame would have to reach.
-  /// Where no pair does, the frame is held against what the keyframes on the way through the nearest
-  /// place show together (place_view): the camera may come by it at another angle.
-  /// The way to a new keyframe is that of its pose, and stays that when poses are corrected later.
-  /// Returns how many loops are new.
+  /// Where no pair does, the frame is held against what the keyframes on the way through the
+  /// nearest place show together (place_view): the camera may come by it at another angle. The way
+  /// to a new keyframe is that of its pose, and stays that when poses are corrected later. Returns
+  /// how many loops are new.
   std::size_t take(const std::vector<Keyframe>& keyframes);
 
   /// The poses that agree with all of it; the first keyframe stays.

@@ -13,8 +13,8 @@ std::vector<MovedPose> moved_keyframes(const std::vector<Keyframe>& keyframes,
   OVIMAP_ASSERT(keyframes.size() == corrected.size());
   std::vector<MovedPose> moves;
   for (std::size_t i = 0; i < keyframes.size(); ++i)
-    moves.push_back({static_cast<double>(keyframes[i].index), keyframes[i].world_from_camera,
-                     corrected[i]});
+    moves.push_back(
+        {static_cast<double>(keyframes[i].index), keyframes[i].world_from_camera, corrected[i]});
   return moves;
 }
 

@@ -56,7 +56,8 @@ std::vector<Pose> poses_of(const std::vector<Node>& nodes) {
 ceres::Solver::Options solver_options() {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;  // there in every build of Ceres
+  options.sparse_linear_algebra_library_type =
+      ceres::EIGEN_SPARSE;  // there in every build of Ceres
   options.max_num_iterations = 100;
   options.num_threads = 1;  // sums in one order
   options.logging_type = ceres::SILENT;

@@ -19,8 +19,8 @@ struct TrackLevel {
 /// Halved again and again, the finest level first.
 using TrackPyramid = std::vector<TrackLevel>;
 
-inline constexpr int kFinestWidth_px = 320;   ///< at most so wide is the finest level, as a rule
-inline constexpr int kCoarsestWidth_px = 40;  ///< no further level is narrower
+inline constexpr int kFinestWidth_px = 320;      ///< at most so wide is the finest level, as a rule
+inline constexpr int kCoarsestWidth_px = 40;     ///< no further level is narrower
 inline constexpr std::size_t kFewestLevels = 2;  ///< of images of any size
 inline constexpr float kOneSurface = 0.05f;  ///< depths that differ by a smaller share are averaged
 

@@ -17,7 +17,7 @@ struct TrackConfig {
   float min_depth_share = 0.05f;  ///< share of pixels with depth
   float max_step_m = 0.4f;        ///< between frames
   float max_step_rad = 0.6f;
-  bool gyroscope = true;  ///< whether what one says is taken
+  bool gyroscope = true;               ///< whether what one says is taken
   float gyroscope_sigma_rad = 0.005f;  ///< of a gyroscope's turn, per frame
   // When the map's surface is cast anew.
   float reference_overlap = 0.65f;  ///< share of the reference still in sight
@@ -31,8 +31,8 @@ struct TrackConfig {
   float max_range_m = 8.f;  ///< how far the map's surface is cast
   int part_frames = 30;  ///< lost frames on end, with depth, that are mapped by themselves; 0: none
   // When the user is told that the focal length is not the camera's, or a time stamp wrong.
-  float focal_off = 0.05f;     ///< share by which it is off
-  float delay_frames = 0.7f;   ///< between colour and depth, or frames and given poses
+  float focal_off = 0.05f;    ///< share by which it is off
+  float delay_frames = 0.7f;  ///< between colour and depth, or frames and given poses
   float sensor_sigmas = 5.f;  ///< standard errors of either
 };
 void list_fields(TrackConfig& config, ConfigFields& fields);
