@@ -2,13 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 import { api } from './api/client';
 import { listen } from './api/events';
-import type { Box, FrameEvent, Instance, Labels, MapInfo, MeshListing, Question } from './api/types';
+import type { Box, FrameEvent, Instance, MapInfo, MeshListing, Question } from './api/types';
 import { CameraState } from './camera-state';
 import { Commands } from './commands';
 import { Corrections } from './corrections';
 import { GapsView } from './gaps-view';
 import { listenToKeys } from './keyboard';
+import { loadObjects, waitForFrames } from './map-loading';
 import { MapState } from './map-state';
+import { tellWhatPanelsCover } from './panel-cover';
 import { Past } from './past';
 import { RoomsView } from './rooms-view';
 import { Rounds } from './rounds';
@@ -25,12 +27,7 @@ import { Status } from './ui/status';
 import { Toolbar } from './ui/toolbar';
 import { approachText, faultText } from './ui/words';
 
-const FIRST_FRAME_MS = 500; // between looks whether there is one
 const LIVE_PAUSE_MS = 1500; // between two looks at what objects there are by now
-
-function loadObjects(): Promise<[MapInfo, Instance[], Labels]> {
-  return Promise.all([api.map(), api.instances(), api.labels()]);
-}
 
 /** Ties the page together: what the server tells, what is shown, what the person does. */
 export class App {
@@ -135,7 +132,7 @@ export class App {
   /** Loads the map and shows it; faults are shown, never thrown. */
   async start(): Promise<void> {
     try {
-      await this.waitForFrames();
+      await waitForFrames(this.status);
       const coarse = SurfaceLoader.coarse();
       const [info, instances, labels] = await loadObjects();
       this.takeMap(info, instances);
@@ -147,15 +144,6 @@ export class App {
       this.status.setBanner(faultText(error));
       this.status.progress(1);
     }
-  }
-
-  /** A map that is being made shows something from its first frame on. */
-  private async waitForFrames(): Promise<void> {
-    for (let info = await api.map(); info.live && info.frames === 0; info = await api.map()) {
-      this.status.setBanner('Waiting for the first frames …');
-      await new Promise((resolve) => setTimeout(resolve, FIRST_FRAME_MS));
-    }
-    this.status.setBanner('');
   }
 
   // ---------------------------------------------------------------------------- what the map is
@@ -202,18 +190,7 @@ export class App {
     this.rooms.view = this.gaps.view = this.view;
     this.camera.view = this.view;
     this.canvas.after(this.view.measure.label);
-    const observer = new ResizeObserver(() => this.coverView());
-    for (const panel of [this.search.element, this.card.element]) observer.observe(panel);
-    this.coverView();
-  }
-
-  /** Panels lie at the left, on phones at the bottom, where one of them is shown at a time. */
-  private coverView(): void {
-    const search = this.search.element.getBoundingClientRect();
-    const card = this.card.element.getBoundingClientRect();
-    const phone = window.matchMedia('(max-width: 760px)').matches;
-    const bottom = Math.max(search.height, card.height);
-    this.view?.setCovered(phone ? { left: 0, bottom } : { left: search.right, bottom: 0 });
+    tellWhatPanelsCover(this.view, this.search.element, this.card.element);
   }
 
   private async loadSurface(coarse: MeshListing): Promise<SurfaceLoader | null> {
