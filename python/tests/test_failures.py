@@ -128,7 +128,7 @@ def test_messages_name_arguments_not_the_programs_options(room, tmp_path):
     with pytest.raises(ovimap.Error, match="settings={'allow_still_camera': True}") as told:
         mapper.save(tmp_path / "a.ovimap")
     assert "--" not in str(told.value)
-    with pytest.raises(ovimap.Error, match="or name its folder with model_dirs or OVIMAP_MODELS") as told:
+    with pytest.raises(ovimap.Error, match="and model_dirs or OVIMAP_MODELS name other folders") as told:
         ovimap.make_encoder("nothing-such")
     assert "--" not in str(told.value)
 
