@@ -296,8 +296,8 @@ set_up_reader() {
 
 VIEWER="$ROOT/viewer"
 
-# Not "npm ci": npm 11 refuses a lock file that lacks the optional packages of other platforms.
-install_viewer_packages() (cd "$VIEWER" && npm install --silent --ignore-scripts --no-audit --no-fund)
+# Not "npm ci": npm 11 refuses a lock file that lacks the optional packages of other platforms; it would add them without --no-save.
+install_viewer_packages() (cd "$VIEWER" && npm install --no-save --silent --ignore-scripts --no-audit --no-fund)
 
 set_up_viewer() {
   cmp -s "$VIEWER/package-lock.json" "$VIEWER/node_modules/.installed-lock.json" && return
