@@ -13,7 +13,7 @@ OUT="$ROOT/build/packages/out"
 bare_open "$SUITE"
 bare_checkout
 bare_ccache "$SUITE"
-bare_timed "$SUITE, make and git" "apt-get update -q; apt-get install -y -q --no-install-recommends make git"
+bare_make_and_git "$SUITE, make and git"
 bare_timed "$SUITE, make packages" "make -C ovimap packages"
 mkdir -p "$OUT"
 cp "$ROOT_FOLDER"/root/ovimap/build/packages/out/ovimap_*~"$SUITE"_*.deb "$OUT"

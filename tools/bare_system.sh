@@ -62,6 +62,11 @@ bare_open() {
 # bare_checkout: this commit, as /root/ovimap.
 bare_checkout() { git clone -q "$ROOT" "$ROOT_FOLDER/root/ovimap"; }
 
+# bare_make_and_git TITLE: what anybody needs who has got the checkout.
+bare_make_and_git() {
+  bare_timed "$1" "apt-get update -q; apt-get install -y -q --no-install-recommends make git"
+}
+
 # bare_ccache NAME: objects of earlier trials of that name, so that one that broke off need not begin anew.
 bare_ccache() {
   mkdir -p "$BARE/ccache.$1" "$ROOT_FOLDER/root/.cache/ccache"

@@ -15,7 +15,7 @@ bare_open "$SUITE"
 bare_checkout
 bare_ccache "$SUITE"
 
-bare_timed "$SUITE, make and git" "apt-get update -q; apt-get install -y -q --no-install-recommends make git"
+bare_make_and_git "$SUITE, make and git"
 bare_timed "$SUITE, set-up" "make -C ovimap test-setup"
 bare_timed "$SUITE, build" "cd ovimap; cmake --preset release -DOVIMAP_WERROR=ON; cmake --build --preset release"
 for package in "${COMPILERS[@]}"; do

@@ -20,7 +20,7 @@ LAUNCHER
 chmod +x "$ROOT_FOLDER/opt/timed"
 touch "$ROOT_FOLDER/opt/costs"
 
-bare_timed "make and git" "apt-get update -q; apt-get install -y -q --no-install-recommends make git"
+bare_make_and_git "make and git"
 bare_timed "set-up (download)" "make -C ovimap setup-program"
 bare_timed "build" "export CMAKE_CXX_COMPILER_LAUNCHER=/opt/timed; make -C ovimap build-program"
 bare_timed "demo" "make -C ovimap demo"

@@ -188,6 +188,15 @@ double frames_per_second(const MappingRun& run) {
   return static_cast<double>(run.sequence.frames.size()) / run.sequence.seconds;
 }
 
+void advise_on_lost_camera(const MappingRun& run) {
+  std::fprintf(
+      stderr,
+      "ovimap: the camera was followed in %zu of %zu frames only: its pictures must overlap "
+      "and follow one another closely, some 10 to 30 a second; record slower turns with "
+      "more frames, or give poses (docs/tracking.md)\n",
+      run.tracking->summary.tracked, run.tracking->summary.frames);
+}
+
 }  // namespace
 
 void report_faults(const MappingRun& run) {
@@ -272,15 +281,7 @@ bool mostly_lost(const MappingRun& run) {
 }
 
 void advise_on_objects(const MappingRun& run) {
-  if (mostly_lost(run)) {
-    std::fprintf(
-        stderr,
-        "ovimap: the camera was followed in %zu of %zu frames only: its pictures must overlap "
-        "and follow one another closely, some 10 to 30 a second; record slower turns with "
-        "more frames, or give poses (docs/tracking.md)\n",
-        run.tracking->summary.tracked, run.tracking->summary.frames);
-    return;
-  }
+  if (mostly_lost(run)) return advise_on_lost_camera(run);
   if (!run.document.instances.empty() || masks_all_absent(run)) return;
   std::fprintf(stderr,
                "ovimap: no object was seen often enough to be kept; map more frames, or --set %s=1 "

@@ -27,7 +27,7 @@ double sent_fps(const LiveRunResult& run);
 /// Whether the camera was lost for more frames than it was followed, parts counted.
 bool mostly_lost(const MappingRun& run);
 
-/// On stderr, where the map has no object: why.
+/// On stderr: that the camera was lost for most frames, or else why the map has no object.
 void advise_on_objects(const MappingRun& run);
 
 /// On stderr, where the small default encoder was used: how to get a better one.

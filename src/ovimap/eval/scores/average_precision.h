@@ -18,7 +18,19 @@ struct ScoredOverlaps {
 };
 
 /// IoU thresholds that `AP` averages over, in percent.
-constexpr int kFirstPercent = 50, kLastPercent = 95, kStepPercent = 5;
+constexpr int kFirstPercent = 50, kLastPercent = 95;
+
+/// `AP`: the mean of what `precision_at(percent)` gives for every fifth percent from kFirstPercent
+/// to `last_percent`.
+template <class PrecisionAt>
+double mean_precision(int last_percent, const PrecisionAt& precision_at) {
+  constexpr int kStepPercent = 5;
+  double sum = 0;
+  int thresholds = 0;
+  for (int percent = kFirstPercent; percent <= last_percent; percent += kStepPercent, ++thresholds)
+    sum += precision_at(percent);
+  return sum / thresholds;
+}
 
 struct PrecisionRecall {
   double average_precision = 0, recall = 0;

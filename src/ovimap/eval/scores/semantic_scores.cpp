@@ -129,11 +129,7 @@ std::vector<ScoredOverlaps> of_class(std::span<const ClassedOverlaps> scenes,
 template <class PrecisionAt>
 void fill_precision(ClassScores& score, int last_percent, const PrecisionAt& precision_at) {
   score.ap25 = precision_at(25), score.ap50 = precision_at(50), score.ap75 = precision_at(75);
-  double sum = 0;
-  int thresholds = 0;
-  for (int percent = kFirstPercent; percent <= last_percent; percent += kStepPercent, ++thresholds)
-    sum += precision_at(percent);
-  score.ap = sum / thresholds;
+  score.ap = mean_precision(last_percent, precision_at);
 }
 
 /// The mean of a figure over the classes that have it.

@@ -45,10 +45,8 @@ StandardScores standard_scores(std::span<const LabelledScene> scenes) {
   scores.ap25 = at25.average_precision, scores.recall25 = at25.recall;
   scores.ap50 = at50.average_precision, scores.recall50 = at50.recall;
   scores.ap75 = at75.average_precision, scores.recall75 = at75.recall;
-  int thresholds = 0;
-  for (int percent = kFirstPercent; percent <= kLastPercent; percent += kStepPercent, ++thresholds)
-    scores.ap += at(percent).average_precision;
-  scores.ap /= thresholds;
+  scores.ap =
+      mean_precision(kLastPercent, [&](int percent) { return at(percent).average_precision; });
   return scores;
 }
 
