@@ -6,6 +6,7 @@
 
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #ifdef __SANITIZE_THREAD__
 #include <atomic>
@@ -62,6 +63,10 @@ void detail::parallel_ranges(std::size_t count, std::size_t grain, void* context
     const std::size_t begin = range * grain;
     function(context, begin, std::min(begin + grain, count));
   });
+}
+
+void on_this_thread(const std::function<void()>& body) {
+  tbb::task_arena(1).execute(body);
 }
 
 struct ThreadLimit::Control {

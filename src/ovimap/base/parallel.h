@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <type_traits>
 
@@ -32,6 +33,9 @@ void parallel_for(std::size_t count, std::size_t grain, Body&& body) {
     for (std::size_t i = begin; i < end; ++i) body(i);
   });
 }
+
+/// Runs `body`, and every parallel_for and every task of oneTBB in it, on the calling thread alone.
+void on_this_thread(const std::function<void()>& body);
 
 /// While alive, no more than `threads` threads run the bodies of any parallel_for in this process
 /// (0: all cores), the threads that call one included.

@@ -3,6 +3,7 @@
 #include "ovimap/base/parallel.h"
 
 #include <stdexcept>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -40,6 +41,17 @@ TEST(ParallelFor, HandsExceptionsToTheCaller) {
 TEST(ParallelFor, DoesNothingForNothing) {
   parallel_for(0, 1, [](std::size_t) { FAIL(); });
 }
+
+#ifndef __SANITIZE_THREAD__  // under which parallel_for takes threads of its own
+TEST(OnThisThread, NoOtherThreadHelps) {
+  std::vector<std::thread::id> workers(64);
+  on_this_thread([&] {
+    parallel_for(workers.size(), 1,
+                 [&](std::size_t i) { workers[i] = std::this_thread::get_id(); });
+  });
+  EXPECT_EQ(workers, std::vector<std::thread::id>(64, std::this_thread::get_id()));
+}
+#endif
 
 }  // namespace
 }  // namespace ovimap

@@ -12,12 +12,11 @@
 #endif
 #include <Eigen/Geometry>
 
+#include "ovimap/base/parallel.h"
+
 namespace ovimap {
 namespace {
 
-// One build thread: the tree, and with it which of two coinciding surfaces wins, is always the
-// same.
-constexpr const char* kDeviceOptions = "threads=1,start_threads=0";
 // Where a sliver's own plane disagrees with Embree by more than this, its plane is not to be
 // trusted.
 constexpr double kPlaneAgreement = 1e-3;
@@ -71,7 +70,7 @@ void fill_ray(RTCRay& ray, const Eigen::Vector3f& origin, const Eigen::Vector3f&
 }  // namespace
 
 struct RayScene::Handle {
-  Handle() : device(rtcNewDevice(kDeviceOptions)), scene(rtcNewScene(device)) {}
+  Handle() : device(rtcNewDevice(nullptr)), scene(rtcNewScene(device)) {}
   ~Handle() {
     rtcReleaseScene(scene);
     rtcReleaseDevice(device);
@@ -86,7 +85,9 @@ RayScene::RayScene(std::span<const RoomObject> objects)
   rtcSetSceneBuildQuality(handle_->scene, RTC_BUILD_QUALITY_HIGH);
   for (const RoomObject& object : objects_)
     add_object(handle_->device, handle_->scene, object.mesh);
-  rtcCommitScene(handle_->scene);
+  // Built by one thread the tree, and with it which of two coinciding surfaces wins, is always the
+  // same. Embree's own option for that would hold the whole process to one thread.
+  on_this_thread([this] { rtcJoinCommitScene(handle_->scene); });
 }
 
 RayScene::~RayScene() = default;

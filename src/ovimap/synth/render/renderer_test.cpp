@@ -3,7 +3,10 @@
 #include "ovimap/synth/render/renderer.h"
 
 #include <array>
+#include <atomic>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -65,6 +68,20 @@ TEST_F(RendererTest, DepthIsExactOnEveryPlane) {
   EXPECT_GT(pixels[1], 100);                    // floor
   EXPECT_GT(pixels[3] + pixels[4], 100);        // east and north wall
   EXPECT_GT(pixels[room_.objects.size()], 50);  // the box
+}
+
+TEST_F(RendererTest, LeavesAllThreadsToWhoeverWorksBeside) {
+  if (std::thread::hardware_concurrency() < 2) GTEST_SKIP() << "one core";
+  std::atomic<int> here = 0;
+  std::atomic<bool> alone = false;
+  // Each of the two waits for the other, as only two threads can.
+  parallel_for(2, 1, [&](std::size_t) {
+    ++here;
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    while (here < 2 && std::chrono::steady_clock::now() < end) std::this_thread::yield();
+    if (here < 2) alone = true;
+  });
+  EXPECT_FALSE(alone);
 }
 
 TEST_F(RendererTest, IncidenceIsTheAngleToTheSurface) {
