@@ -62,7 +62,7 @@ class ArchiveFiles final : public Assimp::IOSystem {
  public:
   explicit ArchiveFiles(const ZipArchive& archive) : archive_(archive) {}
 
-  bool Exists(const char* name) const override { return archive_.read(name).has_value(); }
+  bool Exists(const char* name) const override { return archive_.contains(name); }
   char getOsSeparator() const override { return '/'; }
   Assimp::IOStream* Open(const char* name, const char*) override {
     auto bytes = archive_.read(name);

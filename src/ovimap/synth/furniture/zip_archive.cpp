@@ -2,6 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/synth/furniture/zip_archive.h"
 
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <unordered_map>
+
 #include <unzip.h>
 
 #include "ovimap/base/error.h"
@@ -9,12 +14,35 @@
 
 namespace ovimap {
 
+namespace {
+
+std::string key_of(const std::string& name) {
+  std::string key = name.substr(std::min(name.find_first_not_of('/'), name.size()));
+  std::transform(key.begin(), key.end(), key.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return key;
+}
+
+}  // namespace
+
 struct ZipArchive::Handle {
-  explicit Handle(const std::filesystem::path& path) : file(unzOpen64(path.c_str())) {}
+  explicit Handle(const std::filesystem::path& path) : file(unzOpen64(path.c_str())) {
+    if (file == nullptr) return;
+    // Found by name, an entry would be searched for from the first one on, in the file.
+    std::array<char, 4096> name{};
+    for (int more = unzGoToFirstFile(file); more == UNZ_OK; more = unzGoToNextFile(file)) {
+      unz64_file_pos place{};
+      if (unzGetCurrentFileInfo64(file, nullptr, name.data(), name.size() - 1, nullptr, 0, nullptr,
+                                  0) == UNZ_OK &&
+          unzGetFilePos64(file, &place) == UNZ_OK)
+        entries.emplace(key_of(name.data()), place);
+    }
+  }
   ~Handle() {
     if (file != nullptr) unzClose(file);
   }
   unzFile file;
+  std::unordered_map<std::string, unz64_file_pos> entries;  // by key_of
 };
 
 ZipArchive::ZipArchive(const std::filesystem::path& path)
@@ -27,14 +55,17 @@ ZipArchive::~ZipArchive() = default;
 ZipArchive::ZipArchive(ZipArchive&&) noexcept = default;
 ZipArchive& ZipArchive::operator=(ZipArchive&&) noexcept = default;
 
+bool ZipArchive::contains(const std::string& name) const {
+  return handle_->entries.contains(key_of(name));
+}
+
 std::optional<Bytes> ZipArchive::read(const std::string& name) const {
-  constexpr int kIgnoreCase = 2;
   constexpr std::uint64_t kLargestEntry = std::uint64_t{1} << 30;
-  const std::size_t start = name.find_first_not_of('/');
-  if (start == std::string::npos) return std::nullopt;
-  if (unzLocateFile(handle_->file, name.c_str() + start, kIgnoreCase) != UNZ_OK)
-    return std::nullopt;
+  const auto entry = handle_->entries.find(key_of(name));
+  if (entry == handle_->entries.end()) return std::nullopt;
   unz_file_info64 info{};
+  if (unzGoToFilePos64(handle_->file, &entry->second) != UNZ_OK)
+    throw Error(concat(path_.string(), ": damaged; reinstall what it came with"));
   unzGetCurrentFileInfo64(handle_->file, &info, nullptr, 0, nullptr, 0, nullptr, 0);
   // An entry cannot hold more than its file, unpacked, whatever it claims.
   const bool plausible =

@@ -23,6 +23,9 @@ class ZipArchive {
 
   const std::filesystem::path& path() const { return path_; }
 
+  /// Whether there is such an entry, named as for read().
+  bool contains(const std::string& name) const;
+
   /// The bytes of an entry (a leading slash in `name` is ignored; upper and lower case are alike,
   /// as models name their textures carelessly), or nothing when there is no such entry. Throws
   /// Error when the entry is damaged.
