@@ -14,15 +14,6 @@
 namespace ovimap {
 namespace {
 
-class BenchmarkSceneTest : public testing::TestWithParam<std::string> {
- protected:
-  void SetUp() override {
-    if (!std::filesystem::exists(default_furniture_folder()))
-      GTEST_SKIP() << "the Debian package sweethome3d-furniture is not installed";
-  }
-  BenchmarkScene scene() const { return benchmark_scenes(GetParam()).at(0); }
-};
-
 std::vector<std::string> all_names() {
   std::vector<std::string> names;
   for (const char* set : {kApartmentsV1, kDesksV1})
@@ -30,8 +21,7 @@ std::vector<std::string> all_names() {
   return names;
 }
 
-TEST_P(BenchmarkSceneTest, ItsThingsAreApart) {
-  const SynthRoom room = build_benchmark_scene(scene(), 1);
+void expect_things_apart(const SynthRoom& room) {
   std::vector<const RoomObject*> things;
   for (std::size_t i = 0; i < room.objects.size(); ++i) {
     EXPECT_EQ(room.objects[i].id, i + 1);
@@ -53,12 +43,9 @@ TEST_P(BenchmarkSceneTest, ItsThingsAreApart) {
   EXPECT_GE(small, room.survey.empty() ? 50u : 20u);
 }
 
-TEST_P(BenchmarkSceneTest, IsFilmedWithWhatIsTooSmallNamed) {
-  BenchmarkScene filmed = scene();
-  const SynthRoom room = build_benchmark_scene(filmed, 1);
-  if (room.survey.empty()) GTEST_SKIP() << "flats are filmed by the walks of floor plans";
+void expect_film_with_what_is_too_small_named(const SynthRoom& room, const WalkConfig& walk) {
   VideoConfig video;
-  video.walk = filmed.walk;
+  video.walk = walk;
   const SynthSequence sequence(room, synth_camera(80, 60), video);
   EXPECT_NEAR(sequence.size(), 64, 2);
   const std::vector<std::uint32_t> unscored = little_seen(sequence, sequence.truth_mesh());
@@ -66,20 +53,19 @@ TEST_P(BenchmarkSceneTest, IsFilmedWithWhatIsTooSmallNamed) {
   EXPECT_FALSE(unscored.empty());  // some thing is a pen or lies hidden
 }
 
-INSTANTIATE_TEST_SUITE_P(Every, BenchmarkSceneTest, testing::ValuesIn(all_names()),
-                         [](const auto& scene) {
-                           std::string name = scene.param;
-                           std::erase(name, '-');
-                           return name;
-                         });
-
-TEST(BenchmarkScenesTest, TheHalvesShareNoModelOfTheLibrary) {
+// One test of all scenes: what takes long is to build them.
+TEST(BenchmarkScenesTest, ThingsAreApartAndTheHalvesShareNoModelOfTheLibrary) {
   if (!std::filesystem::exists(default_furniture_folder()))
     GTEST_SKIP() << "the Debian package sweethome3d-furniture is not installed";
   std::set<std::string> tuned, unseen;
   for (const std::string& name : all_names()) {
+    SCOPED_TRACE(name);
     const BenchmarkScene scene = benchmark_scenes(name).at(0);
-    for (const RoomObject& object : build_benchmark_scene(scene, 1).objects)
+    const SynthRoom room = build_benchmark_scene(scene, 1);
+    expect_things_apart(room);
+    // Flats are filmed by the walks of floor plans.
+    if (!room.survey.empty()) expect_film_with_what_is_too_small_named(room, scene.walk);
+    for (const RoomObject& object : room.objects)
       if (!object.source.empty())
         (scene.split == Split::kTuned ? tuned : unseen).insert(object.source);
   }

@@ -80,17 +80,7 @@ TEST(FloorPlanTest, DoorsThatJoinNothingAreSaid) {
   EXPECT_THROW(floor_plan("lop"), Error);
 }
 
-class NamedPlan : public testing::TestWithParam<std::string> {
- protected:
-  void SetUp() override {
-    if (!std::filesystem::exists(default_furniture_folder()))
-      GTEST_SKIP() << "the Debian package sweethome3d-furniture is not installed";
-  }
-};
-
-TEST_P(NamedPlan, IsFurnishedRoomByRoom) {
-  const FloorPlan plan = floor_plan(GetParam());
-  const SynthRoom scene = build_plan(plan);
+void expect_furnished_room_by_room(const SynthRoom& scene, const FloorPlan& plan) {
   EXPECT_GE(scene.size_m.x(), 8);
   EXPECT_LE(scene.size_m.head<2>().maxCoeff(), 12);
   ASSERT_EQ(scene.zones.size(), plan.rooms.size());
@@ -111,11 +101,10 @@ TEST_P(NamedPlan, IsFurnishedRoomByRoom) {
   }
 }
 
-TEST_P(NamedPlan, ItsWalkEntersEveryRoomKeepsClearAndComesBack) {
-  const SynthRoom scene = build_plan(floor_plan(GetParam()));
+void expect_walk_through_every_room_and_back(const SynthRoom& scene, double least_m) {
   const WalkConfig config;
   const PlaneSpline path(walking_round(scene, config, 0.175), 0.25, true);
-  EXPECT_GT(path.seconds() * config.speed_mps, GetParam() == "loop" ? 55 : 30);
+  EXPECT_GT(path.seconds() * config.speed_mps, least_m);
   std::set<std::string> entered;
   float least = 1;
   for (double t = 0; t < path.seconds(); t += 0.02) {
@@ -134,6 +123,21 @@ TEST_P(NamedPlan, ItsWalkEntersEveryRoomKeepsClearAndComesBack) {
   // Half the body's radius, less half a cell of the map and what bends of the spline cut off.
   EXPECT_GT(least, 0.05f);
   EXPECT_TRUE(path.at(0).isApprox(path.at(path.seconds()), 1e-9));
+}
+
+class NamedPlan : public testing::TestWithParam<std::string> {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(default_furniture_folder()))
+      GTEST_SKIP() << "the Debian package sweethome3d-furniture is not installed";
+  }
+};
+
+TEST_P(NamedPlan, IsFurnishedAndItsWalkEntersEveryRoomKeepsClearAndComesBack) {
+  const FloorPlan plan = floor_plan(GetParam());
+  const SynthRoom scene = build_plan(plan);
+  expect_furnished_room_by_room(scene, plan);
+  expect_walk_through_every_room_and_back(scene, GetParam() == "loop" ? 55 : 30);
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, NamedPlan, testing::ValuesIn(floor_plan_names()),
