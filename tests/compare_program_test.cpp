@@ -40,7 +40,7 @@ TEST_F(CompareProgramTest, TwoMapsBecomeOne) {
 }
 
 TEST_F(CompareProgramTest, ATransformIsRefusedWhenItIsNone) {
-  map_with("none");
+  map_with("none", " --set map.voxel_size_m=0.01");
   const std::string command = "merge room.ovimap room.ovimap -o both.ovimap --transform t.txt";
   expect_complaint(command, {"t.txt"});
   write_text(path("t.txt"), "1 0 0 0 1 0 0 0 1");

@@ -13,7 +13,7 @@ const std::filesystem::path kKitchen = OVIMAP_SOURCE_DIR "/../shared/data/kitche
 class EndToEndTest : public ProgramTest {
  protected:
   nlohmann::json scores(const std::string& masks) {
-    EXPECT_EQ(run("run room/room -o room.ovimap --masks " + masks).code, 0);
+    EXPECT_EQ(run("run room/room --encoder none -o room.ovimap --masks " + masks).code, 0);
     return run_json("eval room.ovimap --gt room/room --json");
   }
 };

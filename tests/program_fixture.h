@@ -91,12 +91,13 @@ class EncodedProgramTest : public ProgramTest {
  protected:
   static constexpr const char* kSmallViews =
       " --set views.min_mask_px=20 --set views.min_first_depth_px=10 --set views.min_depth_px=10 "
-      "--set summary.min_instance_views=1 --set views.min_frames_seen=1";
+      "--set summary.min_instance_views=1 --set views.min_frames_seen=1 --set "
+      "map.voxel_size_m=0.02";
 
   /// Writes room.ovimap.
-  void map_with(const std::string& encoder) const {
-    const ProgramResult result =
-        run("run replica/scene --masks gt -o room.ovimap --encoder " + encoder + kSmallViews);
+  void map_with(const std::string& encoder, const std::string& options = "") const {
+    const ProgramResult result = run("run replica/scene --masks gt -o room.ovimap --encoder " +
+                                     encoder + kSmallViews + options);
     ASSERT_EQ(result.code, 0) << result.err;
   }
 };
