@@ -50,7 +50,7 @@ Approach approach(SavedMap& map, InstanceId id, const std::optional<Place>& star
   return find_approach(map.standing_space(), id, config, from);
 }
 
-void bind_values(nb::module_& module) {
+void bind_route_values(nb::module_& module) {
   nb::class_<ApproachPose>(module, "ApproachPose", "A place to stand, in a frame whose z is up.")
       .def_prop_ro("x", [](const ApproachPose& pose) { return pose.place_m.x(); })
       .def_prop_ro("y", [](const ApproachPose& pose) { return pose.place_m.y(); })
@@ -84,7 +84,7 @@ void bind_values(nb::module_& module) {
 }  // namespace
 
 void bind_approach(nb::module_& module, nb::class_<SavedMap>& map) {
-  bind_values(module);
+  bind_route_values(module);
   const ApproachConfig usual;
   map.def("approach", &approach, nb::arg("id"), nb::kw_only(), nb::arg("start") = nb::none(),
           nb::arg("radius_m") = usual.radius_m, nb::arg("camera_height_m") = usual.camera_height_m,

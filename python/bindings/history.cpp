@@ -97,7 +97,7 @@ std::vector<Change> changes(SavedMap& map, const std::string& since, const std::
   return list;
 }
 
-void bind_values(nb::module_& module) {
+void bind_history_values(nb::module_& module) {
   nb::class_<Visit>(module, "Visit", "A recording that went into a map.")
       .def_ro("visit", &Visit::visit, "from 1")
       .def_ro("source", &Visit::source, "where its frames came from")
@@ -178,7 +178,7 @@ QueryAnswer SavedMap::ask_past(const HistoryPhrase& phrase, const Query& query) 
 }
 
 void bind_history(nb::module_& module, nb::class_<SavedMap>& map) {
-  bind_values(module);
+  bind_history_values(module);
   map.def_prop_ro("visits", &visits, "the recordings that went into it, oldest first")
       .def_prop_ro("events", &events, nb::call_guard<WithoutGil>(),
                    "what its visits found changed, oldest first")

@@ -110,7 +110,7 @@ std::int64_t undo(const SavedMap& map, std::int64_t edit_number) {
   return map.correct(std::move(edit));
 }
 
-void bind_values(nb::module_& module) {
+void bind_object_values(nb::module_& module) {
   nb::class_<ObjectFacts>(module, "ObjectFacts", "What a map knows of one object.")
       .def_ro("id", &ObjectFacts::id)
       .def_ro("name", &ObjectFacts::name, "given by a person; empty: none")
@@ -209,7 +209,7 @@ std::size_t SavedMap::position(InstanceId id) const {
 }
 
 void bind_objects(nb::module_& module, nb::class_<SavedMap>& map) {
-  bind_values(module);
+  bind_object_values(module);
   map.def_prop_ro(
          "up",
          [](const SavedMap& self) {
