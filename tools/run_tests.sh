@@ -25,7 +25,7 @@ show_progress() {
   done
 }
 
-ctest --test-dir "$build" -j "$(nproc)" --output-on-failure --output-junit "$(realpath "$build")/test-report.xml" "$@" 2>&1 | tee "$log" | show_progress
+ctest --test-dir "$build" -j "$(($(nproc) + 1))" --output-on-failure --output-junit "$(realpath "$build")/test-report.xml" "$@" 2>&1 | tee "$log" | show_progress
 status=${PIPESTATUS[0]}
 if [ ! -s "$report" ]; then
   cat "$log"

@@ -9,7 +9,7 @@ const PICTURES = process.env.OVIMAP_E2E_PICTURES ?? 'test-results/pictures';
 
 test('shows, searches and corrects a map while it is made', async ({ page }) => {
   test.setTimeout(240_000);
-  const map = await RunningMap.live(1);
+  const map = await RunningMap.live(2);
   await page.goto(map.address);
   await wholePicture(page);
   await expect(page.locator('.facts.live')).toContainText('frame');
