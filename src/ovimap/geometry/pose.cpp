@@ -28,4 +28,12 @@ Pose rigid_pose(const Eigen::Matrix4d& matrix) {
   return pose;
 }
 
+Eigen::Quaternionf shortest_turn(const Eigen::Vector3f& from, const Eigen::Vector3f& to) {
+  return Eigen::Quaternionf::FromTwoVectors(from, to);
+}
+
+Eigen::Quaterniond shortest_turn(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  return Eigen::Quaterniond::FromTwoVectors(from, to);
+}
+
 }  // namespace ovimap

@@ -21,4 +21,9 @@ std::string pose_fault(const Eigen::Matrix4d& matrix);
 /// The nearest rigid transform to a matrix without pose_fault: the rotation is re-orthonormalised.
 Pose rigid_pose(const Eigen::Matrix4d& matrix);
 
+/// The shortest turn that takes one direction to another. Here, because every source that asks
+/// Eigen for it takes four seconds longer to compile: opposite directions need an SVD.
+Eigen::Quaternionf shortest_turn(const Eigen::Vector3f& from, const Eigen::Vector3f& to);
+Eigen::Quaterniond shortest_turn(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+
 }  // namespace ovimap

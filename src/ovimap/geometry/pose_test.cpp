@@ -37,5 +37,13 @@ TEST(PoseFault, NamesEachFault) {
   EXPECT_EQ(pose_fault(matrix), "last row is not 0 0 0 1");
 }
 
+TEST(ShortestTurn, TakesOneDirectionToTheOther) {
+  const Eigen::Vector3d z = Eigen::Vector3d::UnitZ(), slanting(1, -2, 0.5);
+  EXPECT_TRUE((shortest_turn(slanting, z) * slanting.normalized()).isApprox(z, 1e-12));
+  EXPECT_TRUE((shortest_turn(z, Eigen::Vector3d(-z)) * z).isApprox(-z, 1e-12));  // by any axis
+  const Eigen::Vector3f y = Eigen::Vector3f::UnitY();
+  EXPECT_TRUE(shortest_turn(y, y).isApprox(Eigen::Quaternionf::Identity()));
+}
+
 }  // namespace
 }  // namespace ovimap

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ovimap/base/error.h"
+#include "ovimap/geometry/pose.h"
 #include "ovimap/io/exports/instance_json_value.h"
 #include "ovimap/io/mesh/mesh_pieces.h"
 
@@ -95,7 +96,7 @@ class GlbBuilder {
  private:
   /// glTF has y up: the shortest turn that takes the world's up there, as a quaternion x y z w.
   static Json upright(const Eigen::Vector3f& up) {
-    const auto turn = Eigen::Quaternionf::FromTwoVectors(up, Eigen::Vector3f::UnitY()).normalized();
+    const auto turn = shortest_turn(up, Eigen::Vector3f::UnitY()).normalized();
     return Json::array({turn.x(), turn.y(), turn.z(), turn.w()});
   }
 

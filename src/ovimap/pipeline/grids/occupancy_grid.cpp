@@ -9,6 +9,7 @@
 
 #include "ovimap/base/config.h"
 #include "ovimap/base/parallel.h"
+#include "ovimap/geometry/pose.h"
 #include "ovimap/map/rays/distance_transform.h"
 #include "ovimap/map/surface/mesh_extraction.h"
 
@@ -46,8 +47,7 @@ OccupancyGrid grid_around(const Mesh& mesh, const Eigen::Vector3f& up,
                           const OccupancyConfig& config) {
   constexpr double kMostCells = 1 << 28;
   OccupancyGrid grid;
-  grid.grid_from_world =
-      Eigen::Quaternionf::FromTwoVectors(up, Eigen::Vector3f::UnitZ()).toRotationMatrix();
+  grid.grid_from_world = shortest_turn(up, Eigen::Vector3f::UnitZ()).toRotationMatrix();
   grid.cell_m = config.cell_m;
   Eigen::AlignedBox3f box;
   for (const Eigen::Vector3f& vertex : mesh.vertices) box.extend(grid.grid_from_world * vertex);

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "ovimap/eval/geometry/nearest.h"
+#include "ovimap/geometry/pose.h"
 #include "ovimap/map/rays/surface_lookup.h"
 
 namespace ovimap {
@@ -65,8 +66,7 @@ ThingLook thing_look(const MapDocument& map, InstanceId id, const Eigen::Vector3
   look.colors = colors_at(map.map, surface->second);
   map.map.trim();
   const std::size_t step = (surface->second.size() + kMostPoints - 1) / kMostPoints;
-  const Eigen::Matrix3f upright =
-      Eigen::Quaternionf::FromTwoVectors(up, Eigen::Vector3f::UnitZ()).toRotationMatrix();
+  const Eigen::Matrix3f upright = shortest_turn(up, Eigen::Vector3f::UnitZ()).toRotationMatrix();
   Eigen::Vector3f mean = Eigen::Vector3f::Zero();
   for (std::size_t i = 0; i < surface->second.size(); i += step) {
     look.points.push_back(upright * surface->second[i]);

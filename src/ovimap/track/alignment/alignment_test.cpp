@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "ovimap/base/parallel.h"
+#include "ovimap/geometry/pose.h"
 #include "ovimap/track/alignment/plain_residuals.h"
 #include "ovimap/track/room_camera_fixture.h"
 
@@ -44,9 +45,8 @@ TEST(Alignment, FindsTheMotionOfACamera) {
 
 TEST(Alignment, FindsItByDepthAlone) {
   Scene scene(false);
-  scene.start.linear() =
-      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), Eigen::Vector3d(2.5, 1, 2.5))
-          .matrix();  // into a corner
+  scene.start.linear() = shortest_turn(Eigen::Vector3d::UnitZ(), Eigen::Vector3d(2.5, 1, 2.5))
+                             .matrix();  // into a corner
   const Pose motion = moved(0.02, -0.01, 0.03, 0.01, -0.02, 0.01);
   const Alignment found = align(scene.reference(), scene.seen_from(motion), Pose::Identity(), {});
   EXPECT_LT(fixture::distance_m(found.reference_from_frame, motion), 0.004);

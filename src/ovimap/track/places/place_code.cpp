@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "ovimap/geometry/pose.h"
+
 namespace ovimap {
 
 namespace {
@@ -130,7 +132,7 @@ Pose turn_between(const TrackPyramid& reference, const TrackPyramid& frame) {
   const Eigen::Vector3d seen =
       b.camera.unproject(b.camera.cx + shift.x(), b.camera.cy + shift.y(), 1.f).cast<double>();
   Pose turn = Pose::Identity();
-  turn.linear() = Eigen::Quaterniond::FromTwoVectors(seen, Eigen::Vector3d::UnitZ()).matrix();
+  turn.linear() = shortest_turn(seen, Eigen::Vector3d::UnitZ()).matrix();
   return turn;
 }
 
