@@ -4,8 +4,8 @@
 # `make test` what tests, benchmarks and the Python package need as well. Both build into one folder.
 BUILD := build/release
 OVIMAP := $(BUILD)/bin/ovimap
-# As many compilers as there are processors, and memory for: one takes up to 1.5 GB.
-JOBS ?= $(shell awk -v cores=$$(nproc) '/MemAvailable/ {jobs = int($$2 / 1500000)} END {print jobs < 1 ? 1 : jobs < cores ? jobs : cores}' /proc/meminfo)
+# As many compilers as there are processors, and memory for: one takes up to 1.8 GB.
+JOBS ?= $(shell awk -v cores=$$(nproc) '/MemAvailable/ {jobs = int($$2 / 1800000)} END {print jobs < 1 ? 1 : jobs < cores ? jobs : cores}' /proc/meminfo)
 SOURCE ?= demo/tiny/room
 
 .PHONY: site reference bare-test arm64-test help setup setup-program build build-program build-all packages packages-test demo demo-lasting test test-setup asan tsan fuzz bench rivals benchmarks viewer-speed live-speed wheel clean

@@ -35,6 +35,8 @@ if(CMAKE_SYSTEM_PROCESSOR STREQUAL "aarch64")
 endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(ovimap_options INTERFACE -fpch-preprocess)  # for ccache
+  # GCC collects its garbage less often: an eighth less time, a quarter of a gigabyte more.
+  target_compile_options(ovimap_options INTERFACE --param=ggc-min-heapsize=1000000)
 endif()
 if(OVIMAP_MOLD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND NOT OVIMAP_SANITIZE)
   target_link_options(ovimap_options INTERFACE -fuse-ld=mold)
