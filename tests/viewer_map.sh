@@ -1,15 +1,17 @@
 #!/usr/bin/env bash
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
-# The maps that the tests of server and viewer look at: a small rendered room, and beside it home.ovimap of two visits. Usage: viewer_map.sh PROGRAM MAP
+# The maps that the tests of server and viewer look at: a small rendered room, and beside it coarse.ovimap of the same and home.ovimap of two visits. Usage: viewer_map.sh PROGRAM MAP
 set -eu
 ovimap=$1 map=$2
 folder=$(dirname "$map")
-rm -rf "$folder/room" "$map"
+rm -rf "$folder/room" "$map" "$folder/coarse.ovimap"
 mkdir -p "$folder"
 "$ovimap" models list | grep -q default-encoder || { echo "the default encoder is missing; run tools/setup.sh"; exit 77; }
 "$ovimap" synth "$folder/room" --room tiny
 "$ovimap" run "$folder/room/room" --masks gt --encoder default --frames ::2 -o "$map"
+# For the browser at 2 cm: one that draws without a GPU is as slow as the surface is fine.
+"$ovimap" run "$folder/room/room" --masks gt --encoder default --frames ::2 --set map.voxel_size_m=0.02 -o "$folder/coarse.ovimap"
 # The same place on two days; of this seed a thing is carried off in between, and found to be.
 home=$folder/home.ovimap
 rm -rf "$folder/visits" "$home"

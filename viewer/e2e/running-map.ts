@@ -47,7 +47,17 @@ export class RunningMap {
   /** The map while it is made from its recording, with a camera of so many frames a second. */
   static async live(fps: number): Promise<RunningMap> {
     const { folder, file } = place();
-    const options = ['--live', '--fps', String(fps), '--masks', 'gt', '--encoder', 'default'];
+    const options = [
+      '--live',
+      '--fps',
+      String(fps),
+      '--masks',
+      'gt',
+      '--encoder',
+      'default',
+      '--set',
+      'map.voxel_size_m=0.02',
+    ];
     return RunningMap.run([ROOM, '-o', file, ...options], folder, file);
   }
 
