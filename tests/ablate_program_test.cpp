@@ -12,7 +12,7 @@ class AblateProgramTest : public TruthfulProgramTest {
 
   std::string command(const std::string& name) const {
     return "ablate " + name + " replica/scene -o out --masks gt --encoder " +
-           golden_model("minilm") + " --model-dir " + kGoldenModels + kSmallViews;
+           golden_model("minilm") + " --model-dir " + kGoldenModels + kSmallPictures;
   }
   std::size_t lines_with(const std::string& file, const std::string& word) const {
     std::istringstream text(slurp(path(file)));

@@ -34,7 +34,7 @@ TEST_F(EmbeddingProgramTest, AutoTakesThePreferredEncoderAndSaysWhereItIsTheSmal
   const auto encoder_of_run = [this] {
     const ProgramResult result =
         run(std::string("run replica/scene --masks gt -o room.ovimap --model-dir models") +
-            kSmallViews);
+            kSmallPictures);
     EXPECT_EQ(result.code, 0) << result.err;
     const bool advised = result.err.find("ovimap models fetch") != std::string::npos;
     return read_map_info(path("room.ovimap")).encoder.name + (advised ? " advised" : "");
@@ -57,7 +57,7 @@ TEST_F(EmbeddingProgramTest, EmbedsFinishedGeometry) {
   map_with("none");
   ASSERT_EQ(run("export room.ovimap room.ply --what instances").code, 0);
   const auto report = run_json("embed room.ply replica/scene -o objects.ovimap --json --encoder " +
-                               golden_model("minilm") + kSmallViews);
+                               golden_model("minilm") + kSmallPictures);
   EXPECT_GT(report["instances"], 0);
   EXPECT_GT(report["embedding_queries"], 0);
   EXPECT_LE(run("query objects.ovimap mug --encoder " + golden_model("minilm")).code, 1);
@@ -105,7 +105,7 @@ TEST_F(EmbeddingProgramTest, OptionsMayComeFirst) {
   const std::string encoder = " --encoder " + golden_model("minilm");
   ASSERT_EQ(run("run --set map.voxel_size_m=0.02 --model-dir . replica/scene --masks gt -o "
                 "room.ovimap" +
-                encoder + kSmallViews)
+                encoder + kSmallPictures)
                 .code,
             0);
   EXPECT_LE(run("query --model-dir . --not mug room.ovimap table" + encoder).code, 1);
@@ -124,7 +124,7 @@ TEST_F(EmbeddingProgramTest, TheSameMapWhateverTheThreads) {
   std::set<std::string> views;
   for (const char* threads : {"1", "2"}) {
     ASSERT_EQ(run(std::string("run replica/scene --masks gt -o room.ovimap --threads ") + threads +
-                  " --encoder " + golden_model("minilm") + kSmallViews)
+                  " --encoder " + golden_model("minilm") + kSmallPictures)
                   .code,
               0);
     views.insert(

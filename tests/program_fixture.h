@@ -89,7 +89,8 @@ constexpr const char* kGoldenModels = "'" OVIMAP_SOURCE_DIR "/src/ovimap/inferen
 /// ... and maps that recording with embeddings.
 class EncodedProgramTest : public ProgramTest {
  protected:
-  static constexpr const char* kSmallViews =
+  /// What so few pixels, centimetres apart, need.
+  static constexpr const char* kSmallPictures =
       " --set views.min_mask_px=20 --set views.min_first_depth_px=10 --set views.min_depth_px=10 "
       "--set summary.min_instance_views=1 --set views.min_frames_seen=1 --set "
       "map.voxel_size_m=0.02";
@@ -97,7 +98,7 @@ class EncodedProgramTest : public ProgramTest {
   /// Writes room.ovimap.
   void map_with(const std::string& encoder, const std::string& options = "") const {
     const ProgramResult result = run("run replica/scene --masks gt -o room.ovimap --encoder " +
-                                     encoder + kSmallViews + options);
+                                     encoder + kSmallPictures + options);
     ASSERT_EQ(result.code, 0) << result.err;
   }
 };

@@ -100,7 +100,7 @@ class ReproduceProgramTest : public TruthfulProgramTest {
 
   std::string command(const std::string& data) const {
     return "reproduce " + data + " -o out --masks masks --encoder " + golden_model("minilm") +
-           " --model-dir " + kGoldenModels + kSmallViews;
+           " --model-dir " + kGoldenModels + kSmallPictures;
   }
 
   Mesh mesh_;
