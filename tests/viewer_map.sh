@@ -9,9 +9,10 @@ rm -rf "$folder/room" "$map" "$folder/coarse.ovimap"
 mkdir -p "$folder"
 "$ovimap" models list | grep -q default-encoder || { echo "the default encoder is missing; run tools/setup.sh"; exit 77; }
 "$ovimap" synth "$folder/room" --room tiny
-"$ovimap" run "$folder/room/room" --masks gt --encoder default --frames ::2 -o "$map"
+map_room() { "$ovimap" run "$folder/room/room" --masks gt --encoder default --frames ::2 "$@"; }
+map_room -o "$map"
 # For the browser at 2 cm: one that draws without a GPU is as slow as the surface is fine.
-"$ovimap" run "$folder/room/room" --masks gt --encoder default --frames ::2 --set map.voxel_size_m=0.02 -o "$folder/coarse.ovimap"
+map_room --set map.voxel_size_m=0.02 -o "$folder/coarse.ovimap"
 # The same place on two days; of this seed a thing is carried off in between, and found to be.
 home=$folder/home.ovimap
 rm -rf "$folder/visits" "$home"

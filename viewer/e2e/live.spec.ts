@@ -9,7 +9,7 @@ const PICTURES = process.env.OVIMAP_E2E_PICTURES ?? 'test-results/pictures';
 
 test('shows, searches and corrects a map while it is made', async ({ page }) => {
   test.setTimeout(240_000);
-  const map = await RunningMap.live(2);
+  const map = await RunningMap.live();
   await page.goto(map.address);
   await wholePicture(page);
   await expect(page.locator('.facts.live')).toContainText('frame');
@@ -65,7 +65,7 @@ test('a camera that is lost turns red, and says where it can be found', async ({
 
 test('Ctrl-C saves what was mapped', async ({ page }) => {
   test.setTimeout(120_000);
-  const map = await RunningMap.live(2);
+  const map = await RunningMap.live();
   await page.goto(map.address);
   await wholePicture(page);
   await expect(page.locator('.facts')).toContainText(/from ([4-9]|1\d) frames/);

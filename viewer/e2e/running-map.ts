@@ -44,13 +44,13 @@ export class RunningMap {
     return RunningMap.run([file], folder, file);
   }
 
-  /** The map while it is made from its recording, with a camera of so many frames a second. */
-  static async live(fps: number): Promise<RunningMap> {
+  /** The map while it is made from its recording, with a camera of two frames a second. */
+  static async live(): Promise<RunningMap> {
     const { folder, file } = place();
     const options = [
       '--live',
       '--fps',
-      String(fps),
+      '2',
       '--masks',
       'gt',
       '--encoder',
