@@ -97,24 +97,40 @@ WalkMap::WalkMap(const SynthRoom& room, const TrajectoryConfig& config) {
   const Eigen::Vector2f size = room.size_m.head<2>();
   costs_ = Image<float>(std::max(1, static_cast<int>(size.x() / kCell_m)),
                         std::max(1, static_cast<int>(size.y() / kCell_m)), 1.f);
+  const float body_m = config.body_radius_m;
   for (std::size_t i = 0; i < costs_.size(); ++i) {
     const Eigen::Vector2f point = center_of(static_cast<int>(i));
-    const float wall = std::min(point.minCoeff(), (size - point).minCoeff());
-    if (wall < config.body_radius_m) costs_[i] = kBlocked;
-    for (const OrientedBox& box : room.walls)
-      if (distance_outside(box, point) < config.body_radius_m) costs_[i] = kBlocked;
-    for (const RoomObject& object : room.objects) {
-      if (!object.footprint || object.footprint->top_m < kLow_m) continue;
-      const OrientedBox& box = *object.footprint;
-      const float distance = distance_outside(box, point);
-      const bool at_eye = box.top_m > config.lowest_eye_m - config.body_radius_m &&
-                          box.bottom_m < config.highest_eye_m + config.body_radius_m;
-      if (at_eye && distance < config.body_radius_m) costs_[i] = kBlocked;
-      if (box.bottom_m < config.lowest_eye_m && distance < config.body_radius_m / 2)
-        costs_[i] = std::max(costs_[i], config.low_furniture_cost);
-    }
+    if (std::min(point.minCoeff(), (size - point).minCoeff()) < body_m) costs_[i] = kBlocked;
+  }
+  for (const OrientedBox& box : room.walls)
+    for_each_cell_near(box, body_m, [&](std::size_t cell, float) { costs_[cell] = kBlocked; });
+  for (const RoomObject& object : room.objects) {
+    if (!object.footprint || object.footprint->top_m < kLow_m) continue;
+    const OrientedBox& box = *object.footprint;
+    const bool at_eye =
+        box.top_m > config.lowest_eye_m - body_m && box.bottom_m < config.highest_eye_m + body_m;
+    for_each_cell_near(box, body_m, [&](std::size_t cell, float distance_m) {
+      if (at_eye) costs_[cell] = kBlocked;
+      if (box.bottom_m < config.lowest_eye_m && distance_m < body_m / 2)
+        costs_[cell] = std::max(costs_[cell], config.low_furniture_cost);
+    });
   }
   find_largest_area();
+}
+
+template <class Visit>
+void WalkMap::for_each_cell_near(const OrientedBox& box, float reach_m, const Visit& visit) {
+  const float half_m = box.half_m.norm() + reach_m + kCell_m;
+  const Eigen::Vector2f low = (box.center_m.array() - half_m) / kCell_m,
+                        high = (box.center_m.array() + half_m) / kCell_m;
+  const int last_x = std::min(static_cast<int>(high.x()), costs_.width() - 1),
+            last_y = std::min(static_cast<int>(high.y()), costs_.height() - 1);
+  for (int y = std::max(0, static_cast<int>(low.y())); y <= last_y; ++y)
+    for (int x = std::max(0, static_cast<int>(low.x())); x <= last_x; ++x) {
+      const int cell = y * costs_.width() + x;
+      const float distance_m = distance_outside(box, center_of(cell));
+      if (distance_m < reach_m) visit(static_cast<std::size_t>(cell), distance_m);
+    }
 }
 
 void WalkMap::find_largest_area() {

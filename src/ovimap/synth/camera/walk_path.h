@@ -34,6 +34,9 @@ class WalkMap {
   int cell_of(const Eigen::Vector2f& point_m) const;
   Eigen::Vector2f center_of(int cell) const;
 
+  /// Calls visit(cell, distance_m) for the cells less than `reach_m` outside the box.
+  template <class Visit>
+  void for_each_cell_near(const OrientedBox& box, float reach_m, const Visit& visit);
   void find_largest_area();
 
   Image<float> costs_;

@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::size_t kVerticesPerTask = 1024;
 constexpr std::uint32_t kDropped = ~0u;
+constexpr float kFarthest_m = 16;  // no depth camera sees farther
 
 struct Corner {
   Eigen::Vector3f position, normal;
@@ -106,22 +107,59 @@ class Gatherer {
   Mesh mesh_;
 };
 
-bool seen_from(const Eigen::Vector3f& point, const RayScene& scene, const PinholeCamera& camera,
-               const Pose& world_from_camera, float leave_surface_m) {
-  const Eigen::Vector3d in_camera = world_from_camera.inverse() * point.cast<double>();
-  if (in_camera.z() <= 0) return false;
-  const Eigen::Vector2f pixel = camera.project(in_camera.cast<float>());
-  if (pixel.x() < -0.5f || pixel.y() < -0.5f ||
-      pixel.x() > static_cast<float>(camera.width) - 0.5f ||
-      pixel.y() > static_cast<float>(camera.height) - 0.5f)
-    return false;
-  const Eigen::Vector3f to_camera = world_from_camera.translation().cast<float>() - point;
-  const float distance = to_camera.norm();
-  if (distance <= leave_surface_m) return false;
-  const Eigen::Vector3f direction = to_camera / distance;
-  return !scene.occluded(point + leave_surface_m * direction, direction,
-                         distance - leave_surface_m);
-}
+/// A camera at one moment.
+struct Lookout {
+  Pose camera_from_world;
+  Eigen::Vector3f eye;  ///< world, metres
+};
+
+/// What part of a mesh is seen from somewhere.
+class Witnesses {
+ public:
+  Witnesses(const RayScene& scene, const PinholeCamera& camera,
+            std::span<const Pose> world_from_camera, float leave_surface_m)
+      : scene_(scene), camera_(camera), leave_surface_m_(leave_surface_m) {
+    for (const Pose& pose : world_from_camera)
+      lookouts_.push_back({pose.inverse(), pose.translation().cast<float>()});
+  }
+
+  /// Whether each of the points is seen. Who saw one is asked first about the next.
+  void ask(std::span<const Eigen::Vector3f> points, std::uint8_t* seen) const {
+    Eigen::AlignedBox3f box;
+    for (const Eigen::Vector3f& point : points) box.extend(point);
+    std::vector<const Lookout*> near;
+    for (const Lookout& lookout : lookouts_)
+      if (box.exteriorDistance(lookout.eye) < kFarthest_m) near.push_back(&lookout);
+    for (const Eigen::Vector3f& point : points) {
+      const auto witness = std::find_if(
+          near.begin(), near.end(), [&](const Lookout* lookout) { return sees(*lookout, point); });
+      *seen++ = witness != near.end();
+      if (witness != near.end()) std::iter_swap(witness, near.begin());
+    }
+  }
+
+ private:
+  bool sees(const Lookout& lookout, const Eigen::Vector3f& point) const {
+    const Eigen::Vector3d in_camera = lookout.camera_from_world * point.cast<double>();
+    if (in_camera.z() <= 0) return false;
+    const Eigen::Vector2f pixel = camera_.project(in_camera.cast<float>());
+    if (pixel.x() < -0.5f || pixel.y() < -0.5f ||
+        pixel.x() > static_cast<float>(camera_.width) - 0.5f ||
+        pixel.y() > static_cast<float>(camera_.height) - 0.5f)
+      return false;
+    const Eigen::Vector3f to_camera = lookout.eye - point;
+    const float distance = to_camera.norm();
+    if (distance <= leave_surface_m_ || distance > kFarthest_m) return false;
+    const Eigen::Vector3f direction = to_camera / distance;
+    return !scene_.occluded(point + leave_surface_m_ * direction, direction,
+                            distance - leave_surface_m_);
+  }
+
+  const RayScene& scene_;
+  const PinholeCamera& camera_;
+  float leave_surface_m_;
+  std::vector<Lookout> lookouts_;
+};
 
 }  // namespace
 
@@ -143,12 +181,11 @@ Mesh surface_mesh(const SynthRoom& room, const TruthMeshConfig& config) {
 Mesh seen_part(const Mesh& mesh, const RayScene& scene, const PinholeCamera& camera,
                std::span<const Pose> world_from_camera, const TruthMeshConfig& config) {
   std::vector<std::uint8_t> seen(mesh.vertices.size(), 0);
-  parallel_for(mesh.vertices.size(), kVerticesPerTask, [&](std::size_t i) {
-    seen[i] =
-        std::any_of(world_from_camera.begin(), world_from_camera.end(), [&](const Pose& pose) {
-          return seen_from(mesh.vertices[i], scene, camera, pose, config.leave_surface_m);
-        });
-  });
+  const Witnesses witnesses(scene, camera, world_from_camera, config.leave_surface_m);
+  parallel_for_ranges(
+      mesh.vertices.size(), kVerticesPerTask, [&](std::size_t begin, std::size_t end) {
+        witnesses.ask(std::span(mesh.vertices).subspan(begin, end - begin), seen.data() + begin);
+      });
   Mesh part;
   std::vector<std::uint32_t> new_index(mesh.vertices.size(), kDropped);
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {

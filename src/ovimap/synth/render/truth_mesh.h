@@ -25,8 +25,8 @@ void list_fields(TruthMeshConfig& config, ConfigFields& fields);
 /// and normal of each vertex.
 Mesh surface_mesh(const SynthRoom& room, const TruthMeshConfig& config = {});
 
-/// The vertices that at least one camera pose sees, with the triangles between them: what a mapper
-/// that watched these frames could know.
+/// The vertices that at least one camera pose sees from up to 16 m, with the triangles between
+/// them: what a mapper that watched these frames could know.
 Mesh seen_part(const Mesh& mesh, const RayScene& scene, const PinholeCamera& camera,
                std::span<const Pose> world_from_camera, const TruthMeshConfig& config = {});
 

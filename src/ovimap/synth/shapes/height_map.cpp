@@ -55,17 +55,20 @@ std::optional<float> HeightMap::rest(const OrientedBox& footprint, float toleran
   float lowest = std::numeric_limits<float>::infinity(), highest = kNothing;
   const int steps_x = std::max(1, static_cast<int>(std::ceil(2 * footprint.half_m.x() / cell_m_)));
   const int steps_y = std::max(1, static_cast<int>(std::ceil(2 * footprint.half_m.y() / cell_m_)));
+  const Eigen::Vector2f x_axis = footprint.x_axis(), y_axis = footprint.y_axis();
   for (int j = 0; j <= steps_y; ++j)
     for (int i = 0; i <= steps_x; ++i) {
       const Eigen::Vector2f part(static_cast<float>(2 * i) / static_cast<float>(steps_x) - 1,
                                  static_cast<float>(2 * j) / static_cast<float>(steps_y) - 1);
-      const Eigen::Vector2f p = footprint.world_from_box(part.cwiseProduct(footprint.half_m));
+      const Eigen::Vector2f point = part.cwiseProduct(footprint.half_m);
+      const Eigen::Vector2f p = footprint.center_m + point.x() * x_axis + point.y() * y_axis;
       const Eigen::Vector2f cell = (p - origin_m_) / cell_m_;
       const int x = static_cast<int>(std::floor(cell.x())),
                 y = static_cast<int>(std::floor(cell.y()));
       if (!heights_.contains(x, y)) return std::nullopt;
       lowest = std::min(lowest, heights_.at(x, y));
       highest = std::max(highest, heights_.at(x, y));
+      if (highest - lowest > tolerance_m) return std::nullopt;
     }
   if (!(highest - lowest <= tolerance_m)) return std::nullopt;
   return highest;

@@ -14,25 +14,39 @@ constexpr int kRepeatSide_px = 1024;
 constexpr float kRepeatSide_m = 2.56f;
 constexpr float kPictureResolution_px_m = 400;
 
-}  // namespace
-
-float smooth_step(float low, float high, float x) {
-  const float t = std::clamp((x - low) / (high - low), 0.f, 1.f);
+float eased(float t) {
   return t * t * (3 - 2 * t);
 }
 
+/// std::floor is a call where processors of before SSE4.1 are served.
+int floor_of(float x) {
+  const int towards_zero = static_cast<int>(x);
+  return towards_zero - (static_cast<float>(towards_zero) > x ? 1 : 0);
+}
+
+}  // namespace
+
+float smooth_step(float low, float high, float x) {
+  return eased(std::clamp((x - low) / (high - low), 0.f, 1.f));
+}
+
 float LatticeNoise::at(float x, float y, int period_x, int period_y) const {
-  const int left = static_cast<int>(std::floor(x)), top = static_cast<int>(std::floor(y));
-  const float u = smooth_step(0, 1, x - static_cast<float>(left));
-  const float v = smooth_step(0, 1, y - static_cast<float>(top));
-  const auto corner = [&](int dx, int dy) {
-    const auto wrap = [](int i, int period) { return ((i % period) + period) % period; };
-    const auto cell = static_cast<std::uint64_t>(wrap(left + dx, period_x)) << 32 |
-                      static_cast<std::uint64_t>(wrap(top + dy, period_y));
+  const int column = floor_of(x), row = floor_of(y);
+  const float u = eased(x - static_cast<float>(column));
+  const float v = eased(y - static_cast<float>(row));
+  // Most of the time of a room's textures goes here, so that divisions count.
+  const auto wrapped = [](int i, int period) {
+    const int rest = i % period;
+    return rest < 0 ? rest + period : rest;
+  };
+  const int left = wrapped(column, period_x), right = left + 1 == period_x ? 0 : left + 1;
+  const int top = wrapped(row, period_y), bottom = top + 1 == period_y ? 0 : top + 1;
+  const auto corner = [this](int cell_x, int cell_y) {
+    const auto cell = static_cast<std::uint64_t>(cell_x) << 32 | static_cast<std::uint64_t>(cell_y);
     return static_cast<float>(mix_bits(seed_ ^ mix_bits(cell)) >> 40) * 0x1p-24f;
   };
-  const float upper = corner(0, 0) * (1 - u) + corner(1, 0) * u;
-  const float lower = corner(0, 1) * (1 - u) + corner(1, 1) * u;
+  const float upper = corner(left, top) * (1 - u) + corner(right, top) * u;
+  const float lower = corner(left, bottom) * (1 - u) + corner(right, bottom) * u;
   return upper * (1 - v) + lower * v;
 }
 
