@@ -9,6 +9,7 @@
 
 #include "ovimap/base/config.h"
 #include "ovimap/base/error.h"
+#include "ovimap/base/parallel.h"
 #include "ovimap/synth/buildings/plan_rooms.h"
 #include "ovimap/synth/buildings/room_builder.h"
 #include "ovimap/synth/camera/walk.h"
@@ -205,8 +206,11 @@ SynthRoom build_plan(const FloorPlan& plan, const std::filesystem::path& furnitu
   all.name = plan.name;
   all.seed = plan.seed;
   all.faint_light = kFaintLight;
-  for (std::size_t i = 0; i < rooms.size(); ++i)
-    add_room(rooms[i], walkable_room(rooms[i].spec, plan, i, furniture_folder, config), all);
+  std::vector<SynthRoom> furnished(rooms.size());
+  parallel_for(rooms.size(), 1, [&](std::size_t i) {
+    furnished[i] = walkable_room(rooms[i].spec, plan, i, furniture_folder, config);
+  });
+  for (std::size_t i = 0; i < rooms.size(); ++i) add_room(rooms[i], std::move(furnished[i]), all);
   std::vector<std::size_t> used(rooms.size(), 0);
   for (const PlanDoor& door : plan.doors) {  // a room's doorways are in the order of the doors
     const Doorway& doorway = rooms[door.first].spec.doorways[used[door.first]];

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "ovimap/base/error.h"
+#include "ovimap/synth/buildings/office_building.h"
 #include "ovimap/synth/camera/small_camera_fixture.h"
 #include "ovimap/synth/furniture/furniture_palette.h"
 #include "ovimap/synth/recordings/sequence.h"
@@ -82,7 +83,7 @@ TEST(FloorPlanTest, DoorsThatJoinNothingAreSaid) {
 
 void expect_furnished_room_by_room(const SynthRoom& scene, const FloorPlan& plan) {
   EXPECT_GE(scene.size_m.x(), 8);
-  EXPECT_LE(scene.size_m.head<2>().maxCoeff(), 12);
+  EXPECT_LE(scene.size_m.head<2>().maxCoeff(), 22);
   ASSERT_EQ(scene.zones.size(), plan.rooms.size());
   for (const RoomZone& zone : scene.zones) {
     const Eigen::Vector2f low = zone.floor_m.min(), high = zone.floor_m.max();
@@ -106,18 +107,20 @@ void expect_walk_through_every_room_and_back(const SynthRoom& scene, double leas
   const PlaneSpline path(walking_round(scene, config, 0.175), 0.25, true);
   EXPECT_GT(path.seconds() * config.speed_mps, least_m);
   std::set<std::string> entered;
+  std::vector<OrientedBox> obstacles = scene.walls;
+  for (const RoomObject& object : scene.objects)
+    if (object.footprint && object.footprint->top_m > 0.1f &&
+        object.footprint->bottom_m < config.eye_m)
+      obstacles.push_back(*object.footprint);
   float least = 1;
   for (double t = 0; t < path.seconds(); t += 0.02) {
     const Eigen::Vector2f place = path.at(t).cast<float>();
     for (const RoomZone& zone : scene.zones)
       if (zone.floor_m.contains(place)) entered.insert(zone.name);
-    std::vector<OrientedBox> obstacles = scene.walls;
-    for (const RoomObject& object : scene.objects)
-      if (object.footprint && object.footprint->top_m > 0.1f &&
-          object.footprint->bottom_m < config.eye_m)
-        obstacles.push_back(*object.footprint);
+    const OrientedBox body{place, {0, 0}, 0, 0, 2};
     for (const OrientedBox& box : obstacles)
-      least = std::min(least, -footprint_overlap(box, {place, {0, 0}, 0, 0, 2}));
+      if ((box.center_m - place).norm() < box.half_m.norm() + 1.5f * least)
+        least = std::min(least, -footprint_overlap(box, body));
   }
   EXPECT_EQ(entered.size(), scene.zones.size());
   // Half the body's radius, less half a cell of the map and what bends of the spline cut off.
@@ -125,13 +128,15 @@ void expect_walk_through_every_room_and_back(const SynthRoom& scene, double leas
   EXPECT_TRUE(path.at(0).isApprox(path.at(path.seconds()), 1e-9));
 }
 
-class NamedPlan : public testing::TestWithParam<std::string> {
+class FurnishedPlan : public testing::Test {
  protected:
   void SetUp() override {
     if (!std::filesystem::exists(default_furniture_folder()))
       GTEST_SKIP() << "the Debian package sweethome3d-furniture is not installed";
   }
 };
+
+class NamedPlan : public FurnishedPlan, public testing::WithParamInterface<std::string> {};
 
 TEST_P(NamedPlan, IsFurnishedAndItsWalkEntersEveryRoomKeepsClearAndComesBack) {
   const FloorPlan plan = floor_plan(GetParam());
@@ -140,7 +145,32 @@ TEST_P(NamedPlan, IsFurnishedAndItsWalkEntersEveryRoomKeepsClearAndComesBack) {
   expect_walk_through_every_room_and_back(scene, GetParam() == "loop" ? 55 : 30);
 }
 
-INSTANTIATE_TEST_SUITE_P(Every, NamedPlan, testing::ValuesIn(floor_plan_names()),
+TEST_F(FurnishedPlan, ABuildingHoldsManyThingsAndIsWalkedThrough) {
+  const FloorPlan plan = office_building(3, 2);
+  const SynthRoom scene = build_plan(plan);
+  expect_furnished_room_by_room(scene, plan);
+  expect_walk_through_every_room_and_back(scene, 60);
+  EXPECT_GT(scene.objects.size(), plan.rooms.size() * 150);
+}
+
+TEST(OfficeBuilding, OneWalksThroughTheRowsAndBackByTheFirstRooms) {
+  const FloorPlan plan = floor_plan("building");
+  ASSERT_EQ(plan.rooms.size(), 100u);
+  std::set<std::string> names;
+  std::set<std::pair<std::size_t, std::size_t>> joined;
+  for (const PlanRoom& room : plan.rooms) names.insert(room.spec.name);
+  for (const PlanDoor& door : plan.doors) joined.insert({door.first, door.second});
+  EXPECT_EQ(names.size(), plan.rooms.size());
+  for (std::size_t i = 0; i + 1 < plan.rooms.size(); ++i)
+    EXPECT_TRUE(joined.count({i, i + 1})) << i;
+  EXPECT_EQ(plan.rooms.back().origin_m.x(), 0);
+  for (std::size_t first = 0; first < plan.rooms.size() - 10;
+       first += 20)  // of two rows, there and back
+    EXPECT_TRUE(joined.count({first, first + 19})) << first;
+  EXPECT_THROW(office_building(0, 3), Error);
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, NamedPlan, testing::Values("flat", "loop"),
                          [](const auto& plan) { return plan.param; });
 
 }  // namespace

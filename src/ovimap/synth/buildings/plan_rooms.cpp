@@ -8,6 +8,7 @@
 #include "ovimap/base/config.h"
 #include "ovimap/base/error.h"
 #include "ovimap/synth/buildings/floor_plan.h"
+#include "ovimap/synth/buildings/office_building.h"
 #include "ovimap/synth/rooms/rooms_v1.h"
 
 namespace ovimap {
@@ -17,6 +18,7 @@ using enum Placement;
 using Classes = std::vector<std::string>;
 
 constexpr float kPlanHeight_m = 2.5f;
+constexpr int kBuildingRooms = 10;  // each way
 
 /// Doors are the plan's own; these would stand in the way.
 const std::set<std::string>& left_out() {
@@ -116,7 +118,7 @@ RoomSpec plan_room(const std::string& kind, const Eigen::Vector3f& size_m) {
 }
 
 std::vector<std::string> floor_plan_names() {
-  return {"flat", "loop"};
+  return {"flat", "loop", "building"};
 }
 
 FloorPlan floor_plan(const std::string& name, std::uint64_t seed) {
@@ -125,6 +127,8 @@ FloorPlan floor_plan(const std::string& name, std::uint64_t seed) {
     plan = flat();
   else if (name == "loop")
     plan = loop();
+  else if (name == "building")
+    plan = office_building(kBuildingRooms, kBuildingRooms);
   else
     throw Error(concat("plan '", name, "': no such floor plan, did you mean '",
                        nearest_word(name, floor_plan_names()), "'?"));
