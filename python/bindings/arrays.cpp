@@ -44,7 +44,7 @@ std::string type_name(nb::dlpack::dtype type) {
 }
 
 /// "uint8 [480, 640, 3]".
-std::string describe(const AnyArray& array) {
+std::string array_text(const AnyArray& array) {
   std::string sizes;
   for (std::size_t i = 0; i < array.ndim(); ++i) sizes += concat(i > 0 ? ", " : "", array.shape(i));
   return type_name(array.dtype()) + " [" + sizes + "]";
@@ -135,8 +135,8 @@ float valid_depth(double depth_m, float min_depth_m, float max_depth_m) {
 RgbImage read_color(nb::handle object, const char* name) {
   constexpr const char* kExpected = "uint8 [height, width, 3], red first";
   const AnyArray array = array_of(object, name, kExpected);
-  if (array.dtype() != nb::dtype<std::uint8_t>()) refuse_type(name, kExpected, describe(array));
-  if (array.ndim() != 3 || array.shape(2) != 3) refuse_value(name, kExpected, describe(array));
+  if (array.dtype() != nb::dtype<std::uint8_t>()) refuse_type(name, kExpected, array_text(array));
+  if (array.ndim() != 3 || array.shape(2) != 3) refuse_value(name, kExpected, array_text(array));
   RgbImage image(static_cast<int>(array.shape(1)), static_cast<int>(array.shape(0)));
   auto* out = reinterpret_cast<std::uint8_t*>(image.data());
   const auto* data = static_cast<const std::uint8_t*>(array.data());
@@ -154,7 +154,7 @@ DepthImage read_depth(nb::handle object, std::optional<double> depth_scale, floa
       "float32 or float64 [height, width] in metres, or integers with depth_scale (how many are "
       "a metre)";
   const AnyArray array = array_of(object, "depth", kExpected);
-  if (array.ndim() != 2) refuse_value("depth", kExpected, describe(array));
+  if (array.ndim() != 2) refuse_value("depth", kExpected, array_text(array));
   if (depth_scale && !(*depth_scale > 0 && std::isfinite(*depth_scale)))
     refuse_value("depth_scale", "above 0: stored values per metre", concat(*depth_scale));
   const double scale = depth_scale.value_or(1);
@@ -165,7 +165,8 @@ DepthImage read_depth(nb::handle object, std::optional<double> depth_scale, floa
   };
   if (visit_floats(array, store)) return image;
   if (!depth_scale || !visit_integers(array, store))
-    refuse_type("depth", kExpected, describe(array) + (depth_scale ? "" : " without depth_scale"));
+    refuse_type("depth", kExpected,
+                array_text(array) + (depth_scale ? "" : " without depth_scale"));
   return image;
 }
 
@@ -175,7 +176,7 @@ IdImage read_ids(nb::handle object, const std::string& name, int width, int heig
   const std::string size = concat(" [", height, ", ", width, "], the size of the colour image");
   if (array.ndim() != 2 || static_cast<int>(array.shape(0)) != height ||
       static_cast<int>(array.shape(1)) != width)
-    refuse_value(name, "integers or bool" + size, describe(array));
+    refuse_value(name, "integers or bool" + size, array_text(array));
   IdImage ids(width, height);
   std::uint16_t* out = ids.data();
   const auto store = [&](auto value) {
@@ -185,7 +186,7 @@ IdImage read_ids(nb::handle object, const std::string& name, int width, int heig
   };
   const auto store_bool = [&out](bool value) { *out++ = value ? 1 : 0; };
   if (!visit_integers(array, store) && !visit_if_any_of<bool>(array, store_bool))
-    refuse_type(name, kExpected, describe(array));
+    refuse_type(name, kExpected, array_text(array));
   return ids;
 }
 
@@ -194,11 +195,11 @@ Picture read_picture(nb::handle object, const char* name) {
       "uint8 [height, width, 3], red first, or uint16 [height, width]";
   const AnyArray array = array_of(object, name, kExpected);
   if (array.ndim() == 3) return read_color(object, name);
-  if (array.ndim() != 2) refuse_value(name, kExpected, describe(array));
+  if (array.ndim() != 2) refuse_value(name, kExpected, array_text(array));
   Image<std::uint16_t> image(static_cast<int>(array.shape(1)), static_cast<int>(array.shape(0)));
   std::uint16_t* out = image.data();
   if (!visit_if_any_of<std::uint16_t>(array, [&out](std::uint16_t value) { *out++ = value; }))
-    refuse_type(name, kExpected, describe(array));
+    refuse_type(name, kExpected, array_text(array));
   return image;
 }
 
@@ -206,12 +207,12 @@ Pose read_pose(nb::handle object, const char* name) {
   constexpr const char* kExpected = "float32 or float64 [4, 4], a rigid transform";
   const AnyArray array = array_of(object, name, kExpected);
   if (array.ndim() != 2 || array.shape(0) != 4 || array.shape(1) != 4)
-    refuse_value(name, kExpected, describe(array));
+    refuse_value(name, kExpected, array_text(array));
   Eigen::Matrix<double, 4, 4, Eigen::RowMajor> matrix;
   double* out = matrix.data();
   const auto store = [&out](auto value) { *out++ = static_cast<double>(value); };
   if (!visit_floats(array, store) && !visit_integers(array, store))
-    refuse_type(name, kExpected, describe(array));
+    refuse_type(name, kExpected, array_text(array));
   if (const std::string fault = pose_fault(matrix); !fault.empty())
     refuse_value(name, kExpected, "a matrix that is none: " + fault);
   return rigid_pose(matrix);
@@ -223,11 +224,12 @@ Embeddings read_embeddings(nb::handle object, const std::string& name, std::size
   const AnyArray array = array_of(object, name, kExpected);
   if (array.ndim() != 2 || array.shape(0) != rows ||
       array.shape(1) != static_cast<std::size_t>(dimension))
-    refuse_value(name, concat("float32 or float64 [", rows, ", ", dimension, "]"), describe(array));
+    refuse_value(name, concat("float32 or float64 [", rows, ", ", dimension, "]"),
+                 array_text(array));
   Embeddings values(static_cast<Eigen::Index>(rows), dimension);
   float* out = values.data();
   if (!visit_floats(array, [&out](auto value) { *out++ = static_cast<float>(value); }))
-    refuse_type(name, kExpected, describe(array));
+    refuse_type(name, kExpected, array_text(array));
   for (Eigen::Index i = 0; i < values.rows(); ++i) {
     const float length = values.row(i).norm();
     if (std::isfinite(length) && length > 0)

@@ -258,7 +258,7 @@ def test_corrections_go_through_the_server(copy):
 @needs_program
 def test_a_map_that_is_being_made(room, tmp_path):
     out = tmp_path / "live.ovimap"
-    with serving("--live", room, "--masks", "gt", "--encoder", "default", "--fps", "4", "-o", out) as server:
+    with serving("--live", room, "--masks", "gt", "--encoder", "default", "--recognizer", "none", "--fps", "4", "--set", "map.voxel_size_m=0.02", "-o", out) as server:
         with agent_over_stdio(f"live={server.address}", f"gone={server.address}") as agent:
             seen = []
             while agent.maps().value[0]["being_made"]:

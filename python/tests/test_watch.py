@@ -310,7 +310,7 @@ def test_a_map_that_is_being_made_and_a_server_that_goes_away(room, tmp_path):
     from agent_fixture import serving
 
     out = tmp_path / "live.ovimap"
-    with serving("--live", room, "--masks", "gt", "--encoder", "default", "--fps", "8", "-o", out) as server:
+    with serving("--live", room, "--masks", "gt", "--encoder", "default", "--recognizer", "none", "--fps", "8", "--set", "map.voxel_size_m=0.02", "-o", out) as server:
         with command(server.address, "chair", "elephant", "--hold", "0.5") as line:
             told = line()
             assert (told["event"], told["query"]) == ("found", "chair") and told["map"] == server.address.split("/")[2]

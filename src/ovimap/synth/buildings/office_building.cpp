@@ -11,7 +11,7 @@ namespace {
 
 using enum Placement;
 
-constexpr float kWidth_m = 7.2f, kDepth_m = 7.f, kHeight_m = 2.7f;
+constexpr float kWidth_m = 7.2f, kDepth_m = 7.f, kCeiling_m = 2.7f;
 constexpr float kDoor_m = 1.6f;  // middle of the doors, from a room's south or west wall
 constexpr float kWallShelfBottom_m = 1.4f;
 
@@ -106,7 +106,7 @@ RoomSpec room_of(int number) {
   const Kind& kind = kKinds[static_cast<std::size_t>(number) % std::size(kKinds)];
   RoomSpec spec;
   spec.name = concat(kind.name, " ", number + 1);
-  spec.size_m = {kWidth_m, kDepth_m, kHeight_m};
+  spec.size_m = {kWidth_m, kDepth_m, kCeiling_m};
   spec.floor_style = "oak";
   spec.wall_color = {230, 228, 222};
   kind.furnish(spec);

@@ -31,6 +31,16 @@ double wrapped(double angle) {
   return std::remainder(angle, 2 * std::numbers::pi);
 }
 
+/// Whether the angle, wrapped, is less than `reach` from zero. The remainder is exact and slow, so
+/// it is asked only where the last bits count.
+bool within(double angle, double reach) {
+  constexpr double kTurn = 2 * std::numbers::pi, kDoubt = 1e-9;
+  const auto turns =
+      static_cast<double>(static_cast<long>(angle / kTurn + (angle < 0 ? -0.5 : 0.5)));
+  const double beyond = std::abs(angle - kTurn * turns) - reach;
+  return std::abs(beyond) > kDoubt ? beyond < 0 : std::abs(wrapped(angle)) < reach;
+}
+
 /// Something worth looking at.
 struct Sight {
   Eigen::Vector3d place;
@@ -175,8 +185,8 @@ class Plan {
   }
 
   bool in_view(const Glimpse& glimpse, const Choice& choice) const {
-    return std::abs(wrapped(glimpse.yaw - yaw_of(choice))) < half_width_ &&
-           std::abs(glimpse.pitch - pitch_of(choice)) < half_height_;
+    return std::abs(glimpse.pitch - pitch_of(choice)) < half_height_ &&
+           within(glimpse.yaw - yaw_of(choice), half_width_);
   }
 
   std::vector<Sight> sights_;
@@ -211,15 +221,17 @@ std::vector<Choice> guess(const SynthRoom& room, std::span<const Eigen::Vector3d
 std::vector<Gaze> plan_gazes(const SynthRoom& room, const RayScene& scene,
                              const PinholeCamera& camera, std::span<const Eigen::Vector3d> eyes_m,
                              double reach_rad) {
-  Plan plan(room, scene, camera, eyes_m, reach_rad);
-  std::vector<Choice> best;
-  double best_worth = -1;
-  for (const double offset :
-       {0.0, 0.5 * std::numbers::pi, -0.5 * std::numbers::pi, std::numbers::pi}) {
-    std::vector<Choice> choices = guess(room, eyes_m, offset, reach_rad);
-    const double worth = plan.improve(choices);
-    if (worth > best_worth) best = std::move(choices), best_worth = worth;
-  }
+  constexpr std::array kFirstLooks_rad = {0.0, 0.5 * std::numbers::pi, -0.5 * std::numbers::pi,
+                                          std::numbers::pi};  // from the middle of the room
+  const Plan plan(room, scene, camera, eyes_m, reach_rad);
+  std::array<std::vector<Choice>, kFirstLooks_rad.size()> tries;
+  std::array<double, kFirstLooks_rad.size()> worths{};
+  parallel_for(tries.size(), 1, [&](std::size_t i) {
+    tries[i] = guess(room, eyes_m, kFirstLooks_rad[i], reach_rad);
+    worths[i] = Plan(plan).improve(tries[i]);
+  });
+  const auto& best = tries[static_cast<std::size_t>(std::max_element(worths.begin(), worths.end()) -
+                                                    worths.begin())];
   std::vector<Gaze> gazes;
   for (const Choice& choice : best) {
     double yaw = Plan::yaw_of(choice);
