@@ -38,7 +38,7 @@ void library(RoomSpec& spec) {
   spec.furniture = {made("bookshelf", kAgainstWall, 8), made("table", kInMiddle),
                     made("chair", kAround, 4, table), made("armchair", kInCorner, 2),
                     made("floor lamp", kInCorner)};
-  spec.clutter = {{{"bookshelf"}, all_made({"standing book"}), 3, 6},
+  spec.clutter = {{{"bookshelf"}, all_made({"standing book"}), 3, 7},
                   {{"bookshelf"}, all_made({"photo stand", "vase", "box", "book"}), 0, 1},
                   {table, all_made({"book", "magazine", "paper", "glasses", "notebook"}), 8, 12}};
 }
@@ -65,7 +65,7 @@ void store(RoomSpec& spec) {
       {{"bookshelf"},
        all_made({"box", "can", "carton", "bottle", "folder", "tape", "tissue box", "pot"}),
        5,
-       7},
+       8},
       {{"table"}, all_made({"box", "tape", "scissors", "paper", "carton"}), 8, 12}};
 }
 
