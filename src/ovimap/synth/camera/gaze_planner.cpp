@@ -18,7 +18,7 @@ constexpr double kSeenAgain = 0.03;  // worth of a view from a side already seen
 constexpr double kShellWeight =
     0.1;  // of a patch of wall or floor, against 1 for a piece of furniture
 constexpr float kShellGrid_m = 0.7f;
-constexpr double kLeastDistance_m = 0.45, kBestDistance_m = 1.8, kFarthestSight_m = 16;
+constexpr double kLeastDistance_m = 0.45, kBestDistance_m = 1.8;
 constexpr double kWellInView = 0.85;  // share of the field of view in which things count as seen
 constexpr int kYaws = 60;
 constexpr std::array<double, 8> kPitches_rad = {-0.9, -0.7, -0.5, -0.3, -0.1, 0.1, 0.3, 0.5};
@@ -92,7 +92,7 @@ std::vector<Glimpse> glimpses_from(const Eigen::Vector3d& eye, const std::vector
   for (std::size_t i = 0; i < sights.size(); ++i) {
     const Eigen::Vector3d direction = sights[i].place - eye;
     const double distance = direction.norm();
-    if (distance < kLeastDistance_m || distance > kFarthestSight_m ||
+    if (distance < kLeastDistance_m || distance > kFarthestSeen_m ||
         !visible(sights[i], scene, eye, direction))
       continue;
     const double yaw = std::atan2(direction.y(), direction.x());

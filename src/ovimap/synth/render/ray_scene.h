@@ -13,6 +13,8 @@
 
 namespace ovimap {
 
+inline constexpr float kFarthestSeen_m = 16;  ///< no depth camera sees farther
+
 /// Where a ray meets a surface.
 struct RayHit {
   double distance = 0;  ///< in lengths of the ray's direction, from the triangle's plane in double

@@ -17,7 +17,6 @@ namespace {
 
 constexpr std::size_t kVerticesPerTask = 1024;
 constexpr std::uint32_t kDropped = ~0u;
-constexpr float kFarthest_m = 16;  // no depth camera sees farther
 
 struct Corner {
   Eigen::Vector3f position, normal;
@@ -129,7 +128,7 @@ class Witnesses {
     for (const Eigen::Vector3f& point : points) box.extend(point);
     std::vector<const Lookout*> near;
     for (const Lookout& lookout : lookouts_)
-      if (box.exteriorDistance(lookout.eye) < kFarthest_m) near.push_back(&lookout);
+      if (box.exteriorDistance(lookout.eye) < kFarthestSeen_m) near.push_back(&lookout);
     for (const Eigen::Vector3f& point : points) {
       const auto witness = std::find_if(
           near.begin(), near.end(), [&](const Lookout* lookout) { return sees(*lookout, point); });
@@ -149,7 +148,7 @@ class Witnesses {
       return false;
     const Eigen::Vector3f to_camera = lookout.eye - point;
     const float distance = to_camera.norm();
-    if (distance <= leave_surface_m_ || distance > kFarthest_m) return false;
+    if (distance <= leave_surface_m_ || distance > kFarthestSeen_m) return false;
     const Eigen::Vector3f direction = to_camera / distance;
     return !scene_.occluded(point + leave_surface_m_ * direction, direction,
                             distance - leave_surface_m_);

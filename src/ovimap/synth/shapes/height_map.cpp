@@ -68,9 +68,8 @@ std::optional<float> HeightMap::rest(const OrientedBox& footprint, float toleran
       if (!heights_.contains(x, y)) return std::nullopt;
       lowest = std::min(lowest, heights_.at(x, y));
       highest = std::max(highest, heights_.at(x, y));
-      if (highest - lowest > tolerance_m) return std::nullopt;
+      if (!(highest - lowest <= tolerance_m)) return std::nullopt;  // also where nothing is
     }
-  if (!(highest - lowest <= tolerance_m)) return std::nullopt;
   return highest;
 }
 

@@ -35,12 +35,8 @@ float LatticeNoise::at(float x, float y, int period_x, int period_y) const {
   const float u = eased(x - static_cast<float>(column));
   const float v = eased(y - static_cast<float>(row));
   // Most of the time of a room's textures goes here, so that divisions count.
-  const auto wrapped = [](int i, int period) {
-    const int rest = i % period;
-    return rest < 0 ? rest + period : rest;
-  };
-  const int left = wrapped(column, period_x), right = left + 1 == period_x ? 0 : left + 1;
-  const int top = wrapped(row, period_y), bottom = top + 1 == period_y ? 0 : top + 1;
+  const int left = wrapped_index(column, period_x), right = left + 1 == period_x ? 0 : left + 1;
+  const int top = wrapped_index(row, period_y), bottom = top + 1 == period_y ? 0 : top + 1;
   const auto corner = [this](int cell_x, int cell_y) {
     const auto cell = static_cast<std::uint64_t>(cell_x) << 32 | static_cast<std::uint64_t>(cell_y);
     return static_cast<float>(mix_bits(seed_ ^ mix_bits(cell)) >> 40) * 0x1p-24f;

@@ -31,11 +31,6 @@ RgbImage halved(const RgbImage& image) {
   return half;
 }
 
-int wrapped(int index, int size) {
-  const int rest = index % size;
-  return rest < 0 ? rest + size : rest;
-}
-
 }  // namespace
 
 float linear_from_srgb(std::uint8_t value) {
@@ -82,8 +77,8 @@ Eigen::Vector3f Texture::sample(const Eigen::Vector2f& uv, float footprint_px) c
   const float y = (v - std::floor(v)) * static_cast<float>(level.height()) - 0.5f;
   const int left = static_cast<int>(std::floor(x)), top = static_cast<int>(std::floor(y));
   const float right_part = x - static_cast<float>(left), low_part = y - static_cast<float>(top);
-  const int x0 = wrapped(left, level.width()), x1 = wrapped(left + 1, level.width());
-  const int y0 = wrapped(top, level.height()), y1 = wrapped(top + 1, level.height());
+  const int x0 = wrapped_index(left, level.width()), x1 = wrapped_index(left + 1, level.width());
+  const int y0 = wrapped_index(top, level.height()), y1 = wrapped_index(top + 1, level.height());
   const Eigen::Vector3f upper = linear_from_srgb(level.at(x0, y0)) * (1 - right_part) +
                                 linear_from_srgb(level.at(x1, y0)) * right_part;
   const Eigen::Vector3f lower = linear_from_srgb(level.at(x0, y1)) * (1 - right_part) +

@@ -13,6 +13,12 @@
 
 namespace ovimap {
 
+/// The index in a row of `size` that repeats in both directions.
+inline int wrapped_index(int index, int size) {
+  const int rest = index % size;
+  return rest < 0 ? rest + size : rest;
+}
+
 /// Linear light of an 8-bit sRGB value (IEC 61966-2-1), 0..1, and back.
 float linear_from_srgb(std::uint8_t value);
 std::uint8_t srgb_from_linear(float value);
