@@ -43,8 +43,8 @@ class Service : public LiveAudience {
     return map_->close_log();
   }
 
-  void saved(MapDocument&& document, std::size_t loops) {
-    map_->saved(std::move(document));
+  void saved(std::size_t loops) {
+    map_->saved();
     if (loops > 0) map_->loops_closed(loops);
   }
   void serve_on() {
@@ -82,12 +82,12 @@ void LiveService::run(const Announce& announce,
   MappingRun mapped = map_live(mapping, fps, target, &service, intake, camera);
   save_map(target.map, mapped.document);
   saved(mapped);
-  const bool go_on = !interrupted();
   const std::size_t loops = mapped.tracking ? mapped.tracking->loops.closed : 0;
-  if (go_on)
-    service.saved(std::move(mapped.document), loops);  // its voxels may be in the checkpoint
+  mapped.document = {};  // what is served from here on is the file
   mapped.checkpoints->remove();
-  if (go_on) service.serve_on();
+  if (interrupted()) return;
+  service.saved(loops);
+  service.serve_on();
 }
 
 }  // namespace ovimap::apps

@@ -125,13 +125,18 @@ std::vector<std::uint32_t> IncrementalMesh::update(const VoxelMap& map,
   return slots;
 }
 
+std::vector<Mesh> extract_patches(const VoxelMap& map, std::span<const std::uint32_t> slots) {
+  PatchMesher mesher(map);
+  std::vector<Mesh> patches;
+  for (const std::uint32_t slot : slots) patches.push_back(mesher.extract(slot));
+  return patches;
+}
+
 void for_each_patch(const VoxelMap& map, const std::function<void(Mesh&)>& visit) {
   for_each_part(map, [&](std::span<const Tile> tiles) {
     std::vector<std::vector<Mesh>> patches(tiles.size());
     parallel_for_ranges(tiles.size(), 2, [&](std::size_t begin, std::size_t end) {
-      PatchMesher mesher(map);
-      for (std::size_t i = begin; i < end; ++i)
-        for (const std::uint32_t slot : tiles[i].slots) patches[i].push_back(mesher.extract(slot));
+      for (std::size_t i = begin; i < end; ++i) patches[i] = extract_patches(map, tiles[i].slots);
     });
     for (std::vector<Mesh>& of_tile : patches)
       for (Mesh& patch : of_tile)

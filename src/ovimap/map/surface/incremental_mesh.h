@@ -43,6 +43,9 @@ class IncrementalMesh {
   std::uint64_t version_ = 0;
 };
 
+/// The patches of some blocks, in their order; empty where a block owns no surface.
+std::vector<Mesh> extract_patches(const VoxelMap& map, std::span<const std::uint32_t> slots);
+
 /// Calls `visit` with the patch of every block that owns surface, tile after tile, and lets the map
 /// make room in between: for maps whose mesh, or whose blocks, are more than memory holds. `visit`
 /// may change the patch.

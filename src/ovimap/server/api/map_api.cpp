@@ -18,7 +18,6 @@
 #include "ovimap/server/api/map_json.h"
 #include "ovimap/server/api/watch_api.h"
 #include "ovimap/server/http/request_body.h"
-#include "ovimap/server/surface/chunk_encoding.h"
 #include "ovimap/server/surface/surface_measure.h"
 
 namespace ovimap {
@@ -109,13 +108,18 @@ HttpReply answer_query(const ServedMap& map, const HttpRequest& request) {
 
 HttpReply show_place(const ServedMap& map, const HttpRequest& request) {
   constexpr int kQuality = 85;
+  constexpr float kAround_m = 5.f;  // a room is seen whole, a building is not
   const InstanceId id = instance_of(request);
   const auto now = map.snapshot();
-  if (!now->index().find(id))
+  const auto place = now->index().find(id);
+  if (!place)
     return fault(404, concat("the map has no object ", id, "; GET /api/instances lists them"));
   Bytes jpeg;
   try {
-    Mesh surface = labelled_surface(map.mesh(), now->instance_of_label, now->hidden());
+    Eigen::AlignedBox3f around = now->index().object(*place).box;
+    around.extend(around.min() - Eigen::Vector3f::Constant(kAround_m));
+    around.extend(around.max() + Eigen::Vector3f::Constant(kAround_m));
+    Mesh surface = labelled_surface(*map.surface(), now->instance_of_label, now->hidden(), around);
     jpeg = encode_jpeg(place_picture(std::move(surface), id, now->record->up), kQuality);
   } catch (const Error& error) {  // the object is there, but nothing of it was meshed
     return fault(409, error.what());
@@ -127,8 +131,8 @@ HttpReply show_place(const ServedMap& map, const HttpRequest& request) {
 
 int level_of(const std::string& text, int status) {
   const int level = whole_number<int>(text, "'level'", status);
-  if (level < 0 || level >= MeshStore::kLevels)
-    throw BadRequest(status, "'level' is 0 (all triangles) or 1 (few)");
+  if (level < 0 || level >= ServedSurface::kLevels)
+    throw BadRequest(status, "'level' is 0 (all triangles), 1 (few) or 2 (very few)");
   return level;
 }
 
@@ -144,12 +148,12 @@ HttpReply show_chunk(const ServedMap& map, const HttpRequest& request) {
   for (int i = 0; i < 3; ++i)
     index[i] = whole_number<int>(request.segments[static_cast<std::size_t>(i) + 1],
                                  "a chunk's coordinate", 404);
-  const auto chunk = map.mesh().find(level, index);
-  if (!chunk) return fault(404, "the map has no such chunk; GET /api/mesh lists those it has");
-  return text_reply(200, "application/octet-stream",
-                    encode_chunk(*chunk, map.mesh().grid(), level,
-                                 query_number<std::uint64_t>(request, "since", 0),
-                                 level > 0 ? map.mesh().find(0, index).get() : nullptr));
+  HttpReply reply;
+  reply.type = "application/octet-stream";
+  reply.body =
+      map.surface()->encoded(level, index, query_number<std::uint64_t>(request, "since", 0));
+  if (!reply.body) return fault(404, "the map has no such chunk; GET /api/mesh lists those it has");
+  return reply;
 }
 
 HttpReply correct(ServedMap& map, const HttpRequest& request) {
@@ -173,16 +177,15 @@ struct KeptGlb {
 
 HttpReply export_glb(const ServedMap& map, KeptGlb& kept) {
   const std::lock_guard lock(kept.mutex);
-  const std::uint64_t mesh_version = map.mesh().version();
+  const auto surface = map.surface();
   const auto now = map.snapshot();
-  if (!kept.file || kept.version != now->version || kept.mesh_version != mesh_version) {
+  if (!kept.file || kept.version != now->version || kept.mesh_version != surface->version()) {
     kept.file.reset();  // two never exist at once
-    const Mesh surface = labelled_surface(map.mesh(), now->instance_of_label, now->hidden());
-    const Bytes glb =
-        encode_glb(surface, now->record->instances, now->record->names, now->record->up);
+    const Mesh mesh = labelled_surface(*surface, now->instance_of_label, now->hidden());
+    const Bytes glb = encode_glb(mesh, now->record->instances, now->record->names, now->record->up);
     kept.file = std::make_shared<std::string>(glb.begin(), glb.end());
     kept.version = now->version;
-    kept.mesh_version = mesh_version;
+    kept.mesh_version = surface->version();
   }
   HttpReply reply;
   reply.type = "model/gltf-binary";

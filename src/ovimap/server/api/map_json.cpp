@@ -179,7 +179,7 @@ json map_json(const ServedMap& map) {
   return {{"title", map.path().stem().string()},
           {"program", version()},
           {"version", now->version},
-          {"mesh_version", map.mesh().version()},
+          {"mesh_version", map.surface()->version()},
           {"live", now->live},
           {"tracking", json::parse(tracking_json(map.tracking()))},
           {"frames", info.frames},
@@ -271,19 +271,22 @@ json relations_json(const ServedMap& map) {
 }
 
 json mesh_json(const ServedMap& map, int level, std::uint64_t since) {
-  const ChunkGrid& grid = map.mesh().grid();
+  const auto surface = map.surface();
   json chunks = json::array();
-  for (const ChunkListing& chunk : map.mesh().list(level, since))
-    chunks.push_back({{"x", chunk.index.x()},
-                      {"y", chunk.index.y()},
-                      {"z", chunk.index.z()},
-                      {"version", chunk.version},
-                      {"patches", chunk.patches},
-                      {"vertices", chunk.vertices},
-                      {"triangles", chunk.triangles}});
-  return {{"version", map.mesh().version()},
+  for (const ChunkListing& chunk : surface->list(level, since)) {
+    json row = {{"x", chunk.index.x()},
+                {"y", chunk.index.y()},
+                {"z", chunk.index.z()},
+                {"version", chunk.version}};
+    for (const auto& [name, total] : {std::pair("patches", &ChunkTotals::patches),
+                                      std::pair("vertices", &ChunkTotals::vertices),
+                                      std::pair("triangles", &ChunkTotals::triangles)})
+      row[name] = chunk.totals ? json((*chunk.totals).*total) : json();
+    chunks.push_back(std::move(row));
+  }
+  return {{"version", surface->version()},
           {"level", level},
-          {"chunk_edge_m", grid.edge_m()},
+          {"chunk_edge_m", surface->grid().edge_m()},
           {"chunks", chunks}};
 }
 

@@ -19,21 +19,15 @@ constexpr double kMostBurst_s = 0.5;     // of the allowance
 constexpr std::size_t kMostSlots = 512;  // at once: no frame shall wait long
 constexpr double kNewSlotsWeight = 0.2;  // of the latest figure in the running mean
 
-/// The mesh with normals, each the mean of the triangles around a vertex, weighted by their areas.
 Mesh with_normals(Mesh mesh) {
-  mesh.normals.assign(mesh.vertices.size(), Eigen::Vector3f::Zero());
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const Eigen::Vector3f twice_area =
-        (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
-    for (const std::uint32_t vertex : {a, b, c}) mesh.normals[vertex] += twice_area;
-  }
-  for (Eigen::Vector3f& normal : mesh.normals) normal.normalize();
+  add_normals(mesh);
   return mesh;
 }
 
 /// Adds the objects, as they are seen on the surface that clients have.
-void name_objects(const MeshStore& store, const InstanceSummaryConfig& config, FoundMap& found) {
-  const Mesh mesh = joined_surface(store);
+void name_objects(const ServedSurface& surface, const InstanceSummaryConfig& config,
+                  FoundMap& found) {
+  const Mesh mesh = joined_surface(surface);
   InstanceRegistry registry(found.record.instance_config);
   registry.restore(found.record.registry);
   found.record.instances = find_instances(mesh, found.forest, registry, config);
@@ -228,7 +222,7 @@ void LiveFeed::publish() {
     if (!patches.empty()) map_.show(std::move(patches));
     const auto start = Clock::now();
     if (found) {
-      name_objects(map_.mesh(), summary, *found);
+      name_objects(*map_.surface(), summary, *found);
       map_.show(std::move(*found));
     }
     lock.lock();

@@ -106,7 +106,7 @@ TEST_F(LiveFeedTest, ShowsSurfaceObjectsAndCamera) {
   map_frames(0, scene_.size());
   const Mesh whole = extract_mesh(mapper_->map());
   wait_until(
-      [&] { return joined_surface(map_->mesh()).triangles.size() == whole.triangles.size(); });
+      [&] { return joined_surface(*map_->surface()).triangles.size() == whole.triangles.size(); });
   wait_until([&] { return map_->snapshot()->record->frames.size() == 12 && objects() == 3; });
   const auto now = map_->snapshot();
   EXPECT_TRUE(now->live);
@@ -123,7 +123,7 @@ TEST_F(LiveFeedTest, ShowsSurfaceObjectsAndCamera) {
     for (const Label root : found.super_points) EXPECT_EQ(now->instance_of_label[root], found.id);
   }
   EXPECT_FALSE(now->record->seen_free.regions().empty()) << "for where to look next";
-  EXPECT_FALSE(map_->mesh().errors().empty());
+  EXPECT_FALSE(map_->surface()->errors().empty());
   std::set<std::string> heard;
   for (std::uint64_t i = 0; i < map_->events().last(); ++i)
     if (const auto event = map_->events().next(i)) heard.insert(event->type);
@@ -152,10 +152,10 @@ TEST_F(LiveFeedTest, CorrectionsSurviveMoreMappingAndTheEnd) {
   EXPECT_EQ(map_->snapshot()->name_of(table), "desk");
   EXPECT_EQ(map_->snapshot()->name_of(77), "of an earlier run");
 
-  MapDocument document = end();
+  end();
   EXPECT_THROW(rename(table, "too late"), Error);
   EXPECT_EQ(load_corrected_map(path_).instances.size(), 2u);
-  map_->saved(std::move(document));
+  map_->saved();
   EXPECT_FALSE(map_->snapshot()->live);
   EXPECT_EQ(objects(), 2u);
   EXPECT_EQ(map_->snapshot()->name_of(table), "desk");
@@ -166,12 +166,13 @@ TEST_F(LiveFeedTest, CorrectionsSurviveMoreMappingAndTheEnd) {
 TEST_F(LiveFeedTest, SavedSurfaceReplacesTheOneBefore) {
   map_frames(0, 4);
   wait_until([&] { return objects() == 3; });
-  const std::uint64_t seen = map_->mesh().version();
+  const std::uint64_t seen = map_->surface()->version();
   const std::size_t triangles = extract_mesh(mapper_->map()).triangles.size();
-  map_->saved(end());
-  EXPECT_EQ(joined_surface(map_->mesh()).triangles.size(), triangles);
-  EXPECT_GT(map_->mesh().version(), seen);
-  for (const int level : {0, 1}) EXPECT_FALSE(map_->mesh().list(level, seen).empty());
+  end();
+  map_->saved();
+  EXPECT_EQ(joined_surface(*map_->surface()).triangles.size(), triangles);
+  EXPECT_GT(map_->surface()->version(), seen);
+  for (const int level : {0, 1}) EXPECT_FALSE(map_->surface()->list(level, seen).empty());
 }
 
 TEST_F(LiveFeedTest, SendsNoMoreThanItsAllowance) {
@@ -182,33 +183,7 @@ TEST_F(LiveFeedTest, SendsNoMoreThanItsAllowance) {
   slow.vertices_per_s = 100;
   feed_ = std::make_unique<LiveFeed>(*map_, slow);
   map_frames(0, scene_.size());
-  EXPECT_LT(joined_surface(map_->mesh()).vertices.size(), 5000u);  // of 11,000
-}
-
-TEST(MeshStoreTest, ChangesPatchesAndTellsWhichWereLost) {
-  MeshStore store(ChunkGrid{0.01f});
-  const auto triangle = [](float x) {
-    Mesh mesh;
-    mesh.vertices = {{x, 0.01f, 0.01f}, {x + 0.01f, 0.01f, 0.01f}, {x, 0.02f, 0.01f}};
-    mesh.labels = {1, 1, 1};
-    mesh.triangles = {{0, 1, 2}};
-    return std::make_shared<Mesh>(mesh);
-  };
-  store.update({{{0, 0, 0}, 0, triangle(0.01f)}, {{20, 0, 0}, 0, triangle(1.61f)}});
-  EXPECT_EQ(store.version(), 1u);
-  EXPECT_EQ(store.list(0).size(), 2u);
-  store.update({{{1, 0, 0}, 0, triangle(0.09f)}, {{0, 0, 0}, 0, nullptr}});
-  ASSERT_EQ(store.list(0, 1).size(), 1u);
-  const auto chunk = store.find(0, {0, 0, 0});
-  ASSERT_EQ(chunk->patches.size(), 2u);
-  EXPECT_TRUE(chunk->patches[0].mesh->triangles.empty());  // said, so that clients drop it
-  EXPECT_EQ(chunk->patches[1].version, 2u);
-  store.replace(*triangle(0.09f));
-  EXPECT_EQ(joined_surface(store).triangles.size(), 1u);
-  const auto lost = store.find(0, {1, 0, 0});
-  ASSERT_TRUE(lost);
-  EXPECT_EQ(lost->version, 3u);
-  EXPECT_TRUE(store.find(1, {1, 0, 0})->patches[0].mesh->triangles.empty());
+  EXPECT_LT(joined_surface(*map_->surface()).vertices.size(), 5000u);  // of 11,000
 }
 
 }  // namespace

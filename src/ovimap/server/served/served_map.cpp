@@ -9,7 +9,7 @@
 #include "ovimap/io/corrections/map_edit_desk.h"
 #include "ovimap/io/map_file/map_edits.h"
 #include "ovimap/io/map_file/map_file.h"
-#include "ovimap/map/surface/mesh_extraction.h"
+#include "ovimap/io/map_file/saved_tiles.h"
 #include "ovimap/map/surface/surface_precision.h"
 #include "ovimap/pipeline/rooms/map_rooms.h"
 #include "ovimap/pipeline/search/teaching.h"
@@ -21,19 +21,13 @@ namespace {
 
 /// The voxels of a map file, read when they are needed: where an object was taken apart. Without a
 /// path none are: parts of what was taken apart are measured on the surface.
-VoxelSource voxels_of(const std::filesystem::path& path, std::optional<VoxelMap>& place) {
-  return [path, &place]() -> const VoxelMap& {
-    if (!place) place = path.empty() ? VoxelMap() : std::move(load_map(path).map);
+VoxelSource voxels_of(const std::filesystem::path& path, std::size_t max_bytes,
+                      std::optional<VoxelMap>& place) {
+  return [path, max_bytes, &place]() -> const VoxelMap& {
+    if (!place)
+      place = path.empty() ? VoxelMap() : std::move(load_map_by_tiles(path, max_bytes).map);
     return *place;
   };
-}
-
-BlockErrors errors_of(const VoxelMap& map) {
-  BlockErrors errors;
-  for (const std::uint32_t slot : map.ordered_slots())
-    if (const auto error_m = surface_error_m(map, map.block(slot)))
-      errors[pack_index(map.block_index(slot))] = error_byte(error_m);
-  return errors;
 }
 
 /// What is asked of the file must be of the map that clients see.
@@ -62,16 +56,17 @@ std::string tracking_json(const CameraTracking& tracking) {
 
 ServedMap::ServedMap(const std::filesystem::path& map, const ServedMapConfig& config)
     : path_(map), config_(config) {
-  MapDocument document = load_map(map);
-  mesh_ = std::make_unique<MeshStore>(ChunkGrid{document.map.config().voxel_size_m}, config.levels);
-  take_document(std::move(document));
+  open_saved();
   preparation_ = std::thread([this] { prepare_search(); });
 }
 
 ServedMap::ServedMap(const std::filesystem::path& map, FoundMap begun,
                      const ServedMapConfig& config)
-    : path_(map), config_(config), log_(begun.record.edits) {
-  mesh_ = std::make_unique<MeshStore>(ChunkGrid{begun.info.voxel_size_m}, config.levels);
+    : path_(map),
+      config_(config),
+      live_surface_(std::make_shared<LiveSurface>(ChunkGrid{begun.info.voxel_size_m})),
+      log_(begun.record.edits),
+      surface_(live_surface_) {
   begun.live = true;
   found_ = std::make_shared<FoundMap>(std::move(begun));
   rebuild();
@@ -81,6 +76,11 @@ ServedMap::ServedMap(const std::filesystem::path& map, FoundMap begun,
 ServedMap::~ServedMap() {
   events_.close();
   preparation_.join();
+}
+
+std::shared_ptr<const ServedSurface> ServedMap::surface() const {
+  const std::lock_guard lock(mutex_);
+  return surface_;
 }
 
 std::shared_ptr<const MapSnapshot> ServedMap::snapshot() const {
@@ -95,14 +95,23 @@ CameraTracking ServedMap::tracking() const {
 
 // ------------------------------------------------------------------------------------ new states
 
-void ServedMap::take_document(MapDocument&& document) {
+/// `changing_` is held, or nobody else knows this map yet.
+void ServedMap::open_saved() {
+  MapDocument document = load_map_by_tiles(path_, config_.voxel_bytes);
   auto found = std::make_shared<FoundMap>();
   found->info = read_map_info(path_);
   found->forest = document.map.labels();
-  mesh_->replace(extract_mesh(document.map), errors_of(document.map));
   found->record = std::move(static_cast<MapRecord&>(document));
   log_ = found->record.edits;
   found_ = std::move(found);
+  const auto shown = live_surface_ ? live_surface_->blocks() : ShownBlocks();
+  const std::uint64_t version = live_surface_ ? live_surface_->version() + 1 : 1;
+  auto surface = std::make_shared<const SavedSurface>(std::move(document.map), config_.surface,
+                                                      version, shown);
+  {
+    const std::lock_guard lock(mutex_);
+    surface_ = std::move(surface);
+  }
   rebuild();
 }
 
@@ -110,8 +119,9 @@ MapRecord ServedMap::corrected() const {
   MapRecord record = found_->record;
   record.edits = log_;
   std::optional<VoxelMap> place;
-  apply_edits(record, found_->forest,
-              voxels_of(found_->live ? std::filesystem::path() : path_, place));
+  apply_edits(
+      record, found_->forest,
+      voxels_of(found_->live ? std::filesystem::path() : path_, config_.voxel_bytes, place));
   return record;
 }
 
@@ -123,7 +133,7 @@ void ServedMap::rebuild() {
   next->live = found_->live;
   next->instance_of_label = label_table(record, found_->forest);
   if (found_->live)
-    measure_on_surface(labelled_surface(*mesh_, next->instance_of_label, {}),
+    measure_on_surface(labelled_surface(*surface(), next->instance_of_label, {}),
                        found_->surface_spacing_m, record);
   auto objects =
       std::make_shared<MapSearch>(make_map_search(record, found_->info, config_.query.shapes));
@@ -310,9 +320,10 @@ WordsOfObjects ServedMap::words_with_gone(const MapSnapshot& now) const {
 }
 
 std::vector<Gap> ServedMap::gaps(const GapsConfig& config) const {
-  SurfaceErrors surface;
-  for (const auto& [block, error] : mesh_->errors()) surface[block] = error_of_byte(error);
-  return find_gaps(snapshot()->record->seen_free, surface, mesh_->grid().block_m(), config);
+  const auto surface = this->surface();
+  SurfaceErrors errors;
+  for (const auto& [block, error] : surface->errors()) errors[block] = error_of_byte(error);
+  return find_gaps(snapshot()->record->seen_free, errors, surface->grid().block_m(), config);
 }
 
 std::shared_ptr<const StandingSpace> ServedMap::standing_space() const {
@@ -337,7 +348,7 @@ MapEdit ServedMap::correct(MapEdit edit) {
     MapRecord record = found_->record;
     record.edits = log_;
     std::optional<VoxelMap> place;
-    edit = append_edit(record, found_->forest, voxels_of({}, place), std::move(edit));
+    edit = append_edit(record, found_->forest, voxels_of({}, 0, place), std::move(edit));
     log_ = std::move(record.edits);
   } else {
     require_same_map(path_, found_->info);
@@ -362,8 +373,8 @@ void ServedMap::show(FoundMap found) {
 }
 
 void ServedMap::show(std::vector<SurfacePatch> patches) {
-  mesh_->update(std::move(patches));
-  events_.publish("mesh", concat("{\"version\":", mesh_->version(), "}"));
+  live_surface_->update(std::move(patches));
+  events_.publish("mesh", concat("{\"version\":", live_surface_->version(), "}"));
 }
 
 void ServedMap::show(const CameraTracking& tracking) {
@@ -387,11 +398,11 @@ MapEdits ServedMap::close_log() {
   return log_;
 }
 
-void ServedMap::saved(MapDocument&& document) {
+void ServedMap::saved() {
   const std::lock_guard lock(changing_);
-  take_document(std::move(document));
+  open_saved();
   log_closed_ = false;
-  events_.publish("mesh", concat("{\"version\":", mesh_->version(), "}"));
+  events_.publish("mesh", concat("{\"version\":", surface()->version(), "}"));
 }
 
 }  // namespace ovimap

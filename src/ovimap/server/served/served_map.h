@@ -18,7 +18,8 @@
 #include "ovimap/pipeline/search/history_search.h"
 #include "ovimap/server/served/event_hub.h"
 #include "ovimap/server/served/map_snapshot.h"
-#include "ovimap/server/surface/mesh_store.h"
+#include "ovimap/server/surface/live_surface.h"
+#include "ovimap/server/surface/saved_surface.h"
 
 namespace ovimap {
 
@@ -30,7 +31,8 @@ struct ServedMapConfig {
   int threads = 0;
   std::filesystem::path taught;  ///< file of what corrections teach; empty: they teach nothing
   QueryConfig query;
-  MeshLevelConfig levels;
+  SavedSurfaceConfig surface;
+  std::size_t voxel_bytes = 128 << 20;  ///< of a saved map, in memory at once
 };
 
 /// This map cannot be searched, whatever is asked.
@@ -86,8 +88,8 @@ std::string tracking_json(const CameraTracking& tracking);
 /// it is told what is found. Thread-safe.
 class ServedMap {
  public:
-  /// Reads the map and makes its surface ready; search and names follow in the background, since
-  /// they need the encoder. Throws what load_map throws.
+  /// Reads the map but for its voxels, which are read as its surface is asked for. Search and names
+  /// follow in the background, since they need the encoder. Throws what load_map_by_tiles throws.
   ServedMap(const std::filesystem::path& map, const ServedMapConfig& config = {});
   /// A map that is being made and will be saved at `map`, as yet with its log of corrections, its
   /// encoder and its voxel size (`begun.info`).
@@ -97,10 +99,11 @@ class ServedMap {
   ServedMap& operator=(const ServedMap&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
-  const MeshStore& mesh() const { return *mesh_; }
   const RelationConfig& relations() const { return config_.query.relations; }
   int max_query_chars() const { return config_.query.max_text_chars; }
   EventHub& events() const { return events_; }
+  /// Another one once a map that was being made is saved.
+  std::shared_ptr<const ServedSurface> surface() const;
   std::shared_ptr<const MapSnapshot> snapshot() const;
   /// The same when search is ready, or known to be impossible.
   std::shared_ptr<const MapSnapshot> prepared_snapshot() const;
@@ -145,13 +148,13 @@ class ServedMap {
   /// The log as it goes into the file. From now on corrections are refused, until the map is saved.
   MapEdits close_log();
   /// The map is saved: from now on it is one like any other.
-  void saved(MapDocument&& document);
+  void saved();
 
  private:
   void prepare_search();
   void open_encoder(const MapSnapshot& now);
   void rebuild();
-  void take_document(MapDocument&& document);
+  void open_saved();
   MapRecord corrected() const;
   void set_search(MapSnapshot& next) const;
   void learn_names();
@@ -161,7 +164,7 @@ class ServedMap {
 
   const std::filesystem::path path_;
   const ServedMapConfig config_;
-  std::unique_ptr<MeshStore> mesh_;
+  const std::shared_ptr<LiveSurface> live_surface_;  ///< null: the map is a saved one
   mutable EventHub events_;
 
   std::mutex changing_;  ///< guards what follows, for whoever makes a new snapshot
@@ -175,6 +178,7 @@ class ServedMap {
 
   mutable std::mutex mutex_;  ///< held for a moment only
   mutable std::condition_variable prepared_;
+  std::shared_ptr<const ServedSurface> surface_;
   std::shared_ptr<const MapSnapshot> snapshot_;
   CameraTracking tracking_;
   Teaching teaching_;

@@ -56,10 +56,6 @@ std::uint16_t sixteen_bits(float share) {
   return static_cast<std::uint16_t>(std::lround(std::clamp(share, 0.f, 1.f) * kSteps));
 }
 
-struct Totals {
-  std::uint32_t patches = 0, vertices = 0, triangles = 0;
-};
-
 template <class Visit>
 void for_each_newer(const MeshChunk& chunk, std::uint64_t since, Visit&& visit) {
   for (const SurfacePatch& patch : chunk.patches)
@@ -67,7 +63,7 @@ void for_each_newer(const MeshChunk& chunk, std::uint64_t since, Visit&& visit) 
 }
 
 void put_header(ByteWriter& out, const MeshChunk& chunk, const ChunkGrid& grid, int level,
-                const Totals& totals) {
+                const ChunkTotals& totals) {
   for (const char letter : {'O', 'V', 'M', 'C'}) out.put(letter);
   out.put(kFormatVersion);
   out.put(static_cast<std::uint16_t>(level));
@@ -110,13 +106,8 @@ void put_colors(ByteWriter& out, const SurfacePatch& patch, const ChunkGrid& gri
 }  // namespace
 
 std::string encode_chunk(const MeshChunk& chunk, const ChunkGrid& grid, int level,
-                         std::uint64_t since, const MeshChunk* fine) {
-  Totals totals;
-  for_each_newer(chunk, since, [&](const SurfacePatch& patch) {
-    ++totals.patches;
-    totals.vertices += static_cast<std::uint32_t>(patch.mesh->vertices.size());
-    totals.triangles += static_cast<std::uint32_t>(patch.mesh->triangles.size());
-  });
+                         std::uint64_t since, const BlockErrors& errors) {
+  const ChunkTotals totals = totals_of(chunk, since);
   ByteWriter out;
   out.reserve(56 + 28 * std::size_t{totals.patches} + 16 * std::size_t{totals.vertices} +
               12 * std::size_t{totals.triangles});
@@ -130,7 +121,6 @@ std::string encode_chunk(const MeshChunk& chunk, const ChunkGrid& grid, int leve
   const Eigen::Vector3f origin = grid.origin(chunk.index);
   for_each_newer(chunk, since,
                  [&](const SurfacePatch& patch) { put_positions(out, *patch.mesh, grid, origin); });
-  const BlockErrors errors = fine ? errors_of(*fine) : BlockErrors();
   for_each_newer(chunk, since,
                  [&](const SurfacePatch& patch) { put_colors(out, patch, grid, errors); });
   for_each_newer(chunk, since, [&](const SurfacePatch& patch) {

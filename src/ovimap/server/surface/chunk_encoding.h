@@ -11,9 +11,8 @@ namespace ovimap {
 /// A chunk as the viewer reads it; docs/http-api.md describes the bytes. Only patches newer than
 /// `since` are in it (0: all), among them empty ones, whose block lost its surface.
 ///
-/// `fine`: the same chunk at level 0, which tells how well a coarse one's surface is known; null:
-/// its patches tell.
+/// `errors`: how well the surface is known, where patches do not tell it.
 std::string encode_chunk(const MeshChunk& chunk, const ChunkGrid& grid, int level,
-                         std::uint64_t since = 0, const MeshChunk* fine = nullptr);
+                         std::uint64_t since = 0, const BlockErrors& errors = {});
 
 }  // namespace ovimap

@@ -67,7 +67,8 @@ TEST(ChunkEncodingTest, TellsHowWellPlacesAreKnown) {
   const std::string bytes = encode_chunk(fine, kGrid, 0);
   for (std::size_t v = 0; v < 4; ++v) EXPECT_EQ(at<std::uint8_t>(bytes, known + 4 * v), 12);
   EXPECT_EQ(at<std::uint8_t>(bytes, known + 4 * 4), 0) << "of a block of which nothing is told";
-  const std::string coarse = encode_chunk(two_patches(), kGrid, 1, 0, &fine);
+  const std::string coarse =
+      encode_chunk(two_patches(), kGrid, 1, 0, {{pack_index(fine.patches[0].block), 12}});
   EXPECT_EQ(at<std::uint8_t>(coarse, known), 12);
   EXPECT_EQ(at<std::uint8_t>(coarse, known + 4), 0) << "a vertex in another block";
 }

@@ -4,42 +4,13 @@
 
 #include <algorithm>
 #include <cstring>
-#include <map>
-#include <unordered_map>
 
 #include <meshoptimizer.h>
-
-#include "ovimap/base/parallel.h"
+#include <tsl/robin_map.h>
 
 namespace ovimap {
 
 namespace {
-
-using TrianglesByKey = std::map<std::uint64_t, std::vector<std::uint32_t>>;
-
-std::vector<std::uint64_t> block_keys(const Mesh& mesh, const ChunkGrid& grid) {
-  constexpr std::size_t kTrianglesPerTask = 16384;
-  std::vector<std::uint64_t> keys(mesh.triangles.size());
-  parallel_for(keys.size(), kTrianglesPerTask, [&](std::size_t t) {
-    const auto& [a, b, c] = mesh.triangles[t];
-    const Eigen::Vector3f center = (mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3.f;
-    keys[t] = pack_index(grid.block_of(center));
-  });
-  return keys;
-}
-
-MeshChunk make_chunk(const Mesh& mesh, const std::vector<std::uint32_t>& triangles,
-                     const std::vector<std::uint64_t>& keys, std::uint64_t version) {
-  TrianglesByKey by_block;
-  for (const std::uint32_t t : triangles) by_block[keys[t]].push_back(t);
-  MeshChunk chunk;
-  chunk.version = version;
-  chunk.index = ChunkGrid::chunk_of(unpack_index(by_block.begin()->first));
-  for (const auto& [block, own] : by_block)
-    chunk.patches.push_back(
-        {unpack_index(block), version, std::make_shared<Mesh>(part_of_mesh(mesh, own)), 0});
-  return chunk;
-}
 
 /// Appends `from`'s vertex to `to`; attributes that `from` lacks stay out.
 void copy_vertex(const Mesh& from, std::uint32_t vertex, Mesh& to) {
@@ -57,92 +28,72 @@ struct PositionHash {
   }
 };
 
-const unsigned int* flat(const Mesh& mesh) {
-  return mesh.triangles.empty() ? nullptr : mesh.triangles.front().data();
-}
+using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 
-}  // namespace
-
-Mesh part_of_mesh(const Mesh& mesh, const std::vector<std::uint32_t>& triangles) {
+/// Those triangles, with the vertices they need.
+Mesh with_triangles(const Mesh& mesh, const Triangles& triangles) {
+  constexpr std::uint32_t kUnused = ~std::uint32_t{0};
   Mesh part;
-  std::unordered_map<std::uint32_t, std::uint32_t> place;
-  for (const std::uint32_t t : triangles) {
-    std::array<std::uint32_t, 3> corners{};
+  std::vector<std::uint32_t> place(mesh.vertices.size(), kUnused);
+  for (const auto& corners : triangles) {
+    auto& own = part.triangles.emplace_back();
     for (std::size_t c = 0; c < 3; ++c) {
-      const std::uint32_t vertex = mesh.triangles[t][c];
-      const auto next = static_cast<std::uint32_t>(part.vertices.size());
-      const auto [entry, is_new] = place.try_emplace(vertex, next);
-      if (is_new) copy_vertex(mesh, vertex, part);
-      corners[c] = entry->second;
+      std::uint32_t& vertex = place[corners[c]];
+      if (vertex == kUnused) {
+        vertex = static_cast<std::uint32_t>(part.vertices.size());
+        copy_vertex(mesh, corners[c], part);
+      }
+      own[c] = vertex;
     }
-    part.triangles.push_back(corners);
   }
   return part;
 }
 
-std::vector<MeshChunk> cut_into_chunks(const Mesh& mesh, const ChunkGrid& grid,
-                                       std::uint64_t version) {
-  const std::vector<std::uint64_t> keys = block_keys(mesh, grid);
-  TrianglesByKey by_chunk;
-  for (std::uint32_t t = 0; t < keys.size(); ++t)
-    by_chunk[pack_index(ChunkGrid::chunk_of(unpack_index(keys[t])))].push_back(t);
-  std::vector<const std::vector<std::uint32_t>*> parts;
-  for (const auto& [chunk, triangles] : by_chunk) parts.push_back(&triangles);
-  std::vector<MeshChunk> chunks(parts.size());
-  parallel_for(parts.size(), 1,
-               [&](std::size_t i) { chunks[i] = make_chunk(mesh, *parts[i], keys, version); });
-  return chunks;
+}  // namespace
+
+ChunkTotals totals_of(const MeshChunk& chunk, std::uint64_t since) {
+  ChunkTotals totals;
+  for (const SurfacePatch& patch : chunk.patches) {
+    if (patch.version <= since) continue;
+    ++totals.patches;
+    totals.vertices += static_cast<std::uint32_t>(patch.mesh->vertices.size());
+    totals.triangles += static_cast<std::uint32_t>(patch.mesh->triangles.size());
+  }
+  return totals;
 }
 
-Mesh welded(const MeshChunk& chunk) {
+Mesh welded(std::span<const Mesh> patches) {
   Mesh mesh;
-  std::unordered_map<Eigen::Vector3f, std::uint32_t, PositionHash> place;
-  for (const SurfacePatch& patch : chunk.patches) {
-    std::vector<std::uint32_t> vertex_of(patch.mesh->vertices.size());
+  tsl::robin_map<Eigen::Vector3f, std::uint32_t, PositionHash> place;
+  std::vector<std::uint32_t> vertex_of;
+  for (const Mesh& patch : patches) {
+    vertex_of.resize(patch.vertices.size());
     for (std::uint32_t v = 0; v < vertex_of.size(); ++v) {
       const auto next = static_cast<std::uint32_t>(mesh.vertices.size());
-      const auto [entry, is_new] = place.try_emplace(patch.mesh->vertices[v], next);
-      if (is_new) copy_vertex(*patch.mesh, v, mesh);
+      const auto [entry, is_new] = place.try_emplace(patch.vertices[v], next);
+      if (is_new) copy_vertex(patch, v, mesh);
       vertex_of[v] = entry->second;
     }
-    for (const auto& [a, b, c] : patch.mesh->triangles)
+    for (const auto& [a, b, c] : patch.triangles)
       mesh.triangles.push_back({vertex_of[a], vertex_of[b], vertex_of[c]});
   }
   return mesh;
 }
 
-MeshChunk coarser_chunk(const MeshChunk& chunk, float triangle_share, float max_error_m) {
-  Mesh mesh = welded(chunk);
-  if (mesh.triangles.empty())
-    return {chunk.index,
-            chunk.version,
-            {{chunk.index * ChunkGrid::kChunkBlocks, chunk.version, std::make_shared<Mesh>(), 0}}};
+Mesh in_less_detail(const Mesh& mesh, const LevelOfDetail& level, float voxel_size_m) {
+  if (mesh.triangles.empty()) return {};
   const std::size_t indices = mesh.triangles.size() * 3;
   const float* positions = mesh.vertices.front().data();
   constexpr std::size_t kStride = sizeof(Eigen::Vector3f);
   const float scale = meshopt_simplifyScale(positions, mesh.vertices.size(), kStride);
-  std::vector<std::array<std::uint32_t, 3>> kept(mesh.triangles.size());
-  const auto target = static_cast<std::size_t>(static_cast<float>(indices) * triangle_share);
+  Triangles kept(mesh.triangles.size());
+  const auto target = static_cast<std::size_t>(static_cast<float>(indices) * level.triangle_share);
   const std::size_t left = meshopt_simplify(
-      kept.front().data(), flat(mesh), indices, positions, mesh.vertices.size(), kStride, target,
-      max_error_m / std::max(scale, 1e-6f), meshopt_SimplifyLockBorder, nullptr);
+      kept.front().data(), mesh.triangles.front().data(), indices, positions, mesh.vertices.size(),
+      kStride, target, level.max_error_voxels * voxel_size_m / std::max(scale, 1e-6f),
+      level.borders_stay ? meshopt_SimplifyLockBorder : 0, nullptr);
   kept.resize(left / 3);
-  mesh.triangles = std::move(kept);
-  std::vector<std::uint32_t> all(mesh.triangles.size());
-  for (std::uint32_t t = 0; t < all.size(); ++t) all[t] = t;
-  MeshChunk result;
-  result.index = chunk.index;
-  result.version = chunk.version;
-  result.patches.push_back({chunk.index * ChunkGrid::kChunkBlocks, chunk.version,
-                            std::make_shared<Mesh>(part_of_mesh(mesh, all)), 0});
-  return result;
-}
-
-BlockErrors errors_of(const MeshChunk& chunk) {
-  BlockErrors errors;
-  for (const SurfacePatch& patch : chunk.patches)
-    if (patch.error > 0) errors[pack_index(patch.block)] = patch.error;
-  return errors;
+  return with_triangles(mesh, kept);
 }
 
 }  // namespace ovimap

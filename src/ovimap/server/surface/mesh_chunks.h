@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "ovimap/geometry/mesh.h"
@@ -35,8 +36,8 @@ struct ChunkGrid {
   }
 };
 
-/// The surface of one block (at the coarse level: of a whole chunk, called by its first block),
-/// complete in itself. The labels of its vertices are the map's, not ids of objects: which label
+/// The surface of one block (of a saved map: of a whole chunk, called by its first block), complete
+/// in itself. The labels of its vertices are the map's, not ids of objects: which label
 /// belongs to which object changes more often than the surface.
 struct SurfacePatch {
   BlockIndex block = BlockIndex::Zero();
@@ -55,23 +56,28 @@ struct MeshChunk {
 /// error_byte of blocks, by pack_index.
 using BlockErrors = std::map<std::uint64_t, std::uint8_t>;
 
-/// Cuts a mesh with normals, colours and labels into chunks, ordered by index (z, y, x). A triangle
-/// belongs to the block of its centre; vertices that several parts need are copied.
-std::vector<MeshChunk> cut_into_chunks(const Mesh& mesh, const ChunkGrid& grid,
-                                       std::uint64_t version);
+/// Blocks of each chunk, by pack_index of the chunk.
+using ShownBlocks = std::map<std::uint64_t, std::vector<BlockIndex>>;
 
-/// The same chunks with few triangles: one patch each. The border of a chunk stays as it is, so
-/// that neighbours meet and each can be made anew alone. `triangle_share` of the triangles are
-/// kept where that moves the surface by no more than `max_error_m`.
-MeshChunk coarser_chunk(const MeshChunk& chunk, float triangle_share, float max_error_m);
+/// How much of it there is.
+struct ChunkTotals {
+  std::uint32_t patches = 0, vertices = 0, triangles = 0;
+};
 
-/// What the patches say of their blocks.
-BlockErrors errors_of(const MeshChunk& chunk);
+/// Of the patches newer than `since`.
+ChunkTotals totals_of(const MeshChunk& chunk, std::uint64_t since = 0);
 
-/// Some triangles of a mesh, with the vertices they need.
-Mesh part_of_mesh(const Mesh& mesh, const std::vector<std::uint32_t>& triangles);
+/// How much less detail a level has.
+struct LevelOfDetail {
+  float triangle_share = 0.1f;   ///< of those of the level before that are kept
+  float max_error_voxels = 3.f;  ///< by which that may move the surface; else more are kept
+  bool borders_stay = true;      ///< of chunks, so that neighbours of two levels meet
+};
+
+/// The same surface with fewer triangles, each of which keeps the corners' labels and colours.
+Mesh in_less_detail(const Mesh& mesh, const LevelOfDetail& level, float voxel_size_m);
 
 /// All patches in one mesh; vertices at the same place become one.
-Mesh welded(const MeshChunk& chunk);
+Mesh welded(std::span<const Mesh> patches);
 
 }  // namespace ovimap

@@ -48,10 +48,9 @@ LabelTable label_table(const MapRecord& corrected, const LabelForest& forest) {
   return table;
 }
 
-Mesh joined_surface(const MeshStore& store) {
+Mesh joined_surface(const ServedSurface& surface, const Eigen::AlignedBox3f& box) {
   Mesh mesh;
-  for (const auto& chunk : store.chunks())
-    for (const SurfacePatch& patch : chunk->patches) append(*patch.mesh, mesh);
+  surface.for_each_patch(box, [&](const SurfacePatch& patch) { append(*patch.mesh, mesh); });
   return mesh;
 }
 
@@ -59,9 +58,9 @@ void relabel(Mesh& mesh, const LabelTable& table) {
   for (std::uint32_t& label : mesh.labels) label = label < table.size() ? table[label] : 0;
 }
 
-Mesh labelled_surface(const MeshStore& store, const LabelTable& table,
-                      const std::set<InstanceId>& hidden) {
-  Mesh mesh = joined_surface(store);
+Mesh labelled_surface(const ServedSurface& surface, const LabelTable& table,
+                      const std::set<InstanceId>& hidden, const Eigen::AlignedBox3f& box) {
+  Mesh mesh = joined_surface(surface, box);
   relabel(mesh, table);
   if (hidden.empty()) return mesh;
   return without_labels(mesh, [&](std::uint32_t label) { return hidden.contains(label); });

@@ -7,7 +7,7 @@
 
 #include "ovimap/instance/instance_summary.h"
 #include "ovimap/io/map_tables/map_document.h"
-#include "ovimap/server/surface/mesh_store.h"
+#include "ovimap/server/surface/served_surface.h"
 
 namespace ovimap {
 
@@ -16,12 +16,13 @@ namespace ovimap {
 using LabelTable = std::vector<InstanceId>;
 LabelTable label_table(const MapRecord& corrected, const LabelForest& forest);
 
-/// The whole surface, its labels as the map has them.
-Mesh joined_surface(const MeshStore& store);
+/// The surface in all detail of the chunks that meet `box`, its labels as the map has them.
+Mesh joined_surface(const ServedSurface& surface, const Eigen::AlignedBox3f& box = all_space());
 
 /// The same with ids of objects as labels, and without what belongs to `hidden` ones.
-Mesh labelled_surface(const MeshStore& store, const LabelTable& table,
-                      const std::set<InstanceId>& hidden);
+Mesh labelled_surface(const ServedSurface& surface, const LabelTable& table,
+                      const std::set<InstanceId>& hidden,
+                      const Eigen::AlignedBox3f& box = all_space());
 
 /// Replaces every label by its object.
 void relabel(Mesh& mesh, const LabelTable& table);
