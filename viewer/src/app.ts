@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { api } from './api/client';
 import { listen } from './api/events';
-import type { Box, FrameEvent, Instance, MapInfo, MeshListing, Question } from './api/types';
+import type { Box, FrameEvent, Instance, MapInfo, Question } from './api/types';
 import { CameraState } from './camera-state';
 import { Commands } from './commands';
 import { Corrections } from './corrections';
@@ -133,13 +133,12 @@ export class App {
   async start(): Promise<void> {
     try {
       await waitForFrames(this.status);
-      const coarse = SurfaceLoader.coarse();
       const [info, instances, labels] = await loadObjects();
       this.takeMap(info, instances);
       this.makeView(info);
       this.view?.setLabels(labels);
       this.repaint();
-      this.follow(await this.loadSurface(await coarse));
+      this.follow(await this.loadSurface());
     } catch (error) {
       this.status.setBanner(faultText(error));
       this.status.progress(1);
@@ -193,7 +192,7 @@ export class App {
     tellWhatPanelsCover(this.view, this.search.element, this.card.element);
   }
 
-  private async loadSurface(coarse: MeshListing): Promise<SurfaceLoader | null> {
+  private async loadSurface(): Promise<SurfaceLoader | null> {
     const { view } = this;
     if (!view) {
       this.search.showAll(0);
@@ -201,7 +200,7 @@ export class App {
       return null;
     }
     const loader = new SurfaceLoader(view, (share) => this.status.progress(share));
-    const cameras = await loader.loadFirst(coarse);
+    const cameras = await loader.loadFirst();
     this.tools.pathPanel.setCount(cameras.frames.length);
     await this.mark('first-picture');
     this.showList(); // its pictures wait until the map is there

@@ -103,9 +103,10 @@ export interface ChunkListing {
   y: number;
   z: number;
   version: number;
-  patches: number;
-  vertices: number;
-  triangles: number;
+  /** These three are null as long as the chunk was not made. */
+  patches: number | null;
+  vertices: number | null;
+  triangles: number | null;
 }
 
 export interface MeshListing {

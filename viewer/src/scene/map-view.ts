@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
-import { Box3, Box3Helper, Color, Vector2, Vector3, Vector4 } from 'three';
+import { Box3, Box3Helper, Color, Frustum, Matrix4, Vector2, Vector3, Vector4 } from 'three';
 import type {
   Approach,
   Cameras,
@@ -64,6 +64,9 @@ export class MapView {
   private section: Section | null = null;
   private still = false;
 
+  /** Called when the view has moved and rests. */
+  onRest: () => void = () => undefined;
+
   /** Throws NoWebGlError where nothing can be drawn. */
   constructor(canvas: HTMLCanvasElement, info: MapInfo, hooks: MapViewHooks) {
     this.up = vectorOf(info.up).normalize();
@@ -71,6 +74,7 @@ export class MapView {
     this.stage = new Stage(canvas, this.up, {
       onFrame: (now) => this.frame(now),
       onDetail: (coarse) => this.surface.showCoarse(coarse),
+      onRest: () => this.onRest(),
       onLost: hooks.onLost,
     });
     this.measure = new Measure(() => 1.5 * info.voxel_size_m);
@@ -86,6 +90,26 @@ export class MapView {
   put(key: string, chunk: Chunk): void {
     this.surface.update(key, chunk);
     if (!this.still) this.stage.drawSoon();
+  }
+
+  /** Tells of chunks how far from the camera they are, and whether it sees them. */
+  look(): (
+    index: { x: number; y: number; z: number },
+    edge_m: number,
+  ) => {
+    distance: number;
+    inView: boolean;
+  } {
+    const { camera } = this.stage;
+    camera.updateMatrixWorld();
+    const frustum = new Frustum().setFromProjectionMatrix(
+      new Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse),
+    );
+    return ({ x, y, z }, edge_m) => {
+      const corner = new Vector3(x, y, z).multiplyScalar(edge_m);
+      const box = new Box3(corner, corner.clone().addScalar(edge_m));
+      return { distance: box.distanceToPoint(camera.position), inView: frustum.intersectsBox(box) };
+    };
   }
 
   /** Draws nothing until called again with false: the first picture should come in one go. */

@@ -29,6 +29,8 @@ export interface StageHooks {
   onFrame: (now: number) => boolean;
   /** Few triangles while moving on a slow machine (true), all of them at rest (false). */
   onDetail: (coarse: boolean) => void;
+  /** The view has moved and rests. */
+  onRest: () => void;
   onLost: () => void;
 }
 
@@ -134,6 +136,7 @@ export class Stage {
       if (this.held) return this.settleSoon();
       this.moving = false;
       this.hooks.onDetail(false);
+      this.hooks.onRest();
       this.draw();
     }, SETTLE_MS);
   }

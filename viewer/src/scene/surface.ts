@@ -47,7 +47,7 @@ function geometryOf(chunk: Chunk): BufferGeometry {
   return geometry;
 }
 
-/** The map's surface: chunks in up to two levels, of which one is drawn. */
+/** The map's surface: chunks in up to three levels, of which one is drawn. */
 export class Surface {
   readonly group = new Group();
   readonly table = new LabelTable();
@@ -56,6 +56,7 @@ export class Surface {
   private readonly chunks = new Map<string, (Mesh | undefined)[]>();
   private readonly whole = new Map<string, Chunk>(); // of level 0, for updates
   private coarse = false;
+  private nearby: ReadonlySet<string> = new Set(); // show level 1 where there are few triangles
 
   constructor() {
     this.texture = this.makeTexture();
@@ -85,7 +86,18 @@ export class Surface {
     this.chunks.set(key, levels);
     if (chunk.level === 0) this.whole.set(key, chunk);
     if (chunk.indices.length > 0) this.add(levels, chunk);
-    this.choose(levels);
+    this.choose(key, levels);
+  }
+
+  /** A level of a chunk is not needed any more. */
+  forget(key: string, level: number): void {
+    const levels = this.chunks.get(key);
+    const mesh = levels?.[level];
+    if (level === 0) this.whole.delete(key);
+    if (!levels || !mesh) return;
+    this.drop(mesh);
+    delete levels[level];
+    this.choose(key, levels);
   }
 
   private add(levels: (Mesh | undefined)[], chunk: Chunk): void {
@@ -103,7 +115,13 @@ export class Surface {
   showCoarse(coarse: boolean): void {
     if (coarse === this.coarse) return;
     this.coarse = coarse;
-    for (const levels of this.chunks.values()) this.choose(levels);
+    this.chooseAll();
+  }
+
+  /** Chunks that then show level 1; the others show less. */
+  showWhileMoving(nearby: ReadonlySet<string>): void {
+    this.nearby = nearby;
+    if (this.coarse) this.chooseAll();
   }
 
   get trianglesDrawn(): number {
@@ -117,7 +135,7 @@ export class Surface {
   box(): Box3 {
     const box = new Box3();
     for (const levels of this.chunks.values()) {
-      const mesh = levels[0] ?? levels[1];
+      const mesh = levels[0] ?? levels[1] ?? levels[2];
       if (!mesh?.geometry.boundingBox) continue;
       box.union(mesh.geometry.boundingBox.clone().applyMatrix4(mesh.matrix));
     }
@@ -128,7 +146,7 @@ export class Surface {
   samples(): Vector3[] {
     const samples: Vector3[] = [];
     for (const levels of this.chunks.values()) {
-      const mesh = levels[1] ?? levels[0];
+      const mesh = levels[2] ?? levels[1] ?? levels[0];
       const position = mesh?.geometry.getAttribute('position');
       for (let v = 0; mesh && position && v < position.count; v += SAMPLE_STEP)
         samples.push(new Vector3().fromBufferAttribute(position, v).applyMatrix4(mesh.matrix));
@@ -142,8 +160,15 @@ export class Surface {
     return texture;
   }
 
-  private choose(levels: (Mesh | undefined)[]): void {
-    const shown = this.coarse ? (levels[1] ?? levels[0]) : (levels[0] ?? levels[1]);
+  private chooseAll(): void {
+    for (const [key, levels] of this.chunks) this.choose(key, levels);
+  }
+
+  private choose(key: string, levels: (Mesh | undefined)[]): void {
+    const [all, some, few] = levels;
+    const finest = all ?? some ?? few;
+    const moving = this.nearby.has(key) ? (some ?? few ?? all) : (few ?? some ?? all);
+    const shown = this.coarse ? moving : finest;
     for (const mesh of levels) if (mesh) mesh.visible = mesh === shown;
   }
 
