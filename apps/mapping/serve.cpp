@@ -8,6 +8,7 @@
 #include "apps/command/teach_option.h"
 #include "camera_run.h"
 #include "ovimap/base/parallel.h"
+#include "ovimap/inference/encoders/text_cache.h"
 #include "ovimap/io/corrections/taught_file.h"
 #include "ovimap/server/api/viewer_files.h"
 #include "ovimap/server/http/access.h"
@@ -23,7 +24,7 @@ struct ServeOptions {
   std::filesystem::path output;
   MappingOptions mapping;
   ServerConfig server;
-  ServedMapConfig served;
+  ServedMapConfig served{.cache = user_cache_folder()};
   std::string viewer = "auto";
   std::filesystem::path token_file;
   TeachOption teach;

@@ -119,7 +119,7 @@ EmbeddingArray encode_texts(ImageTextEncoder& encoder, const std::vector<std::st
 /// With the lists of words that verdicts need encoded once per model and user, as the program does.
 std::shared_ptr<ImageTextEncoder> shared_encoder(std::unique_ptr<ImageTextEncoder> encoder) {
   if (!encoder) return nullptr;
-  return remember_text_lists(std::move(encoder), text_cache_folder());
+  return remember_text_lists(std::move(encoder), user_cache_folder());
 }
 
 }  // namespace

@@ -7,12 +7,9 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <list>
-#include <mutex>
-#include <string_view>
-#include <unordered_map>
 
 #include "ovimap/base/error.h"
+#include "ovimap/base/recently_used.h"
 #include "ovimap/inference/models/sha256.h"
 
 namespace ovimap {
@@ -56,45 +53,6 @@ void write_rows(const std::filesystem::path& file, const Embeddings& rows) {
   std::filesystem::remove(partial, fault);
 }
 
-/// Rows of lists of texts; the one that was not asked for the longest goes first. Whole lists,
-/// since a text encoded beside others may differ in its last bits. Thread-safe.
-class RecentLists {
- public:
-  std::optional<Embeddings> find(const std::string& key) {
-    const std::lock_guard lock(mutex_);
-    const auto known = entries_.find(key);
-    if (known == entries_.end()) return std::nullopt;
-    order_.splice(order_.begin(), order_, known->second);
-    return known->second->rows;
-  }
-
-  void keep(std::string key, const Embeddings& rows) {
-    const std::lock_guard lock(mutex_);
-    if (entries_.contains(key)) return;  // two asked at once
-    order_.push_front({std::move(key), rows});
-    entries_.emplace(order_.front().key, order_.begin());
-    bytes_ += order_.front().bytes();
-    while (bytes_ > kRecentTextBytes) {
-      bytes_ -= order_.back().bytes();
-      entries_.erase(order_.back().key);
-      order_.pop_back();
-    }
-  }
-
- private:
-  struct Entry {
-    std::string key;
-    Embeddings rows;
-    std::size_t bytes() const {
-      return key.size() + static_cast<std::size_t>(rows.size()) * sizeof(float);
-    }
-  };
-  std::mutex mutex_;
-  std::list<Entry> order_;  ///< latest first
-  std::size_t bytes_ = 0;
-  std::unordered_map<std::string_view, std::list<Entry>::iterator> entries_;
-};
-
 class ListKeeper : public ImageTextEncoder {
  public:
   ListKeeper(std::unique_ptr<ImageTextEncoder> encoder, std::filesystem::path folder)
@@ -121,7 +79,7 @@ class ListKeeper : public ImageTextEncoder {
     for (const std::string& text : texts) key += concat(text.size(), ":", text);
     if (auto known = recent_.find(key)) return std::move(*known);
     Embeddings rows = encode();
-    recent_.keep(std::move(key), rows);
+    recent_.keep(key, rows, key.size() + static_cast<std::size_t>(rows.size()) * sizeof(float));
     return rows;
   }
 
@@ -138,7 +96,8 @@ class ListKeeper : public ImageTextEncoder {
 
   const std::unique_ptr<ImageTextEncoder> encoder_;
   const std::filesystem::path folder_;
-  RecentLists recent_;
+  /// Whole lists, since a text encoded beside others may differ in its last bits.
+  RecentlyUsed<std::string, Embeddings> recent_{kRecentTextBytes};
 };
 
 }  // namespace
@@ -148,7 +107,7 @@ std::unique_ptr<ImageTextEncoder> remember_text_lists(std::unique_ptr<ImageTextE
   return std::make_unique<ListKeeper>(std::move(encoder), std::move(folder));
 }
 
-std::filesystem::path text_cache_folder() {
+std::filesystem::path user_cache_folder() {
   const auto folder_in = [](const char* variable) -> std::filesystem::path {
     const char* value = std::getenv(variable);
     return value == nullptr ? "" : value;

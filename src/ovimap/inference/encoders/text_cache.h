@@ -23,6 +23,6 @@ std::unique_ptr<ImageTextEncoder> remember_text_lists(std::unique_ptr<ImageTextE
 
 /// Where programs of this user keep such files: $XDG_CACHE_HOME/ovimap, else ~/.cache/ovimap; empty
 /// where neither is known.
-std::filesystem::path text_cache_folder();
+std::filesystem::path user_cache_folder();
 
 }  // namespace ovimap

@@ -190,7 +190,7 @@ std::unique_ptr<ImageTextEncoder> encoder_of_map(
   auto encoder = make_image_text_encoder(spec == "auto" ? model_of_map(of_map, model_dirs) : spec,
                                          runtime, model_dirs, EncoderUse::kTexts);
   if (!encoder || of_map.name.empty() || encoder->identity() == of_map)
-    return encoder ? remember_text_lists(std::move(encoder), text_cache_folder()) : nullptr;
+    return encoder ? remember_text_lists(std::move(encoder), user_cache_folder()) : nullptr;
   throw Error(
       concat("the map's embeddings are of encoder '", of_map.name, "' (", of_map.dimension,
              " numbers), not of '", encoder->identity().name, "' (", encoder->identity().dimension,

@@ -106,8 +106,10 @@ void ServedMap::open_saved() {
   found_ = std::move(found);
   const auto shown = live_surface_ ? live_surface_->blocks() : ShownBlocks();
   const std::uint64_t version = live_surface_ ? live_surface_->version() + 1 : 1;
-  auto surface = std::make_shared<const SavedSurface>(std::move(document.map), config_.surface,
-                                                      version, shown);
+  SavedSurfaceConfig config;
+  config.levels_file = levels_file(config_.cache, found_->info.content_hash);
+  auto surface =
+      std::make_shared<const SavedSurface>(std::move(document.map), config, version, shown);
   {
     const std::lock_guard lock(mutex_);
     surface_ = std::move(surface);

@@ -31,8 +31,9 @@ struct ServedMapConfig {
   int threads = 0;
   std::filesystem::path taught;  ///< file of what corrections teach; empty: they teach nothing
   QueryConfig query;
-  SavedSurfaceConfig surface;
   std::size_t voxel_bytes = 128 << 20;  ///< of a saved map, in memory at once
+  std::filesystem::path cache;          ///< folder for what a map's surface is in less detail, for
+                                        ///< the next time; empty: nothing is kept
 };
 
 /// This map cannot be searched, whatever is asked.

@@ -3,6 +3,7 @@
 #include "ovimap/server/surface/saved_surface.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include "ovimap/base/error.h"
 #include "ovimap/base/parallel.h"
@@ -72,9 +73,9 @@ MeshChunk SavedSurface::in_one_patch(const Chunk& chunk, SharedMesh mesh) const 
   return {chunk.index, version_, {{first, version_, std::move(mesh), 0}}};
 }
 
-std::shared_ptr<const SavedSurface::Made> SavedSurface::make(const Chunk& chunk,
-                                                             SharedMesh mesh) const {
-  auto made = std::make_shared<Made>();
+std::shared_ptr<const MadeChunk> SavedSurface::make(const Chunk& chunk, SharedMesh mesh) const {
+  auto made = std::make_shared<MadeChunk>();
+  made->index = chunk.index;
   made->errors = errors_of(chunk);
   made->totals[0] = totals_of(in_one_patch(chunk, mesh));
   for (std::size_t i = 0; i < config_.levels.size(); ++i) {
@@ -88,25 +89,44 @@ std::shared_ptr<const SavedSurface::Made> SavedSurface::make(const Chunk& chunk,
   return made;
 }
 
-std::shared_ptr<const SavedSurface::Made> SavedSurface::known(const Chunk& chunk) const {
+std::shared_ptr<const MadeChunk> SavedSurface::known(const Chunk& chunk) const {
   const std::lock_guard lock(mutex_);
   return chunk.made;
 }
 
 /// `mesh`: mesh_of the chunk, for whoever has it already.
-std::shared_ptr<const SavedSurface::Made> SavedSurface::made(const Chunk& chunk,
-                                                             SharedMesh mesh) const {
+std::shared_ptr<const MadeChunk> SavedSurface::made(const Chunk& chunk, SharedMesh mesh) const {
   if (auto made = known(chunk)) return made;
   auto made = make(chunk, mesh ? std::move(mesh) : mesh_of(chunk));
   const std::lock_guard lock(mutex_);
   return chunk.made = std::move(made);
 }
 
+/// What an earlier program made of the same voxels.
+bool SavedSurface::take_kept() const {
+  if (config_.levels_file.empty() || version_ != 1) return false;
+  for (const auto& kept : read_levels(config_.levels_file))
+    if (const Chunk* chunk = find(kept->index)) {
+      const std::lock_guard lock(mutex_);
+      chunk->made = kept;
+    }
+  return std::all_of(chunks_.begin(), chunks_.end(),
+                     [&](const Chunk& chunk) { return known(chunk) != nullptr; });
+}
+
 void SavedSurface::make_all() const {
+  constexpr std::chrono::seconds kWorthKeeping{1};
   try {
+    if (take_kept()) return;
+    const auto start = std::chrono::steady_clock::now();
     parallel_for(chunks_.size(), 1, [&](std::size_t i) {
       if (!ending_) made(chunks_[i]);
     });
+    const bool keep = !config_.levels_file.empty() && version_ == 1 && !ending_ &&
+                      std::chrono::steady_clock::now() - start > kWorthKeeping;
+    MadeChunks all;
+    for (std::size_t i = 0; keep && i < chunks_.size(); ++i) all.push_back(known(chunks_[i]));
+    if (keep) write_levels(config_.levels_file, all);
   } catch (const Error&) {  // whoever asks for the chunk that cannot be read is told
   }
 }
@@ -134,9 +154,9 @@ std::shared_ptr<const std::string> SavedSurface::encoded(int level, const Eigen:
   const std::uint64_t key = pack_index(index);
   const bool whole = since == 0 || !shown_.contains(key);
   if (whole)
-    if (auto kept = fine_.find(key)) return kept;
+    if (auto kept = fine_.find(key)) return *kept;
   Bytes bytes = make_fine(*chunk, since);
-  if (whole) fine_.keep(key, bytes);
+  if (whole) fine_.keep(key, bytes, bytes->size());
   return bytes;
 }
 

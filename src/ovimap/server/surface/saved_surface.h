@@ -9,16 +9,17 @@
 #include <shared_mutex>
 #include <thread>
 
+#include "ovimap/base/recently_used.h"
 #include "ovimap/map/voxels/voxel_map.h"
-#include "ovimap/server/surface/kept_bytes.h"
-#include "ovimap/server/surface/served_surface.h"
+#include "ovimap/server/surface/levels_file.h"
 
 namespace ovimap {
 
 struct SavedSurfaceConfig {
   /// Levels 1 and 2. What is seen as the smallest of pictures need not meet its neighbours.
   std::array<LevelOfDetail, ServedSurface::kLevels - 1> levels = {{{}, {0.1f, 10.f, false}}};
-  std::size_t kept_bytes = 256 << 20;  ///< of encoded chunks of level 0
+  std::size_t kept_bytes = 256 << 20;      ///< of encoded chunks of level 0
+  std::filesystem::path levels_file = {};  ///< where levels 1 and 2 are kept; empty: nowhere
 };
 
 /// The surface of a saved map. A chunk is made out of its voxels when somebody asks for it, and the
@@ -43,26 +44,21 @@ class SavedSurface final : public ServedSurface {
 
  private:
   using Bytes = std::shared_ptr<const std::string>;
-  /// What is known of a chunk once it was made.
-  struct Made {
-    std::array<ChunkTotals, kLevels> totals;
-    std::array<Bytes, kLevels - 1> coarse;  ///< levels 1 and 2
-    BlockErrors errors;
-  };
   struct Chunk {
     Eigen::Vector3i index = Eigen::Vector3i::Zero();
-    std::vector<std::uint32_t> slots;               ///< of its blocks
-    mutable std::shared_ptr<const Made> made = {};  ///< null: not yet. Guarded by `mutex_`
+    std::vector<std::uint32_t> slots;                    ///< of its blocks
+    mutable std::shared_ptr<const MadeChunk> made = {};  ///< null: not yet. Guarded by `mutex_`
   };
   using SharedMesh = std::shared_ptr<const Mesh>;
   const Chunk* find(const Eigen::Vector3i& index) const;
   SharedMesh mesh_of(const Chunk& chunk) const;
   BlockErrors errors_of(const Chunk& chunk) const;
   MeshChunk in_one_patch(const Chunk& chunk, SharedMesh mesh) const;
-  std::shared_ptr<const Made> known(const Chunk& chunk) const;
-  std::shared_ptr<const Made> made(const Chunk& chunk, SharedMesh mesh = nullptr) const;
-  std::shared_ptr<const Made> make(const Chunk& chunk, SharedMesh mesh) const;
+  std::shared_ptr<const MadeChunk> known(const Chunk& chunk) const;
+  std::shared_ptr<const MadeChunk> made(const Chunk& chunk, SharedMesh mesh = nullptr) const;
+  std::shared_ptr<const MadeChunk> make(const Chunk& chunk, SharedMesh mesh) const;
   Bytes make_fine(const Chunk& chunk, std::uint64_t since) const;
+  bool take_kept() const;
   void make_all() const;
 
   const SavedSurfaceConfig config_;
@@ -73,7 +69,7 @@ class SavedSurface final : public ServedSurface {
   mutable std::atomic<unsigned> read_ = 0;  ///< how many chunks' voxels
   std::vector<Chunk> chunks_;               ///< ordered by index (z, y, x)
   mutable std::mutex mutex_;
-  mutable KeptBytes fine_;
+  mutable RecentlyUsed<std::uint64_t, Bytes> fine_;  ///< by pack_index
   std::atomic<bool> ending_ = false;
   std::thread ahead_;
 };
