@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "ovimap/base/buffer_pool.h"
+#include "ovimap/base/memory/buffer_pool.h"
 #include "ovimap/base/error.h"
 
 namespace ovimap {

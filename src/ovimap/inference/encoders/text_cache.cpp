@@ -9,7 +9,7 @@
 #include <fstream>
 
 #include "ovimap/base/error.h"
-#include "ovimap/base/recently_used.h"
+#include "ovimap/base/memory/recently_used.h"
 #include "ovimap/inference/models/sha256.h"
 
 namespace ovimap {

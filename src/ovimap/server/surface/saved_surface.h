@@ -9,7 +9,7 @@
 #include <shared_mutex>
 #include <thread>
 
-#include "ovimap/base/recently_used.h"
+#include "ovimap/base/memory/recently_used.h"
 #include "ovimap/map/voxels/voxel_map.h"
 #include "ovimap/server/surface/levels_file.h"
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
-#include "ovimap/base/recently_used.h"
+#include "ovimap/base/memory/recently_used.h"
 
 #include <string>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
-#include "ovimap/base/buffer_pool.h"
+#include "ovimap/base/memory/buffer_pool.h"
 
 #include <mutex>
 #include <new>
