@@ -3,6 +3,7 @@
 #include "ovimap/geometry/convex_hull.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include <Eigen/Geometry>
@@ -14,7 +15,39 @@ float turn(const Eigen::Vector2f& a, const Eigen::Vector2f& b, const Eigen::Vect
   return u.x() * v.y() - u.y() * v.x();
 }
 
+namespace {
+
+/// Drops most of the points that lie inside the octagon of those farthest out along eight
+/// directions: none of them is a corner of the hull, and sorting them is what a hull costs (Akl and
+/// Toussaint 1978, "A fast convex hull algorithm").
+void drop_inner(std::vector<Eigen::Vector2f>& points) {
+  constexpr std::size_t kWorthwhile = 64;
+  if (points.size() < kWorthwhile) return;
+  std::array<Eigen::Vector2f, 8> octagon;  // counter-clockwise
+  octagon.fill(points.front());
+  constexpr std::array<std::array<float, 2>, 8> kOutward = {
+      {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
+  for (const Eigen::Vector2f& point : points)
+    for (std::size_t i = 0; i < octagon.size(); ++i) {
+      const Eigen::Vector2f outward(kOutward[i][0], kOutward[i][1]);
+      if (outward.dot(point) > outward.dot(octagon[i])) octagon[i] = point;
+    }
+  // Well inside: what rounding could put on the wrong side of an edge stays.
+  const float slack =
+      1e-5f * ((octagon[0] - octagon[4]).squaredNorm() + (octagon[2] - octagon[6]).squaredNorm());
+  std::erase_if(points, [&](const Eigen::Vector2f& point) {
+    for (std::size_t i = 0; i < octagon.size(); ++i) {
+      const Eigen::Vector2f &a = octagon[i], &b = octagon[(i + 1) % octagon.size()];
+      if (a != b && turn(a, b, point) <= slack) return false;
+    }
+    return true;
+  });
+}
+
+}  // namespace
+
 std::vector<Eigen::Vector2f> convex_hull(std::vector<Eigen::Vector2f> points) {
+  drop_inner(points);
   std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) {
     return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
   });

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "ovimap/base/memory/buffer_pool.h"
 #include "ovimap/base/error.h"
+#include "ovimap/base/memory/buffer_pool.h"
 
 namespace ovimap {
 

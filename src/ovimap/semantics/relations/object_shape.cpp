@@ -3,27 +3,21 @@
 #include "ovimap/semantics/relations/object_shape.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
 #include "ovimap/base/config.h"
+#include "ovimap/map/voxels/voxel_block.h"
 
 namespace ovimap {
 
 namespace {
 
-using Cell = std::array<int, 3>;
-
 /// The first point of each cell of a grid, in the order of the cells.
 std::vector<Eigen::Vector3f> thinned(const std::vector<Eigen::Vector3f>& points, float spacing_m) {
-  std::vector<std::pair<Cell, std::size_t>> cells(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      cells[i].first[axis] =
-          static_cast<int>(std::floor(points[i][static_cast<Eigen::Index>(axis)] / spacing_m));
-    cells[i].second = i;
-  }
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> cells(points.size());
+  for (std::uint32_t i = 0; i < cells.size(); ++i)
+    cells[i] = {pack_index(floor_to_int(points[i] / spacing_m)), i};
   std::sort(cells.begin(), cells.end());
   std::vector<Eigen::Vector3f> kept;
   for (std::size_t i = 0; i < cells.size(); ++i)
