@@ -9,7 +9,7 @@ import { Rounds } from './rounds';
 import type { MapView } from './scene/map-view';
 
 const AT_ONCE = 6; // what browsers allow for one server
-const FIRST_PICTURE_MS = 700; // what came by then is shown
+const FIRST_PICTURE_MS = 500; // what came by then is shown
 
 /** A chunk that the server has, and what of it is here. */
 interface Known {

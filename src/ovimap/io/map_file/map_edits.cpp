@@ -11,6 +11,7 @@
 #include "ovimap/io/map_file/map_file_access.h"
 #include "ovimap/io/map_file/map_file_change.h"
 #include "ovimap/io/map_file/map_file_parts.h"
+#include "ovimap/io/map_file/saved_tiles.h"
 
 namespace ovimap {
 
@@ -44,7 +45,9 @@ MapEdits read_edits(const std::filesystem::path& path) {
 }
 
 MapDocument load_corrected_map(const std::filesystem::path& path) {
-  MapDocument document = load_map(path);
+  constexpr std::size_t kMostVoxelBytes = std::size_t{1}
+                                          << 30;  // a flat's stay once they were read
+  MapDocument document = load_map_by_tiles(path, kMostVoxelBytes);
   const VoxelMap& map = document.map;
   apply_edits(document, map.labels(), [&]() -> const VoxelMap& { return map; });
   return document;

@@ -21,7 +21,8 @@ MapEdit edit_map(const std::filesystem::path& path, MapEdit edit);
 MapEdits read_edits(const std::filesystem::path& path);
 
 /// The map as people corrected it, for everybody who shows or exports it. It must not be saved:
-/// that would take the corrections for findings. load_map gives what mapping found, with the log.
+/// that would take the corrections for findings. Its voxels are read when they are asked for
+/// (load_map_by_tiles). load_map gives what mapping found, with the log.
 MapDocument load_corrected_map(const std::filesystem::path& path);
 
 }  // namespace ovimap

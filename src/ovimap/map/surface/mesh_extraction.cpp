@@ -4,18 +4,20 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 #include <Eigen/Geometry>
 
 #include "ovimap/base/parallel.h"
 #include "ovimap/map/surface/marching_cubes_table.h"
 #include "ovimap/map/surface/mesh_vertex.h"
+#include "ovimap/map/voxels/block_tiles.h"
 
 namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kMeshedBlocksPerTask = 8;
+constexpr std::size_t kMeshedTilesPerTask = 1;
 constexpr int kCellSide = kBlockSide + 1;  // a block's cells reach one voxel into its neighbours
 constexpr int kEdges = kBlockVoxels * 3;
 constexpr std::uint16_t kNoVertex = 0xffff;
@@ -145,16 +147,29 @@ class BlockMesher {
   const std::vector<std::uint32_t>& slots_;
 };
 
-/// Joins the parts and leaves out vertices that no triangle uses (edges at the border of observed
-/// space).
-Mesh join(const std::vector<BlockMesh>& meshes, std::uint32_t vertex_count) {
+template <class Value>
+void release(std::vector<Value>& values) {
+  std::vector<Value>().swap(values);
+}
+
+/// Joins the parts, which go, and leaves out vertices that no triangle uses (edges at the border of
+/// observed space).
+Mesh join(std::vector<BlockMesh> meshes, std::uint32_t vertex_count) {
   constexpr std::uint32_t kUnused = ~std::uint32_t{0};
   std::vector<std::uint32_t> packed(vertex_count, kUnused);
-  Mesh result;
-  for (const BlockMesh& mesh : meshes)
+  std::size_t used = 0, triangles = 0;
+  for (BlockMesh& mesh : meshes) {
+    mesh.vertex_of_edge.reset();
+    triangles += mesh.part.triangles.size();
     for (const auto& triangle : mesh.part.triangles)
-      for (std::uint32_t vertex : triangle) packed[vertex] = 0;
-  for (const BlockMesh& mesh : meshes) {
+      for (const std::uint32_t vertex : triangle)
+        if (std::exchange(packed[vertex], 0) == kUnused) ++used;
+  }
+  Mesh result;
+  result.vertices.reserve(used);
+  result.colors.reserve(used);
+  result.labels.reserve(used);
+  for (BlockMesh& mesh : meshes) {
     for (std::uint32_t v = 0; v < mesh.part.vertices.size(); ++v) {
       if (packed[mesh.first_vertex + v] == kUnused) continue;
       packed[mesh.first_vertex + v] = static_cast<std::uint32_t>(result.vertices.size());
@@ -162,10 +177,16 @@ Mesh join(const std::vector<BlockMesh>& meshes, std::uint32_t vertex_count) {
       result.colors.push_back(mesh.part.colors[v]);
       result.labels.push_back(mesh.part.labels[v]);
     }
+    release(mesh.part.vertices);
+    release(mesh.part.colors);
+    release(mesh.part.labels);
   }
-  for (const BlockMesh& mesh : meshes)
+  result.triangles.reserve(triangles);
+  for (BlockMesh& mesh : meshes) {
     for (const auto& [a, b, c] : mesh.part.triangles)
       result.triangles.push_back({packed[a], packed[b], packed[c]});
+    release(mesh.part.triangles);
+  }
   add_normals(result);
   return result;
 }
@@ -184,19 +205,25 @@ void add_normals(Mesh& mesh) {
 
 Mesh extract_mesh(const VoxelMap& map) {
   const std::vector<std::uint32_t> slots = map.ordered_slots();
+  std::vector<std::uint32_t> mesh_of_slot(slots.size());
+  for (std::uint32_t i = 0; i < slots.size(); ++i) mesh_of_slot[slots[i]] = i;
   std::vector<BlockMesh> meshes(slots.size());
   const BlockMesher mesher(map, meshes, slots);
-  parallel_for(slots.size(), kMeshedBlocksPerTask, [&](std::size_t i) { mesher.add_vertices(i); });
+  const auto for_each_mesh = [&](const auto& make) {
+    for_each_part(map, [&](std::span<const Tile> tiles) {
+      parallel_for(tiles.size(), kMeshedTilesPerTask, [&](std::size_t t) {
+        for (const std::uint32_t slot : tiles[t].slots) make(mesh_of_slot[slot]);
+      });
+    });
+  };
+  for_each_mesh([&](std::size_t i) { mesher.add_vertices(i); });
   std::uint32_t vertex_count = 0;
-  std::vector<std::uint32_t> mesh_of_slot(slots.size());
-  for (std::size_t i = 0; i < slots.size(); ++i) {
-    mesh_of_slot[slots[i]] = static_cast<std::uint32_t>(i);
-    meshes[i].first_vertex = vertex_count;
-    vertex_count += static_cast<std::uint32_t>(meshes[i].part.vertices.size());
+  for (BlockMesh& mesh : meshes) {
+    mesh.first_vertex = vertex_count;
+    vertex_count += static_cast<std::uint32_t>(mesh.part.vertices.size());
   }
-  parallel_for(slots.size(), kMeshedBlocksPerTask,
-               [&](std::size_t i) { mesher.add_triangles(i, mesh_of_slot); });
-  return join(meshes, vertex_count);
+  for_each_mesh([&](std::size_t i) { mesher.add_triangles(i, mesh_of_slot); });
+  return join(std::move(meshes), vertex_count);
 }
 
 }  // namespace ovimap
