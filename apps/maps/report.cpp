@@ -51,8 +51,9 @@ MapReport make_report(const MapDocument& document, const LabelSet& classes,
   report.title = options.title.empty() ? options.map.stem().string() : options.title;
   report.voxel_size_m = document.map.config().voxel_size_m;
   if (document.map.block_count() > 0) {
-    report.instances_picture = encode_png(top_down_picture(document, MeshColoring::kInstances));
-    report.colors_picture = encode_png(top_down_picture(document, MeshColoring::kColors));
+    const TopDownPictures above = top_down_pictures(document);
+    report.instances_picture = encode_png(above.instances);
+    report.colors_picture = encode_png(above.colors);
   }
   add_names(document, classes, options, report);
   return report;

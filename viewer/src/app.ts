@@ -199,7 +199,11 @@ export class App {
       this.status.progress(1);
       return null;
     }
-    const loader = new SurfaceLoader(view, (share) => this.status.progress(share));
+    const loader = new SurfaceLoader(
+      view,
+      (share) => this.status.progress(share),
+      (error) => this.status.toast(faultText(error)),
+    );
     const cameras = await loader.loadFirst();
     this.tools.pathPanel.setCount(cameras.frames.length);
     await this.mark('first-picture');

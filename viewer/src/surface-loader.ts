@@ -34,6 +34,7 @@ export class SurfaceLoader {
   constructor(
     private readonly view: MapView,
     private readonly onProgress: (share: number) => void,
+    private readonly onFault: (error: unknown) => void,
   ) {}
 
   /** Returns from where the map was seen. */
@@ -59,7 +60,7 @@ export class SurfaceLoader {
   /** All that the view needs, and from now on what it needs where it goes. */
   async loadAll(): Promise<void> {
     await this.rounds.request();
-    this.view.onRest = () => void this.refine();
+    this.view.onRest = () => void this.refine().catch(this.onFault);
   }
 
   /** Brings the surface up to date. */

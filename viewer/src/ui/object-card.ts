@@ -227,7 +227,9 @@ function facts(instance: Instance, detail: InstanceDetail | null): HTMLElement {
     ...(detail ? entry('Footprint', `${detail.footprint_m2.toFixed(2)} m²`) : []),
     ...entry('Position', placeOf(instance)),
     ...entry('Seen in', plural(instance.views, 'frame')),
-    ...(instance.confidence === null ? [] : entry('Whole by its masks', percent(instance.confidence))),
+    ...(instance.confidence === null
+      ? []
+      : entry('Whole by its masks', percent(instance.confidence))),
     ...entry('Surface', plural(instance.points, 'voxel')),
     ...(instance.writing.length > 0 ? entry('Reads', writingOf(instance)) : []),
   );

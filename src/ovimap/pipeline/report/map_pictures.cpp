@@ -32,11 +32,14 @@ IdImage project_instances(const MapDocument& document, const Frame& frame,
 
 }  // namespace
 
-RgbImage top_down_picture(const MapDocument& document, MeshColoring coloring) {
+TopDownPictures top_down_pictures(const MapDocument& document) {
   const Mesh mesh = visible_mesh(document);
-  PictureConfig config;
-  config.coloring = coloring;
-  return top_down(mesh, document.up, config);
+  const auto colored = [&](MeshColoring coloring) {
+    PictureConfig config;
+    config.coloring = coloring;
+    return top_down(mesh, document.up, config);
+  };
+  return {colored(MeshColoring::kInstances), colored(MeshColoring::kColors)};
 }
 
 RgbImage contact_sheet_picture(const MapDocument& document, const FrameSource& source, int frames) {
@@ -71,10 +74,9 @@ void make_folder(const std::filesystem::path& folder) {
 void write_map_pictures(const std::filesystem::path& folder, const MapDocument& document,
                         const FrameSource& source) {
   make_folder(folder);
-  write_file(folder / "top_view.png",
-             encode_png(top_down_picture(document, MeshColoring::kInstances)));
-  write_file(folder / "top_view_color.png",
-             encode_png(top_down_picture(document, MeshColoring::kColors)));
+  const TopDownPictures above = top_down_pictures(document);
+  write_file(folder / "top_view.png", encode_png(above.instances));
+  write_file(folder / "top_view_color.png", encode_png(above.colors));
   write_file(folder / "contact_sheet.png",
              encode_png(contact_sheet_picture(document, source, kSheetFrames)));
 }

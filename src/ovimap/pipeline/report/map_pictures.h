@@ -10,8 +10,12 @@
 
 namespace ovimap {
 
-/// The map from above, its objects in their palette colours (or the surface in its own).
-RgbImage top_down_picture(const MapDocument& document, MeshColoring coloring);
+/// The map from above.
+struct TopDownPictures {
+  RgbImage instances;  ///< objects in their palette colours
+  RgbImage colors;     ///< the surface in its own
+};
+TopDownPictures top_down_pictures(const MapDocument& document);
 
 /// Frames of the recording, evenly spread over those in the map, each beside the map's instances as
 /// its camera sees them.

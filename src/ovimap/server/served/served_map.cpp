@@ -114,6 +114,7 @@ void ServedMap::open_saved() {
     const std::lock_guard lock(mutex_);
     surface_ = std::move(surface);
   }
+  live_surface_.reset();
   rebuild();
 }
 

@@ -165,7 +165,7 @@ class ServedMap {
 
   const std::filesystem::path path_;
   const ServedMapConfig config_;
-  const std::shared_ptr<LiveSurface> live_surface_;  ///< null: the map is a saved one
+  std::shared_ptr<LiveSurface> live_surface_;  ///< null: the map is a saved one
   mutable EventHub events_;
 
   std::mutex changing_;  ///< guards what follows, for whoever makes a new snapshot
