@@ -107,7 +107,8 @@ void ServedMap::open_saved() {
   const auto shown = live_surface_ ? live_surface_->blocks() : ShownBlocks();
   const std::uint64_t version = live_surface_ ? live_surface_->version() + 1 : 1;
   SavedSurfaceConfig config;
-  config.levels_file = levels_file(config_.cache, found_->info.content_hash);
+  if (!found_->info.unfinished)  // whose voxels have no hash
+    config.levels_file = levels_file(config_.cache, found_->info.content_hash);
   auto surface =
       std::make_shared<const SavedSurface>(std::move(document.map), config, version, shown);
   {
