@@ -104,6 +104,7 @@ void ServedMap::open_saved() {
   found->record = std::move(static_cast<MapRecord&>(document));
   log_ = found->record.edits;
   found_ = std::move(found);
+  rebuild();  // before the surface, which takes all cores to be made ahead
   const auto shown = live_surface_ ? live_surface_->blocks() : ShownBlocks();
   const std::uint64_t version = live_surface_ ? live_surface_->version() + 1 : 1;
   SavedSurfaceConfig config;
@@ -111,12 +112,9 @@ void ServedMap::open_saved() {
     config.levels_file = levels_file(config_.cache, found_->info.content_hash);
   auto surface =
       std::make_shared<const SavedSurface>(std::move(document.map), config, version, shown);
-  {
-    const std::lock_guard lock(mutex_);
-    surface_ = std::move(surface);
-  }
   live_surface_.reset();
-  rebuild();
+  const std::lock_guard lock(mutex_);
+  surface_ = std::move(surface);
 }
 
 MapRecord ServedMap::corrected() const {
