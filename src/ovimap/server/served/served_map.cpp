@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/server/served/served_map.h"
 
-#include <array>
-
 #include "ovimap/base/thread_priority.h"
 #include "ovimap/io/corrections/map_corrections.h"
 #include "ovimap/io/corrections/map_edit_desk.h"
@@ -38,21 +36,6 @@ void require_same_map(const std::filesystem::path& path, const MapInfo& seen) {
 }
 
 }  // namespace
-
-const char* camera_state_name(CameraState state) {
-  constexpr std::array kNames = {"given", "tracked", "lost"};
-  return kNames[static_cast<std::size_t>(state)];
-}
-
-std::string tracking_json(const CameraTracking& tracking) {
-  std::string pose;
-  for (int row = 0; row < 3; ++row)
-    for (int column = 0; column < 4; ++column)
-      pose += concat(pose.empty() ? "" : ",", tracking.world_from_camera.matrix()(row, column));
-  return concat("{\"state\":\"", camera_state_name(tracking.state),
-                "\",\"frames_lost\":", tracking.frames_lost, ",\"loops\":", tracking.loops,
-                ",\"world_from_camera\":[", pose, "]}");
-}
 
 ServedMap::ServedMap(const std::filesystem::path& map, const ServedMapConfig& config)
     : path_(map), config_(config) {

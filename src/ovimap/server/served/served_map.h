@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "ovimap/base/error.h"
-#include "ovimap/geometry/pose.h"
 #include "ovimap/io/map_file/map_edits.h"
 #include "ovimap/pipeline/approach/gaps.h"
 #include "ovimap/pipeline/approach/standing_space.h"
 #include "ovimap/pipeline/search/history_search.h"
+#include "ovimap/server/served/camera_tracking.h"
 #include "ovimap/server/served/event_hub.h"
 #include "ovimap/server/served/map_snapshot.h"
 #include "ovimap/server/surface/live_surface.h"
@@ -59,30 +59,12 @@ struct MapAnswer {
   const SearchIndex& index() const { return past ? past->search.index : map->index(); }
 };
 
-enum class CameraState {
-  kGiven,    ///< its poses come from elsewhere
-  kTracked,  ///< where it is, the map tells
-  kLost,     ///< nobody knows where it is
-};
-const char* camera_state_name(CameraState state);  ///< "given", "tracked", "lost"
-
 /// What names that people give teach other maps.
 struct Teaching {
   bool on = false;
   std::size_t examples = 0;  ///< things in other maps that speak in this one
   std::string fault;         ///< why the latest correction taught nothing; empty: it did
 };
-
-/// How the camera of a map that is being made is followed.
-struct CameraTracking {
-  CameraState state = CameraState::kGiven;
-  Pose world_from_camera = Pose::Identity();  ///< where it was tracked last
-  std::int64_t frames_lost = 0;               ///< since then
-  std::size_t loops = 0;                      ///< that were closed when the map was completed
-};
-
-/// The same as JSON: "state", "frames_lost", "loops", "world_from_camera" (12 numbers, row by row).
-std::string tracking_json(const CameraTracking& tracking);
 
 /// One map as clients see it: its surface, its objects, answers to queries, corrections. Whoever
 /// serves it over a network only reads it. A saved map, or one that is still being made, of which
