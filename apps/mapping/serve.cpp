@@ -24,7 +24,7 @@ struct ServeOptions {
   std::filesystem::path output;
   MappingOptions mapping;
   ServerConfig server;
-  ServedMapConfig served{.cache = user_cache_folder()};
+  ServedMapConfig served;
   std::string viewer = "auto";
   std::filesystem::path token_file;
   TeachOption teach;
@@ -135,6 +135,7 @@ std::string token_of(const ServeOptions& options) {
 }
 
 int serve(ServeOptions options) {
+  options.served.cache = user_cache_folder();
   const ThreadLimit limit(options.mapping.threads);
   ServerConfig& config = options.server;
   config.token = token_of(options);

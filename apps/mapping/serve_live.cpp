@@ -83,7 +83,7 @@ void LiveService::run(const Announce& announce,
   save_map(target.map, mapped.document);
   saved(mapped);
   const std::size_t loops = mapped.tracking ? mapped.tracking->loops.closed : 0;
-  mapped.document = {};  // what is served from here on is the file
+  mapped.document = MapDocument();  // what is served from here on is the file
   mapped.checkpoints->remove();
   if (interrupted()) return;
   service.saved(loops);
