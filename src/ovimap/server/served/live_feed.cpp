@@ -9,6 +9,7 @@
 
 #include "ovimap/base/thread_priority.h"
 #include "ovimap/io/pictures/scene_axes.h"
+#include "ovimap/map/surface/mesh_extraction.h"
 #include "ovimap/map/surface/surface_precision.h"
 
 namespace ovimap {

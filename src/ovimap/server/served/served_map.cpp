@@ -88,13 +88,13 @@ void ServedMap::open_saved() {
   log_ = found->record.edits;
   found_ = std::move(found);
   rebuild();  // before the surface, which takes all cores to be made ahead
-  const auto shown = live_surface_ ? live_surface_->blocks() : ShownBlocks();
+  auto shown = live_surface_ ? live_surface_->blocks() : ShownBlocks();
   const std::uint64_t version = live_surface_ ? live_surface_->version() + 1 : 1;
   SavedSurfaceConfig config;
   if (!found_->info.unfinished)  // whose voxels have no hash
     config.levels_file = levels_file(config_.cache, found_->info.content_hash);
-  auto surface =
-      std::make_shared<const SavedSurface>(std::move(document.map), config, version, shown);
+  auto surface = std::make_shared<const SavedSurface>(std::move(document.map), config, version,
+                                                      std::move(shown));
   live_surface_.reset();
   const std::lock_guard lock(mutex_);
   surface_ = std::move(surface);
