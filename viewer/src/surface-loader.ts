@@ -9,6 +9,7 @@ import { Rounds } from './rounds';
 import type { MapView } from './scene/map-view';
 
 const AT_ONCE = 6; // what browsers allow for one server
+const USUAL_TRIANGLES = [50_000, 5_000, 500]; // by level, of a chunk that was not made yet
 const FIRST_PICTURE_MS = 500; // what came by then is shown
 
 /** A chunk that the server has, and what of it is here. */
@@ -29,6 +30,7 @@ export class SurfaceLoader {
     () => 0,
   );
   private listing = true;
+  private coarsest: Promise<void> = Promise.resolve();
   private moves = 0; // of the view, since the page was opened
 
   constructor(
@@ -44,21 +46,20 @@ export class SurfaceLoader {
     await this.list(LEVELS - 1);
     if (this.chunks.size === 0) await this.list(0); // it is being made
     this.onProgress(0.05);
-    const coarsest = this.load(detailOf(this.seen()).wanted);
+    this.coarsest = this.load(detailOf(this.seen()).wanted);
     const cameras = await api.cameras();
     view.setCameras(cameras);
-    const soon = new Promise<boolean>((resolve) =>
-      setTimeout(() => resolve(false), FIRST_PICTURE_MS),
-    );
-    const complete = await Promise.race([coarsest.then(() => true), soon]);
+    const soon = new Promise<void>((resolve) => setTimeout(resolve, FIRST_PICTURE_MS));
+    await Promise.race([this.coarsest, soon]);
     view.frameAll(false);
     view.holdStill(false);
-    if (!complete) void coarsest.then(() => view.followGrowth());
     return cameras;
   }
 
   /** All that the view needs, and from now on what it needs where it goes. */
   async loadAll(): Promise<void> {
+    await this.coarsest; // then all chunks are made, and their totals known
+    this.view.followGrowth();
     await this.rounds.request();
     this.view.onRest = () => void this.refine().catch(this.onFault);
   }
@@ -106,7 +107,7 @@ export class SurfaceLoader {
     return [...this.chunks].map(([key, { listed }]) => ({
       key,
       ...look(listed.find((at) => at !== undefined)!, this.edge_m),
-      triangles: Array.from(listed, (at) => at && (at.triangles ?? 0)),
+      triangles: Array.from(listed, (at, level) => at && (at.triangles ?? USUAL_TRIANGLES[level])),
     }));
   }
 
