@@ -166,22 +166,12 @@ void CheckpointFile::put(std::uint64_t tile, const StoredTile& stored) {
 
 StoredTile CheckpointFile::get(std::uint64_t tile) {
   const std::lock_guard lock(mutex_);
-  StoredTile stored;
-  bool sound = false;
-  reporting_write_faults(path_, database_.get(), [&] {
-    SQLite::Statement row(*database_, "SELECT present, hash, data FROM blocks WHERE tile = ?");
-    row.bind(1, static_cast<std::int64_t>(tile));
-    if (!row.executeStep()) return;
-    stored.present = static_cast<std::uint64_t>(row.getColumn(0).getInt64());
-    const SQLite::Column data = row.getColumn(2);
-    const auto* bytes = static_cast<const std::uint8_t*>(data.getBlob());
-    stored.data.assign(bytes, bytes + data.getBytes());
-    sound = stored_hash(stored.data) == row.getColumn(1).getInt64();
-  });
-  if (!sound)
+  std::optional<StoredTile> stored;
+  reporting_write_faults(path_, database_.get(), [&] { stored = read_tile(*database_, tile); });
+  if (!stored)
     throw Error(concat("map '", path_.string(), "' is damaged: tile ", tile,
                        " of its voxels is not what was written; see to the disk and map again"));
-  return stored;
+  return *std::move(stored);
 }
 
 void CheckpointFile::put_all(const std::filesystem::path& map) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "ovimap/image/codec.h"
+#include "ovimap/io/map_tables/map_file_blocks.h"
 #include "ovimap/io/map_tables/map_file_frames.h"
 
 namespace SQLite {
@@ -23,12 +24,6 @@ namespace ovimap {
 struct ChangedTile {
   std::uint64_t key = 0, present = 0;     ///< as in the table `blocks`
   std::vector<const VoxelBlock*> blocks;  ///< in the order of the bits of `present`
-};
-
-/// A tile as the table `blocks` has it.
-struct StoredTile {
-  std::uint64_t present = 0;
-  Bytes data;  ///< as TileEncoder made it
 };
 
 /// A map at one moment of its making.

@@ -4,37 +4,26 @@
 
 #include <vector>
 
-#include <SQLiteCpp/SQLiteCpp.h>
-
 #include "ovimap/io/map_file/map_file.h"
-#include "ovimap/io/map_tables/map_file_blocks.h"
-#include "ovimap/io/map_tables/map_file_rows.h"
 
 namespace ovimap {
 
 SavedTiles::SavedTiles(const std::filesystem::path& map, std::size_t max_bytes)
     : path_(map), max_bytes_(max_bytes), file_(map) {}
 
-SavedTiles::Stored SavedTiles::read(std::uint64_t tile) {
+StoredTile SavedTiles::read(std::uint64_t tile) {
   const std::lock_guard lock(reading_);
-  Stored stored;
+  std::optional<StoredTile> stored;
   file_.read([&](SQLite::Database& database) {
-    SQLite::Statement row(database, "SELECT present, hash, data FROM blocks WHERE tile = ?");
-    row.bind(1, static_cast<std::int64_t>(tile));
-    if (!row.executeStep()) throw Error(concat("tile ", tile, " of its voxels is missing"));
-    stored.present = static_cast<std::uint64_t>(row.getColumn(0).getInt64());
-    const SQLite::Column data = row.getColumn(2);
-    const auto* bytes = static_cast<const std::uint8_t*>(data.getBlob());
-    stored.data.assign(bytes, bytes + data.getBytes());
-    if (stored_hash(stored.data) != row.getColumn(1).getInt64())
-      throw Error(concat("tile ", tile, " of its voxels is not what was written"));
+    stored = read_tile(database, tile);
+    if (!stored) throw Error(concat("tile ", tile, " of its voxels is not what was written"));
   });
-  return stored;
+  return *std::move(stored);
 }
 
 void SavedTiles::load(const VoxelMap& map, std::uint32_t slot) {
   const std::uint64_t key = tile_key(map.block_index(slot));
-  const Stored stored = read(key);
+  const StoredTile stored = read(key);
   const Tile tile = tile_at(map, key);
   std::vector<std::unique_ptr<VoxelBlock>> blocks;
   std::vector<VoxelBlock*> places;

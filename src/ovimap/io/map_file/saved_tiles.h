@@ -11,6 +11,7 @@
 
 #include "ovimap/io/map_file/map_file_access.h"
 #include "ovimap/io/map_tables/map_document.h"
+#include "ovimap/io/map_tables/map_file_blocks.h"
 
 namespace ovimap {
 
@@ -30,11 +31,7 @@ class SavedTiles : public BlockStore {
   void trim(const VoxelMap& map) override;
 
  private:
-  struct Stored {
-    std::uint64_t present = 0;
-    Bytes data;
-  };
-  Stored read(std::uint64_t tile);
+  StoredTile read(std::uint64_t tile);
 
   const std::filesystem::path path_;
   const std::size_t max_bytes_;

@@ -6,9 +6,11 @@
 #include <bit>
 #include <limits>
 
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <zstd.h>
 
 #include "ovimap/base/error.h"
+#include "ovimap/io/map_tables/map_file_rows.h"
 #include "ovimap/io/map_tables/row_words.h"
 
 namespace ovimap {
@@ -351,6 +353,18 @@ std::string TileDecoder::decode(std::span<const std::uint8_t> data,
   if (!take_voxels(places, body_.data(), layout)) return "a weight is negative or not finite";
   if (doubts) take_doubts(places, body_.data() + layout.end);
   return {};
+}
+
+std::optional<StoredTile> read_tile(SQLite::Database& database, std::uint64_t tile) {
+  SQLite::Statement row(database, "SELECT present, hash, data FROM blocks WHERE tile = ?");
+  row.bind(1, static_cast<std::int64_t>(tile));
+  if (!row.executeStep()) return std::nullopt;
+  const SQLite::Column data = row.getColumn(2);
+  const auto* bytes = static_cast<const std::uint8_t*>(data.getBlob());
+  StoredTile stored{static_cast<std::uint64_t>(row.getColumn(0).getInt64()),
+                    Bytes(bytes, bytes + data.getBytes())};
+  if (stored_hash(stored.data) != row.getColumn(1).getInt64()) return std::nullopt;
+  return stored;
 }
 
 }  // namespace ovimap

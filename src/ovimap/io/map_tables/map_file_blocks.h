@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,10 +12,23 @@
 #include "ovimap/image/codec.h"
 #include "ovimap/map/voxels/block_tiles.h"
 
+namespace SQLite {
+class Database;
+}
+
 struct ZSTD_CCtx_s;
 struct ZSTD_DCtx_s;
 
 namespace ovimap {
+
+/// A tile as the table `blocks` has it.
+struct StoredTile {
+  std::uint64_t present = 0;
+  Bytes data;  ///< as TileEncoder made it
+};
+
+/// Nothing where there is no such tile, or its data are not what was written.
+std::optional<StoredTile> read_tile(SQLite::Database& database, std::uint64_t tile);
 
 /// Turns the blocks of a tile, in the order of their bits, into bytes (docs/map-format.md,
 /// "Tiles"). Keeps its buffers between calls; one per thread.
