@@ -221,10 +221,12 @@ double TextMatcher::probability(const MatchScores& scores, std::size_t position)
 }
 
 bool TextMatcher::is_found(const MatchScores& scores, std::size_t position) const {
+  // The cheaper of the two first: a p-value is an integral.
+  if (scores.log_odds.size() != 0 &&
+      probability(scores, position) < double{config_.evidence.found_probability})
+    return false;
   const float score = scores.standard[static_cast<Eigen::Index>(position)];
-  if (p_value(scores, score) > double{config_.verdict.false_positive_rate}) return false;
-  return scores.log_odds.size() == 0 ||
-         probability(scores, position) >= double{config_.evidence.found_probability};
+  return p_value(scores, score) <= double{config_.verdict.false_positive_rate};
 }
 
 }  // namespace ovimap

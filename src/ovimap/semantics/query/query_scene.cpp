@@ -3,10 +3,8 @@
 #include "ovimap/semantics/query/query_scene.h"
 
 #include <algorithm>
-#include <tuple>
 
 #include "ovimap/base/error.h"
-#include "ovimap/base/parallel.h"
 #include "ovimap/semantics/query/attribute_rating.h"
 #include "ovimap/semantics/query/query_text.h"
 
@@ -14,12 +12,6 @@ namespace ovimap {
 
 namespace {
 
-constexpr float kBorder = 0.5f;  // of a rating: below it a relation does not hold
-constexpr std::size_t kObjectsPerTask = 4;
-
-float& at(Eigen::VectorXf& values, std::size_t i) {
-  return values[static_cast<Eigen::Index>(i)];
-}
 float at(const Eigen::VectorXf& values, std::size_t i) {
   return values[static_cast<Eigen::Index>(i)];
 }
@@ -28,24 +20,14 @@ void add_missing(PhraseMatch& result, const PhraseMatch& anchors) {
   result.missing.insert(result.missing.end(), anchors.missing.begin(), anchors.missing.end());
 }
 
-/// Given objects in order of preference: the chance of each that it fits and none before it does.
-void first_that_fits(const std::vector<std::size_t>& ordered, const Eigen::VectorXf& chances,
-                     Eigen::VectorXf& result) {
-  float none_before = 1.f;
-  for (const std::size_t i : ordered) {
-    at(result, i) = at(chances, i) * none_before;
-    none_before *= 1.f - at(chances, i);
-  }
-}
+}  // namespace
 
-std::vector<std::size_t> positive(const Eigen::VectorXf& scores) {
+std::vector<std::size_t> PhraseMatch::possible() const {
   std::vector<std::size_t> positions;
   for (std::size_t i = 0; i < static_cast<std::size_t>(scores.size()); ++i)
-    if (at(scores, i) > 0.f) positions.push_back(i);
+    if (score(i) > 0.f) positions.push_back(i);
   return positions;
 }
-
-}  // namespace
 
 std::vector<std::size_t> QueryScene::parts_of(std::size_t position) const {
   if (!parts) return {};
@@ -141,7 +123,7 @@ PhraseMatch PhraseSearch::match_parts(const QueryPhrase& phrase,
   const QueryParts& parts = *scene_.parts;
   std::vector<bool> of_anchor(parts.index.size());
   for (std::size_t p = 0; p < parts.index.size(); ++p)
-    of_anchor[p] = at(anchors.scores, parts.owners[p]) > 0.f;
+    of_anchor[p] = anchors.score(parts.owners[p]) > 0.f;
   QueryPhrase part = phrase;
   part.relation.reset();
   part.anchors.clear();
@@ -150,9 +132,9 @@ PhraseMatch PhraseSearch::match_parts(const QueryPhrase& phrase,
   PhraseMatch result = looks_known ? search.match(part, negatives) : none_of(parts, part);
   result.of_parts = true;
   add_missing(result, anchors);
-  for (const std::size_t p : positive(result.scores)) {
+  for (const std::size_t p : result.possible()) {
     const std::size_t owner = parts.owners[p];
-    at(result.scores, p) *= at(anchors.scores, owner);
+    result.score(p) *= anchors.score(owner);
     result.holds[p] = result.holds[p] && anchors.holds[owner];
     add_evidence(result.evidence[p],
                  with_anchor(concat("part ", parts.numbers[p], " of #", id_of(owner)),
@@ -167,11 +149,11 @@ PhraseMatch PhraseSearch::owners_of(const PhraseMatch& parts) const {
   result.holds.assign(index_.size(), false);
   result.evidence.resize(index_.size());
   result.missing = parts.missing;
-  for (const std::size_t p : positive(parts.scores)) {
+  for (const std::size_t p : parts.possible()) {
     const std::size_t owner = scene_.parts->owners[p];
     if (parts.holds[p]) result.holds[owner] = true;
-    if (at(parts.scores, p) <= at(result.scores, owner)) continue;
-    at(result.scores, owner) = at(parts.scores, p);
+    if (parts.score(p) <= result.score(owner)) continue;
+    result.score(owner) = parts.score(p);
     result.evidence[owner] = parts.evidence[p];
   }
   return result;
@@ -186,7 +168,7 @@ PhraseMatch PhraseSearch::match_things(const QueryPhrase& phrase,
   const std::vector<std::string> terms = split_terms(phrase.things);
   if (phrase.anything) {
     for (std::size_t i = 0; i < index_.size(); ++i)
-      if (!may_be(i, role)) at(result.scores, i) = 0.f, result.holds[i] = false;
+      if (!may_be(i, role)) result.score(i) = 0.f, result.holds[i] = false;
     if (!negatives.empty()) leave_out(negatives, result);
     return result;
   }
@@ -205,13 +187,13 @@ void PhraseSearch::apply_attributes(const QueryPhrase& phrase, PhraseMatch& resu
   if (phrase.size) measures = measure_objects(scene_.shapes);
   const std::vector<std::u32string> written = written_words(phrase.writing);
   if (!phrase.writing.empty()) require_writing(phrase.writing);
-  for (const std::size_t i : positive(result.scores)) {
+  for (const std::size_t i : result.possible()) {
     AttributeRating rating;
     if (colored) rate_color(scene_.colors->shares()[i], *phrase.color, rating);
     if (phrase.size) rate_size(measures[i], *phrase.size, rating);
     if (!phrase.writing.empty()) rate_writing(written, scene_.writing[i], rating);
-    at(result.scores, i) *= rating.score;
-    result.holds[i] = result.holds[i] && rating.score >= kBorder;
+    result.score(i) *= rating.score;
+    result.holds[i] = result.holds[i] && rating.score >= kRelationHolds;
     if (!rating.evidence.empty()) add_evidence(result.evidence[i], rating.evidence);
   }
 }
@@ -235,7 +217,7 @@ void PhraseSearch::rate_by_text(const QueryPhrase& phrase, Role role, PhraseMatc
   if (!best || !matcher_->is_found(text, *best)) result.missing.push_back(phrase.things);
   result.holds.assign(index_.size(), false);
   if (!best) return;
-  at(result.scores, *best) = static_cast<float>(matcher_->probability(text, *best));  // a guess
+  result.score(*best) = static_cast<float>(matcher_->probability(text, *best));  // a guess
   // A weak candidate can win a comparison of places; it cannot make a relation true.
   const bool compares = phrase.superlative || phrase.relation == Relation::kNearest ||
                         phrase.relation == Relation::kFarthest;
@@ -248,7 +230,7 @@ void PhraseSearch::rate_by_text(const QueryPhrase& phrase, Role role, PhraseMatc
     const bool likely = at(text.standard, i) >= possible;
     result.holds[i] = role == Role::kAnchor ? likely : matcher_->is_found(text, i);
     if (at(text.standard, i) >= level)
-      at(result.scores, i) = static_cast<float>(matcher_->probability(text, i));
+      result.score(i) = static_cast<float>(matcher_->probability(text, i));
   }
 }
 
@@ -257,7 +239,7 @@ void PhraseSearch::leave_out(const std::vector<std::string>& negatives, PhraseMa
   for (std::size_t i = 0; i < index_.size(); ++i) {
     if (!index_.has_embedding(i)) continue;
     if (!matcher_->is_found(text, i)) continue;
-    at(result.scores, i) = 0.f;
+    result.score(i) = 0.f;
     result.holds[i] = false;
   }
 }
@@ -265,15 +247,6 @@ void PhraseSearch::leave_out(const std::vector<std::string>& negatives, PhraseMa
 const TextMatcher& PhraseSearch::needed_matcher(const std::string& what) const {
   if (matcher_) return *matcher_;
   throw Error(concat("'", what, "' needs an encoder, none was given; name one with --encoder"));
-}
-
-std::vector<std::size_t> PhraseSearch::anchors_of(const PhraseMatch& match) const {
-  std::vector<std::size_t> anchors = positive(match.scores);
-  std::sort(anchors.begin(), anchors.end(), [&](std::size_t a, std::size_t b) {
-    return std::tuple(-at(match.scores, a), id_of(a)) < std::tuple(-at(match.scores, b), id_of(b));
-  });
-  anchors.resize(std::min(anchors.size(), static_cast<std::size_t>(config_.max_anchors)));
-  return anchors;
 }
 
 bool PhraseSearch::apply_room(const QueryPhrase& phrase, PhraseMatch& result) const {
@@ -286,114 +259,18 @@ bool PhraseSearch::apply_room(const QueryPhrase& phrase, PhraseMatch& result) co
       fit_rooms(room_of, index_.objects(), matcher_ ? matcher_->evidence() : nullptr);
   bool known = false;
   for (std::size_t r = 0; r < rooms.size(); ++r)
-    known = known || chance_of(*wanted, static_cast<int>(r + 1), rooms[r]) >= kBorder;
+    known = known || chance_of(*wanted, static_cast<int>(r + 1), rooms[r]) >= kRelationHolds;
   if (!known && !phrase.negated) result.missing.push_back(anchor.things);
-  for (const std::size_t i : positive(result.scores)) {
+  for (const std::size_t i : result.possible()) {
     const int room = room_of[i];
     const RoomFit* fit = room == 0 ? nullptr : &rooms[static_cast<std::size_t>(room - 1)];
     const float chance = fit ? chance_of(*wanted, room, *fit) : 0.f;
-    at(result.scores, i) *= phrase.negated ? 1.f - chance : chance;
-    result.holds[i] = result.holds[i] && (chance >= kBorder) != phrase.negated;
+    result.score(i) *= phrase.negated ? 1.f - chance : chance;
+    result.holds[i] = result.holds[i] && (chance >= kRelationHolds) != phrase.negated;
     add_evidence(result.evidence[i],
                  fit ? "in " + describe_room(room, *fit, index_.objects()) : "in no room");
   }
   return true;
-}
-
-void PhraseSearch::apply_pairs(const QueryPhrase& phrase, const PhraseMatch& anchors,
-                               PhraseMatch& result) const {
-  const std::vector<std::size_t> candidates = positive(result.scores), near = anchors_of(anchors);
-  std::vector<char> holds(index_.size(), 0);  // vector<bool> cannot be written in parallel
-  parallel_for(candidates.size(), kObjectsPerTask, [&](std::size_t k) {
-    const std::size_t i = candidates[k];
-    float best = -1.f;
-    std::string clause;
-    for (const std::size_t j : near) {
-      if (i == j) continue;
-      const RelationRating rating =
-          rate_relation(*phrase.relation, scene_.shapes[i], scene_.shapes[j], id_of(j),
-                        scene_.viewpoint, config_.relations);
-      if (rating.score >= kBorder && anchors.holds[j]) holds[i] = 1;
-      if (at(anchors.scores, j) * rating.score <= best) continue;
-      best = at(anchors.scores, j) * rating.score;
-      clause = with_anchor(rating.evidence, anchors.evidence[j]);
-      if (phrase.negated)
-        clause = concat("not ", relation_name(*phrase.relation), " #", id_of(j), " (",
-                        rating.evidence, ")");
-    }
-    best = std::max(best, 0.f);
-    at(result.scores, i) *= phrase.negated ? 1.f - best : best;
-    result.evidence[i] = clause;
-  });
-  for (const std::size_t i : candidates)
-    result.holds[i] = result.holds[i] && (holds[i] != 0) != phrase.negated;
-}
-
-void PhraseSearch::apply_order(const QueryPhrase& phrase, const PhraseMatch& anchors,
-                               PhraseMatch& result) const {
-  const bool nearest = *phrase.relation == Relation::kNearest;
-  const Eigen::VectorXf chances = result.scores;
-  const std::vector<bool> things_hold = result.holds;
-  result.scores.setZero();
-  for (const std::size_t j : anchors_of(anchors)) {
-    std::vector<std::size_t> ordered = positive(chances);
-    std::erase(ordered, j);
-    std::vector<float> gaps(index_.size()), centres(index_.size());
-    parallel_for(ordered.size(), kObjectsPerTask, [&](std::size_t k) {
-      const ObjectShape &a = scene_.shapes[ordered[k]], &b = scene_.shapes[j];
-      const float sign = nearest ? 1.f : -1.f;
-      gaps[ordered[k]] = sign * gap_m(a, b);
-      centres[ordered[k]] = sign * (a.centroid - b.centroid).norm();
-    });
-    std::sort(ordered.begin(), ordered.end(), [&](std::size_t a, std::size_t b) {
-      return std::tuple(gaps[a], centres[a], id_of(a)) < std::tuple(gaps[b], centres[b], id_of(b));
-    });
-    Eigen::VectorXf scores = Eigen::VectorXf::Zero(chances.size());
-    first_that_fits(ordered, chances, scores);
-    for (const std::size_t i : ordered) {
-      const float score = at(scores, i) * at(anchors.scores, j);
-      if (score <= at(result.scores, i)) continue;
-      at(result.scores, i) = score;
-      result.holds[i] = things_hold[i] && anchors.holds[j];
-      const auto rating = rate_relation(Relation::kNear, scene_.shapes[i], scene_.shapes[j],
-                                        id_of(j), scene_.viewpoint, config_.relations);
-      result.evidence[i] = with_anchor(rating.evidence, anchors.evidence[j]);
-    }
-  }
-}
-
-void PhraseSearch::apply_between(const PhraseMatch& first, const PhraseMatch& second,
-                                 bool same_kind, PhraseMatch& result) const {
-  const std::vector<std::size_t> left = anchors_of(first), right = anchors_of(second);
-  for (const std::size_t i : positive(result.scores)) {
-    float best = 0.f;
-    bool holds = false;
-    for (const std::size_t j : left)
-      for (const std::size_t k : right) {
-        if (i == j || i == k || j == k || (same_kind && k < j)) continue;
-        const auto rating =
-            rate_between(scene_.shapes[i], scene_.shapes[j], scene_.shapes[k], id_of(j), id_of(k));
-        const float score = at(first.scores, j) * at(second.scores, k) * rating.score;
-        holds = holds || (rating.score >= kBorder && first.holds[j] && second.holds[k]);
-        if (score <= best) continue;
-        best = score;
-        result.evidence[i] = rating.evidence;
-      }
-    at(result.scores, i) *= best;
-    result.holds[i] = result.holds[i] && holds;
-  }
-}
-
-void PhraseSearch::apply_superlative(Superlative superlative, PhraseMatch& result) const {
-  std::vector<std::size_t> ordered = positive(result.scores);
-  std::vector<SuperlativeMeasure> measures(index_.size());
-  for (const std::size_t i : ordered) measures[i] = measure(superlative, scene_.shapes[i]);
-  std::sort(ordered.begin(), ordered.end(), [&](std::size_t a, std::size_t b) {
-    return std::tuple(-measures[a].value, id_of(a)) < std::tuple(-measures[b].value, id_of(b));
-  });
-  const Eigen::VectorXf chances = result.scores;
-  first_that_fits(ordered, chances, result.scores);
-  for (const std::size_t i : ordered) add_evidence(result.evidence[i], measures[i].evidence);
 }
 
 }  // namespace ovimap

@@ -56,6 +56,11 @@ struct PhraseMatch {
   std::vector<std::string> missing;   ///< things named that are not in the map
   MatchScores things;                 ///< what the text alone says; no rows for "anything"
   bool of_parts = false;              ///< rows are parts (QueryScene::parts) instead of objects
+
+  float& score(std::size_t row) { return scores[static_cast<Eigen::Index>(row)]; }
+  float score(std::size_t row) const { return scores[static_cast<Eigen::Index>(row)]; }
+  /// The rows that may fit at all.
+  std::vector<std::size_t> possible() const;
 };
 
 /// Judges phrases in a scene. Scores combine as chances: a thing and its anchor and the relation
@@ -99,6 +104,14 @@ class PhraseSearch {
   void rate_by_text(const QueryPhrase& phrase, Role role, PhraseMatch& result) const;
   /// Whether the anchor is a room ("in the kitchen"); then its objects are rated.
   bool apply_room(const QueryPhrase& phrase, PhraseMatch& result) const;
+  struct PairRating {
+    float score = 0;  ///< of the best pair, by its anchor's score
+    bool holds = false;
+    std::string evidence;
+  };
+  /// The object at a position beside the anchors at `near`, the better of equals first.
+  PairRating rate_pairs(const QueryPhrase& phrase, std::size_t object,
+                        const std::vector<std::size_t>& near, const PhraseMatch& anchors) const;
   void apply_pairs(const QueryPhrase& phrase, const PhraseMatch& anchors,
                    PhraseMatch& result) const;
   void apply_order(const QueryPhrase& phrase, const PhraseMatch& anchors,

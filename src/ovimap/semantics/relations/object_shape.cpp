@@ -47,18 +47,30 @@ float prism_gap_m(const ObjectShape& a, const ObjectShape& b) {
   return std::hypot(distance_m(a.footprint, b.footprint), vertical);
 }
 
-/// Smallest distance from a point of the surface to the prism.
-float surface_gap_m(const std::vector<Eigen::Vector3f>& surface, const ObjectShape& prism) {
-  Eigen::AlignedBox2f bounds;
-  for (const Eigen::Vector2f& corner : prism.footprint) bounds.extend(corner);
-  float smallest = std::numeric_limits<float>::max();
-  for (const Eigen::Vector3f& point : surface) {
-    const float vertical = outside(point.z(), prism.bottom_m, prism.top_m);
-    const Eigen::Vector2f flat = point.head<2>();
-    if (std::hypot(bounds.exteriorDistance(flat), vertical) >= smallest) continue;
-    smallest = std::min(smallest, std::hypot(distance_m(prism.footprint, flat), vertical));
+/// Smallest distance from a point of the shape's surface to the prism. Squares are compared, and
+/// runs that are farther left out: there may be a hundred thousand points, as of a floor.
+float surface_gap_m(const ObjectShape& shape, const ObjectShape& prism) {
+  const Eigen::AlignedBox3f bounds = upright_box(prism);
+  float smallest2 = std::numeric_limits<float>::max();
+  for (std::size_t run = 0; run < shape.runs.size(); ++run) {
+    if (bounds.squaredExteriorDistance(shape.runs[run]) >= smallest2) continue;
+    for (const Eigen::Vector3f& point : shape.run_points(run)) {
+      if (bounds.squaredExteriorDistance(point) >= smallest2) continue;
+      const Eigen::Vector2f flat = point.head<2>();
+      const float aside2 = (nearest_point(prism.footprint, flat) - flat).squaredNorm();
+      const float vertical = outside(point.z(), prism.bottom_m, prism.top_m);
+      smallest2 = std::min(smallest2, aside2 + vertical * vertical);
+    }
   }
-  return smallest;
+  return std::sqrt(smallest2);
+}
+
+std::vector<Eigen::AlignedBox3f> runs_of(const ObjectShape& shape) {
+  constexpr std::size_t kLength = ObjectShape::kPointsOfRun;
+  std::vector<Eigen::AlignedBox3f> runs((shape.surface.size() + kLength - 1) / kLength);
+  for (std::size_t run = 0; run < runs.size(); ++run)
+    for (const Eigen::Vector3f& point : shape.run_points(run)) runs[run].extend(point);
+  return runs;
 }
 
 }  // namespace
@@ -70,6 +82,11 @@ void list_fields(ObjectShapeConfig& config, ConfigFields& fields) {
              "half the size of a surface point, metres");
   fields.add("surface_spacing_m", config.surface_spacing_m, 1e-3f, 1.f,
              "surface points nearer to each other are thinned, metres");
+}
+
+std::span<const Eigen::Vector3f> ObjectShape::run_points(std::size_t run) const {
+  const std::size_t begin = run * kPointsOfRun;
+  return std::span(surface).subspan(begin, std::min(kPointsOfRun, surface.size() - begin));
 }
 
 Eigen::Matrix3f ground_from_world(const Eigen::Vector3f& up_in_world) {
@@ -107,6 +124,7 @@ ObjectShape shape_of_points(const Eigen::Matrix3f& ground_from_world,
   for (const Eigen::Vector3f& point : points) shape.centroid += point;
   shape.centroid /= static_cast<float>(points.size());
   shape.surface = thinned(points, config.surface_spacing_m);
+  shape.runs = runs_of(shape);
   shape.footprint = footprint_of(points, config.point_radius_m);
   return shape;
 }
@@ -130,11 +148,20 @@ ObjectShape shape_of_box(const Eigen::Matrix3f& ground_from_world,
   return shape;
 }
 
+Eigen::AlignedBox3f upright_box(const ObjectShape& shape) {
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector2f& corner : shape.footprint) {
+    box.extend(Eigen::Vector3f(corner.x(), corner.y(), shape.bottom_m));
+    box.extend(Eigen::Vector3f(corner.x(), corner.y(), shape.top_m));
+  }
+  return box;
+}
+
 float gap_m(const ObjectShape& a, const ObjectShape& b) {
   // Each of these is at most the true gap (but for the thinning), so the largest is the best.
   float gap = prism_gap_m(a, b);
-  if (!b.surface.empty()) gap = std::max(gap, surface_gap_m(b.surface, a));
-  if (!a.surface.empty()) gap = std::max(gap, surface_gap_m(a.surface, b));
+  if (!b.surface.empty()) gap = std::max(gap, surface_gap_m(b, a));
+  if (!a.surface.empty()) gap = std::max(gap, surface_gap_m(a, b));
   return gap;
 }
 
@@ -142,10 +169,19 @@ float support_height_m(const ObjectShape& above, const ObjectShape& below, float
   float highest = std::numeric_limits<float>::lowest();
   if (below.surface.empty())
     return distance_m(above.footprint, below.footprint) <= margin_m ? below.top_m : highest;
-  for (const Eigen::Vector3f& point : below.surface)
-    if (point.z() > highest && point.z() <= above.middle_m() &&
-        distance_m(above.footprint, point.head<2>()) <= margin_m)
-      highest = point.z();
+  const Eigen::Vector3f margin(margin_m, margin_m, 0.f);
+  Eigen::AlignedBox3f column = upright_box(above);  // where its support can be
+  column.min() -= margin;
+  column.max() += margin;
+  column.max().z() = above.middle_m();
+  column.min().z() = std::numeric_limits<float>::lowest();
+  for (std::size_t run = 0; run < below.runs.size(); ++run) {
+    if (below.runs[run].max().z() <= highest || !column.intersects(below.runs[run])) continue;
+    for (const Eigen::Vector3f& point : below.run_points(run))
+      if (point.z() > highest && column.contains(point) &&
+          distance_m(above.footprint, point.head<2>()) <= margin_m)
+        highest = point.z();
+  }
   return highest;
 }
 

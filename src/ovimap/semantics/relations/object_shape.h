@@ -30,7 +30,12 @@ struct ObjectShape {
   float bottom_m = 0, top_m = 0;
   Footprint footprint;
   Eigen::Vector3f centroid = Eigen::Vector3f::Zero();
-  std::vector<Eigen::Vector3f> surface;  ///< may be empty: then the prism counts as solid
+  std::vector<Eigen::Vector3f> surface;   ///< may be empty: then the prism counts as solid
+  std::vector<Eigen::AlignedBox3f> runs;  ///< around every kPointsOfRun of the surface, one by one
+
+  static constexpr std::size_t kPointsOfRun = 64;
+  /// The points in runs[run].
+  std::span<const Eigen::Vector3f> run_points(std::size_t run) const;
 
   float height_m() const { return top_m - bottom_m; }
   float middle_m() const { return 0.5f * (top_m + bottom_m); }
@@ -47,6 +52,9 @@ ObjectShape shape_of_box(const Eigen::Matrix3f& ground_from_world,
                          const Eigen::AlignedBox3f& box_in_world,
                          const Eigen::Vector3f& centroid_in_world,
                          const ObjectShapeConfig& config = {});
+
+/// What bounds the prism, ground frame.
+Eigen::AlignedBox3f upright_box(const ObjectShape& shape);
 
 /// Distance between the surfaces of two objects; 0 where they touch. Where a surface is known, the
 /// gap to it counts, not that to the convex prism around it.

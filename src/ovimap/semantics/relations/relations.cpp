@@ -198,6 +198,35 @@ RelationRating rate_relation(Relation relation, const ObjectShape& a, const Obje
   }
 }
 
+float highest_rating(Relation relation, const Eigen::AlignedBox3f& box_a,
+                     const Eigen::AlignedBox3f& box_b, const RelationConfig& config) {
+  // Distances are summed in another order than those of a rating.
+  constexpr float kRounding = 1.001f;
+  const Eigen::Vector3f apart =
+      (box_a.min() - box_b.max()).cwiseMax(box_b.min() - box_a.max()).cwiseMax(0.f);
+  const auto bound = [](float gap, float scale) {
+    return std::min(1.f, kRounding * closeness(gap, scale));
+  };
+  switch (relation) {
+    case Relation::kOn:
+      return bound(apart.norm(), config.contact_m);
+    case Relation::kUnder:
+    case Relation::kAbove:
+      return bound(apart.head<2>().norm(), config.overhang_m);
+    case Relation::kBeside:
+      return bound(apart.norm(), config.beside_m);
+    case Relation::kInside:
+      return apart.isZero(0.f) ? 1.f : 0.f;
+    case Relation::kLeftOf:
+    case Relation::kRightOf:
+    case Relation::kInFrontOf:
+    case Relation::kBehind:
+      return bound(apart.norm(), config.side_reach_m);
+    default:
+      return bound(apart.norm(), config.near_m);
+  }
+}
+
 RelationRating rate_between(const ObjectShape& a, const ObjectShape& b, const ObjectShape& c,
                             InstanceId id_b, InstanceId id_c) {
   const Eigen::Vector2f at = a.centroid.head<2>();

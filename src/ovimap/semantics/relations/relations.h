@@ -5,6 +5,7 @@
 #include <string>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "ovimap/instance/instance_registry.h"
 #include "ovimap/semantics/relations/object_shape.h"
@@ -52,6 +53,8 @@ struct GroundViewpoint {
   Eigen::Vector2f forward = Eigen::Vector2f::UnitX();  ///< counts where an anchor is at `position`
 };
 
+constexpr float kRelationHolds = 0.5f;  ///< from this rating on
+
 struct RelationRating {
   float score = 0;       ///< 0 does not hold, 1 holds, 0.5 on the border
   std::string evidence;  ///< a clause: "0.02 m above the top of #12"
@@ -61,6 +64,11 @@ struct RelationRating {
 RelationRating rate_relation(Relation relation, const ObjectShape& a, const ObjectShape& b,
                              InstanceId id_b, const GroundViewpoint& viewpoint,
                              const RelationConfig& config);
+
+/// No rating of "a RELATION b" is higher, where all that is known of them are their upright boxes:
+/// what spares distant pairs the search for their nearest points.
+float highest_rating(Relation relation, const Eigen::AlignedBox3f& box_a,
+                     const Eigen::AlignedBox3f& box_b, const RelationConfig& config);
 
 /// How true "a is between b and c" is: by the angle under which a sees their nearest points.
 RelationRating rate_between(const ObjectShape& a, const ObjectShape& b, const ObjectShape& c,

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/semantics/relations/relations.h"
 
+#include <random>
+
 #include <gtest/gtest.h>
 
 #include "ovimap/base/config.h"
@@ -227,6 +229,31 @@ TEST(Relations, ConfigListsItsFields) {
   fields.set("shape.surface_spacing_m", "0.05");
   EXPECT_FLOAT_EQ(config.near_m, 2.5f);
   EXPECT_FLOAT_EQ(shape.surface_spacing_m, 0.05f);
+}
+
+TEST(Relations, NoneIsRatedHigherThanItsBoxesAllow) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> place(-2.f, 2.f), size(0.02f, 1.5f);
+  std::vector<ObjectShape> shapes = {kFloor, kTable, kMug, kWall, kPicture, chair_with_surface()};
+  while (shapes.size() < 40) {
+    const Point low(place(random), place(random), 0.5f * (place(random) + 2.f));
+    shapes.push_back(box(low, low + Point(size(random), size(random), size(random))));
+  }
+  const RelationConfig config;
+  int spared = 0;
+  for (const ObjectShape& a : shapes)
+    for (const ObjectShape& b : shapes) {
+      if (&a == &b) continue;
+      for (const Relation relation :
+           {Relation::kOn, Relation::kUnder, Relation::kAbove, Relation::kBeside, Relation::kNear,
+            Relation::kInside, Relation::kLeftOf, Relation::kRightOf, Relation::kInFrontOf,
+            Relation::kBehind}) {
+        const float highest = highest_rating(relation, upright_box(a), upright_box(b), config);
+        EXPECT_LE(score(relation, a, b), highest) << static_cast<int>(relation);
+        if (highest < kRelationHolds) ++spared;
+      }
+    }
+  EXPECT_GT(spared, 5000) << "of 15,600, or it spares nothing";
 }
 
 }  // namespace

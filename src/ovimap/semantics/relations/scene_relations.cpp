@@ -3,6 +3,7 @@
 #include "ovimap/semantics/relations/scene_relations.h"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 
 #include <Eigen/Geometry>
@@ -12,24 +13,6 @@
 namespace ovimap {
 
 namespace {
-
-constexpr float kHolds = 0.5f;
-
-/// The upright box of a shape, which spares distant pairs the search for their nearest points.
-Eigen::AlignedBox3f box_of(const ObjectShape& shape) {
-  Eigen::AlignedBox3f box;
-  for (const Eigen::Vector2f& corner : shape.footprint) {
-    box.extend(Eigen::Vector3f(corner.x(), corner.y(), shape.bottom_m));
-    box.extend(Eigen::Vector3f(corner.x(), corner.y(), shape.top_m));
-  }
-  return box;
-}
-
-float horizontal_gap(const Eigen::AlignedBox3f& a, const Eigen::AlignedBox3f& b) {
-  const Eigen::Vector2f outside =
-      (a.min() - b.max()).cwiseMax(b.min() - a.max()).head<2>().cwiseMax(0.f);
-  return outside.norm();
-}
 
 /// Beside and near hold both ways: the younger id is said to be so to the older.
 bool is_symmetric(Relation relation) {
@@ -41,21 +24,27 @@ class PairJudge {
   PairJudge(std::span<const InstanceId> ids, std::span<const ObjectShape> shapes,
             const RelationConfig& config)
       : ids_(ids), shapes_(shapes), config_(config) {
-    for (const ObjectShape& shape : shapes) boxes_.push_back(box_of(shape));
+    const float reach = std::max({config.near_m, config.beside_m, config.overhang_m});
+    for (const ObjectShape& shape : shapes) {
+      const Eigen::AlignedBox3f& box = boxes_.emplace_back(upright_box(shape));
+      // Above may be as high as it likes.
+      const Eigen::Vector3f margin(reach, reach, std::numeric_limits<float>::infinity());
+      reaches_.emplace_back(box.min() - margin, box.max() + margin);
+    }
   }
 
   /// The first relation of `a` to `b` that holds.
   std::optional<ObjectRelation> judge(std::size_t a, std::size_t b) const {
-    const float reach = std::max({config_.near_m, config_.beside_m, config_.overhang_m});
-    if (horizontal_gap(boxes_[a], boxes_[b]) > reach) return std::nullopt;
+    if (!reaches_[a].intersects(boxes_[b])) return std::nullopt;
     for (const Relation relation :
          {Relation::kOn, Relation::kInside, Relation::kAbove, Relation::kBeside, Relation::kNear}) {
       if (is_symmetric(relation) && ids_[a] < ids_[b]) continue;
+      if (!may_hold(relation, a, b)) continue;
       if (is_symmetric(relation) && (holds(Relation::kOn, b, a) || holds(Relation::kInside, b, a) ||
                                      holds(Relation::kAbove, b, a)))
         return std::nullopt;
       RelationRating rating = rate(relation, a, b);
-      if (rating.score >= kHolds)
+      if (rating.score >= kRelationHolds)
         return ObjectRelation{ids_[a], relation, ids_[b], rating.score, std::move(rating.evidence)};
     }
     return std::nullopt;
@@ -65,14 +54,17 @@ class PairJudge {
   RelationRating rate(Relation relation, std::size_t a, std::size_t b) const {
     return rate_relation(relation, shapes_[a], shapes_[b], ids_[b], {}, config_);
   }
+  bool may_hold(Relation relation, std::size_t a, std::size_t b) const {
+    return highest_rating(relation, boxes_[a], boxes_[b], config_) >= kRelationHolds;
+  }
   bool holds(Relation relation, std::size_t a, std::size_t b) const {
-    return rate(relation, a, b).score >= kHolds;
+    return may_hold(relation, a, b) && rate(relation, a, b).score >= kRelationHolds;
   }
 
   std::span<const InstanceId> ids_;
   std::span<const ObjectShape> shapes_;
   const RelationConfig& config_;
-  std::vector<Eigen::AlignedBox3f> boxes_;
+  std::vector<Eigen::AlignedBox3f> boxes_, reaches_;  // of each shape: around it, what is near
 };
 
 }  // namespace
