@@ -17,7 +17,8 @@ class ConfigFields;
 
 struct ObservedSpaceConfig {
   int width_px = 160;       ///< of the images that stand for the frames
-  int max_views = 300;      ///< frames looked at, evenly spread
+  int max_views = 300;      ///< frames looked at, evenly spread, ...
+  float area_m2 = 400.f;    ///< ... for every such area of the ground plan that the cameras span
   float max_range_m = 8.f;  ///< further away nothing counts as seen
   float margin_m = 0.05f;   ///< a point counts as seen through when the surface is further behind
   float share = 0.f;        ///< the same as a share of the surface's distance
@@ -38,17 +39,33 @@ class ObservedSpace {
   /// counting at `enough`.
   int seen_through(const Eigen::Vector3f& point_in_world, int enough = 1) const;
 
+  /// The views that may see through some point of a ball (world frame, metres): the only ones that
+  /// need be asked about points in it.
+  std::vector<std::uint32_t> views_into(const Eigen::Vector3f& center_in_world,
+                                        float radius_m) const;
+  int seen_through(const Eigen::Vector3f& point_in_world, std::span<const std::uint32_t> views,
+                   int enough = 1) const;
+
   std::size_t views() const { return views_.size(); }
 
  private:
   struct View {
     Eigen::Isometry3f camera_from_world;
     DepthImage depth;
+    Image<float> farthest;  ///< depth in tiles of kTile x kTile pixels
   };
+  static constexpr int kTile = 16;
+
+  void set_borders();
+  void cast(const VoxelMap& map, const Pose& world_from_camera, View& view) const;
   bool sees_through(const View& view, const Eigen::Vector3f& point_in_world) const;
+  bool may_see_through(const View& view, const Eigen::Vector3f& center_in_world,
+                       float radius_m) const;
+  float farthest_in(const View& view, const Eigen::Vector3f& center, float radius_m) const;
 
   ObservedSpaceConfig config_;
   PinholeCamera camera_;
+  Eigen::Matrix<float, 4, 3> borders_;  ///< inward normals of the pyramid that pictures see
   std::vector<View> views_;
 };
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/map/rays/observed_space.h"
 
+#include <random>
+
 #include <gtest/gtest.h>
 
 #include "ovimap/map/rays/sphere_fixture.h"
@@ -38,6 +40,41 @@ TEST_F(ObservedSpaceTest, CountsViews) {
   ObservedSpaceConfig few;
   few.max_views = 3;
   EXPECT_EQ(ObservedSpace(map_, scene_.camera, poses, few).views(), 3u);
+}
+
+TEST_F(ObservedSpaceTest, AsksOnlyTheViewsThatMatter) {
+  std::vector<Pose> poses;
+  for (int i = 0; i < 24; ++i) poses.push_back(scene_.pose(0.26 * i));
+  const ObservedSpace space(map_, scene_.camera, poses);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> place(-1.5f, 1.5f);
+  constexpr float kRadius_m = 0.1f;
+  std::size_t asked = 0, seen = 0;
+  constexpr int kBalls = 500;
+  for (int ball = 0; ball < kBalls; ++ball) {
+    const Eigen::Vector3f center(place(random), place(random), place(random));
+    const std::vector<std::uint32_t> views = space.views_into(center, kRadius_m);
+    asked += views.size();
+    for (int i = 0; i < 20; ++i) {
+      const Eigen::Vector3f aside =
+          Eigen::Vector3f(place(random), place(random), place(random)).normalized();
+      const Eigen::Vector3f point = center + kRadius_m * aside;
+      const int all = space.seen_through(point, 100);
+      EXPECT_EQ(space.seen_through(point, views, 100), all) << point.transpose();
+      seen += all > 0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(seen, 100u);
+  EXPECT_LT(asked, kBalls * poses.size() / 3);
+}
+
+TEST_F(ObservedSpaceTest, LooksMoreOftenInLargePlaces) {
+  std::vector<Pose> poses(40, scene_.pose(0.));
+  ObservedSpaceConfig config;
+  config.max_views = 4;
+  EXPECT_EQ(ObservedSpace(map_, scene_.camera, poses, config).views(), 4u);
+  poses.back().translation() += Eigen::Vector3d(50., 0., 40.);  // five times 400 m2
+  EXPECT_EQ(ObservedSpace(map_, scene_.camera, poses, config).views(), 20u);
 }
 
 TEST_F(ObservedSpaceTest, IsEmptyWithoutFrames) {

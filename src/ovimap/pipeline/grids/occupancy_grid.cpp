@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "ovimap/base/config.h"
 #include "ovimap/base/parallel.h"
@@ -81,20 +82,40 @@ void mark_surface(const Mesh& mesh, int min_points, OccupancyGrid& grid) {
     if (points[i] >= min_points) grid.cells[i] = CellState::kOccupied;
 }
 
-void mark_free(const ObservedSpace& space, OccupancyGrid& grid) {
+/// Cells in cubes of this side are seen by much the same views.
+constexpr int kCubeSide = 8;
+
+/// Marks what was seen to be free among the unknown cells from `low` on, at most a cube of them.
+void mark_free_in_cube(const ObservedSpace& space, const Eigen::Vector3i& low,
+                       OccupancyGrid& grid) {
+  const Eigen::Vector3i end = (low.array() + kCubeSide).min(grid.size.array());
   const Eigen::Matrix3f world_from_grid = grid.grid_from_world.transpose();
-  const auto row = static_cast<std::size_t>(grid.size.x());
-  parallel_for(grid.cells.size() / row, 4, [&](std::size_t line) {
-    const auto y = static_cast<int>(line) % grid.size.y(),
-               z = static_cast<int>(line) / grid.size.y();
-    for (int x = 0; x < grid.size.x(); ++x) {
-      CellState& cell = grid.cells[line * row + static_cast<std::size_t>(x)];
-      if (cell != CellState::kUnknown) continue;
-      const Eigen::Vector3f center =
-          grid.origin +
-          (Eigen::Vector3i(x, y, z).cast<float>().array() + 0.5f).matrix() * grid.cell_m;
-      if (space.seen_through(world_from_grid * center) > 0) cell = CellState::kFree;
-    }
+  const Eigen::Vector3f middle = 0.5f * (low + end).cast<float>();
+  const float radius_m = 0.5f * (end - low).cast<float>().norm() * grid.cell_m;
+  std::optional<std::vector<std::uint32_t>> views;  // once a cell asks
+  for (int z = low.z(); z < end.z(); ++z)
+    for (int y = low.y(); y < end.y(); ++y)
+      for (int x = low.x(); x < end.x(); ++x) {
+        CellState& cell = grid.at(x, y, z);
+        if (cell != CellState::kUnknown) continue;
+        if (!views)
+          views =
+              space.views_into(world_from_grid * (grid.origin + middle * grid.cell_m), radius_m);
+        if (views->empty()) return;
+        const Eigen::Vector3f center =
+            grid.origin +
+            (Eigen::Vector3i(x, y, z).cast<float>().array() + 0.5f).matrix() * grid.cell_m;
+        if (space.seen_through(world_from_grid * center, *views) > 0) cell = CellState::kFree;
+      }
+}
+
+void mark_free(const ObservedSpace& space, OccupancyGrid& grid) {
+  const Eigen::Vector3i cubes = (grid.size.array() + kCubeSide - 1) / kCubeSide;
+  parallel_for(static_cast<std::size_t>(cubes.prod()), 4, [&](std::size_t i) {
+    const auto cube = static_cast<int>(i);
+    const Eigen::Vector3i at(cube % cubes.x(), cube / cubes.x() % cubes.y(),
+                             cube / cubes.x() / cubes.y());
+    mark_free_in_cube(space, at * kCubeSide, grid);
   });
 }
 

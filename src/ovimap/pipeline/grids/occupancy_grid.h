@@ -42,6 +42,12 @@ struct OccupancyGrid {
                      (static_cast<std::size_t>(y) +
                       static_cast<std::size_t>(size.y()) * static_cast<std::size_t>(z))];
   }
+  CellState& at(int x, int y, int z) {
+    return cells[static_cast<std::size_t>(x) +
+                 static_cast<std::size_t>(size.x()) *
+                     (static_cast<std::size_t>(y) +
+                      static_cast<std::size_t>(size.y()) * static_cast<std::size_t>(z))];
+  }
 };
 
 /// Occupied: surface of the map. Free: a camera of the frame log looked through it. Throws Error

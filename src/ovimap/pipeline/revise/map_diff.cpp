@@ -41,11 +41,14 @@ class Witness {
     if (surface.empty()) return;
     VoxelFinder finder(map_.map);
     std::size_t through = 0, there = 0;
+    Eigen::AlignedBox3f box;
+    for (const Eigen::Vector3f& other : surface) box.extend(map_from_other_ * other);
+    const auto views = space_.views_into(box.center(), 0.5f * box.diagonal().norm());
     for (const Eigen::Vector3f& other : surface) {
       const Eigen::Vector3f point = map_from_other_ * other;
       if (is_surface(finder, point))
         ++there;
-      else if (space_.seen_through(point, config_.gone_views) >= config_.gone_views)
+      else if (space_.seen_through(point, views, config_.gone_views) >= config_.gone_views)
         ++through;
     }
     const auto count = static_cast<float>(surface.size());

@@ -5,8 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <numeric>
 #include <queue>
+
+#include <Eigen/Geometry>
 
 #include "ovimap/base/config.h"
 #include "ovimap/map/rays/distance_transform.h"
@@ -85,65 +89,115 @@ Image<std::uint16_t> spread(Image<std::uint16_t> labels, const Image<std::uint8_
   return labels;
 }
 
+/// The cells on both sides where two rooms meet, by the rooms.
+std::map<std::pair<int, int>, std::vector<Cell>> meeting_cells(const Image<std::uint16_t>& rooms) {
+  std::map<std::pair<int, int>, std::vector<Cell>> meetings;
+  for (int y = 0; y < rooms.height(); ++y)
+    for (int x = 0; x < rooms.width(); ++x)
+      for (const Cell& step : {Cell(1, 0), Cell(0, 1)}) {
+        const Cell next = Cell(x, y) + step;
+        if (!rooms.contains(next.x(), next.y())) continue;
+        const int a = rooms.at(x, y), b = rooms.at(next.x(), next.y());
+        if (a == 0 || b == 0 || a == b) continue;
+        auto& cells = meetings[std::minmax(a, b)];
+        cells.insert(cells.end(), {Cell(x, y), next});
+      }
+  return meetings;
+}
+
+/// Cells that touch each other, of some that may be named twice.
+std::vector<std::vector<Cell>> parts_of(const std::vector<Cell>& cells) {
+  Eigen::AlignedBox2i box;
+  for (const Cell& cell : cells) box.extend(cell);
+  Image<std::uint8_t> mask(box.sizes().x() + 1, box.sizes().y() + 1);
+  for (const Cell& cell : cells) mask.at(cell.x() - box.min().x(), cell.y() - box.min().y()) = 1;
+  std::vector<std::vector<Cell>> parts = connected_parts(mask, 1, Corners::kApart);
+  for (std::vector<Cell>& part : parts)
+    for (Cell& cell : part) cell += box.min();
+  return parts;
+}
+
 /// Where two rooms meet on cells that are open at eye height, a door for each place.
 std::vector<RoomDoor> find_doors(const Image<std::uint16_t>& rooms, const Image<std::uint8_t>& eye,
                                  float cell_m, const RoomPlan& plan) {
-  const Image<std::uint16_t> reached = spread(rooms, eye);
   const Image<float> room_to_wall = clearance(eye, cell_m);
-  std::map<std::pair<int, int>, Image<std::uint8_t>> meetings;
-  for (int y = 0; y < reached.height(); ++y)
-    for (int x = 0; x < reached.width(); ++x)
-      for (const Cell& step : {Cell(1, 0), Cell(0, 1)}) {
-        const Cell next = Cell(x, y) + step;
-        if (!reached.contains(next.x(), next.y())) continue;
-        const int a = reached.at(x, y), b = reached.at(next.x(), next.y());
-        if (a == 0 || b == 0 || a == b) continue;
-        auto& mask = meetings[std::minmax(a, b)];
-        if (mask.size() == 0) mask = Image<std::uint8_t>(reached.width(), reached.height());
-        mask.at(x, y) = mask.at(next.x(), next.y()) = 1;
-      }
   std::vector<RoomDoor> doors;
-  for (const auto& [pair, mask] : meetings)
-    for (const std::vector<Cell>& part : connected_parts(mask, 1, Corners::kApart)) {
+  for (const auto& [pair, cells] : meeting_cells(spread(rooms, eye)))
+    for (const std::vector<Cell>& part : parts_of(cells)) {
       const Cell widest =
           *std::max_element(part.begin(), part.end(), [&](const Cell& a, const Cell& b) {
             return room_to_wall.at(a.x(), a.y()) < room_to_wall.at(b.x(), b.y());
           });
       RoomDoor door{pair.first, pair.second, {}, 2 * room_to_wall.at(widest.x(), widest.y())};
-      door.place_m = middle_of_cell(plan.origin, cell_m, reached.height(), widest.x(), widest.y());
+      door.place_m = middle_of_cell(plan.origin, cell_m, rooms.height(), widest.x(), widest.y());
       doors.push_back(door);
     }
   return doors;
 }
 
+/// Regions by label, and how many sides of cells each shares with each other one.
+struct RegionBorders {
+  std::map<std::uint16_t, std::size_t> sizes;
+  std::map<std::uint16_t, std::map<std::uint16_t, std::size_t>> lengths;
+
+  explicit RegionBorders(const Image<std::uint16_t>& regions) {
+    for (int y = 0; y < regions.height(); ++y)
+      for (int x = 0; x < regions.width(); ++x) {
+        const std::uint16_t region = regions.at(x, y);
+        if (region == 0) continue;
+        ++sizes[region];
+        for (const Cell& step : kNeighbors)
+          if (regions.contains(x + step.x(), y + step.y()))
+            if (const std::uint16_t other = regions.at(x + step.x(), y + step.y());
+                other != 0 && other != region)
+              ++lengths[region][other];
+      }
+  }
+
+  /// The one that shares the longest border with it; 0: none.
+  std::uint16_t neighbor_of(std::uint16_t region) const {
+    const auto borders = lengths.find(region);
+    if (borders == lengths.end() || borders->second.empty()) return 0;
+    return std::max_element(borders->second.begin(), borders->second.end(),
+                            [](const auto& a, const auto& b) { return a.second < b.second; })
+        ->first;
+  }
+
+  /// Makes `region` part of `heir`, or of none.
+  void join(std::uint16_t region, std::uint16_t heir) {
+    if (heir != 0) sizes[heir] += sizes[region];
+    for (const auto& [other, length] : lengths[region]) {
+      lengths[other].erase(region);
+      if (heir == 0 || other == heir) continue;
+      lengths[other][heir] += length;
+      lengths[heir][other] += length;
+    }
+    sizes.erase(region);
+    lengths.erase(region);
+  }
+};
+
 /// Gives regions that are too small to the one that they share the longest border with, or to none.
 void join_small(Image<std::uint16_t>& rooms, float cell_m, const RoomConfig& config) {
   const auto least = static_cast<std::size_t>(config.least_room_m2 / (cell_m * cell_m));
+  RegionBorders borders(rooms);
+  std::vector<std::uint16_t> heirs(std::numeric_limits<std::uint16_t>::max() + std::size_t{1});
+  std::iota(heirs.begin(), heirs.end(), std::uint16_t{0});
+  std::vector<std::uint16_t> joined;
   for (;;) {
-    std::map<std::uint16_t, std::size_t> sizes;
-    std::map<std::uint16_t, std::map<std::uint16_t, std::size_t>> borders;
-    for (int y = 0; y < rooms.height(); ++y)
-      for (int x = 0; x < rooms.width(); ++x) {
-        const std::uint16_t room = rooms.at(x, y);
-        if (room == 0) continue;
-        ++sizes[room];
-        for (const Cell& step : kNeighbors)
-          if (rooms.contains(x + step.x(), y + step.y()))
-            if (const std::uint16_t other = rooms.at(x + step.x(), y + step.y());
-                other != 0 && other != room)
-              ++borders[room][other];
-      }
     const auto small =
-        std::min_element(sizes.begin(), sizes.end(),
+        std::min_element(borders.sizes.begin(), borders.sizes.end(),
                          [](const auto& a, const auto& b) { return a.second < b.second; });
-    if (small == sizes.end() || small->second >= least) return;
-    std::uint16_t heir = 0;
-    std::size_t longest = 0;
-    for (const auto& [other, length] : borders[small->first])
-      if (length > longest) longest = length, heir = other;
-    for (std::size_t i = 0; i < rooms.size(); ++i)
-      if (rooms[i] == small->first) rooms[i] = heir;
+    if (small == borders.sizes.end() || small->second >= least) break;
+    const std::uint16_t region = small->first;
+    joined.push_back(region);
+    heirs[region] = borders.neighbor_of(region);
+    borders.join(region, heirs[region]);
   }
+  // An heir may have been joined later: the last ones know where they ended.
+  for (auto region = joined.rbegin(); region != joined.rend(); ++region)
+    heirs[*region] = heirs[heirs[*region]];
+  for (std::size_t i = 0; i < rooms.size(); ++i) rooms[i] = heirs[rooms[i]];
 }
 
 /// Numbers rooms by falling size and measures them.
