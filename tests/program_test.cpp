@@ -198,6 +198,8 @@ TEST_F(ProgramTest, SaysWhatIsWrongWithTheCommandLine) {
   expect_complaint("run recording --max-mem 1G -o a.ovimap", {"did you mean '--max-memory'"});
   expect_complaint("check recording --weather fine",
                    {"'--weather' is no option of check; `ovimap check --help` lists them"});
+  expect_complaint("run recording a.ovimap",
+                   {"'a.ovimap' is one argument too many", "-o a.ovimap"});
   expect_complaint("edit room.ovimap renam 1 cup", {"'renam'", "edit", "did you mean 'rename'"});
   expect_complaint("models verfy x", {"'verfy'", "did you mean 'verify'"});
   expect_complaint("models", {"say what models is to do: list, fetch, try, hub, verify, path;"});

@@ -97,6 +97,19 @@ std::string action_fault(const CLI::App& command, const CLI::ParseError& error,
                 " --help` explains each");
 }
 
+/// A file to write without the -o that says so; empty when it is something else.
+std::string output_fault(const CLI::App& command, const CLI::ParseError& error) {
+  const std::vector<std::string> extra = command.remaining();
+  const std::vector<const CLI::Option*> options = command.get_options();
+  const bool writes = std::any_of(options.begin(), options.end(),
+                                  [](const auto* option) { return option->check_sname("o"); });
+  if (extra.empty() || !writes || dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr)
+    return {};
+  return concat("'", extra.front(), "' is one argument too many; if ", command.get_name(),
+                " shall write it, say -o ", extra.front(), "; see `ovimap ", command.get_name(),
+                " --help`");
+}
+
 }  // namespace
 
 std::string usage_fault(const CLI::App& app, const CLI::ParseError& error,
@@ -110,6 +123,7 @@ std::string usage_fault(const CLI::App& app, const CLI::ParseError& error,
   if (const std::string fault = option_fault(command, arguments); !fault.empty()) return fault;
   if (const std::string fault = action_fault(command, error, arguments); !fault.empty())
     return fault;
+  if (const std::string fault = output_fault(command, error); !fault.empty()) return fault;
   return concat(error.what(), "; see `ovimap ", first, " --help`");
 }
 

@@ -185,9 +185,14 @@ void ServedMap::prepare_search() {
     open_encoder(*now);
     const LabelSet set = read_label_set(config_.classes);
     encode_labels(*encoder_, set);
-    const std::lock_guard lock(changing_);
-    classes_ = set;
-    rebuild();
+    {
+      const std::lock_guard lock(changing_);
+      classes_ = set;
+      rebuild();
+    }
+    // Who asks for "red" first shall not wait for the colours of all objects.
+    const auto ready = snapshot();
+    if (!ready->live && ready->objects->scene.colors) ready->objects->scene.colors->shares();
   } catch (const std::exception& error) {
     const std::lock_guard lock(changing_);
     if (encoder_) return;  // only names are lacking
