@@ -67,9 +67,11 @@ Image<std::uint16_t> watershed(const Image<float>& height, const WatershedConfig
     region[i] = mine == kNone ? regions.add(height[i]) : mine;
   }
   Image<std::uint16_t> result(height.width(), height.height());
+  constexpr std::size_t kMost = std::numeric_limits<std::uint16_t>::max();
   std::unordered_map<std::uint32_t, std::uint16_t> numbers;
   for (const std::uint32_t i : order) {
-    const auto next = static_cast<std::uint16_t>(numbers.size() + 1);
+    // The lowest peaks of very many have no region.
+    const auto next = static_cast<std::uint16_t>(numbers.size() < kMost ? numbers.size() + 1 : 0);
     result[i] = numbers.try_emplace(regions.root(region[i]), next).first->second;
   }
   return result;

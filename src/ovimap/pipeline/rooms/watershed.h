@@ -14,9 +14,10 @@ struct WatershedConfig {
 };
 
 /// Parts a height map into the regions of its peaks: 1, 2, ... by falling peak, 0 where the height
-/// is 0. Going down from the peaks, two regions that meet are one unless they meet at a pass as the
-/// config says. Ties go by place, so that equal maps give equal regions. Linear but for sorting
-/// (union-find, as in Edelsbrunner and Harer, "Computational Topology", 2010, chapter VII).
+/// is 0 (and beyond 65,535 regions). Going down from the peaks, two regions that meet are one
+/// unless they meet at a pass as the config says. Ties go by place, so that equal maps give equal
+/// regions. Linear but for sorting (union-find, as in Edelsbrunner and Harer, "Computational
+/// Topology", 2010, chapter VII).
 Image<std::uint16_t> watershed(const Image<float>& height, const WatershedConfig& config);
 
 }  // namespace ovimap

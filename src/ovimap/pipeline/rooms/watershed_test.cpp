@@ -31,6 +31,16 @@ TEST(Watershed, ARegionBehindAPassIsNotJoinedByAThird) {
   EXPECT_EQ(regions({6, 1, 5, 4, 5, 1, 6}, {1.5f, 0.5f}), (std::vector<int>{1, 1, 3, 3, 3, 2, 2}));
 }
 
+TEST(Watershed, MoreRegionsThanNumbersLeaveTheLowestWithout) {
+  std::vector<float> heights;
+  for (int i = 0; i < 70000; ++i) heights.insert(heights.end(), {100000.f - i, 0.f});
+  const std::vector<int> found = regions(heights, {});
+  EXPECT_EQ(found[0], 1);
+  EXPECT_EQ(found[2 * 65534], 65535);
+  EXPECT_EQ(found[2 * 65535], 0);
+  EXPECT_EQ(found[2 * 69999], 0);
+}
+
 TEST(Watershed, RegionsDoNotCreepAlongTheirBorders) {
   // Two rooms side by side with low cells along their wall; the pass is in the middle.
   const std::vector<std::vector<float>> rows = {
