@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "ovimap/semantics/query/text_evidence.h"
+#include "ovimap/semantics/words/text_evidence.h"
 
 namespace ovimap {
 

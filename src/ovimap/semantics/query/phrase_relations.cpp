@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <tuple>
 
+#include "ovimap/base/error.h"
 #include "ovimap/base/parallel.h"
+#include "ovimap/semantics/query/attribute_rating.h"
 #include "ovimap/semantics/query/query_scene.h"
-#include "ovimap/semantics/query/query_text.h"
 
 namespace ovimap {
 

@@ -4,10 +4,10 @@
 
 #include <string>
 
-#include "ovimap/semantics/query/text_evidence.h"
 #include "ovimap/semantics/query/verdict.h"
 #include "ovimap/semantics/relations/object_shape.h"
 #include "ovimap/semantics/relations/relations.h"
+#include "ovimap/semantics/words/text_evidence.h"
 
 namespace ovimap {
 

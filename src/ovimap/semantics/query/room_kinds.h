@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "ovimap/semantics/query/search_index.h"
-#include "ovimap/semantics/query/text_evidence.h"
+#include "ovimap/semantics/words/text_evidence.h"
 
 namespace ovimap {
 

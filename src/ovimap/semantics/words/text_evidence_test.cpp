@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
-#include "ovimap/semantics/query/text_evidence.h"
+#include "ovimap/semantics/words/text_evidence.h"
 
 #include <cmath>
 
