@@ -15,6 +15,8 @@ namespace ovimap {
 namespace {
 
 constexpr int kTurns = 36;
+constexpr int kRefined = 6;  // of the turns, those that fit best, ...
+constexpr int kSteps = 8;    // ... are drawn together: a mean of what was seen of one side is off
 constexpr double kNearShare = 0.8;  // of the points; the others were hidden from the other visit
 constexpr std::size_t kMostPoints = 400;
 
@@ -40,22 +42,64 @@ std::array<float, 64> colors_at(const VoxelMap& map, const std::vector<Eigen::Ve
   return shares;
 }
 
-/// Mean distance of the nearer points of `from`, turned, to `to`.
-double distance_to(const std::vector<Eigen::Vector3f>& from, const NearestPoints& to,
-                   const Eigen::Matrix3f& turn, float most_m) {
-  std::vector<double> distances;
-  for (const Eigen::Vector3f& point : from) {
-    const auto near = to.find(turn * point, most_m);
-    distances.push_back(static_cast<double>(near ? near->distance_m : most_m));
+/// Two things of which one is laid over the other.
+class ShapeFit {
+ public:
+  ShapeFit(const ThingLook& a, const ThingLook& b)
+      : a_(a), b_(b), in_a_(a.points), in_b_(b.points), reach_m_(std::max(a.reach_m, b.reach_m)) {}
+
+  /// The larger of the mean distances of either's nearer points to the other.
+  double distance_m(const Eigen::Isometry3f& b_from_a) const {
+    return std::max(mean_of_near(pulls(a_, in_b_, b_, b_from_a)),
+                    mean_of_near(pulls(b_, in_a_, a_, b_from_a.inverse())));
   }
-  const auto kept =
-      static_cast<std::ptrdiff_t>(std::ceil(kNearShare * static_cast<double>(distances.size())));
-  std::nth_element(distances.begin(), distances.begin() + kept - 1, distances.end());
-  double sum = 0;
-  for (auto distance = distances.begin(); distance != distances.begin() + kept; ++distance)
-    sum += *distance;
-  return sum / static_cast<double>(kept);
-}
+
+  /// Moved by what the nearer points of both are off in the mean.
+  Eigen::Isometry3f drawn_together(const Eigen::Isometry3f& b_from_a) const {
+    std::vector<Eigen::Vector3f> off = pulls(a_, in_b_, b_, b_from_a);
+    for (const Eigen::Vector3f& back : pulls(b_, in_a_, a_, b_from_a.inverse()))
+      off.push_back(-(b_from_a.linear() * back));
+    keep_near(off);
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    for (const Eigen::Vector3f& pull : off) sum += pull;
+    return Eigen::Translation3f(sum / static_cast<float>(off.size())) * b_from_a;
+  }
+
+ private:
+  /// From each point of `from` to the nearest of `to`; the reach away where none is within it.
+  std::vector<Eigen::Vector3f> pulls(const ThingLook& from, const NearestPoints& in_to,
+                                     const ThingLook& to,
+                                     const Eigen::Isometry3f& to_from_from) const {
+    std::vector<Eigen::Vector3f> pulls;
+    for (const Eigen::Vector3f& point : from.points) {
+      const Eigen::Vector3f there = to_from_from * point;
+      const auto near = in_to.find(there, reach_m_);
+      pulls.push_back(near ? Eigen::Vector3f(to.points[near->index] - there)
+                           : Eigen::Vector3f(0.f, 0.f, reach_m_));
+    }
+    return pulls;
+  }
+
+  static void keep_near(std::vector<Eigen::Vector3f>& pulls) {
+    const auto kept =
+        static_cast<std::ptrdiff_t>(std::ceil(kNearShare * static_cast<double>(pulls.size())));
+    std::nth_element(
+        pulls.begin(), pulls.begin() + kept - 1, pulls.end(),
+        [](const auto& x, const auto& y) { return x.squaredNorm() < y.squaredNorm(); });
+    pulls.resize(static_cast<std::size_t>(kept));
+  }
+
+  static double mean_of_near(std::vector<Eigen::Vector3f> pulls) {
+    keep_near(pulls);
+    double sum = 0;
+    for (const Eigen::Vector3f& pull : pulls) sum += static_cast<double>(pull.norm());
+    return sum / static_cast<double>(pulls.size());
+  }
+
+  const ThingLook &a_, &b_;
+  NearestPoints in_a_, in_b_;
+  float reach_m_;
+};
 
 }  // namespace
 
@@ -82,15 +126,22 @@ ThingLook thing_look(const MapDocument& map, InstanceId id, const Eigen::Vector3
 float shape_distance(const ThingLook& a, const ThingLook& b) {
   const float reach_m = std::max(a.reach_m, b.reach_m);
   if (a.points.empty() || b.points.empty() || reach_m <= 0.f) return 1.f;
-  const NearestPoints in_a(a.points), in_b(b.points);
-  double best = static_cast<double>(reach_m);
+  const ShapeFit fit(a, b);
+  std::vector<std::pair<double, Eigen::Isometry3f>> turned;
   for (int i = 0; i < kTurns; ++i) {
     const auto angle = static_cast<float>(2 * std::numbers::pi * i / kTurns);
-    const Eigen::Matrix3f turn =
-        Eigen::AngleAxisf(angle, Eigen::Vector3f::UnitZ()).toRotationMatrix();
-    best = std::min(best, std::max(distance_to(a.points, in_b, turn, reach_m),
-                                   distance_to(b.points, in_a, turn.transpose(), reach_m)));
+    const Eigen::Isometry3f turn(Eigen::AngleAxisf(angle, Eigen::Vector3f::UnitZ()));
+    turned.emplace_back(fit.distance_m(turn), turn);
   }
+  std::partial_sort(turned.begin(), turned.begin() + kRefined, turned.end(),
+                    [](const auto& x, const auto& y) { return x.first < y.first; });
+  double best = std::min(static_cast<double>(reach_m), turned.front().first);
+  for (int i = 0; i < kRefined; ++i)
+    for (int step = 0; step < kSteps; ++step) {
+      Eigen::Isometry3f& laid = turned[static_cast<std::size_t>(i)].second;
+      laid = fit.drawn_together(laid);
+      best = std::min(best, fit.distance_m(laid));
+    }
   return static_cast<float>(best) / reach_m;
 }
 

@@ -19,9 +19,9 @@ struct ThingLook {
 /// `up`: unit, in the world. Points without surface have no colour.
 ThingLook thing_look(const MapDocument& map, InstanceId id, const Eigen::Vector3f& up);
 
-/// Mean distance of the two surfaces, laid over each other and turned about the vertical until they
-/// fit best, as a share of the larger reach. The far fifth of either's points is left out: each was
-/// seen from other sides.
+/// Mean distance of the two surfaces, laid over each other, turned about the vertical and drawn
+/// together until they fit best, as a share of the larger reach. The far fifth of either's points
+/// is left out: each was seen from other sides.
 float shape_distance(const ThingLook& a, const ThingLook& b);
 
 /// Share that two things' colours have in common, in [0, 1]; 1 where one's are unknown.

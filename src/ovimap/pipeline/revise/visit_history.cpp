@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "ovimap/base/error.h"
@@ -73,7 +74,7 @@ std::shared_ptr<const PastObject> past_of(const MapDocument& map, InstanceId id)
 /// A gone object and a found one that may be it.
 struct Pair {
   std::size_t gone, found;  ///< in the list of changes
-  float distance;           ///< of their shapes
+  float difference;         ///< of their shapes, and the share of colours that they do not share
 };
 
 /// What the last visit says, object by object.
@@ -85,6 +86,7 @@ class VisitTeller {
   void tell() {
     changes_ = changes_of_visit();
     find_remains();
+    part_strangers();
     match_by_shape();
     for (const ObjectChange& change : changes_) tell(change);
     keep_ids();
@@ -120,6 +122,24 @@ class VisitTeller {
       }
   }
 
+  /// What came to where another thing left has that one's id in the map, and looks like a shift of
+  /// it where they overlap: unless it does not look like it.
+  void part_strangers() {
+    const std::size_t known = changes_.size();
+    for (std::size_t i = 0; i < known; ++i) {
+      if (changes_[i].kind != ChangeKind::kMoved || changes_[i].overlap == 0.f) continue;
+      const ThingLook was = thing_look(before_, changes_[i].before, before_.up),
+                      is = thing_look(after_, changes_[i].after, before_.up);
+      if (difference_of(was, is)) continue;
+      ObjectChange come;
+      come.kind = ChangeKind::kNew;
+      come.after = changes_[i].after;
+      changes_[i].kind = ChangeKind::kRemoved;
+      changes_[i].after = 0;
+      changes_.push_back(come);
+    }
+  }
+
   /// Whether it is known to be gone already, and what is left of it was seen through only now.
   bool told_gone(InstanceId id) const {
     const auto& events = after_.history.events;
@@ -135,6 +155,17 @@ class VisitTeller {
            (change.kind == ChangeKind::kNew || change.kind == ChangeKind::kUnseen);
   }
 
+  /// In shape and colours, of what could be one thing; none where two things cannot be one.
+  std::optional<float> difference_of(const ThingLook& was, const ThingLook& is) const {
+    const float colors = common_colors(was, is);
+    if (colors < config_.same_colors) return std::nullopt;
+    const float distance = shape_distance(was, is);
+    const float coarse = config_.coarse_voxels * before_.map.config().voxel_size_m /
+                         std::max(was.reach_m, is.reach_m);
+    if (distance > std::max(config_.same_shape, coarse)) return std::nullopt;
+    return distance + 1.f - colors;
+  }
+
   /// Pairs that could be one thing, the likeliest first.
   std::vector<Pair> likely_pairs() const {
     std::vector<Pair> pairs;
@@ -146,15 +177,12 @@ class VisitTeller {
       if (changes_[i].kind != ChangeKind::kRemoved) continue;
       const ThingLook gone = thing_look(before_, changes_[i].before, before_.up);
       for (const auto& [k, found] : found_looks) {
-        if (common_colors(gone, found) < config_.same_colors) continue;
-        const float distance = shape_distance(gone, found);
-        const float coarse = config_.coarse_voxels * before_.map.config().voxel_size_m /
-                             std::max(gone.reach_m, found.reach_m);
-        if (distance <= std::max(config_.same_shape, coarse)) pairs.push_back({i, k, distance});
+        if (const auto difference = difference_of(gone, found))
+          pairs.push_back({i, k, *difference});
       }
     }
     std::stable_sort(pairs.begin(), pairs.end(),
-                     [](const Pair& a, const Pair& b) { return a.distance < b.distance; });
+                     [](const Pair& a, const Pair& b) { return a.difference < b.difference; });
     return pairs;
   }
 
@@ -165,7 +193,7 @@ class VisitTeller {
       if (used.contains(pair.gone) || used.contains(pair.found)) continue;
       const bool doubtful = std::any_of(pairs.begin(), pairs.end(), [&](const Pair& other) {
         const bool rival = (other.gone == pair.gone) != (other.found == pair.found);
-        return rival && pair.distance > config_.doubt * other.distance;
+        return rival && other.difference < pair.difference + config_.doubt;
       });
       if (doubtful) {
         may_be_.try_emplace(changes_[pair.found].after, changes_[pair.gone].before);
@@ -217,14 +245,29 @@ class VisitTeller {
   /// Objects that are known go on under the ids that they had.
   void keep_ids() {
     for (const ObjectChange& change : changes_) {
-      const bool known = change.kind == ChangeKind::kMoved || change.kind == ChangeKind::kSame;
-      if (!known || change.before == 0 || change.after == 0 || change.before == change.after)
-        continue;
-      const bool free = change.kind == ChangeKind::kMoved ||  // else what is left of it
-                        find_instance(after_, change.before) == nullptr;
-      if (free && find_instance(before_, change.after) == nullptr)
-        swap_instances(after_, change.before, change.after);
+      if (change.before == 0 || change.after == 0 || change.before == change.after) continue;
+      const bool new_id = find_instance(before_, change.after) == nullptr;
+      const bool nothing_left = find_instance(after_, change.before) == nullptr;
+      const bool trades = change.kind == ChangeKind::kMoved  ? new_id || is_alone(change)
+                          : change.kind == ChangeKind::kSame ? new_id && nothing_left
+                                                             : false;
+      if (trades) trade_ids(change.before, change.after);
     }
+  }
+
+  /// Whether no other thing of before is what was found: it has that one's id by its place alone.
+  bool is_alone(const ObjectChange& change) const {
+    return std::count_if(changes_.begin(), changes_.end(), [&](const ObjectChange& other) {
+             return other.before != 0 && other.after == change.after;
+           }) == 1;
+  }
+
+  void trade_ids(InstanceId a, InstanceId b) {
+    swap_instances(after_, a, b);
+    const auto other = [a, b](InstanceId id) { return id == a ? b : id == b ? a : id; };
+    for (ObjectChange& change : changes_) change.after = other(change.after);
+    for (ObjectEvent& event : events_)
+      if (event.kind == ObjectEventKind::kAppeared) event.instance = other(event.instance);
   }
 
   const MapDocument& before_;

@@ -13,9 +13,9 @@ struct VisitHistoryConfig {
   float same_shape = 0.15f;   ///< mean distance of two surfaces laid over each other, as a share of
                               ///< their reach, up to which they may be of one thing
   float coarse_voxels = 1.f;  ///< surfaces that differ by no more than that may be as well
-  float same_colors = 0.5f;   ///< least share of two surfaces that has the same colours
-  float doubt = 0.5f;  ///< the likeliest pair is one thing when it is so much nearer than the next:
-                       ///< pairs of things of one shape differ by nearly as much
+  float same_colors = 0.4f;   ///< least share of two surfaces that has the same colours
+  float doubt = 0.1f;  ///< the likeliest pair is one thing when shape and colours of the next
+                       ///< differ by so much more: two chairs of a kind differ by nearly as much
 };
 
 /// Gives a header, which may name one visit with its date, the history of the map that it goes on

@@ -84,6 +84,22 @@ TEST(VisitHistory, TellsWhatMovedWentAndCameAndKeepsIds) {
   EXPECT_EQ(at(after, kChest), at(before, kChest));
 }
 
+TEST(VisitHistory, WhatComesToAnotherThingsPlaceIsNotThatThing) {
+  // The blue box comes to where the red one was, and a little aside.
+  const Furniture there = furniture(0.75f, 0.4f, {0.35f, 0.25f, 0.4f}, {20, 30, 220});
+  const FurnishedRoom evening = room_with({kChest, kRedBox, kBlueBox}),
+                      morning = room_with({kChest, there});
+  const MapDocument before = map_of(evening), after = continued(evening, morning, false);
+  const InstanceId red = at(before, kRedBox), blue = at(before, kBlueBox);
+  const ObjectEvent* moved = event_of(after, blue);
+  ASSERT_NE(moved, nullptr);
+  EXPECT_EQ(moved->kind, ObjectEventKind::kMoved);
+  EXPECT_NEAR(moved->after.center().x(), 0.75f, 0.06f);
+  EXPECT_EQ(at(after, there), blue) << "it keeps its id";
+  const ObjectEvent* of_red = event_of(after, red);
+  EXPECT_TRUE(of_red == nullptr || of_red->kind == ObjectEventKind::kGone) << "it has not shifted";
+}
+
 TEST(VisitHistory, WhatLeftItsPlaceIsKeptAsItWas) {
   const FurnishedRoom evening = room_with({kChest, kRedBox, kBlueBox}),
                       morning = room_with({kChest, kRedBoxAway, kGreenBox});
