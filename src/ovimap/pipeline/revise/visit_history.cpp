@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "ovimap/base/error.h"
 #include "ovimap/map/rays/surface_lookup.h"
@@ -88,6 +89,7 @@ class VisitTeller {
     find_remains();
     part_strangers();
     match_by_shape();
+    join_unknown_strangers();
     for (const ObjectChange& change : changes_) tell(change);
     keep_ids();
     std::stable_sort(events_.begin(), events_.end(),
@@ -136,7 +138,17 @@ class VisitTeller {
       come.after = changes_[i].after;
       changes_[i].kind = ChangeKind::kRemoved;
       changes_[i].after = 0;
+      strangers_.emplace_back(i, changes_.size());
       changes_.push_back(come);
+    }
+  }
+
+  /// A stranger that nothing else is was taken for one without need.
+  void join_unknown_strangers() {
+    for (const auto& [left, come] : strangers_) {
+      if (changes_[left].kind != ChangeKind::kRemoved || changes_[come].after == 0) continue;
+      changes_[left].kind = ChangeKind::kMoved;
+      changes_[left].after = std::exchange(changes_[come].after, 0);
     }
   }
 
@@ -274,6 +286,7 @@ class VisitTeller {
   MapDocument& after_;
   const VisitHistoryConfig& config_;
   std::vector<ObjectChange> changes_;
+  std::vector<std::pair<std::size_t, std::size_t>> strangers_;  ///< what left, and what came there
   std::map<InstanceId, InstanceId> may_be_;  ///< found objects and the gone ones that they resemble
   std::vector<ObjectEvent> events_;
 };
