@@ -3,26 +3,14 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "ovimap/geometry/camera.h"
 #include "ovimap/geometry/pose.h"
+#include "ovimap/geometry/sphere_in_view.h"
 #include "ovimap/image/image.h"
 
 namespace ovimap {
-
-/// Whether no part of a sphere (camera frame, metres) may show in the image: all of it lies off one
-/// side of the view's pyramid.
-inline bool beyond_view(const PinholeCamera& camera, const Eigen::Vector3f& center, float radius) {
-  const auto beyond = [&](float offset, float slope) {
-    return offset - slope * center.z() > radius * std::sqrt(1.f + slope * slope);
-  };
-  return beyond(center.x(), (static_cast<float>(camera.width) - camera.cx) / camera.fx) ||
-         beyond(-center.x(), (camera.cx + 1.f) / camera.fx) ||
-         beyond(center.y(), (static_cast<float>(camera.height) - camera.cy) / camera.fy) ||
-         beyond(-center.y(), (camera.cy + 1.f) / camera.fy);
-}
 
 /// Least and furthest free depth by tile of the image: tells of spheres whether all of one, or any,
 /// lies in free space.
@@ -49,13 +37,9 @@ class LeastTiles {
   bool all_free(const Eigen::Vector3f& center, float radius) const {
     const float near_m = center.z() - radius, far_m = center.z() + radius;
     if (near_m < kNear_m || far_m >= most_m_) return false;
-    // The tangent planes through the eye lie nearer in; this box of the sphere's is wider.
-    const auto lowest = [&](float edge) { return edge / (edge < 0.f ? near_m : far_m); };
-    const auto highest = [&](float edge) { return edge / (edge > 0.f ? near_m : far_m); };
-    const float left = camera_.cx + camera_.fx * lowest(center.x() - radius),
-                right = camera_.cx + camera_.fx * highest(center.x() + radius),
-                top = camera_.cy + camera_.fy * lowest(center.y() - radius),
-                bottom = camera_.cy + camera_.fy * highest(center.y() + radius);
+    const Eigen::AlignedBox2f covered = pixels_around(camera_, center, radius);
+    const float left = covered.min().x(), right = covered.max().x(), top = covered.min().y(),
+                bottom = covered.max().y();
     if (left < 0.f || top < 0.f || right > static_cast<float>(camera_.width - 1) ||
         bottom > static_cast<float>(camera_.height - 1))
       return false;

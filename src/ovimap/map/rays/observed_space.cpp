@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "ovimap/base/config.h"
+#include "ovimap/geometry/sphere_in_view.h"
 #include "ovimap/map/rays/ray_cast.h"
 
 namespace ovimap {
@@ -44,7 +45,6 @@ ObservedSpace::ObservedSpace(const VoxelMap& map, const PinholeCamera& camera,
   if (!camera.valid() || world_from_camera.empty()) return;
   const int width = std::min(config.width_px, camera.width);
   camera_ = camera.scaled_to(width, std::max(1, camera.height * width / camera.width));
-  set_borders();
   const std::size_t frames = world_from_camera.size(),
                     count = std::min(frames, views_for(world_from_camera, config));
   views_.resize(count);
@@ -52,15 +52,6 @@ ObservedSpace::ObservedSpace(const VoxelMap& map, const PinholeCamera& camera,
     cast(map, world_from_camera[(2 * i + 1) * frames / (2 * count)], views_[i]);
     map.trim();
   }
-}
-
-void ObservedSpace::set_borders() {
-  const auto width = static_cast<float>(camera_.width), height = static_cast<float>(camera_.height);
-  borders_ << camera_.fx, 0.f, camera_.cx + 0.5f,    // left
-      -camera_.fx, 0.f, width - 0.5f - camera_.cx,   // right
-      0.f, camera_.fy, camera_.cy + 0.5f,            // top
-      0.f, -camera_.fy, height - 0.5f - camera_.cy;  // bottom
-  borders_.rowwise().normalize();
 }
 
 void ObservedSpace::cast(const VoxelMap& map, const Pose& world_from_camera, View& view) const {
@@ -73,15 +64,6 @@ void ObservedSpace::cast(const VoxelMap& map, const Pose& world_from_camera, Vie
       float& farthest = view.farthest.at(x / kTile, y / kTile);
       farthest = std::max(farthest, view.depth.at(x, y));
     }
-}
-
-int ObservedSpace::seen_through(const Eigen::Vector3f& point_in_world, int enough) const {
-  int count = 0;
-  for (const View& view : views_) {
-    count += sees_through(view, point_in_world);
-    if (count >= enough) break;
-  }
-  return count;
 }
 
 std::vector<std::uint32_t> ObservedSpace::views_into(const Eigen::Vector3f& center_in_world,
@@ -108,21 +90,15 @@ bool ObservedSpace::may_see_through(const View& view, const Eigen::Vector3f& cen
   radius_m += kRounding_m;
   const Eigen::Vector3f center = view.camera_from_world * center_in_world;
   if (center.z() + radius_m <= 0.f || center.z() - radius_m >= config_.max_range_m) return false;
-  if (((borders_ * center).array() < -radius_m).any()) return false;
+  if (beyond_view(camera_, center, radius_m)) return false;
   return center.z() - radius_m < farthest_in(view, center, radius_m);
 }
 
 /// The largest depth of what a ball covers in the picture.
 float ObservedSpace::farthest_in(const View& view, const Eigen::Vector3f& center,
                                  float radius_m) const {
-  const float nearest = center.z() - radius_m;
-  if (nearest <= 0.f) return config_.max_range_m;  // it may cover everything
-  const Eigen::AlignedBox3f box(center - Eigen::Vector3f::Constant(radius_m),
-                                center + Eigen::Vector3f::Constant(radius_m));
-  Eigen::AlignedBox2f covered;
-  for (int corner = 0; corner < 8; ++corner)
-    covered.extend(
-        camera_.project(box.corner(static_cast<Eigen::AlignedBox3f::CornerType>(corner))));
+  if (center.z() - radius_m <= 0.f) return config_.max_range_m;  // it may cover everything
+  const Eigen::AlignedBox2f covered = pixels_around(camera_, center, radius_m);
   const auto tile = [](float pixel, int tiles) {
     return std::clamp(static_cast<int>(std::floor((pixel + 0.5f) / kTile)), 0, tiles - 1);
   };

@@ -35,14 +35,12 @@ class ObservedSpace {
   ObservedSpace(const VoxelMap& map, const PinholeCamera& camera,
                 std::span<const Pose> world_from_camera, const ObservedSpaceConfig& config = {});
 
-  /// In how many views the point (world frame, metres) lies clearly in front of the surface; stops
-  /// counting at `enough`.
-  int seen_through(const Eigen::Vector3f& point_in_world, int enough = 1) const;
-
   /// The views that may see through some point of a ball (world frame, metres): the only ones that
   /// need be asked about points in it.
   std::vector<std::uint32_t> views_into(const Eigen::Vector3f& center_in_world,
                                         float radius_m) const;
+  /// In how many of the views the point (world frame, metres) lies clearly in front of the surface;
+  /// stops counting at `enough`.
   int seen_through(const Eigen::Vector3f& point_in_world, std::span<const std::uint32_t> views,
                    int enough = 1) const;
 
@@ -56,7 +54,6 @@ class ObservedSpace {
   };
   static constexpr int kTile = 16;
 
-  void set_borders();
   void cast(const VoxelMap& map, const Pose& world_from_camera, View& view) const;
   bool sees_through(const View& view, const Eigen::Vector3f& point_in_world) const;
   bool may_see_through(const View& view, const Eigen::Vector3f& center_in_world,
@@ -65,7 +62,6 @@ class ObservedSpace {
 
   ObservedSpaceConfig config_;
   PinholeCamera camera_;
-  Eigen::Matrix<float, 4, 3> borders_;  ///< inward normals of the pyramid that pictures see
   std::vector<View> views_;
 };
 
