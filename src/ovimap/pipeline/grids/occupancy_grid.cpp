@@ -74,8 +74,7 @@ void mark_surface(const Mesh& mesh, int min_points, OccupancyGrid& grid) {
                                      .max(0)
                                      .min(grid.size.array() - 1)
                                      .matrix();
-    std::uint8_t& count = points[static_cast<std::size_t>(
-        cell.x() + grid.size.x() * (cell.y() + grid.size.y() * cell.z()))];
+    std::uint8_t& count = points[grid.index(cell.x(), cell.y(), cell.z())];
     count = static_cast<std::uint8_t>(std::min(count + 1, 255));
   }
   for (std::size_t i = 0; i < points.size(); ++i)

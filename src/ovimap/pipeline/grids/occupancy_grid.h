@@ -36,18 +36,15 @@ struct OccupancyGrid {
   float floor_m = 0;                                 ///< height of the floor, grid frame
   std::vector<CellState> cells;
 
-  CellState at(int x, int y, int z) const {
-    return cells[static_cast<std::size_t>(x) +
-                 static_cast<std::size_t>(size.x()) *
-                     (static_cast<std::size_t>(y) +
-                      static_cast<std::size_t>(size.y()) * static_cast<std::size_t>(z))];
+  /// Of a cell in `cells`.
+  std::size_t index(int x, int y, int z) const {
+    return static_cast<std::size_t>(x) +
+           static_cast<std::size_t>(size.x()) *
+               (static_cast<std::size_t>(y) +
+                static_cast<std::size_t>(size.y()) * static_cast<std::size_t>(z));
   }
-  CellState& at(int x, int y, int z) {
-    return cells[static_cast<std::size_t>(x) +
-                 static_cast<std::size_t>(size.x()) *
-                     (static_cast<std::size_t>(y) +
-                      static_cast<std::size_t>(size.y()) * static_cast<std::size_t>(z))];
-  }
+  CellState at(int x, int y, int z) const { return cells[index(x, y, z)]; }
+  CellState& at(int x, int y, int z) { return cells[index(x, y, z)]; }
 };
 
 /// Occupied: surface of the map. Free: a camera of the frame log looked through it. Throws Error
