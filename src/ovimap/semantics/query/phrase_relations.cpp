@@ -37,23 +37,22 @@ std::vector<std::size_t> PhraseSearch::anchors_of(const PhraseMatch& match) cons
 }
 
 PhraseSearch::PairRating PhraseSearch::rate_pairs(const QueryPhrase& phrase, std::size_t object,
-                                                  const std::vector<std::size_t>& near,
+                                                  std::span<const BoxedAnchor> near,
                                                   const PhraseMatch& anchors) const {
   const Eigen::AlignedBox3f box = upright_box(scene_.shapes[object]);
   std::vector<std::pair<float, std::size_t>> bounds;  // no rating is higher, rank in `near`
   for (std::size_t rank = 0; rank < near.size(); ++rank)
-    bounds.emplace_back(highest_rating(*phrase.relation, box,
-                                       upright_box(scene_.shapes[near[rank]]), config_.relations),
+    bounds.emplace_back(highest_rating(*phrase.relation, box, near[rank].box, config_.relations),
                         rank);
   // What may be best comes first, so that most others need not be rated.
   std::sort(bounds.begin(), bounds.end(), [&](const auto& a, const auto& b) {
-    return std::tuple(-a.first * anchors.score(near[a.second]), a.second) <
-           std::tuple(-b.first * anchors.score(near[b.second]), b.second);
+    return std::tuple(-a.first * anchors.score(near[a.second].position), a.second) <
+           std::tuple(-b.first * anchors.score(near[b.second].position), b.second);
   });
   PairRating best;
   std::size_t best_rank = near.size();
   for (const auto& [bound, rank] : bounds) {
-    const std::size_t j = near[rank];
+    const std::size_t j = near[rank].position;
     if (j == object) continue;
     const auto beats = [&](float score) {
       return std::tuple(score, best_rank) > std::tuple(best.score, rank);
@@ -78,7 +77,10 @@ PhraseSearch::PairRating PhraseSearch::rate_pairs(const QueryPhrase& phrase, std
 
 void PhraseSearch::apply_pairs(const QueryPhrase& phrase, const PhraseMatch& anchors,
                                PhraseMatch& result) const {
-  const std::vector<std::size_t> candidates = result.possible(), near = anchors_of(anchors);
+  const std::vector<std::size_t> candidates = result.possible();
+  std::vector<BoxedAnchor> near;
+  for (const std::size_t j : anchors_of(anchors))
+    near.push_back({j, upright_box(scene_.shapes[j])});
   std::vector<char> holds(index_.size(), 0);  // vector<bool> cannot be written in parallel
   parallel_for(candidates.size(), kObjectsPerTask, [&](std::size_t k) {
     const std::size_t i = candidates[k];

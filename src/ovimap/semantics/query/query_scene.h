@@ -109,9 +109,13 @@ class PhraseSearch {
     bool holds = false;
     std::string evidence;
   };
-  /// The object at a position beside the anchors at `near`, the better of equals first.
+  struct BoxedAnchor {
+    std::size_t position = 0;
+    Eigen::AlignedBox3f box;
+  };
+  /// The object at a position beside the anchors `near`, the better of equals first.
   PairRating rate_pairs(const QueryPhrase& phrase, std::size_t object,
-                        const std::vector<std::size_t>& near, const PhraseMatch& anchors) const;
+                        std::span<const BoxedAnchor> near, const PhraseMatch& anchors) const;
   void apply_pairs(const QueryPhrase& phrase, const PhraseMatch& anchors,
                    PhraseMatch& result) const;
   void apply_order(const QueryPhrase& phrase, const PhraseMatch& anchors,
