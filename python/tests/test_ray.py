@@ -86,11 +86,12 @@ def stalling(room, root):
     return str(root / "room")
 
 
-def kill_after(frames, map, scene):
-    """Kills the worker that maps a stalling scene when its checkpoint has so many frames; the try after it gets all."""
+def kill_on_the_way(map, scene):
+    """Kills the worker that maps a stalling scene when there is a checkpoint, of however few frames: the thread that
+    writes it gives way to all others. The try after it gets all frames."""
     def wait():
         frame, end = pathlib.Path(scene) / "results/depth000012.png", time.monotonic() + 300
-        while checkpoint_frames(map, map.with_suffix(".copy")) < frames and time.monotonic() < end:
+        while checkpoint_frames(map, map.with_suffix(".copy")) == 0 and time.monotonic() < end:
             time.sleep(0.01)
         frame.with_suffix(".kept").replace(frame)
         os.kill(int((map.parent / "jobs/room.lock").read_text().split()[0]), signal.SIGKILL)
@@ -108,12 +109,12 @@ def test_scenes_are_mapped_as_the_program_does(maps, rooms, tmp_path):
 
 def test_a_killed_worker_costs_nothing(maps, rooms, tmp_path):
     map, scene = tmp_path / "room.ovimap", stalling(rooms[0], tmp_path / "scene")
-    killer = kill_after(3, map, scene)
+    killer = kill_on_the_way(map, scene)
     [job] = run(scene_jobs([scene], tmp_path, frames=FRAMES, options=OPTIONS))
     killer.join(timeout=60)
     assert not killer.is_alive()
     assert (job.state, job.tries, job.fault) == ("done", 2, "")
-    assert 3 <= job.report["resumed_from"] < job.report["frames"] == 40
+    assert 0 < job.report["resumed_from"] < job.report["frames"] == 40
     # The essence of it: voxels, objects and votes are those of the run that nobody disturbed.
     assert map_facts(map).revision == map_facts(maps[0]).revision
     assert not (tmp_path / "room.ovimap.partial").exists()
@@ -121,17 +122,17 @@ def test_a_killed_worker_costs_nothing(maps, rooms, tmp_path):
 
 def test_a_worker_lost_too_often_leaves_its_checkpoint(maps, rooms, tmp_path):
     map, scene = tmp_path / "room.ovimap", stalling(rooms[0], tmp_path / "scene")
-    killer = kill_after(3, map, scene)
+    killer = kill_on_the_way(map, scene)
     [job] = run(scene_jobs([scene], tmp_path, frames=FRAMES, options=OPTIONS), retries=0)
     killer.join(timeout=60)
     assert not killer.is_alive()
     assert job.state == "failed" and "worker was lost" in job.fault and "goes on" in job.fault
-    assert checkpoint_frames(map, map.with_suffix(".copy")) >= 3 and not map.exists()
+    assert checkpoint_frames(map, map.with_suffix(".copy")) > 0 and not map.exists()
     [other] = run(scene_jobs([scene], tmp_path, frames="::2", options=OPTIONS))
     assert (other.state, other.tries) == ("failed", 1) and not map.exists(), "it went on with the frames of another order"
     assert "was begun with other frames (:)" in other.fault and f"delete {map}.partial" in other.fault
     [job] = run(scene_jobs([scene], tmp_path, frames=FRAMES, options=OPTIONS))
-    assert job.report["resumed_from"] >= 3
+    assert job.report["resumed_from"] > 0
     assert map_facts(map).revision == map_facts(maps[0]).revision
 
 
