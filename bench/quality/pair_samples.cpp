@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What the judge of pairs of super-points learns from, and what its groups are worth on a map.
-//   ovimap_pair_samples MAP SCENE          scores of the map's objects, of those that the judge
-//   makes, and of perfect groups,
-//                                          then the IoU of each true thing in each of the three
+//   ovimap_pair_samples MAP SCENE          scores of the map's objects, of those that masks alone
+//   and the judge make, and of perfect groups,
+//                                          then the IoU of each true thing in each of the four
 //   ovimap_pair_samples MAP SCENE OUT      writes samples: 32-bit floats, features of a pair,
 //   whether it is one thing, its weight
 #include <algorithm>
@@ -129,7 +129,7 @@ void write_samples(const MapDocument& document, const LabelledTruth& truth,
   std::fclose(file);
 }
 
-using Overlaps = std::array<InstanceOverlaps, 3>;
+using Overlaps = std::array<InstanceOverlaps, 4>;
 
 /// The best IoU of a true thing, at its place among all, with any object.
 double best_iou(const InstanceOverlaps& table, std::size_t thing) {
@@ -143,11 +143,11 @@ void print_things(const Truth& truth, const Overlaps& tables) {
   for (std::size_t thing = 0; thing < tables[0].truth.size(); ++thing) {
     const InstanceSize& size = tables[0].truth[thing];
     const auto name = truth.instance_names.find(static_cast<std::int32_t>(size.id));
-    std::printf("%-6lld %-22s %8lld points  map %.2f judge %.2f perfect %.2f\n",
+    std::printf("%-6lld %-22s %8lld points  map %.2f consensus %.2f judge %.2f perfect %.2f\n",
                 static_cast<long long>(size.id),
                 name == truth.instance_names.end() ? "" : name->second.c_str(),
                 static_cast<long long>(size.vertices), best_iou(tables[0], thing),
-                best_iou(tables[1], thing), best_iou(tables[2], thing));
+                best_iou(tables[1], thing), best_iou(tables[2], thing), best_iou(tables[3], thing));
   }
 }
 
@@ -166,11 +166,15 @@ void print_scores(const MapDocument& document, const LabelledTruth& truth,
   std::map<Label, std::uint32_t> ideal;
   for (const auto& [label, shares] : truth.shares)
     ideal[label] = static_cast<std::uint32_t>(std::max(owner(shares), 0));
-  const std::array<LabelledScene, 3> scenes{
+  InstanceRegistry plain(document.instance_config);
+  plain.restore(document.registry);
+  plain.settle();
+  const std::array<LabelledScene, 4> scenes{
       truth.scene(object_by_label(document.instances)),
+      truth.scene(object_by_label(summarize_instances(document.map, plain, {}))),
       truth.scene(object_by_label(summarize_instances(document.map, registry, {}))),
       truth.scene(ideal)};
-  const std::array<const char*, 3> names{"map", "judge", "perfect"};
+  const std::array<const char*, 4> names{"map", "consensus", "judge", "perfect"};
   Overlaps tables;
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     truth.print(names[i], scenes[i]);
