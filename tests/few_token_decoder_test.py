@@ -105,7 +105,7 @@ class PlainDecoder:
         return x * (1 + np.vectorize(math.erf, otypes=[np.float32])(x / math.sqrt(2))) / 2
 
     def masks(self, image, mask_weights):
-        x = self.upscale(0, image.reshape(-1, few.SIDE, few.SIDE, few.CHANNELS))
+        x = self.upscale(0, image.reshape(len(image), -1, few.SIDE, few.CHANNELS))
         scale, shift = (self.w[name].ravel() for name in few.UPSCALED_NORM)
         x = self.gelu(self.upscale(3, self.gelu(self.normalized(x, 1e-6) * scale + shift)))
         return np.einsum("nyxc,nmc->nmyx", x, mask_weights)
@@ -113,18 +113,25 @@ class PlainDecoder:
 
 class FewTokenDecoderTest(unittest.TestCase):
     def test_it_answers_what_the_plain_decoder_answers(self):
+        self.compare(few.SIDE)
+
+    def test_of_fewer_rows_it_answers_the_same_and_goes_on_below(self):
+        self.compare(5)
+
+    def compare(self, rows):
         weights, random = RandomWeights(1), np.random.default_rng(2)
         shapes = {few.TOKENS: (PROMPTS, TOKENS, 256), few.POSITIONS: (1, 256, few.SIDE, few.SIDE),
-                  few.IMAGE: (1, 256, few.SIDE, few.SIDE), few.MASK_WEIGHTS: (PROMPTS, few.MASKS, few.UPSCALED)}  # fmt: skip
+                  few.IMAGE: (1, 256, rows, few.SIDE), few.MASK_WEIGHTS: (PROMPTS, few.MASKS, few.UPSCALED)}  # fmt: skip
         given = {name: random.normal(size=shape).astype(np.float32) for name, shape in shapes.items()}
         tokens, masks = self.run_graph(few.few_token_graph(weights), given)
 
-        def rows(x):
-            return np.repeat(x.reshape(256, few.PLACES).T[None], PROMPTS, 0)
+        def places(x):
+            return np.repeat(x[:, :, :rows].reshape(256, -1).T[None], PROMPTS, 0)
 
         plain = PlainDecoder(weights)
-        true_tokens, image = plain.transform(given[few.TOKENS], rows(given[few.IMAGE] + weights[few.NO_MASK]), rows(given[few.POSITIONS]))
+        true_tokens, image = plain.transform(given[few.TOKENS], places(given[few.IMAGE] + weights[few.NO_MASK]), places(given[few.POSITIONS]))
         true_masks = plain.masks(image, given[few.MASK_WEIGHTS])
+        true_masks = np.pad(true_masks, ((0, 0), (0, 0), (0, 4 * (few.SIDE - rows)), (0, 0)), "edge")
         np.testing.assert_allclose(tokens, true_tokens, atol=1e-4)
         np.testing.assert_allclose(masks, true_masks, atol=1e-3 * np.abs(true_masks).max())
         self.assertGreater(np.abs(true_masks).max(), 1)

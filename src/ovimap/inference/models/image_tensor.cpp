@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "ovimap/base/error.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/image/resize.h"
 
@@ -42,6 +43,14 @@ RgbImage resized(const RgbImage& image, const ImageInputSpec& spec) {
   return resize_filtered(image, frame.width_px, frame.height_px, spec.filter);
 }
 
+/// Of the network's input.
+int rows_for(const RgbImage& image, const ImageInputSpec& spec) {
+  if (spec.row_step_px == 0 || spec.resize != ResizeRule::kLongSide) return spec.size_px;
+  const InputFrame frame = input_frame(image.width(), image.height(), spec);
+  const int steps = (frame.height_px + spec.rows_below_px - 1) / spec.row_step_px + 1;
+  return std::min(steps * spec.row_step_px, spec.size_px);
+}
+
 }  // namespace
 
 InputFrame input_frame(int image_width_px, int image_height_px, const ImageInputSpec& spec) {
@@ -62,13 +71,15 @@ void write_image_tensor(const RgbImage& image, const ImageInputSpec& spec,
                         std::span<float> values) {
   const RgbImage pixels = resized(image, spec);
   const auto size = static_cast<std::size_t>(spec.size_px);
+  const std::size_t plane = values.size() / 3;
+  OVIMAP_ASSERT(plane >= static_cast<std::size_t>(pixels.height()) * size);
   std::fill(values.begin(), values.end(), 0.f);
   const Affine r = normalisation(spec, 0), g = normalisation(spec, 1), b = normalisation(spec, 2);
   parallel_for(static_cast<std::size_t>(pixels.height()), kTensorRowsPerTask, [&](std::size_t y) {
     const Rgb8* from = pixels.row(static_cast<int>(y));
     float* red = values.data() + y * size;
-    float* green = red + size * size;
-    float* blue = green + size * size;
+    float* green = red + plane;
+    float* blue = green + plane;
     for (int x = 0; x < pixels.width(); ++x) {
       red[x] = static_cast<float>(from[x].r) * r.scale + r.offset;
       green[x] = static_cast<float>(from[x].g) * g.scale + g.offset;
@@ -78,8 +89,9 @@ void write_image_tensor(const RgbImage& image, const ImageInputSpec& spec,
 }
 
 FloatTensor image_tensor(const RgbImage& image, const ImageInputSpec& spec) {
-  const auto size = static_cast<std::size_t>(spec.size_px);
-  FloatTensor tensor{{1, 3, spec.size_px, spec.size_px}, std::vector<float>(3 * size * size)};
+  const int rows = rows_for(image, spec);
+  const auto values = 3 * static_cast<std::size_t>(rows) * static_cast<std::size_t>(spec.size_px);
+  FloatTensor tensor{{1, 3, rows, spec.size_px}, std::vector<float>(values)};
   write_image_tensor(image, spec, tensor.values);
   return tensor;
 }

@@ -22,11 +22,11 @@ struct InputFrame {
 /// For ResizeRule::kLongSide and kStretch, which keep the whole image.
 InputFrame input_frame(int image_width_px, int image_height_px, const ImageInputSpec& spec);
 
-/// The image resized (antialiased), cut or zero-padded, normalised: 3 * size * size values, the
-/// three channels one after another.
+/// The image resized (antialiased), cut or zero-padded, normalised: 3 * rows * size values, the
+/// three channels one after another. At least as many rows as the image fills.
 void write_image_tensor(const RgbImage& image, const ImageInputSpec& spec, std::span<float> values);
 
-/// The same as a tensor [1, 3, size, size].
+/// The same as a tensor [1, 3, rows, size], of as many rows as ImageInputSpec::row_step_px asks.
 FloatTensor image_tensor(const RgbImage& image, const ImageInputSpec& spec);
 
 }  // namespace ovimap

@@ -56,6 +56,22 @@ TEST(ImageTensor, NormalisesByChannelAndPadsWithZero) {
   }
 }
 
+TEST(ImageTensor, HasAsManyRowsAsTheNetworkAsksFor) {
+  ImageInputSpec spec = spec_of(ResizeRule::kLongSide);
+  spec.row_step_px = 16;
+  spec.rows_below_px = 3;
+  const RgbImage image(64, 30, Rgb8{12, 28, 25});
+  const FloatTensor tensor = image_tensor(image, spec);
+  ASSERT_EQ(tensor.shape, (TensorShape{1, 3, 48, 64}));  // 30 and 3, in steps of 16
+  ASSERT_EQ(tensor.values.size(), 3u * 48u * 64u);
+  spec.row_step_px = 0;
+  const FloatTensor square = image_tensor(image, spec);
+  for (std::size_t channel = 0; channel < 3; ++channel)
+    for (std::size_t i = 0; i < 48u * 64u; ++i)
+      ASSERT_EQ(tensor.values[channel * 48 * 64 + i], square.values[channel * 64 * 64 + i]);
+  EXPECT_EQ(image_tensor(RgbImage(8, 16), spec).shape, (TensorShape{1, 3, 64, 64}));
+}
+
 /// A horizontal ramp: the red value of a pixel is its column.
 RgbImage ramp(int width, int height) {
   RgbImage image(width, height);

@@ -68,6 +68,14 @@ ImageInputSpec parse_input(const YAML::Node& node, const std::string& kind,
   ImageInputSpec spec;
   spec.size_px = node["size"] ? node["size"].as<int>() : 0;
   if (spec.size_px < 1) fault(folder, "'input.size' must be the side of the input in pixels");
+  const auto pixels = [&](const char* key) {
+    const int value = node[key] ? node[key].as<int>() : 0;
+    if (value < 0 || value > spec.size_px)
+      fault(folder, concat("'input.", key, "' must be a number of pixels up to 'input.size'"));
+    return value;
+  };
+  spec.row_step_px = pixels("row_step");
+  spec.rows_below_px = pixels("rows_below");
   spec.resize = word_of<ResizeRule>(node, "resize", rules, {}, folder);
   spec.filter = word_of<ResizeFilter>(node, "filter", filters, ResizeFilter::kBilinear, folder);
   spec.mean = three_numbers(node, "mean", folder);

@@ -24,6 +24,10 @@ enum class ResizeRule {
 /// The image input: value = (pixel - mean) / std with pixels from 0 to 255, channels R, G, B.
 struct ImageInputSpec {
   int size_px = 0;  ///< side of the square input; 0: this model takes no image
+  /// The network takes any multiple of so many rows, so those below the image need not be there; 0:
+  /// it takes the square alone.
+  int row_step_px = 0;
+  int rows_below_px = 0;  ///< ... but for so many, which tell it where the image ends
   ResizeRule resize = ResizeRule::kLongSide;
   ResizeFilter filter = ResizeFilter::kBilinear;
   std::array<float, 3> mean = {0, 0, 0};

@@ -56,6 +56,7 @@ TEST(ModelFolder, SaysWhatIsWrong) {
   };
   EXPECT_TRUE(contains(message(edited("kind: sam", "kid: sam")), "'kind' is missing"));
   EXPECT_TRUE(contains(message(edited("stretch", "crop")), "accepted is long_side or stretch"));
+  EXPECT_TRUE(contains(message(edited("size: 64", "size: 64, row_step: 65")), "'input.row_step'"));
   EXPECT_TRUE(contains(message(edited("[1, 2, 3]", "[1, 2]")), "three numbers"));
   EXPECT_TRUE(contains(message(edited("[4, 5, 6]", "[4, 0, 6]")), "must be positive"));
   EXPECT_TRUE(contains(message(edited("file: encoder", "file: ../encoder")), "inside the model"));

@@ -73,11 +73,11 @@ FinderMaps EntityFinder::look(const FloatTensor& embedding, const InputFrame& fr
   if (embedding.shape.size() != 4)
     throw Error(concat("model file ", file_, ": an embedding of shape ", to_text(embedding.shape),
                        ", expected [1,channels,rows,columns]"));
-  const auto cells = [&](int filled_px, std::int64_t all) {
-    return (filled_px * all + input_size_px_ - 1) / input_size_px_;
+  const auto cells = [&](int filled_px) {
+    return (filled_px * embedding.shape[3] + input_size_px_ - 1) / input_size_px_;
   };
-  const FloatTensor seen = filled_part(embedding, cells(frame.height_px, embedding.shape[2]),
-                                       cells(frame.width_px, embedding.shape[3]));
+  const FloatTensor seen = filled_part(
+      embedding, std::min(cells(frame.height_px), embedding.shape[2]), cells(frame.width_px));
   std::vector<TensorInput> inputs = {{input_, seen.shape, std::span<const float>(seen.values)}};
   FloatTensor depth;
   if (!depth_input_.empty()) {

@@ -53,6 +53,14 @@ TEST(EntityFinder, LooksAtWhatTheImageFills) {
   EXPECT_EQ(maps.values[12], 16);  // the second map's first
 }
 
+TEST(EntityFinder, TakesAnEmbeddingOfTheRowsThatThereAre) {
+  FloatTensor embedding{{1, 6, 3, 4}, std::vector<float>(6 * 12)};
+  const FinderMaps maps = Mirror(6).finder().look(embedding, {16, 9, {0.5f, 0.5f}}, {});
+  EXPECT_EQ(maps.columns, 4);
+  EXPECT_EQ(maps.rows, 3);
+  EXPECT_EQ(maps.image_from_cell, Eigen::Vector2f(8, 8));
+}
+
 TEST(EntityFinder, RefusesAnotherNumberOfMaps) {
   EXPECT_THROW(Mirror(5).finder(), Error);
 }

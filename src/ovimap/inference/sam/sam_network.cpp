@@ -52,8 +52,12 @@ void SamNetwork::check_tensors(const ModelFolder& model) {
   const auto fits = [this](std::int64_t size) {
     return size == kAnySize || size == input_.size_px;
   };
-  if (shape.size() != 4 || shape[1] != 3 || !fits(shape[2]) || !fits(shape[3]))
-    wrong_shape(folder_, image, concat("[any,3,", input_.size_px, ",", input_.size_px, "]"));
+  const bool any_rows = input_.row_step_px > 0;
+  if (shape.size() != 4 || shape[1] != 3 || !fits(shape[2]) || !fits(shape[3]) ||
+      (any_rows && shape[2] != kAnySize))
+    wrong_shape(folder_, image,
+                concat("[any,3,", any_rows ? "any" : std::to_string(input_.size_px), ",",
+                       input_.size_px, "]"));
 
   for (const auto& [role, name] : encoder_spec_.outputs) {
     encoder_.output(name);
