@@ -8,8 +8,8 @@ and in those what the network says at the right border of every square, where it
 """
 
 import numpy as np
-from few_token_decoder import Graph
 from onnx import numpy_helper
+from transformer_graph import Graph
 
 HEAD = 32  # channels of a head
 LAYERS = [(2, 7), (6, 14), (2, 7)]  # of windows: blocks, side of a window in places
