@@ -5,12 +5,12 @@ benchmark uses, and of random rooms made in Blender (tools/blender_scene/random_
 at, and where the things in them are."""
 
 import json
-import math
 import pathlib
 import subprocess
 
 import cv2
 import numpy as np
+from depth_geometry import geometry
 
 INPUT_PX, EMBEDDED_PX, CELL_PX, GRID_PX = 1024, 16, 8, 4  # the network's input; one place of its embedding, of the finder's maps, of masks
 LEAST_PX = 40  # fewer pixels of a thing, at half the input's resolution, teach nothing
@@ -180,24 +180,6 @@ def measured(inverse, ids, rng):
     if rng.random() < 0.2:
         holes |= inverse < 1 / rng.uniform(1.5, 4)  # beyond the range
     return np.where(holes, 0, np.maximum(inverse, 0)) * np.float32(np.exp(rng.normal(0, 0.15)))
-
-
-def geometry(inverse, focal):
-    """4 x rows x columns of what the finder is told of depth (depth_view.h): the logarithm of how large a pixel is, in metres, plus 5;
-    how far to the right and down the surface slants, as half of its tangent; 1 where depth is known. `focal` in these pixels."""
-    known = inverse > 0
-    log = -np.log(np.where(known, inverse, 1)).astype(np.float32)
-
-    def slant(axis):
-        before, after = (np.roll(log, shift, axis) for shift in (1, -1))
-        has_before, has_after = (np.roll(known, shift, axis) & known for shift in (1, -1))
-        first, last = [slice(None)] * 2, [slice(None)] * 2
-        first[axis], last[axis] = 0, -1
-        has_before[tuple(first)] = has_after[tuple(last)] = False
-        steps = (log - before) * has_before + (after - log) * has_after
-        return np.clip(0.5 * focal * steps / np.maximum(1, has_before.astype(np.int8) + has_after), -2, 2)
-
-    return np.stack([np.where(known, log - math.log(focal) + 5, 0), slant(1), slant(0), known]).astype(np.float32)
 
 
 def view(rng, width, height, size):

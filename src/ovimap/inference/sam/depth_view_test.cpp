@@ -3,8 +3,11 @@
 #include "ovimap/inference/sam/depth_view.h"
 
 #include <cmath>
+#include <fstream>
 
 #include <gtest/gtest.h>
+
+#include "ovimap/inference/models/test_support.h"
 
 namespace ovimap {
 namespace {
@@ -54,6 +57,35 @@ TEST(DepthView, LeavesNoGapsBetweenTheColumnsOfACoarseSensor) {
   const FloatTensor view = depth_view(frame, {0.25f, 0.25f}, kGridRows, kGridColumns);
   for (int y = 1; y + 1 < kGridRows; ++y)
     for (int x = 1; x + 1 < kGridColumns; ++x) EXPECT_EQ(value(view, 3, x, y), 1) << x << ' ' << y;
+}
+
+/// tests/depth_geometry_test.py holds what the finder learns from against the same file.
+TEST(DepthView, ShowsTheFinderWhatItWasTrainedWith) {
+  std::ifstream file(inference_testdata() / "golden_depth_view.txt");
+  int rows = 0, columns = 0;
+  float focal_px = 0;
+  ASSERT_TRUE(file >> rows >> columns >> focal_px);
+  Frame frame;
+  frame.color_camera = frame.depth_camera = {columns,
+                                             rows,
+                                             focal_px,
+                                             focal_px,
+                                             0.5f * static_cast<float>(columns - 1),
+                                             0.5f * static_cast<float>(rows - 1)};
+  frame.color = RgbImage(columns, rows);
+  frame.depth = DepthImage(columns, rows);
+  for (float& depth : frame.depth) {
+    float inverse = 0;
+    ASSERT_TRUE(file >> inverse);
+    depth = inverse > 0 ? 1 / inverse : 0;
+  }
+  const FloatTensor view = depth_view(frame, {1, 1}, rows, columns);
+  ASSERT_EQ(view.values.size(), static_cast<std::size_t>(kDepthMaps * rows * columns));
+  for (std::size_t i = 0; i < view.values.size(); ++i) {
+    float expected = 0;
+    ASSERT_TRUE(file >> expected);
+    EXPECT_NEAR(view.values[i], expected, 1e-4) << i;
+  }
 }
 
 TEST(DepthView, OfAFrameWithoutDepthSaysNothing) {
