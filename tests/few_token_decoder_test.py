@@ -10,8 +10,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "tools" 
 try:
     import few_token_decoder as few
     import numpy as np
-    from onnx import TensorProto, helper
-    from onnx.reference import ReferenceEvaluator
+    from plain_network import answers, attended, gelu, normalized
 except ImportError as missing:  # the tools' packages are set up by tools/setup.sh
     print(f"skipped: {missing}; tools/setup.sh installs what the model tools need")
     sys.exit(77)
@@ -60,19 +59,14 @@ class PlainDecoder:
 
     def norm(self, layer, x):
         weight, bias = self.w.norm(layer)
-        return self.normalized(x, 1e-5) * weight + bias
-
-    @staticmethod
-    def normalized(x, epsilon):
-        return (x - x.mean(-1, keepdims=True)) / np.sqrt(x.var(-1, keepdims=True) + epsilon)
+        return normalized(x, 1e-5) * weight + bias
 
     def attention(self, name, q, k, v):
         q, k, v = (self.apply(f"{name}/{part}_proj", x) for part, x in (("q", q), ("k", k), ("v", v)))
         made = np.empty_like(q)
         for head in np.split(np.arange(q.shape[-1]), few.HEADS):
             scores = q[..., head] @ k[..., head].swapaxes(1, 2) / math.sqrt(len(head))
-            shares = np.exp(scores - scores.max(-1, keepdims=True))
-            made[..., head] = shares / shares.sum(-1, keepdims=True) @ v[..., head]
+            made[..., head] = attended(scores, v[..., head])
         return self.apply(f"{name}/out_proj", made)
 
     def transform(self, first, image, positions):
@@ -100,14 +94,10 @@ class PlainDecoder:
                 made[:, row::2, column::2] = x @ weight[:, :, row, column] + bias
         return made
 
-    @staticmethod
-    def gelu(x):
-        return x * (1 + np.vectorize(math.erf, otypes=[np.float32])(x / math.sqrt(2))) / 2
-
     def masks(self, image, mask_weights):
         x = self.upscale(0, image.reshape(len(image), -1, few.SIDE, few.CHANNELS))
         scale, shift = (self.w[name].ravel() for name in few.UPSCALED_NORM)
-        x = self.gelu(self.upscale(3, self.gelu(self.normalized(x, 1e-6) * scale + shift)))
+        x = gelu(self.upscale(3, gelu(normalized(x, 1e-6) * scale + shift)))
         return np.einsum("nyxc,nmc->nmyx", x, mask_weights)
 
 
@@ -123,7 +113,7 @@ class FewTokenDecoderTest(unittest.TestCase):
         shapes = {few.TOKENS: (PROMPTS, TOKENS, 256), few.POSITIONS: (1, 256, few.SIDE, few.SIDE),
                   few.IMAGE: (1, 256, rows, few.SIDE), few.MASK_WEIGHTS: (PROMPTS, few.MASKS, few.UPSCALED)}  # fmt: skip
         given = {name: random.normal(size=shape).astype(np.float32) for name, shape in shapes.items()}
-        tokens, masks = self.run_graph(few.few_token_graph(weights), given)
+        tokens, masks = answers(few.few_token_graph(weights), given, (few.TOKENS_OUT, few.MASKS_OUT))
 
         def places(x):
             return np.repeat(x[:, :, :rows].reshape(256, -1).T[None], PROMPTS, 0)
@@ -135,13 +125,6 @@ class FewTokenDecoderTest(unittest.TestCase):
         np.testing.assert_allclose(tokens, true_tokens, atol=1e-4)
         np.testing.assert_allclose(masks, true_masks, atol=1e-3 * np.abs(true_masks).max())
         self.assertGreater(np.abs(true_masks).max(), 1)
-
-    @staticmethod
-    def run_graph(graph, given):
-        inputs = [helper.make_tensor_value_info(name, TensorProto.FLOAT, value.shape) for name, value in given.items()]
-        outputs = [helper.make_tensor_value_info(name, TensorProto.FLOAT, None) for name in (few.TOKENS_OUT, few.MASKS_OUT)]
-        whole = helper.make_graph(graph.nodes, "few", inputs, outputs, graph.constants)
-        return ReferenceEvaluator(helper.make_model(whole, opset_imports=[helper.make_opsetid("", 17)])).run(None, given)
 
 
 if __name__ == "__main__":

@@ -10,8 +10,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "tools" 
 try:
     import numpy as np
     import row_encoder
-    from onnx import TensorProto, helper
-    from onnx.reference import ReferenceEvaluator
+    from plain_network import answers, attended, gelu, normalized
 except ImportError as missing:  # the tools' packages are set up by tools/setup.sh
     print(f"skipped: {missing}; tools/setup.sh installs what the model tools need")
     sys.exit(77)
@@ -81,10 +80,6 @@ class PlainEncoder:
     def __init__(self, weights):
         self.w = weights
 
-    @staticmethod
-    def gelu(x):
-        return x * (1 + np.vectorize(math.erf, otypes=[np.float32])(x / math.sqrt(2))) / 2
-
     def convolution(self, x):
         (weight, *bias), how = self.w.next_convolution()
         side, stride, groups = weight.shape[-1], how["strides"][0], how["group"]
@@ -99,12 +94,12 @@ class PlainEncoder:
         return made + bias[0][:, None, None] if bias else made
 
     def three(self, x):
-        return self.convolution(self.gelu(self.convolution(self.gelu(self.convolution(x)))))
+        return self.convolution(gelu(self.convolution(gelu(self.convolution(x)))))
 
     @staticmethod
-    def normalized(x, weights, epsilon):
+    def norm(x, weights, epsilon):
         scale, shift = (part.ravel() for part in weights)
-        return (x - x.mean(-1, keepdims=True)) / np.sqrt(x.var(-1, keepdims=True) + epsilon) * scale + shift
+        return normalized(x, epsilon) * scale + shift
 
     def apply(self, layer, x):
         weight, bias = self.w.linear(layer)
@@ -112,13 +107,12 @@ class PlainEncoder:
 
     def attention(self, x, layer):
         """Of one window: [places, channels]."""
-        asked = self.apply(f"{layer}/qkv", self.normalized(x, self.w.norm(f"{layer.replace('/', '.')}.norm"), 1e-5))
+        asked = self.apply(f"{layer}/qkv", self.norm(x, self.w.norm(f"{layer.replace('/', '.')}.norm"), 1e-5))
         made = np.empty_like(x)
         for head in range(x.shape[1] // row_encoder.HEAD):
             q, k, v = np.split(asked[:, 3 * row_encoder.HEAD * head :][:, : 3 * row_encoder.HEAD], 3, axis=1)
             scores = q @ k.T / math.sqrt(row_encoder.HEAD) + self.w.of_node(f"/{layer}/Add")[head]
-            shares = np.exp(scores - scores.max(-1, keepdims=True))
-            made[:, row_encoder.HEAD * head :][:, : row_encoder.HEAD] = shares / shares.sum(-1, keepdims=True) @ v
+            made[:, row_encoder.HEAD * head :][:, : row_encoder.HEAD] = attended(scores, v)
         return self.apply(f"{layer}/proj", made)
 
     def windows(self, x, layer, side):
@@ -136,21 +130,21 @@ class PlainEncoder:
     def block(self, x, layer, side):
         x = self.convolution(x + self.windows(x, f"{layer}/attn", side))
         places = x.reshape(len(x), -1).T
-        normed = self.normalized(places, self.w.norm(f"{layer.replace('/', '.')}.mlp.norm"), 1e-5)
-        told = self.apply(f"{layer}/mlp/fc2", self.gelu(self.apply(f"{layer}/mlp/fc1", normed)))
+        normed = self.norm(places, self.w.norm(f"{layer.replace('/', '.')}.mlp.norm"), 1e-5)
+        told = self.apply(f"{layer}/mlp/fc2", gelu(self.apply(f"{layer}/mlp/fc1", normed)))
         return (places + told).T.reshape(x.shape)
 
     def run(self, x):
-        x = self.convolution(self.gelu(self.convolution(x)))
+        x = self.convolution(gelu(self.convolution(x)))
         for _ in range(2):
-            x = self.gelu(x + self.three(x))
+            x = gelu(x + self.three(x))
         for number, (blocks, side) in enumerate(row_encoder.LAYERS, start=1):
             x = self.three(x)
             for block in range(blocks):
                 x = self.block(x, f"layers.{number}/blocks.{block}", side)
         for layer in ("neck/neck.1", "neck/neck.3"):
             x = self.convolution(x)
-            x = np.moveaxis(self.normalized(np.moveaxis(x, 0, -1), self.w.channel_norm(layer), 1e-6), -1, 0)
+            x = np.moveaxis(self.norm(np.moveaxis(x, 0, -1), self.w.channel_norm(layer), 1e-6), -1, 0)
         return x
 
 
@@ -158,10 +152,7 @@ class RowEncoderTest(unittest.TestCase):
     def test_it_answers_what_the_plain_encoder_answers(self):
         image = np.random.default_rng(1).normal(size=(1, 3, ROWS, COLUMNS)).astype(np.float32)
         graph = row_encoder.Encoder(RandomWeights(), COLUMNS).run("image", "embedding")
-        given = helper.make_tensor_value_info("image", TensorProto.FLOAT, [1, 3, "rows", COLUMNS])
-        made = helper.make_tensor_value_info("embedding", TensorProto.FLOAT, None)
-        whole = helper.make_model(helper.make_graph(graph.nodes, "rows", [given], [made], graph.constants), opset_imports=[helper.make_opsetid("", 17)])
-        [embedding] = ReferenceEvaluator(whole).run(None, {"image": image})
+        [embedding] = answers(graph, {"image": image}, ["embedding"])
         self.assertEqual(embedding.shape, (1, NECK, ROWS // row_encoder.STEP, COLUMNS // row_encoder.STEP))
         np.testing.assert_allclose(embedding[0], PlainEncoder(RandomWeights()).run(image[0]), atol=1e-3)
 

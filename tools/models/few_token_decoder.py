@@ -183,7 +183,7 @@ def masks_of(g, image, rows, weights):
 def few_token_graph(weights):
     """From TOKENS, POSITIONS, IMAGE and MASK_WEIGHTS to TOKENS_OUT and MASKS_OUT."""
     g = Graph()
-    rows = g.add("Gather", g.add("Shape", IMAGE), np.array([2]))
+    rows = g.length(IMAGE, 2)
     image = g.add("Add", IMAGE, weights[NO_MASK].reshape(1, CHANNELS, 1, 1))
     image = g.transpose(g.reshape(image, 1, CHANNELS, -1), 0, 2, 1)
     positions = g.add("Slice", POSITIONS, np.array([0]), rows, np.array([2]))

@@ -60,9 +60,6 @@ class Encoder:
             x = self.g.gelu(self.convolution(x))
         return self.convolution(x)
 
-    def rows_of(self, x, axis):
-        return self.g.add("Gather", self.g.add("Shape", x), np.array([axis]))
-
     def in_order(self, x):
         """[1, channels, rows, columns] to [1, rows, columns, channels]."""
         return self.g.transpose(x, 0, 2, 3, 1)
@@ -87,7 +84,7 @@ class Encoder:
     def in_windows(self, x, layer, side, columns):
         """Attention of [1, rows, columns, channels]; windows may reach over the right and the lower border, where all is 0."""
         g, norm = self.g, self.w.norm(f"{layer.replace('/', '.')}.norm")
-        rows, across, channels = self.rows_of(x, 1), -(-columns // side), len(norm[0])
+        rows, across, channels = g.length(x, 1), -(-columns // side), len(norm[0])
         below = g.add("Mod", g.add("Sub", np.array([side]), g.add("Mod", rows, np.array([side]))), np.array([side]))
         pads = g.add("Concat", np.zeros(5, np.int64), below, np.array([across * side - columns, 0]), axis=0)
         windows = g.reshape(g.add("Pad", x, pads), -1, side, across, side, channels)

@@ -23,6 +23,10 @@ class Graph:
         self.nodes.append(helper.make_node(operation, names, [result], **attributes))
         return result
 
+    def length(self, x, axis):
+        """[1]: how many there are along an axis."""
+        return self.add("Gather", self.add("Shape", x), np.array([axis]))
+
     def reshape(self, x, *shape, result=""):
         return self.add("Reshape", x, np.array(shape, np.int64), result=result)
 
