@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "ovimap/base/config.h"
 #include "ovimap/base/parallel.h"
@@ -164,11 +165,8 @@ class MapComparison {
     for (std::size_t i = 0; i < arrived.size(); ++i) {
       ObjectChange& change = changes_[i];
       if (change.before == 0 || change.after == 0 || !is_other(change, arrived[i])) continue;
-      ObjectChange come;
-      come.kind = ChangeKind::kNew;
-      come.after = change.after;
+      ObjectChange come = part_arrival(change);
       come.seen_through = arrived[i];
-      change.after = 0;
       if (change.seen_through >= config_.gone_share) change.kind = ChangeKind::kRemoved;
       changes_.push_back(come);
     }
@@ -330,6 +328,13 @@ void list_fields(MapDiffConfig& config, ConfigFields& fields) {
 const char* change_name(ChangeKind kind) {
   constexpr std::array kNames = {"same", "moved", "removed", "new", "unseen"};
   return kNames[static_cast<std::size_t>(kind)];
+}
+
+ObjectChange part_arrival(ObjectChange& change) {
+  ObjectChange come;
+  come.kind = ChangeKind::kNew;
+  come.after = std::exchange(change.after, 0);
+  return come;
 }
 
 std::vector<ObjectChange> diff_maps(const MapDocument& before, const MapDocument& after,

@@ -49,6 +49,10 @@ struct ObjectChange {
   std::string evidence;                               ///< a sentence
 };
 
+/// What was found where another thing was is a thing of its own: takes it from that one's change
+/// and returns it as new.
+ObjectChange part_arrival(ObjectChange& change);
+
 /// What changed from one map to another, both corrected. `before_from_after` takes points of the
 /// later map to the frame of the earlier one. Objects of the earlier map first, then new ones.
 std::vector<ObjectChange> diff_maps(const MapDocument& before, const MapDocument& after,

@@ -130,15 +130,10 @@ class VisitTeller {
     const std::size_t known = changes_.size();
     for (std::size_t i = 0; i < known; ++i) {
       if (changes_[i].kind != ChangeKind::kMoved || changes_[i].overlap == 0.f) continue;
-      const ThingLook was = thing_look(before_, changes_[i].before, before_.up),
-                      is = thing_look(after_, changes_[i].after, before_.up);
-      if (difference_of(was, is)) continue;
-      ObjectChange come;
-      come.kind = ChangeKind::kNew;
-      come.after = changes_[i].after;
-      changes_[i].kind = ChangeKind::kRemoved;
-      changes_[i].after = 0;
+      if (difference_of(look_before(changes_[i].before), look_now(changes_[i].after))) continue;
       strangers_.emplace_back(i, changes_.size());
+      const ObjectChange come = part_arrival(changes_[i]);
+      changes_[i].kind = ChangeKind::kRemoved;
       changes_.push_back(come);
     }
   }
@@ -167,6 +162,17 @@ class VisitTeller {
            (change.kind == ChangeKind::kNew || change.kind == ChangeKind::kUnseen);
   }
 
+  const ThingLook& look_before(InstanceId id) { return look_in(before_, id, looks_before_); }
+  /// While ids are those that the map gave.
+  const ThingLook& look_now(InstanceId id) { return look_in(after_, id, looks_now_); }
+
+  const ThingLook& look_in(const MapDocument& map, InstanceId id,
+                           std::map<InstanceId, ThingLook>& made) const {
+    auto found = made.find(id);
+    if (found == made.end()) found = made.emplace(id, thing_look(map, id, before_.up)).first;
+    return found->second;
+  }
+
   /// In shape and colours, of what could be one thing; none where two things cannot be one.
   std::optional<float> difference_of(const ThingLook& was, const ThingLook& is) const {
     const float colors = common_colors(was, is);
@@ -179,19 +185,15 @@ class VisitTeller {
   }
 
   /// Pairs that could be one thing, the likeliest first.
-  std::vector<Pair> likely_pairs() const {
+  std::vector<Pair> likely_pairs() {
     std::vector<Pair> pairs;
-    std::map<std::size_t, ThingLook> found_looks;
-    for (std::size_t k = 0; k < changes_.size(); ++k)
-      if (may_have_come(changes_[k]))
-        found_looks.emplace(k, thing_look(after_, changes_[k].after, before_.up));
     for (std::size_t i = 0; i < changes_.size(); ++i) {
       if (changes_[i].kind != ChangeKind::kRemoved) continue;
-      const ThingLook gone = thing_look(before_, changes_[i].before, before_.up);
-      for (const auto& [k, found] : found_looks) {
-        if (const auto difference = difference_of(gone, found))
-          pairs.push_back({i, k, *difference});
-      }
+      const ThingLook& gone = look_before(changes_[i].before);
+      for (std::size_t k = 0; k < changes_.size(); ++k)
+        if (may_have_come(changes_[k]))
+          if (const auto difference = difference_of(gone, look_now(changes_[k].after)))
+            pairs.push_back({i, k, *difference});
     }
     std::stable_sort(pairs.begin(), pairs.end(),
                      [](const Pair& a, const Pair& b) { return a.difference < b.difference; });
@@ -288,6 +290,7 @@ class VisitTeller {
   std::vector<ObjectChange> changes_;
   std::vector<std::pair<std::size_t, std::size_t>> strangers_;  ///< what left, and what came there
   std::map<InstanceId, InstanceId> may_be_;  ///< found objects and the gone ones that they resemble
+  std::map<InstanceId, ThingLook> looks_before_, looks_now_;
   std::vector<ObjectEvent> events_;
 };
 
