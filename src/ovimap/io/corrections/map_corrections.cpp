@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 
+#include "ovimap/instance/object_boxes.h"
 #include "ovimap/io/corrections/map_edit_log.h"
 
 namespace ovimap {
@@ -206,6 +207,7 @@ class Assembly {
     const VoxelMap& map = voxels_();
     measure_instances(map, parts);
     surfaces_ = sample_surfaces(map, parts, InstanceSummaryConfig{}.surface_spacing_m);
+    fit_boxes(surfaces_, InstanceSummaryConfig{}.surface_spacing_m, parts);
     for (InstanceSummary& part : parts) measured_[part.id] = std::move(part);
   }
 

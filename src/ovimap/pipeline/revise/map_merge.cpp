@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "ovimap/base/config.h"
+#include "ovimap/instance/object_boxes.h"
 #include "ovimap/io/corrections/map_corrections.h"
 #include "ovimap/io/corrections/map_edit_log.h"
 #include "ovimap/map/fusion/map_fusion.h"
@@ -150,6 +151,7 @@ void append_instances(MapDocument& a, const MapRecord& b, const Offsets& by) {
   for (const auto& [id, name] : b.names) a.names[id + by.instance] = name;
   a.surfaces = sample_surfaces(extract_instance_mesh(a.map, a.instances),
                                InstanceSummaryConfig{}.surface_spacing_m);
+  fit_boxes(a.surfaces, InstanceSummaryConfig{}.surface_spacing_m, a.instances);
 }
 
 MapRecord corrected(const MapDocument& map) {

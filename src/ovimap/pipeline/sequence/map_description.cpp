@@ -3,6 +3,7 @@
 #include "ovimap/pipeline/sequence/map_description.h"
 
 #include "ovimap/instance/instance_mesh.h"
+#include "ovimap/instance/object_boxes.h"
 #include "ovimap/io/pictures/scene_axes.h"
 #include "ovimap/map/surface/incremental_mesh.h"
 
@@ -22,6 +23,7 @@ void describe_map(const VoxelMap& map, const InstanceRegistry& registry,
     directions.add(patch);
   });
   record.surfaces = sampler.take();
+  fit_boxes(record.surfaces, config.surface_spacing_m, record.instances);
   std::vector<Pose> poses;
   for (const FrameLogEntry& frame : record.frames) poses.push_back(frame.world_from_camera);
   record.up = guess_up(directions, poses);

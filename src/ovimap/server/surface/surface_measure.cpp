@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "ovimap/instance/object_boxes.h"
 #include "ovimap/io/mesh/mesh_pieces.h"
 
 namespace ovimap {
@@ -82,6 +83,8 @@ void measure_on_surface(const Mesh& mesh, float spacing_m, MapRecord& record) {
     for (InstanceSummary& instance : *list)
       describe(instance.id < extents.size() ? extents[instance.id] : SurfaceExtent{}, instance);
   record.surfaces = sample_surfaces(mesh, spacing_m);
+  for (auto* list : {&record.instances, &record.hidden})
+    fit_boxes(record.surfaces, spacing_m, *list);
 }
 
 }  // namespace ovimap
