@@ -16,6 +16,7 @@ namespace ovimap {
 namespace {
 
 constexpr std::size_t kPixelsPerTask = 16 * 640;
+constexpr std::uint32_t kRivalParts = 2;  // a voxel's second choice has half of the first's support
 
 using Votes = std::map<Label, int>;
 
@@ -94,10 +95,11 @@ class OneToOne {
   bool is_free(Label label, std::size_t segment) const {
     const auto found = owner_.find(label);
     if (found == owner_.end()) return true;
-    const auto masked = [this](std::size_t s) { return segments_.segments[s].entity != 0; };
-    return config_.association == AssociationRule::kMixed && !masked(segment) &&
-           !masked(found->second);
+    return is_mixed() &&
+           segments_.segments[segment].entity == segments_.segments[found->second].entity;
   }
+
+  bool is_mixed() const { return config_.association == AssociationRule::kMixed; }
 
   void enqueue(std::size_t segment, const Votes& votes) {
     const auto [label, count] = winner(votes);
@@ -106,14 +108,17 @@ class OneToOne {
       queue_.emplace(count, segments_.segments.size() - 1 - segment, label);
   }
 
+  /// What has little support in its voxel is noise of earlier frames: where another thing came to
+  /// lie, its segment would be given to one that hardly was there.
   Votes vote_again(std::size_t segment) {
     if (pixels_.empty()) list_pixels();
     Votes votes;
     for (std::uint32_t pixel : pixels_[segment]) {
       const VoxelRef ref = surface_[pixel];
-      for (const LabelSupport& held :
-           voxel_labels(map_.block(ref.block()), ref.voxel(), map_.labels())) {
+      const VoxelLabels labels = voxel_labels(map_.block(ref.block()), ref.voxel(), map_.labels());
+      for (const LabelSupport& held : labels) {
         if (held.label == kNoLabel) break;
+        if (is_mixed() && kRivalParts * held.support < labels[0].support) break;
         if (!is_free(held.label, segment)) continue;
         ++votes[held.label];
         break;

@@ -12,8 +12,8 @@ namespace ovimap {
 enum class AssociationRule {
   kOneToOne,  ///< greedy; a label serves one segment a frame (the released code)
   kArgmax,    ///< every segment takes its most voted label (the paper's text)
-  kMixed,     ///< one to one, but segments without an entity may share a label: a mask tells
-              ///< things apart, depth alone breaks them into pieces (docs/experiments.md)
+  kMixed,     ///< one to one, but segments of one entity, or of none, may share a label: masks
+              ///< tell things apart, depth breaks them into pieces (docs/experiments.md)
 };
 
 struct AssociationConfig {

@@ -107,6 +107,27 @@ TEST_F(AssociateTest, OneToOneGivesTheLoserItsNextLabel) {
   EXPECT_EQ(result[1].label, 5u);
 }
 
+TEST_F(AssociateTest, MixedGivesTheLoserNoLabelOfLittleSupport) {
+  hold(0, 200, 2, 4);
+  hold(150, 200, 5, 1);  // a quarter of the first one's
+  Segments segments = cut({{0, 150}, {150, 200}});
+  segments.segments[1].entity = 1;
+  EXPECT_TRUE(associate(segments, surface_, map_, config_)[1].founded);
+  hold(150, 200, 5, 1);
+  EXPECT_EQ(associate(segments, surface_, map_, config_)[1].label, 5u) << "half of it";
+}
+
+TEST_F(AssociateTest, MixedSharesALabelAmongSegmentsOfOneEntity) {
+  hold(0, 300, 2);
+  Segments segments = cut({{0, 150}, {150, 200}, {200, 300}});
+  segments.segments[0].entity = segments.segments[1].entity = 1;
+  segments.segments[2].entity = 2;
+  const auto result = associate(segments, surface_, map_, config_);
+  EXPECT_EQ(result[0].label, 2u);
+  EXPECT_EQ(result[1].label, 2u);
+  EXPECT_TRUE(result[2].founded) << "another entity's";
+}
+
 TEST_F(AssociateTest, MixedSharesALabelOnlyAmongSegmentsWithoutAnEntity) {
   hold(0, 300, 2);
   Segments segments = cut({{0, 150}, {150, 200}, {200, 300}});
