@@ -9,6 +9,7 @@
 #include "find_start.h"
 #include "ovimap/base/thread_priority.h"
 #include "ovimap/io/map_file/map_file.h"
+#include "ovimap/map/fusion/past_evidence.h"
 #include "ovimap/pipeline/revise/visit_history.h"
 
 namespace ovimap::apps {
@@ -95,6 +96,7 @@ SequenceResult resume(BegunRun& begun, MapHeader& header, MappingInputs& inputs,
   if (begun.new_visit) {
     require_same_map(*begun.document, mapper.config().map, inputs.encoder);
     require_fit(*begun.document, inputs);
+    discount_past(begun.document->map, inputs.config.visit.past);
     begun.document->seen_free.clear();  // between two visits anything may have come
     begin_visit(*begun.document, header);
   } else {
@@ -186,18 +188,24 @@ MappingRun finished_run(MappingInputs&& inputs, MapHeader header, Mapper&& mappe
   return run;
 }
 
-/// What the visit changed. Both maps share a bound on memory: voxels of the one before wait in a
-/// file beside the checkpoint.
-void tell_visit(const RunTarget& target, const MemoryConfig& memory, TileKeeper& tiles,
-                MapDocument& after) {
-  const MemoryConfig half{(memory.max_mb + 1) / 2};
-  tiles.set_bound(half);
-  std::filesystem::path beside = tiles.path();
-  const auto tiles_before =
-      std::make_shared<TileKeeper>(beside += ".before", TileKeeper::Start::kAnew, half);
-  const MapDocument before = load_map_in(tiles_before, target.continued);
-  tiles_before->remove();  // when it is closed
-  ovimap::tell_visit(before, after);
+/// A file of voxels beside the checkpoint, for as long as it is in use.
+std::shared_ptr<TileKeeper> tiles_beside(std::filesystem::path checkpoint, const char* ending,
+                                         const MemoryConfig& memory) {
+  auto tiles = std::make_shared<TileKeeper>(checkpoint += ending, TileKeeper::Start::kAnew, memory);
+  tiles->remove();  // when it is closed
+  return tiles;
+}
+
+/// What the visit changed. The map, what it was before and what the visit saw share a bound on
+/// memory.
+void tell_visit(const RunTarget& target, const MemoryConfig& memory, const PastEvidenceConfig& past,
+                TileKeeper& tiles, MapDocument& after) {
+  const MemoryConfig third{(memory.max_mb + 2) / 3};
+  tiles.set_bound(third);
+  MapDocument before = load_map_in(tiles_beside(tiles.path(), ".before", third), target.continued);
+  discount_past(before.map, past);
+  const auto seen = third.max_mb > 0 ? tiles_beside(tiles.path(), ".seen", third) : nullptr;
+  ovimap::tell_visit(before, after, {}, seen);
 }
 
 /// A live run that is to be done again.
@@ -272,10 +280,11 @@ MappingRun map_recording(const MappingOptions& options, const std::string& title
         std::move(sequence), checkpoints.get(), finder.get());
   }
   const MemoryConfig memory = inputs.config.memory;
+  const PastEvidenceConfig past = inputs.config.visit.past;
   MappingRun run = finished_run(std::move(inputs), std::move(header), std::move(mapper),
                                 std::move(sequence), std::move(checkpoints));
   run.frames_before = frames_before;
-  if (!target.continued.empty()) tell_visit(target, memory, *begun.tiles, run.document);
+  if (!target.continued.empty()) tell_visit(target, memory, past, *begun.tiles, run.document);
   return run;
 }
 

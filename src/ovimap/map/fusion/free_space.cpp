@@ -59,14 +59,6 @@ OVIMAP_VECTORIZE void find_doubted(const FusionView& view, const Image<float>& f
   result.image_px *= view.camera.fx * view.camera.fy / (view.voxels_per_m * view.voxels_per_m);
 }
 
-void forget(VoxelBlock& block, std::size_t voxel) {
-  block.tsdf[voxel] = 0;
-  block.weight[voxel] = 0.f;
-  for (auto& channel : block.color) channel[voxel] = 0;
-  for (auto& slot : block.label) slot[voxel] = 0;
-  for (auto& slot : block.support) slot[voxel] = 0;
-}
-
 /// Returns how many voxels went.
 std::size_t doubt(const Doubted& doubted, int frames, VoxelBlock& block) {
   std::size_t gone = 0;
@@ -76,7 +68,7 @@ std::size_t doubt(const Doubted& doubted, int frames, VoxelBlock& block) {
       const std::size_t voxel = row * kBlockSide + static_cast<std::size_t>(std::countr_zero(bits));
       if (++block.doubts[voxel] < frames) continue;
       block.doubts[voxel] = 0;
-      forget(block, voxel);
+      block.forget(voxel);
       ++gone;
     }
   if (!block.doubted()) block.doubts = {};

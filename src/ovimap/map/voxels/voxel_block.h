@@ -84,6 +84,15 @@ struct VoxelBlock {
   /// none, as in most blocks.
   std::vector<std::uint8_t> doubts;
 
+  /// The voxel is as never observed.
+  void forget(std::size_t voxel) {
+    tsdf[voxel] = 0;
+    weight[voxel] = 0.f;
+    for (auto& channel : color) channel[voxel] = 0;
+    for (auto& slot : label) slot[voxel] = 0;
+    for (auto& slot : support) slot[voxel] = 0;
+  }
+
   /// Whether any voxel is doubted.
   bool doubted() const {
     return std::any_of(doubts.begin(), doubts.end(), [](std::uint8_t count) { return count != 0; });

@@ -140,7 +140,7 @@ class MapComparison {
         arrived[i] = judge_shift(earlier, change);
         return;
       }
-      if (change.seen_through >= config_.gone_share)
+      if (is_away(change, config_))
         change.kind = change.before != 0 ? ChangeKind::kRemoved : ChangeKind::kNew;
       else
         change.kind =
@@ -167,7 +167,7 @@ class MapComparison {
       if (change.before == 0 || change.after == 0 || !is_other(change, arrived[i])) continue;
       ObjectChange come = part_arrival(change);
       come.seen_through = arrived[i];
-      if (change.seen_through >= config_.gone_share) change.kind = ChangeKind::kRemoved;
+      if (is_away(change, config_)) change.kind = ChangeKind::kRemoved;
       changes_.push_back(come);
     }
   }
@@ -328,6 +328,11 @@ void list_fields(MapDiffConfig& config, ConfigFields& fields) {
 const char* change_name(ChangeKind kind) {
   constexpr std::array kNames = {"same", "moved", "removed", "new", "unseen"};
   return kNames[static_cast<std::size_t>(kind)];
+}
+
+bool is_away(const ObjectChange& change, const MapDiffConfig& config) {
+  return change.seen_through >= config.shift_share &&
+         change.seen_through >= config.gone_share * (1.f - change.surface_there);
 }
 
 ObjectChange part_arrival(ObjectChange& change) {

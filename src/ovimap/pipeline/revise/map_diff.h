@@ -49,6 +49,10 @@ struct ObjectChange {
   std::string evidence;                               ///< a sentence
 };
 
+/// Whether the other map saw through where the object is. What lies within the tolerance of other
+/// surface tells neither: all of a small thing does, on its side to the table.
+bool is_away(const ObjectChange& change, const MapDiffConfig& config);
+
 /// What was found where another thing was is a thing of its own: takes it from that one's change
 /// and returns it as new.
 ObjectChange part_arrival(ObjectChange& change);

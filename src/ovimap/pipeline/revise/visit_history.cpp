@@ -9,8 +9,10 @@
 #include <utility>
 
 #include "ovimap/base/error.h"
+#include "ovimap/instance/object_boxes.h"
 #include "ovimap/map/rays/surface_lookup.h"
 #include "ovimap/pipeline/revise/thing_look.h"
+#include "ovimap/pipeline/revise/visit_surface.h"
 
 namespace ovimap {
 
@@ -23,25 +25,12 @@ const InstanceSummary* find_instance(const MapRecord& record, InstanceId id) {
   return found == record.instances.end() ? nullptr : &*found;
 }
 
-/// The box of a thing's surface without a twentieth of it at either end of each axis: a few stray
-/// points would tell of another place.
 Eigen::AlignedBox3f box_of(const MapRecord& record, InstanceId id) {
-  constexpr std::size_t kLeftOut = 20;
   const auto surface = record.surfaces.find(id);
-  if (surface == record.surfaces.end() || surface->second.empty()) {
-    const InstanceSummary* instance = find_instance(record, id);
-    return instance ? instance->box : Eigen::AlignedBox3f();
-  }
-  std::vector<float> values(surface->second.size());
-  Eigen::Vector3f low, high;
-  for (int axis = 0; axis < 3; ++axis) {
-    std::transform(surface->second.begin(), surface->second.end(), values.begin(),
-                   [axis](const Eigen::Vector3f& point) { return point[axis]; });
-    std::sort(values.begin(), values.end());
-    low[axis] = values[values.size() / kLeftOut];
-    high[axis] = values[values.size() - 1 - values.size() / kLeftOut];
-  }
-  return {low, high};
+  if (surface != record.surfaces.end() && !surface->second.empty())
+    return box_without_specks(surface->second, InstanceSummaryConfig{}.surface_spacing_m);
+  const InstanceSummary* instance = find_instance(record, id);
+  return instance ? instance->box : Eigen::AlignedBox3f();
 }
 
 /// The colour of the voxel at a point, sRGB; all 0 where it has none.
@@ -81,8 +70,12 @@ struct Pair {
 /// What the last visit says, object by object.
 class VisitTeller {
  public:
-  VisitTeller(const MapDocument& before, MapDocument& after, const VisitHistoryConfig& config)
-      : before_(before), after_(after), config_(config) {}
+  VisitTeller(const MapDocument& before, MapDocument& after, const VisitHistoryConfig& config,
+              std::shared_ptr<BlockStore> store)
+      : before_(before),
+        after_(after),
+        config_(config),
+        seen_(seen_in_visit(before, after, std::move(store))) {}
 
   void tell() {
     changes_ = changes_of_visit();
@@ -91,6 +84,7 @@ class VisitTeller {
     match_by_shape();
     join_unknown_strangers();
     for (const ObjectChange& change : changes_) tell(change);
+    forget_remains(before_, seen_, places_left(), after_);
     keep_ids();
     std::stable_sort(events_.begin(), events_.end(),
                      [](const auto& a, const auto& b) { return a.instance < b.instance; });
@@ -99,18 +93,16 @@ class VisitTeller {
   }
 
  private:
-  /// Only the visit's own frames bear witness that something is gone.
+  /// Only what the visit itself saw bears witness.
   std::vector<ObjectChange> changes_of_visit() {
-    std::vector<FrameLogEntry> all = after_.frames;
-    after_.frames.erase(after_.frames.begin(),
-                        after_.frames.begin() + after_.history.visits.back().first_frame);
-    std::vector<ObjectChange> changes = diff_maps(before_, after_, Pose::Identity(), config_.diff);
-    after_.frames = std::move(all);
+    std::swap(seen_.semantics, after_.semantics);
+    std::vector<ObjectChange> changes = diff_maps(before_, seen_, Pose::Identity(), config_.diff);
+    std::swap(seen_.semantics, after_.semantics);
     return changes;
   }
 
-  /// Of a thing that is gone, sides may be left that the visit did not look at: they are not it.
-  /// And what shifted by no more than surfaces are rough has not.
+  /// Of a thing that is gone, what it stood on keeps some of its labels: that is not it. And what
+  /// shifted by no more than surfaces are rough has not.
   void find_remains() {
     for (ObjectChange& change : changes_)
       if (change.kind == ChangeKind::kMoved && change.shift_m.norm() < config_.least_shift_m)
@@ -118,10 +110,19 @@ class VisitTeller {
     for (ObjectChange& change : changes_)
       if (change.kind == ChangeKind::kSame && change.before != 0 &&
           (change.before == change.after || change.overlap < config_.diff.same_iou) &&
-          change.seen_through >= config_.diff.gone_share) {
+          is_away(change, config_.diff)) {
         change.kind = ChangeKind::kRemoved;
         change.after = 0;
       }
+  }
+
+  /// The things that are not where they were.
+  std::set<InstanceId> places_left() const {
+    std::set<InstanceId> left;
+    for (const ObjectChange& change : changes_)
+      if (change.kind == ChangeKind::kRemoved || change.kind == ChangeKind::kMoved)
+        left.insert(change.before);
+    return left;
   }
 
   /// What came to where another thing left has that one's id in the map, and looks like a shift of
@@ -164,7 +165,7 @@ class VisitTeller {
 
   const ThingLook& look_before(InstanceId id) { return look_in(before_, id, looks_before_); }
   /// While ids are those that the map gave.
-  const ThingLook& look_now(InstanceId id) { return look_in(after_, id, looks_now_); }
+  const ThingLook& look_now(InstanceId id) { return look_in(seen_, id, looks_now_); }
 
   const ThingLook& look_in(const MapDocument& map, InstanceId id,
                            std::map<InstanceId, ThingLook>& made) const {
@@ -203,6 +204,7 @@ class VisitTeller {
   void match_by_shape() {
     const std::vector<Pair> pairs = likely_pairs();
     std::set<std::size_t> used;
+    std::set<InstanceId> doubted;  // each gone one may be one found one
     for (const Pair& pair : pairs) {
       if (used.contains(pair.gone) || used.contains(pair.found)) continue;
       const bool doubtful = std::any_of(pairs.begin(), pairs.end(), [&](const Pair& other) {
@@ -210,7 +212,8 @@ class VisitTeller {
         return rival && other.difference < pair.difference + config_.doubt;
       });
       if (doubtful) {
-        may_be_.try_emplace(changes_[pair.found].after, changes_[pair.gone].before);
+        const InstanceId found = changes_[pair.found].after, gone = changes_[pair.gone].before;
+        if (!may_be_.contains(found) && doubted.insert(gone).second) may_be_.emplace(found, gone);
         continue;
       }
       used.insert({pair.gone, pair.found});
@@ -226,12 +229,12 @@ class VisitTeller {
     if (change.kind == ChangeKind::kRemoved && !told_gone(id))
       add(ObjectEventKind::kGone, id, box_of(before_, id), {}, last_frame());
     if (change.kind == ChangeKind::kNew) {
-      add(ObjectEventKind::kAppeared, id, {}, box_of(after_, id), first_frame(id));
+      add(ObjectEventKind::kAppeared, id, {}, box_of(seen_, id), first_frame(id));
       if (const auto known = may_be_.find(id); known != may_be_.end())
         events_.back().may_be = known->second;
     }
     if (change.kind == ChangeKind::kMoved)
-      add(ObjectEventKind::kMoved, id, box_of(before_, id), box_of(after_, change.after),
+      add(ObjectEventKind::kMoved, id, box_of(before_, id), box_of(seen_, change.after),
           first_frame(change.after));
   }
 
@@ -287,6 +290,7 @@ class VisitTeller {
   const MapDocument& before_;
   MapDocument& after_;
   const VisitHistoryConfig& config_;
+  MapDocument seen_;  ///< of `after`, in the visit
   std::vector<ObjectChange> changes_;
   std::vector<std::pair<std::size_t, std::size_t>> strangers_;  ///< what left, and what came there
   std::map<InstanceId, InstanceId> may_be_;  ///< found objects and the gone ones that they resemble
@@ -352,9 +356,10 @@ void begin_visit(const MapRecord& begun, MapHeader& header) {
   header.history = std::move(history);
 }
 
-void tell_visit(const MapDocument& before, MapDocument& after, const VisitHistoryConfig& config) {
+void tell_visit(const MapDocument& before, MapDocument& after, const VisitHistoryConfig& config,
+                std::shared_ptr<BlockStore> store) {
   OVIMAP_ASSERT(after.history.visits.size() > 1);
-  VisitTeller(before, after, config).tell();
+  VisitTeller(before, after, config, std::move(store)).tell();
 }
 
 }  // namespace ovimap

@@ -27,9 +27,12 @@ void begin_visit(const MapRecord& begun, MapHeader& header);
 /// gone from one place and found at another is the same when its looks (diff_maps), or else its
 /// shape and colours, say so, and goes on under the id that it had. Where several could be it, each
 /// found one is a new object that says which gone one it may be. An object at its old place that
-/// the visit took for a new one gets its id back.
+/// the visit took for a new one gets its id back. What is left of things that left their places,
+/// where the visit did not look, goes (forget_remains).
+///
+/// `store`: where voxels may be meanwhile that the visit touched; null: in memory.
 void tell_visit(const MapDocument& before, MapDocument& after,
-                const VisitHistoryConfig& config = {});
+                const VisitHistoryConfig& config = {}, std::shared_ptr<BlockStore> store = nullptr);
 
 /// Two instances of a record trade their ids: in its list and surfaces, and in the registry's
 /// state. Of ids that stand for one thing the oldest goes on standing for all. Names and

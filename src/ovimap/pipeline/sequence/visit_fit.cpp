@@ -57,6 +57,7 @@ void list_fields(VisitFitConfig& config, ConfigFields& fields) {
   fields.add("object_frames", config.object_frames, 0, 100000,
              "first frames that are mapped by themselves to find their place by objects; 0: none");
   fields.group("alignment", [&](ConfigFields& f) { list_fields(config.alignment, f); });
+  fields.group("past", [&](ConfigFields& f) { list_fields(config.past, f); });
 }
 
 VisitFit fit_visit(const VoxelMap& map, const FrameSource& source,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ovimap/frames/frame/frame_source.h"
+#include "ovimap/map/fusion/past_evidence.h"
 #include "ovimap/map/voxels/voxel_map.h"
 #include "ovimap/pipeline/alignment/map_alignment.h"
 #include "ovimap/track/places/track_config.h"
@@ -23,6 +24,7 @@ struct VisitFitConfig {
   // Where nothing places it.
   int object_frames = 150;  ///< are mapped by themselves, to find its place by objects; 0: none
   AlignmentConfig alignment;
+  PastEvidenceConfig past;  ///< of what the map has, when it is gone on with
 };
 void list_fields(VisitFitConfig& config, ConfigFields& fields);
 
