@@ -44,11 +44,12 @@ std::size_t count_near(const Points& points, const NearestPoints& surface, float
       std::count_if(near.begin(), near.end(), [](const auto& found) { return found.has_value(); }));
 }
 
-/// In how many of a recording's frames each point is looked through.
+/// In how many of a recording's frames each point is looked through, or is at least in sight: what
+/// is seen there lies no nearer than `behind_m` behind the point.
 class LookedThrough {
  public:
-  LookedThrough(const Points& points, float through_m)
-      : points_(points), counts_(points.size(), 0), through_m_(through_m) {}
+  LookedThrough(const Points& points, float behind_m)
+      : points_(points), counts_(points.size(), 0), behind_m_(behind_m) {}
 
   void add(const FrameSource& source) {
     for (std::int64_t i = 0; i < source.size(); ++i)
@@ -74,13 +75,15 @@ class LookedThrough {
       const Eigen::Vector2f pixel = frame.depth_camera.project(point);
       const int x = static_cast<int>(std::lround(pixel.x())),
                 y = static_cast<int>(std::lround(pixel.y()));
-      if (frame.depth.contains(x, y) && frame.depth.at(x, y) > point.z() + through_m_) ++counts_[i];
+      if (frame.depth.contains(x, y) && frame.depth.at(x, y) > 0.f &&
+          frame.depth.at(x, y) > point.z() + behind_m_)
+        ++counts_[i];
     }
   }
 
   const Points& points_;
   std::vector<int> counts_;
-  float through_m_;
+  float behind_m_;
 };
 
 /// Where a thing is in neither, both agree.
@@ -165,24 +168,49 @@ std::map<std::int32_t, int> frames_showing(const FrameSource& source, int least_
   return frames;
 }
 
+/// What can be known of a truth's changes.
+class Knowable {
+ public:
+  Knowable(const TrueChanges& truth, const std::vector<Truth>& visits,
+           const ChangeScoresConfig& config)
+      : truth_(truth), visits_(visits), config_(config) {
+    for (const auto& visit : truth.visits)
+      frames_.push_back(frames_showing(*open_frame_source(visit, {}), config.seen_px));
+  }
+
+  bool knows(const TrueChange& change) const {
+    return (change.from.isEmpty() || left(change.object, change.visit - 1, change.visit)) &&
+           (change.to.isEmpty() || left(change.object, change.visit, change.visit - 1));
+  }
+
+ private:
+  /// Whether one visit shows the thing, and the other where it was then.
+  bool left(std::int32_t object, int shows, int other) const {
+    const auto position = static_cast<std::size_t>(shows - 1);
+    const auto seen = frames_[position].find(object);
+    if (seen == frames_[position].end() || seen->second < config_.seen_frames) return false;
+    const Points points = points_of(visits_[position], {object});
+    LookedThrough looked(points, -config_.through_m);
+    looked.add(*open_frame_source(truth_.visits[static_cast<std::size_t>(other - 1)], {}));
+    return !points.empty() && static_cast<float>(looked.count(config_.seen_frames)) >=
+                                  config_.seen_share * static_cast<float>(points.size());
+  }
+
+  const TrueChanges& truth_;
+  const std::vector<Truth>& visits_;
+  const ChangeScoresConfig& config_;
+  std::vector<std::map<std::int32_t, int>> frames_;  ///< by visit: frames_showing
+};
+
 void score_events(const MapHistory& history, const TrueChanges& truth,
                   const std::vector<Truth>& visits, const ChangeScoresConfig& config,
                   ChangeScores& scores) {
   EventMatcher matcher(history.events, config);
-  std::vector<std::map<std::int32_t, int>> frames;
-  for (const auto& visit : truth.visits)
-    frames.push_back(frames_showing(*open_frame_source(visit, {}), config.seen_px));
+  const Knowable knowable(truth, visits, config);
   for (const TrueChange& change : truth.changes) {
-    const auto seen = [&](int visit) {
-      const auto position = static_cast<std::size_t>(visit - 1);
-      return frames[position][change.object] >= config.seen_frames &&
-             !points_of(visits[position], {change.object}).empty();
-    };
-    const bool known = (change.from.isEmpty() || seen(change.visit - 1)) &&
-                       (change.to.isEmpty() || seen(change.visit));
     const ObjectEvent* event = matcher.match(change);
     ChangeCounts& counts = counts_of(change.kind, scores);
-    counts.real += known || event != nullptr;
+    counts.real += event != nullptr || knowable.knows(change);
     counts.right += event != nullptr;
     counts.told += event != nullptr;
     if (change.kind != "moved") continue;
@@ -285,6 +313,8 @@ void list_fields(ChangeScoresConfig& config, ConfigFields& fields) {
   fields.add("seen_frames", config.seen_frames, 1, 100000,
              "things count as changed that so many frames of each visit show");
   fields.add("seen_px", config.seen_px, 1, 1000000, "by at least so many pixels");
+  fields.add("seen_share", config.seen_share, 0.f, 1.f,
+             "and whose places, before and after, the other visit has in sight by this share");
   fields.add("same_place", config.same_place, 0.f, 1.f,
              "intersection over union of boxes that are of one thing");
 }

@@ -20,6 +20,8 @@ struct ChangeScoresConfig {
   float mover_cell_m = 0.02f;  ///< of what moves one point in each such cube counts, in every frame
   int seen_frames = 5;         ///< things count as changed that so many frames show, in each visit
   int seen_px = 100;           ///< in which they are, by at least so many pixels
+  float seen_share = 0.5f;     ///< and where so much of the place that they left, or came to, is in
+                               ///< sight of so many frames of the other visit
   float same_place = 0.25f;    ///< intersection over union of boxes that are of one thing
 };
 void list_fields(ChangeScoresConfig& config, ConfigFields& fields);
@@ -57,8 +59,9 @@ struct ChangeScores {
 };
 
 /// Scores a map that was continued through all visits of `folder` (load_true_changes). Things that
-/// the visits saw too little of (seen_frames, seen_px) are no changes that a map could tell; they
-/// count where it told them all the same. Throws Error where the map was not made from that many
+/// the visits saw too little of (seen_frames, seen_px), and those whose places one of them did not
+/// look at (seen_share), are no changes that a map could tell; they count where it told them all
+/// the same. Throws Error where the map was not made from that many
 /// visits, and what the parts throw.
 ChangeScores score_changes(const MapDocument& map, const std::filesystem::path& folder,
                            const ChangeScoresConfig& config = {});
