@@ -55,6 +55,12 @@ nlohmann::json json_of(const GeometryScores& scores) {
           {"completeness_1cm", scores.fine_completeness}};
 }
 
+nlohmann::json json_of(const BoxScores& scores) {
+  return {{"things", scores.things},
+          {"mean_iou", scores.mean_iou()},
+          {"under_quarter", scores.under_quarter}};
+}
+
 /// Panoptic quality belongs to the standard protocol alone.
 nlohmann::json json_of(const SemanticScores& scores, bool panoptic) {
   nlohmann::json json = {{"miou", scores.miou},
@@ -102,6 +108,7 @@ nlohmann::json json_of(const SemanticReport& report, const LabelSet& set, bool p
 
 nlohmann::json scene_json(const EvalFigures& figures, const std::optional<LabelSet>& set) {
   nlohmann::json json = {{"geometry", json_of(figures.geometry)},
+                         {"boxes", json_of(figures.boxes)},
                          {"recall_by_size", json_of(figures.sizes)}};
   if (figures.standard) json["standard"] = json_of(*figures.standard);
   if (figures.reference) json["reference"] = json_of(*figures.reference);
@@ -233,7 +240,10 @@ EvalFigures pooled(const Evaluation& evaluation, std::size_t first, std::size_t 
     return scenes;
   };
   std::vector<SizedScene> sized;
-  for (std::size_t i = first; i < first + count; ++i) sized.push_back(evaluation.scenes[i].sized);
+  for (std::size_t i = first; i < first + count; ++i) {
+    sized.push_back(evaluation.scenes[i].sized);
+    figures.boxes += evaluation.scenes[i].boxes;
+  }
   figures.sizes = recall_by_size(sized, config.sizes);
   if (protocols.standard) {
     figures.standard = standard_scores(scenes_of(Protocol::kStandard));
@@ -293,6 +303,7 @@ nlohmann::json eval_json(const Evaluation& evaluation, const EvalTable& table) {
   if (all.standard)
     json["standard"] = {{"class_agnostic", json_of(*all.standard)},
                         {"geometry", json_of(all.geometry)},
+                        {"boxes", json_of(all.boxes)},
                         {"recall_by_size", json_of(all.sizes)}};
   if (all.reference)
     json["reference"] = {{"class_agnostic", json_of(*all.reference)},

@@ -24,7 +24,8 @@ struct EvalFigures {
   std::optional<ReferenceScores> reference, reference_pooled;
   std::optional<SemanticReport> standard_semantic, reference_semantic;
   GeometryScores geometry;  ///< means over the scenes
-  SizeRecall sizes;         ///< of the `standard` protocol
+  BoxScores boxes;
+  SizeRecall sizes;  ///< of the `standard` protocol
 };
 
 /// Of all scenes pooled, or of one of them.

@@ -118,6 +118,12 @@ SizedScene sized_scene(const Truth& truth, std::vector<std::uint32_t> predicted)
   return scene;
 }
 
+std::map<std::uint32_t, Eigen::AlignedBox3f> boxes_of(std::span<const InstanceSummary> objects) {
+  std::map<std::uint32_t, Eigen::AlignedBox3f> boxes;
+  for (const InstanceSummary& object : objects) boxes[object.id] = object.box;
+  return boxes;
+}
+
 /// The numbering of ScanNet's own truth that a set of classes needs: its 20 are some of NYU's 40.
 ScanNetClasses numbering_for(const std::string& classes) {
   return classes == "scannet20" ? ScanNetClasses::kNyu40 : ScanNetClasses::kScanNet200;
@@ -140,6 +146,9 @@ Draft draft_scene(const MapAndTruth& paths, const std::string& classes,
     if (truth.unscored.count(id) > 0) id = 0;
   draft.scene.labels.instances = {std::move(truth.instances), std::move(labels),
                                   confidences(predicted)};
+  if (predicted.map)
+    draft.scene.boxes = box_scores(truth.mesh.vertices, draft.scene.labels.instances,
+                                   boxes_of(predicted.map->instances));
   draft.classes = {paths.source, std::move(truth.classes), std::move(truth.class_names)};
   draft.embedded = predicted.map && has_embeddings(*predicted.map);
   if (draft.embedded) count_views(*predicted.map, config.min_embedded_views, draft.scene);

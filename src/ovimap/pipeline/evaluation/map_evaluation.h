@@ -11,6 +11,7 @@
 
 #include "ovimap/eval/geometry/frame_check.h"
 #include "ovimap/eval/geometry/geometry_scores.h"
+#include "ovimap/eval/scores/box_scores.h"
 #include "ovimap/eval/scores/reference_scores.h"
 #include "ovimap/eval/scores/semantic_scores.h"
 #include "ovimap/eval/scores/size_recall.h"
@@ -57,6 +58,7 @@ struct EvaluatedScene {
   std::vector<std::uint32_t> few_views;  ///< objects with too few embedded views; empty for a map
                                          ///< without embeddings
   GeometryScores geometry;
+  BoxScores boxes;  ///< of things that are scored; a PLY file has none
   int embedding_queries = 0, embedded_instances = 0;
 };
 
