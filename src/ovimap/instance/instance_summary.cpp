@@ -42,6 +42,11 @@ void describe(const SurfaceExtent& extent, InstanceSummary& summary) {
     summary.centroid = (extent.sum / static_cast<double>(extent.points)).cast<float>();
 }
 
+void give_box(const Eigen::AlignedBox3f& box, InstanceSummary& summary) {
+  summary.box = box;
+  summary.centroid = summary.centroid.cwiseMax(box.min()).cwiseMin(box.max());
+}
+
 void list_fields(InstanceSummaryConfig& config, ConfigFields& fields) {
   fields.add("min_instance_voxels", config.min_instance_voxels, 0, 100000000,
              "instances with fewer surface voxels are left out");

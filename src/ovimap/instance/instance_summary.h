@@ -43,6 +43,8 @@ struct InstanceSummary {
 
 /// Sets its points, box and centroid.
 void describe(const SurfaceExtent& extent, InstanceSummary& summary);
+/// Gives it that box, in which its centroid then lies.
+void give_box(const Eigen::AlignedBox3f& box, InstanceSummary& summary);
 
 /// Gathers every instance's geometry by one pass over the map. Ordered by id.
 std::vector<InstanceSummary> summarize_instances(const VoxelMap& map,

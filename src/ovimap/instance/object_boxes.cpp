@@ -77,7 +77,7 @@ void fit_boxes(const InstanceSurfaces& surfaces, float spacing_m,
   parallel_for(instances.size(), kObjectsPerTask, [&](std::size_t i) {
     const auto surface = surfaces.find(instances[i].id);
     if (surface == surfaces.end() || surface->second.empty()) return;
-    instances[i].box = box_without_specks(surface->second, spacing_m);
+    give_box(box_without_specks(surface->second, spacing_m), instances[i]);
   });
 }
 

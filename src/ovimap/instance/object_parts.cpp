@@ -74,11 +74,13 @@ std::vector<ObjectPart> find_parts(const SurfaceExtents& extents,
                                    const EntitySightings& sightings,
                                    const InstanceSummaryConfig& config) {
   std::vector<ObjectPart> parts;
-  std::map<Label, std::size_t> most_points;  // of each part
+  std::map<Label, std::size_t> most_points;    // of each part
+  std::map<Label, Eigen::AlignedBox3f> whole;  // of the object that it is of
   for (const InstanceSummary& object : objects)
     for (ObjectPart& part : find_parts(object.super_points, sightings, config.min_part_views)) {
       most_points[part.id] =
           static_cast<std::size_t>(config.max_part_share * static_cast<float>(object.points));
+      whole[part.id] = object.box;
       parts.push_back(std::move(part));
     }
   measure_instances(extents, parts);
@@ -86,6 +88,9 @@ std::vector<ObjectPart> find_parts(const SurfaceExtents& extents,
     return part.points < static_cast<std::size_t>(config.min_instance_voxels) ||
            part.points > most_points.at(part.id);
   });
+  for (ObjectPart& part : parts)
+    if (const auto box = part.box.intersection(whole.at(part.id)); !box.isEmpty())
+      give_box(box, part);
   std::sort(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
   return parts;
 }

@@ -26,7 +26,8 @@ std::vector<ObjectPart> find_parts(std::span<const Label> super_points,
 
 /// The same of all objects of a measured map. Parts smaller than an object may be
 /// (`config.min_instance_voxels`) are left out, and so is what is nearly all of its object
-/// (`config.max_part_share`): the rest is its fringe. Ascending by id.
+/// (`config.max_part_share`): the rest is its fringe. Boxes reach no further than those of their
+/// objects. Ascending by id.
 std::vector<ObjectPart> find_parts(const SurfaceExtents& extents,
                                    std::span<const InstanceSummary> objects,
                                    const EntitySightings& sightings,

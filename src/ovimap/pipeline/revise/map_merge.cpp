@@ -147,11 +147,11 @@ void append_instances(MapDocument& a, const MapRecord& b, const Offsets& by) {
   const SurfaceExtents extents = surface_extents(a.map);
   measure_instances(extents, a.instances);
   std::erase_if(a.instances, [](const InstanceSummary& instance) { return instance.points == 0; });
-  a.parts = find_parts(extents, a.instances, a.registry.entity_sightings, InstanceSummaryConfig{});
   for (const auto& [id, name] : b.names) a.names[id + by.instance] = name;
   a.surfaces = sample_surfaces(extract_instance_mesh(a.map, a.instances),
                                InstanceSummaryConfig{}.surface_spacing_m);
   fit_boxes(a.surfaces, InstanceSummaryConfig{}.surface_spacing_m, a.instances);
+  a.parts = find_parts(extents, a.instances, a.registry.entity_sightings, InstanceSummaryConfig{});
 }
 
 MapRecord corrected(const MapDocument& map) {

@@ -9,11 +9,16 @@
 
 namespace ovimap {
 
+namespace {
+
+constexpr std::size_t kTriangle = 3;  // points: an object of fewer shows nowhere
+
+}  // namespace
+
 void describe_map(const VoxelMap& map, const InstanceRegistry& registry,
                   const InstanceSummaryConfig& config, MapRecord& record) {
   const SurfaceExtents extents = surface_extents(map);
   record.instances = summarize_instances(extents, map.labels(), registry, config);
-  record.parts = find_parts(extents, record.instances, record.registry.entity_sightings, config);
   const std::vector<InstanceId> instance_of = instances_by_label(map, record.instances);
   SurfaceSampler sampler(config.surface_spacing_m);
   SurfaceDirections directions;
@@ -23,7 +28,14 @@ void describe_map(const VoxelMap& map, const InstanceRegistry& registry,
     directions.add(patch);
   });
   record.surfaces = sampler.take();
+  std::erase_if(record.instances, [&](const InstanceSummary& instance) {
+    const auto surface = record.surfaces.find(instance.id);
+    const bool shows = surface != record.surfaces.end() && surface->second.size() >= kTriangle;
+    if (!shows) record.surfaces.erase(instance.id);
+    return !shows;
+  });
   fit_boxes(record.surfaces, config.surface_spacing_m, record.instances);
+  record.parts = find_parts(extents, record.instances, record.registry.entity_sightings, config);
   std::vector<Pose> poses;
   for (const FrameLogEntry& frame : record.frames) poses.push_back(frame.world_from_camera);
   record.up = guess_up(directions, poses);
