@@ -108,12 +108,15 @@ class VisitTeller {
       if (change.kind == ChangeKind::kMoved && change.shift_m.norm() < config_.least_shift_m)
         change.kind = ChangeKind::kSame;
     for (ObjectChange& change : changes_)
-      if (change.kind == ChangeKind::kSame && change.before != 0 &&
-          (change.before == change.after || change.overlap < config_.diff.same_iou) &&
-          is_away(change, config_.diff)) {
+      if (change.kind == ChangeKind::kSame && change.before != 0 && has_left(change)) {
         change.kind = ChangeKind::kRemoved;
         change.after = 0;
       }
+  }
+
+  bool has_left(const ObjectChange& change) const {
+    if (change.overlap < config_.diff.same_iou) return is_away(change, config_.diff);
+    return change.before == change.after && change.seen_through >= config_.diff.gone_share;
   }
 
   /// The things that are not where they were.
