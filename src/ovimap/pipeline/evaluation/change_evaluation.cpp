@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <tuple>
 
 #include "ovimap/base/config.h"
 #include "ovimap/base/error.h"
@@ -55,9 +56,13 @@ class LookedThrough {
     for (std::int64_t i = 0; i < source.size(); ++i)
       if (const FrameRead read = source.read(i); read.frame) add(*read.frame);
   }
-  std::size_t count(int frames) const {
-    return static_cast<std::size_t>(
-        std::count_if(counts_.begin(), counts_.end(), [&](int count) { return count >= frames; }));
+  std::size_t count(int frames) const { return count(frames, 0, counts_.size()); }
+  /// Of some of the points.
+  std::size_t count(int frames, std::size_t first, std::size_t points) const {
+    const auto begin = counts_.begin() + static_cast<std::ptrdiff_t>(first);
+    return static_cast<std::size_t>(std::count_if(begin,
+                                                  begin + static_cast<std::ptrdiff_t>(points),
+                                                  [&](int count) { return count >= frames; }));
   }
   Points at_least(int frames) const {
     Points points;
@@ -168,38 +173,64 @@ std::map<std::int32_t, int> frames_showing(const FrameSource& source, int least_
   return frames;
 }
 
-/// What can be known of a truth's changes.
+/// What can be known of a truth's changes. Each visit's frames are read once.
 class Knowable {
  public:
   Knowable(const TrueChanges& truth, const std::vector<Truth>& visits,
            const ChangeScoresConfig& config)
-      : truth_(truth), visits_(visits), config_(config) {
-    for (const auto& visit : truth.visits)
-      frames_.push_back(frames_showing(*open_frame_source(visit, {}), config.seen_px));
+      : config_(config) {
+    for (std::size_t visit = 0; visit < visits.size(); ++visit) {
+      const auto source = open_frame_source(truth.visits[visit], {});
+      frames_.push_back(frames_showing(*source, config.seen_px));
+      look_at_others(truth, visits, static_cast<int>(visit) + 1, *source);
+    }
   }
 
   bool knows(const TrueChange& change) const {
-    return (change.from.isEmpty() || left(change.object, change.visit - 1, change.visit)) &&
-           (change.to.isEmpty() || left(change.object, change.visit, change.visit - 1));
+    return (change.from.isEmpty() || knows(change.object, change.visit - 1, change.visit)) &&
+           (change.to.isEmpty() || knows(change.object, change.visit, change.visit - 1));
   }
 
  private:
-  /// Whether one visit shows the thing, and the other where it was then.
-  bool left(std::int32_t object, int shows, int other) const {
-    const auto position = static_cast<std::size_t>(shows - 1);
-    const auto seen = frames_[position].find(object);
-    if (seen == frames_[position].end() || seen->second < config_.seen_frames) return false;
-    const Points points = points_of(visits_[position], {object});
-    LookedThrough looked(points, -config_.through_m);
-    looked.add(*open_frame_source(truth_.visits[static_cast<std::size_t>(other - 1)], {}));
-    return !points.empty() && static_cast<float>(looked.count(config_.seen_frames)) >=
-                                  config_.seen_share * static_cast<float>(points.size());
+  using Place = std::tuple<std::int32_t, int, int>;  ///< a thing, who shows it, and who looks there
+
+  /// Whether one visit shows the thing, and the other looks where it was then.
+  bool knows(std::int32_t object, int shows, int looks) const {
+    const auto& frames = frames_[static_cast<std::size_t>(shows - 1)];
+    const auto seen = frames.find(object);
+    return seen != frames.end() && seen->second >= config_.seen_frames &&
+           in_sight_.contains({object, shows, looks});
   }
 
-  const TrueChanges& truth_;
-  const std::vector<Truth>& visits_;
+  /// Where things stood in the visit before that left, and came to in the one after.
+  void look_at_others(const TrueChanges& truth, const std::vector<Truth>& visits, int looks,
+                      const FrameSource& source) {
+    std::map<Place, Points> places;
+    for (const TrueChange& change : truth.changes) {
+      const int shows = change.visit == looks       ? looks - 1
+                        : change.visit == looks + 1 ? looks + 1
+                                                    : 0;
+      if (shows == 0) continue;
+      places[{change.object, shows, looks}] =
+          points_of(visits[static_cast<std::size_t>(shows - 1)], {change.object});
+    }
+    Points all;
+    for (const auto& [place, points] : places) all.insert(all.end(), points.begin(), points.end());
+    LookedThrough looked(all, -config_.through_m);
+    looked.add(source);
+    std::size_t first = 0;
+    for (const auto& [place, points] : places) {
+      const auto count =
+          static_cast<float>(looked.count(config_.seen_frames, first, points.size()));
+      if (!points.empty() && count >= config_.seen_share * static_cast<float>(points.size()))
+        in_sight_.insert(place);
+      first += points.size();
+    }
+  }
+
   const ChangeScoresConfig& config_;
   std::vector<std::map<std::int32_t, int>> frames_;  ///< by visit: frames_showing
+  std::set<Place> in_sight_;
 };
 
 void score_events(const MapHistory& history, const TrueChanges& truth,
