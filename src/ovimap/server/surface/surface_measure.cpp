@@ -79,12 +79,12 @@ std::vector<InstanceSummary> find_instances(const Mesh& mesh, const LabelForest&
 
 void measure_on_surface(const Mesh& mesh, float spacing_m, MapRecord& record) {
   const std::vector<SurfaceExtent> extents = extents_by_label(mesh);
-  for (auto* list : {&record.instances, &record.hidden})
+  record.surfaces = sample_surfaces(mesh, spacing_m);
+  for (auto* list : {&record.instances, &record.hidden}) {
     for (InstanceSummary& instance : *list)
       describe(instance.id < extents.size() ? extents[instance.id] : SurfaceExtent{}, instance);
-  record.surfaces = sample_surfaces(mesh, spacing_m);
-  for (auto* list : {&record.instances, &record.hidden})
     fit_boxes(record.surfaces, spacing_m, *list);
+  }
 }
 
 }  // namespace ovimap
