@@ -67,7 +67,6 @@ std::size_t doubt(const Doubted& doubted, int frames, VoxelBlock& block) {
     for (unsigned bits = doubted.rows[row]; bits != 0; bits &= bits - 1) {
       const std::size_t voxel = row * kBlockSide + static_cast<std::size_t>(std::countr_zero(bits));
       if (++block.doubts[voxel] < frames) continue;
-      block.doubts[voxel] = 0;
       block.forget(voxel);
       ++gone;
     }

@@ -91,6 +91,7 @@ struct VoxelBlock {
     for (auto& channel : color) channel[voxel] = 0;
     for (auto& slot : label) slot[voxel] = 0;
     for (auto& slot : support) slot[voxel] = 0;
+    if (!doubts.empty()) doubts[voxel] = 0;
   }
 
   /// Whether any voxel is doubted.

@@ -147,7 +147,10 @@ TEST(VisitHistory, TellsTheSameOfMapsWhoseVoxelsLieInFiles) {
   MapDocument after_stored = stored(after, "after.ovimap");
   EXPECT_EQ(before_stored.map.blocks_in_memory(), 0u);
   tell_visit(before, after);
-  tell_visit(before_stored, after_stored);
+  tell_visit(before_stored, after_stored, {},
+             std::make_shared<TileKeeper>(folder.path() / "seen", TileKeeper::Start::kAnew,
+                                          MemoryConfig{1}));
+  EXPECT_EQ(after_stored.map.content_hash(), after.map.content_hash());
   ASSERT_EQ(after.history.events.size(), 3u);
   ASSERT_EQ(after_stored.history.events.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {

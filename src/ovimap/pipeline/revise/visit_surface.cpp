@@ -16,7 +16,7 @@ namespace ovimap {
 namespace {
 
 constexpr std::size_t kLeastPoints = 10;  // of an object's surface: fewer are a stray look at it
-const float kSpacing_m = InstanceSummaryConfig{}.surface_spacing_m;
+constexpr float kSpacing_m = InstanceSummaryConfig{}.surface_spacing_m;
 constexpr std::uint32_t kBlocksPerPart = 4096;  // then maps may make room
 
 /// Whether a voxel is as the visit found it. Supports of labels say no more than its distance.
@@ -27,9 +27,13 @@ bool is_untouched(const VoxelBlock& was, const VoxelBlock& is, std::size_t v) {
          });
 }
 
-/// The voxels of a block that changed; whether there are any.
+/// The voxels of a block that changed, without labels, which are another map's; whether there are
+/// any.
 bool keep_touched(const VoxelBlock* was, VoxelBlock& block) {
   bool any = false;
+  block.palette = {kNoLabel};
+  for (auto& slot : block.label) slot.fill(0);
+  for (auto& slot : block.support) slot.fill(0);
   for (std::size_t v = 0; v < kBlockVoxels; ++v) {
     if (was != nullptr && is_untouched(*was, block, v)) block.forget(v);
     any |= block.weight[v] > 0.f;
@@ -108,7 +112,6 @@ class Remains {
       if (label == kNoLabel ? surface : !boxes_.contains(instance_of_[label])) continue;
       if (label != kNoLabel && surface) ++forgotten_[instance_of_[label]];
       block.forget(at);
-      if (!block.doubts.empty()) block.doubts[at] = 0;
       changed = true;
     }
     if (!block.doubted()) block.doubts = {};

@@ -79,6 +79,8 @@ TEST_F(VisitSurface, IsWhatTheVisitTouched) {
   EXPECT_EQ(surface_points(seen, kTable), surface_points(after_, kTable));
   EXPECT_EQ(seen.frames.size(), 2u) << "the visit's own";
   EXPECT_LT(seen.map.block_count(), after_.map.block_count());
+  for (std::uint32_t slot = 0; slot < seen.map.block_count(); ++slot)
+    EXPECT_EQ(seen.map.block(slot).palette.size(), 1u) << "labels mean nothing without the map's";
 }
 
 TEST_F(VisitSurface, OfWhatLeftNothingRemains) {
