@@ -10,12 +10,23 @@
 
 namespace ovimap {
 
-float turn(const Eigen::Vector2f& a, const Eigen::Vector2f& b, const Eigen::Vector2f& c) {
-  const Eigen::Vector2f u = b - a, v = c - a;
-  return u.x() * v.y() - u.y() * v.x();
-}
-
 namespace {
+
+using Eight = Eigen::Array<float, 8, 1>;  // of a point all at once
+
+/// The points farthest out along eight directions, counter-clockwise; the first of equals.
+std::array<Eigen::Vector2f, 8> octagon_of(std::span<const Eigen::Vector2f> points) {
+  const Eight outward_x{{1, 1, 0, -1, -1, -1, 0, 1}}, outward_y{{0, 1, 1, 1, 0, -1, -1, -1}};
+  std::array<Eigen::Vector2f, 8> farthest;
+  Eight most = Eight::Constant(std::numeric_limits<float>::lowest());
+  for (const Eigen::Vector2f& point : points) {
+    const Eight out = outward_x * point.x() + outward_y * point.y();
+    if ((out <= most).all()) continue;
+    for (Eigen::Index i = 0; i < out.size(); ++i)
+      if (out[i] > most[i]) most[i] = out[i], farthest[static_cast<std::size_t>(i)] = point;
+  }
+  return farthest;
+}
 
 /// Drops most of the points that lie inside the octagon of those farthest out along eight
 /// directions: none of them is a corner of the hull, and sorting them is what a hull costs (Akl and
@@ -23,24 +34,22 @@ namespace {
 void drop_inner(std::vector<Eigen::Vector2f>& points) {
   constexpr std::size_t kWorthwhile = 64;
   if (points.size() < kWorthwhile) return;
-  std::array<Eigen::Vector2f, 8> octagon;  // counter-clockwise
-  octagon.fill(points.front());
-  constexpr std::array<std::array<float, 2>, 8> kOutward = {
-      {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
-  for (const Eigen::Vector2f& point : points)
-    for (std::size_t i = 0; i < octagon.size(); ++i) {
-      const Eigen::Vector2f outward(kOutward[i][0], kOutward[i][1]);
-      if (outward.dot(point) > outward.dot(octagon[i])) octagon[i] = point;
-    }
+  const std::array<Eigen::Vector2f, 8> octagon = octagon_of(points);
   // Well inside: what rounding could put on the wrong side of an edge stays.
   const float slack =
       1e-5f * ((octagon[0] - octagon[4]).squaredNorm() + (octagon[2] - octagon[6]).squaredNorm());
+  // Twice the area of the triangle of an edge and the point, as in turn(), of all edges.
+  Eight edge_x, edge_y, least;
+  for (std::size_t i = 0; i < octagon.size(); ++i) {
+    const Eigen::Vector2f from = octagon[i] - octagon[0];
+    const Eigen::Vector2f edge = octagon[(i + 1) % octagon.size()] - octagon[i];
+    const auto row = static_cast<Eigen::Index>(i);
+    edge_x[row] = edge.x(), edge_y[row] = edge.y();
+    least[row] = edge.isZero(0.f) ? -1.f : edge.x() * from.y() - edge.y() * from.x() + slack;
+  }
   std::erase_if(points, [&](const Eigen::Vector2f& point) {
-    for (std::size_t i = 0; i < octagon.size(); ++i) {
-      const Eigen::Vector2f &a = octagon[i], &b = octagon[(i + 1) % octagon.size()];
-      if (a != b && turn(a, b, point) <= slack) return false;
-    }
-    return true;
+    const Eigen::Vector2f at = point - octagon[0];
+    return (edge_x * at.y() - edge_y * at.x() > least).all();
   });
 }
 

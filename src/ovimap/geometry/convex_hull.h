@@ -10,7 +10,9 @@
 namespace ovimap {
 
 /// Twice the signed area of the triangle a, b, c; positive when c is left of a -> b.
-float turn(const Eigen::Vector2f& a, const Eigen::Vector2f& b, const Eigen::Vector2f& c);
+inline float turn(const Eigen::Vector2f& a, const Eigen::Vector2f& b, const Eigen::Vector2f& c) {
+  return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+}
 
 /// Corners of the smallest convex polygon around the points, counter-clockwise (Andrew's monotone
 /// chain). Fewer than three come back when the points lie on a line.
