@@ -69,14 +69,27 @@ std::vector<std::size_t> some_embedded(const SearchIndex& index, std::size_t mos
 }  // namespace
 
 QueryEngine::QueryEngine(const SearchIndex& index, ImageTextEncoder* encoder,
-                         const QueryConfig& config, Embeddings vocabulary, QueryScene scene)
-    : index_(index), encoder_(encoder), config_(config), scene_(std::move(scene)) {
-  require_embeddings(index);
-  if (scene_.shapes.empty())
-    scene_.shapes = scene_of_boxes(index, Eigen::Vector3f::UnitZ(), config.shapes).shapes;
-  if (encoder)
-    matcher_.emplace(index, *encoder, config, std::move(vocabulary), measure_objects(scene_.shapes),
-                     scene_.writing, scene_.things, scene_.taught);
+                         const QueryConfig& config, Embeddings vocabulary)
+    : index_(index),
+      encoder_(encoder),
+      config_(config),
+      boxes_(scene_of_boxes(index, Eigen::Vector3f::UnitZ(), config.shapes)),
+      scene_(boxes_) {
+  prepare(std::move(vocabulary));
+}
+
+QueryEngine::QueryEngine(const SearchIndex& index, ImageTextEncoder* encoder,
+                         const QueryConfig& config, Embeddings vocabulary, const QueryScene& scene)
+    : index_(index), encoder_(encoder), config_(config), scene_(scene) {
+  OVIMAP_ASSERT(scene.shapes.size() == index.size());
+  prepare(std::move(vocabulary));
+}
+
+void QueryEngine::prepare(Embeddings vocabulary) {
+  require_embeddings(index_);
+  if (encoder_)
+    matcher_.emplace(index_, *encoder_, config_, std::move(vocabulary),
+                     measure_objects(scene_.shapes), scene_.writing, scene_.things, scene_.taught);
 }
 
 const TextMatcher* QueryEngine::part_matcher() const {

@@ -54,16 +54,21 @@ struct QueryAnswer {
   Eigen::VectorXf relevance;  ///< [objects] in [0, 1], for heat maps; empty unless asked for
 };
 
-/// Answers queries on one map with one encoder (method section 11; docs/query.md). The index and
-/// the encoder must outlive it. Calls are thread-safe.
+/// Answers queries on one map with one encoder (method section 11; docs/query.md). The index, the
+/// encoder and the scene must outlive it. Calls are thread-safe.
 class QueryEngine {
  public:
   /// `encoder` may be null: then only objects can be asked for. `vocabulary`: embeddings of
   /// TextMatcher::vocabulary_texts() where they are known already. Throws Error when the map has no
-  /// embeddings, or of another length than the encoder's. `scene`: geometry of relations; without
-  /// shapes the objects' boxes are taken, with +z up.
+  /// embeddings, or of another length than the encoder's. Relations are those of the objects'
+  /// boxes, with +z up.
   QueryEngine(const SearchIndex& index, ImageTextEncoder* encoder, const QueryConfig& config = {},
-              Embeddings vocabulary = {}, QueryScene scene = {});
+              Embeddings vocabulary = {});
+  /// `scene`: geometry of relations, with a shape of each object, and what else is known of them.
+  QueryEngine(const SearchIndex& index, ImageTextEncoder* encoder, const QueryConfig& config,
+              Embeddings vocabulary, const QueryScene& scene);
+  QueryEngine(const SearchIndex& index, ImageTextEncoder* encoder, const QueryConfig& config,
+              Embeddings vocabulary, QueryScene&& scene) = delete;
 
   /// Throws Error for an empty or overlong text, or without encoder.
   QueryAnswer find(const Query& query) const;
@@ -87,6 +92,7 @@ class QueryEngine {
   using PValue = std::function<double(float standard_score)>;       // empty: no calibration
   using Probability = std::function<double(std::size_t position)>;  // empty: by p-value
 
+  void prepare(Embeddings vocabulary);
   QueryAnswer find_text(const std::string& text, const std::vector<std::string>& negatives,
                         const Query& query) const;
   QueryAnswer find_phrase(const QueryPhrase& phrase, const std::vector<std::string>& negatives,
@@ -108,7 +114,8 @@ class QueryEngine {
   ImageTextEncoder* encoder_;
   QueryConfig config_;
   std::optional<TextMatcher> matcher_;
-  QueryScene scene_;
+  const QueryScene boxes_;  ///< where no other scene was given
+  const QueryScene& scene_;
   mutable std::once_flag parts_asked_;
   mutable std::optional<TextMatcher> part_matcher_;
 };

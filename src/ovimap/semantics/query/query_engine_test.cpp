@@ -243,8 +243,8 @@ StoredCrop plain_crop(Rgb8 color) {
 class AttributesTest : public ::testing::Test {
  protected:
   AttributesTest() {
-    QueryScene scene = scene_of_boxes(index_, Eigen::Vector3f::UnitZ());
-    scene.colors = std::make_shared<const ObjectColors>([this] {
+    scene_ = scene_of_boxes(index_, Eigen::Vector3f::UnitZ());
+    scene_.colors = std::make_shared<const ObjectColors>([this] {
       std::vector<StoredCrop> crops(index_.size(), plain_crop({235, 235, 235}));
       crops[0] = plain_crop({190, 30, 35});
       crops[1] = plain_crop({40, 80, 180});
@@ -252,7 +252,7 @@ class AttributesTest : public ::testing::Test {
     });
     QueryConfig config;
     config.evidence.size_weight = 0.f;  // these boxes are no furniture
-    engine_.emplace(index_, &encoder_, config, Embeddings{}, scene);
+    engine_.emplace(index_, &encoder_, config, Embeddings{}, scene_);
   }
   std::vector<InstanceId> ids(const std::string& text) const {
     std::vector<InstanceId> list;
@@ -270,6 +270,7 @@ class AttributesTest : public ::testing::Test {
                                {Eigen::Vector3f(9, 0, 0), Eigen::Vector3f(9.3f, 0.3f, 1.5f)},
                                {Eigen::Vector3f(10, 0, 0), Eigen::Vector3f(11, 0.1f, 2)},
                                {Eigen::Vector3f(12, 0, 0), Eigen::Vector3f(14, 1, 0.8f)}});
+  QueryScene scene_;
   std::optional<QueryEngine> engine_;
 };
 

@@ -54,14 +54,14 @@ class QuerySceneTest : public ::testing::Test {
       boxes.push_back(thing.box);
     }
     index_ = map_of(names, boxes);
-    QueryScene scene = scene_of_boxes(index_, Eigen::Vector3f::UnitZ());
+    scene_ = scene_of_boxes(index_, Eigen::Vector3f::UnitZ());
     const Eigen::Matrix3f ground = ground_from_world(Eigen::Vector3f::UnitZ());
     Pose camera = Pose::Identity();  // in the west, at eye height, looking east
     camera.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
     camera.translation() << -2, 2.5, 1.5;
-    scene.viewpoint = mean_viewpoint(ground, {&camera, 1});
+    scene_.viewpoint = mean_viewpoint(ground, {&camera, 1});
     engine_ =
-        std::make_unique<QueryEngine>(index_, &encoder_, pictures_alone(), Embeddings{}, scene);
+        std::make_unique<QueryEngine>(index_, &encoder_, pictures_alone(), Embeddings{}, scene_);
   }
 
   InstanceId best(const std::string& text) const {
@@ -72,6 +72,7 @@ class QuerySceneTest : public ::testing::Test {
 
   WordEncoder encoder_;
   SearchIndex index_;
+  QueryScene scene_;
   std::unique_ptr<QueryEngine> engine_;
 };
 

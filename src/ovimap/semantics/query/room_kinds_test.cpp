@@ -51,12 +51,12 @@ TEST(RoomKinds, NamesThatPeopleGaveSayWhatARoomIs) {
 class RoomQueryTest : public ::testing::Test {
  protected:
   RoomQueryTest() : index_(map_of({"stove", "mug", "bed", "mug", "mug", "refrigerator"})) {
-    QueryScene scene = scene_of_boxes(index_, Eigen::Vector3f::UnitZ());
-    scene.rooms =
+    scene_ = scene_of_boxes(index_, Eigen::Vector3f::UnitZ());
+    scene_.rooms =
         std::make_shared<const ObjectRooms>([] { return std::vector<int>{1, 1, 2, 2, 0, 1}; });
     QueryConfig config;
     config.evidence.size_weight = 0.f;
-    engine_.emplace(index_, &encoder_, config, Embeddings(), std::move(scene));
+    engine_.emplace(index_, &encoder_, config, Embeddings(), scene_);
   }
   std::vector<InstanceId> found(const std::string& text) {
     const QueryAnswer answer = engine_->find({text, {}, false});
@@ -69,6 +69,7 @@ class RoomQueryTest : public ::testing::Test {
 
   WordEncoder encoder_;
   SearchIndex index_;
+  QueryScene scene_;
   std::optional<QueryEngine> engine_;
 };
 
