@@ -46,10 +46,9 @@ InstanceSurfaces sample_surfaces(const Mesh& mesh, float spacing_m) {
   return sampler.take();
 }
 
-InstanceSurfaces sample_surfaces(const VoxelMap& map, std::span<const InstanceSummary> instances,
-                                 float spacing_m) {
+InstanceSurfaces sample_surfaces(const VoxelMap& map, std::span<const InstanceSummary> instances) {
   const std::vector<InstanceId> instance_of = instances_by_label(map, instances);
-  SurfaceSampler sampler(spacing_m);
+  SurfaceSampler sampler(surface_spacing_m(map.config().voxel_size_m));
   for_each_patch(map, [&](Mesh& patch) {
     for (std::uint32_t& label : patch.labels) label = instance_of[label];
     sampler.add(patch);

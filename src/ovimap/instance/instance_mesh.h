@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <span>
 #include <unordered_set>
@@ -23,6 +24,13 @@ Mesh extract_instance_mesh(const VoxelMap& map, std::span<const InstanceSummary>
 
 /// Points of each object's surface, world frame, metres.
 using InstanceSurfaces = std::map<InstanceId, std::vector<Eigen::Vector3f>>;
+
+/// Edge of the cubes of each of which a map keeps one point of an object's surface: what is said of
+/// objects needs no finer ones than 2 cm, and a voxel shows none.
+inline constexpr float kSurfaceSpacing_m = 0.02f;
+inline float surface_spacing_m(float voxel_size_m) {
+  return std::max(kSurfaceSpacing_m, voxel_size_m);
+}
 
 /// Thins the surfaces of a mesh that comes in parts: of its vertices, one (the first) from each
 /// cube of the edge `spacing_m` that holds some.
@@ -52,8 +60,7 @@ class SurfaceSampler {
 /// some; label 0 is left out. Ordered as the vertices are.
 InstanceSurfaces sample_surfaces(const Mesh& mesh, float spacing_m);
 
-/// The same of a map's instances, patch by patch.
-InstanceSurfaces sample_surfaces(const VoxelMap& map, std::span<const InstanceSummary> instances,
-                                 float spacing_m);
+/// The same of a map's instances, patch by patch, as its voxels have it (surface_spacing_m).
+InstanceSurfaces sample_surfaces(const VoxelMap& map, std::span<const InstanceSummary> instances);
 
 }  // namespace ovimap

@@ -59,8 +59,6 @@ void list_fields(InstanceSummaryConfig& config, ConfigFields& fields) {
              "parts of objects that fewer frames tell from the rest of it are left out");
   fields.add("max_part_share", config.max_part_share, 0.f, 1.f,
              "so are parts that are more than this share of their object");
-  fields.add("surface_spacing_m", config.surface_spacing_m, 0.001f, 10.f,
-             "between the points of an instance that a map keeps apart from its voxels, metres");
 }
 
 std::vector<InstanceSummary> summarize_instances(const VoxelMap& map,

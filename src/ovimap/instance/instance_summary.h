@@ -17,9 +17,7 @@
 namespace ovimap {
 
 struct InstanceSummaryConfig {
-  int min_instance_voxels = 20;  ///< instances with fewer surface voxels are left out
-  float surface_spacing_m =
-      0.02f;  ///< between the points of an instance that a map keeps apart from its voxels
+  int min_instance_voxels = 20;    ///< instances with fewer surface voxels are left out
   int min_instance_views = 2;      ///< instances seen in fewer frames are left out
   float min_only_view_fit = 0.5f;  ///< ... but of two, one is enough whose mask fits so well, times
                                    ///< how its source rates it (EntityFit)

@@ -81,4 +81,10 @@ void fit_boxes(const InstanceSurfaces& surfaces, float spacing_m,
   });
 }
 
+InstanceSurfaces surfaces_and_boxes(const VoxelMap& map, std::vector<InstanceSummary>& instances) {
+  InstanceSurfaces surfaces = sample_surfaces(map, instances);
+  fit_boxes(surfaces, surface_spacing_m(map.config().voxel_size_m), instances);
+  return surfaces;
+}
+
 }  // namespace ovimap

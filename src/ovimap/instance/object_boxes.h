@@ -26,4 +26,7 @@ Eigen::AlignedBox3f box_without_specks(std::span<const Eigen::Vector3f> surface,
 void fit_boxes(const InstanceSurfaces& surfaces, float spacing_m,
                std::vector<InstanceSummary>& instances);
 
+/// Samples the surfaces of a map's instances, and fits their boxes to them.
+InstanceSurfaces surfaces_and_boxes(const VoxelMap& map, std::vector<InstanceSummary>& instances);
+
 }  // namespace ovimap

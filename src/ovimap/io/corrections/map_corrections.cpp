@@ -206,8 +206,7 @@ class Assembly {
     if (parts.empty()) return;
     const VoxelMap& map = voxels_();
     measure_instances(map, parts);
-    surfaces_ = sample_surfaces(map, parts, InstanceSummaryConfig{}.surface_spacing_m);
-    fit_boxes(surfaces_, InstanceSummaryConfig{}.surface_spacing_m, parts);
+    surfaces_ = surfaces_and_boxes(map, parts);
     for (InstanceSummary& part : parts) measured_[part.id] = std::move(part);
   }
 

@@ -148,9 +148,7 @@ void append_instances(MapDocument& a, const MapRecord& b, const Offsets& by) {
   measure_instances(extents, a.instances);
   std::erase_if(a.instances, [](const InstanceSummary& instance) { return instance.points == 0; });
   for (const auto& [id, name] : b.names) a.names[id + by.instance] = name;
-  a.surfaces = sample_surfaces(extract_instance_mesh(a.map, a.instances),
-                               InstanceSummaryConfig{}.surface_spacing_m);
-  fit_boxes(a.surfaces, InstanceSummaryConfig{}.surface_spacing_m, a.instances);
+  a.surfaces = surfaces_and_boxes(a.map, a.instances);
   a.parts = find_parts(extents, a.instances, a.registry.entity_sightings, InstanceSummaryConfig{});
 }
 

@@ -25,11 +25,11 @@ const InstanceSummary* find_instance(const MapRecord& record, InstanceId id) {
   return found == record.instances.end() ? nullptr : &*found;
 }
 
-Eigen::AlignedBox3f box_of(const MapRecord& record, InstanceId id) {
-  const auto surface = record.surfaces.find(id);
-  if (surface != record.surfaces.end() && !surface->second.empty())
-    return box_without_specks(surface->second, InstanceSummaryConfig{}.surface_spacing_m);
-  const InstanceSummary* instance = find_instance(record, id);
+Eigen::AlignedBox3f box_of(const MapDocument& map, InstanceId id) {
+  const auto surface = map.surfaces.find(id);
+  if (surface != map.surfaces.end() && !surface->second.empty())
+    return box_without_specks(surface->second, surface_spacing_m(map.map.config().voxel_size_m));
+  const InstanceSummary* instance = find_instance(map, id);
   return instance ? instance->box : Eigen::AlignedBox3f();
 }
 

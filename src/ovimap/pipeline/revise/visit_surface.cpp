@@ -16,7 +16,6 @@ namespace ovimap {
 namespace {
 
 constexpr std::size_t kLeastPoints = 10;  // of an object's surface: fewer are a stray look at it
-constexpr float kSpacing_m = InstanceSummaryConfig{}.surface_spacing_m;
 constexpr std::uint32_t kBlocksPerPart = 4096;  // then maps may make room
 
 /// Whether a voxel is as the visit found it. Supports of labels say no more than its distance.
@@ -72,10 +71,11 @@ class Remains {
           MapDocument& after)
       : seen_(seen.map),
         after_(after),
+        spacing_m_(surface_spacing_m(after.map.config().voxel_size_m)),
         instance_of_(instances_by_label(after.map, after.instances)) {
     for (const InstanceId id : gone)
       if (const auto was = before.surfaces.find(id); was != before.surfaces.end())
-        boxes_[id] = box_without_specks(was->second, kSpacing_m);
+        boxes_[id] = box_without_specks(was->second, spacing_m_);
   }
 
   void forget() {
@@ -83,7 +83,7 @@ class Remains {
       if (may_hold_some(after_.map.block_index(slot)) && forget_in(slot))
         after_.map.note_changes(std::span(&slot, 1));
     for (const auto& [id, count] : forgotten_) forget_object(id, count);
-    fit_boxes(after_.surfaces, kSpacing_m, after_.instances);
+    fit_boxes(after_.surfaces, spacing_m_, after_.instances);
   }
 
  private:
@@ -131,6 +131,7 @@ class Remains {
 
   const VoxelMap& seen_;
   MapDocument& after_;
+  const float spacing_m_;
   std::vector<InstanceId> instance_of_;  ///< by label
   std::map<InstanceId, Eigen::AlignedBox3f> boxes_;
   std::map<InstanceId, std::size_t> forgotten_;  ///< surface voxels

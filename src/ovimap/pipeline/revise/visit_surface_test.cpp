@@ -26,7 +26,7 @@ class VisitSurface : public ::testing::Test {
         instance.super_points = {label};
       }
       measure_instances(map->map, map->instances);
-      map->surfaces = sample_surfaces(map->map, map->instances, 0.02f);
+      map->surfaces = sample_surfaces(map->map, map->instances);
       map->frames.resize(1);
       map->history.visits = {{"before", 0, 0}};
     }

@@ -177,7 +177,7 @@ MapDocument embed_geometry(const Mesh& mesh, const FrameSource& source,
   document.semantics.recognizer = builder.recognizer();
   for (InstanceSummary& object : document.instances)
     object.views = appearance_of(document.semantics.looks, object.super_points).offered;
-  document.surfaces = sample_surfaces(mesh, config.surface_spacing_m);
+  document.surfaces = sample_surfaces(mesh, kSurfaceSpacing_m);
   document.up = guess_up(mesh, poses_of(sequence.frames));
   document.frames = sequence.frames;
   document.depth_camera = sequence.depth_camera;

@@ -16,7 +16,6 @@ namespace ovimap {
 struct GeometryEmbeddingConfig {
   SemanticsConfig semantics;
   float occlusion_margin_m = 0.1f;  ///< measured depth this much nearer hides the mesh
-  float surface_spacing_m = 0.02f;  ///< InstanceSummaryConfig::surface_spacing_m
   float near_m = 0.05f;             ///< what lies nearer to the camera is cut away
 };
 

@@ -20,7 +20,8 @@ void describe_map(const VoxelMap& map, const InstanceRegistry& registry,
   const SurfaceExtents extents = surface_extents(map);
   record.instances = summarize_instances(extents, map.labels(), registry, config);
   const std::vector<InstanceId> instance_of = instances_by_label(map, record.instances);
-  SurfaceSampler sampler(config.surface_spacing_m);
+  const float spacing_m = surface_spacing_m(map.config().voxel_size_m);
+  SurfaceSampler sampler(spacing_m);
   SurfaceDirections directions;
   for_each_patch(map, [&](Mesh& patch) {
     for (std::uint32_t& label : patch.labels) label = instance_of[label];
@@ -34,7 +35,7 @@ void describe_map(const VoxelMap& map, const InstanceRegistry& registry,
     if (!shows) record.surfaces.erase(instance.id);
     return !shows;
   });
-  fit_boxes(record.surfaces, config.surface_spacing_m, record.instances);
+  fit_boxes(record.surfaces, spacing_m, record.instances);
   record.parts = find_parts(extents, record.instances, record.registry.entity_sightings, config);
   std::vector<Pose> poses;
   for (const FrameLogEntry& frame : record.frames) poses.push_back(frame.world_from_camera);

@@ -7,23 +7,11 @@
 #include <limits>
 
 #include "ovimap/base/config.h"
-#include "ovimap/map/voxels/voxel_block.h"
+#include "ovimap/base/error.h"
 
 namespace ovimap {
 
 namespace {
-
-/// The first point of each cell of a grid, in the order of the cells.
-std::vector<Eigen::Vector3f> thinned(const std::vector<Eigen::Vector3f>& points, float spacing_m) {
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> cells(points.size());
-  for (std::uint32_t i = 0; i < cells.size(); ++i)
-    cells[i] = {pack_index(floor_to_int(points[i] / spacing_m)), i};
-  std::sort(cells.begin(), cells.end());
-  std::vector<Eigen::Vector3f> kept;
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    if (i == 0 || cells[i].first != cells[i - 1].first) kept.push_back(points[cells[i].second]);
-  return kept;
-}
 
 /// Never degenerate, since every point has a size.
 Footprint footprint_of(const std::vector<Eigen::Vector3f>& points, float radius_m) {
@@ -80,8 +68,6 @@ void list_fields(ObjectShapeConfig& config, ConfigFields& fields) {
              "share of an object's points cut off at the top and at the bottom");
   fields.add("point_radius_m", config.point_radius_m, 1e-4f, 1.f,
              "half the size of a surface point, metres");
-  fields.add("surface_spacing_m", config.surface_spacing_m, 1e-3f, 1.f,
-             "surface points nearer to each other are thinned, metres");
 }
 
 std::span<const Eigen::Vector3f> ObjectShape::run_points(std::size_t run) const {
@@ -123,9 +109,9 @@ ObjectShape shape_of_points(const Eigen::Matrix3f& ground_from_world,
   shape.top_m = high + config.point_radius_m;
   for (const Eigen::Vector3f& point : points) shape.centroid += point;
   shape.centroid /= static_cast<float>(points.size());
-  shape.surface = thinned(points, config.surface_spacing_m);
-  shape.runs = runs_of(shape);
   shape.footprint = footprint_of(points, config.point_radius_m);
+  shape.surface = std::move(points);
+  shape.runs = runs_of(shape);
   return shape;
 }
 

@@ -15,9 +15,8 @@ namespace ovimap {
 class ConfigFields;
 
 struct ObjectShapeConfig {
-  float noise_share = 0.005f;       ///< of the points, cut off at the top and at the bottom
-  float point_radius_m = 0.005f;    ///< a surface point is a square of twice this size
-  float surface_spacing_m = 0.02f;  ///< surface points nearer to each other are thinned
+  float noise_share = 0.005f;     ///< of the points, cut off at the top and at the bottom
+  float point_radius_m = 0.005f;  ///< a surface point is a square of twice this size
 };
 void list_fields(ObjectShapeConfig& config, ConfigFields& fields);
 

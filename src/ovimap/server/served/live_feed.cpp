@@ -189,7 +189,6 @@ void LiveFeed::hand_over_objects(Mapper& mapper, const std::vector<FrameLogEntry
   found.forest = mapper.map().labels();
   found.info.voxel_size_m = mapper.map().config().voxel_size_m;
   found.info.blocks = mapper.map().block_count();
-  found.surface_spacing_m = mapper.config().summary.surface_spacing_m;
   const std::lock_guard lock(mutex_);
   found_ = std::move(found);
   summary_ = mapper.config().summary;

@@ -20,9 +20,8 @@ namespace ovimap {
 struct FoundMap {
   MapRecord record;
   LabelForest forest;
-  MapInfo info;                     ///< what the record does not tell
-  bool live = false;                ///< it is still being made: measures are those of its surface
-  float surface_spacing_m = 0.02f;  ///< live: between the points that relations are judged by
+  MapInfo info;       ///< what the record does not tell
+  bool live = false;  ///< it is still being made: measures are those of its surface
 };
 
 /// The names that fit objects best, best first.

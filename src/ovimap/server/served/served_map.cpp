@@ -119,7 +119,7 @@ void ServedMap::rebuild() {
   next->instance_of_label = label_table(record, found_->forest);
   if (found_->live)
     measure_on_surface(labelled_surface(*surface(), next->instance_of_label, {}),
-                       found_->surface_spacing_m, record);
+                       surface_spacing_m(found_->info.voxel_size_m), record);
   auto objects =
       std::make_shared<MapSearch>(make_map_search(record, found_->info, config_.query.shapes));
   objects->scene.taught = taught_;
