@@ -60,7 +60,7 @@ class Pieces {
   }
 
   std::span<const Eigen::Vector3f> points_;
-  tsl::robin_map<std::uint64_t, std::size_t> known_;
+  tsl::robin_map<std::uint64_t, std::size_t, PackedIndexHash> known_;
   std::vector<Eigen::Vector3i> cubes_;
   std::vector<std::size_t> cube_of_, parent_;
 };

@@ -50,6 +50,14 @@ inline BlockIndex unpack_index(std::uint64_t packed) {
   return {axis(0), axis(21), axis(42)};
 }
 
+/// For hash tables that take the low bits of a hash: those of packed words are x alone.
+struct PackedIndexHash {
+  std::size_t operator()(std::uint64_t packed) const {
+    packed *= 0x9e3779b97f4a7c15ull;
+    return static_cast<std::size_t>(packed ^ packed >> 32);
+  }
+};
+
 /// Voxel within its block: x fastest.
 inline int voxel_offset(int x, int y, int z) {
   return x + kBlockSide * (y + kBlockSide * z);

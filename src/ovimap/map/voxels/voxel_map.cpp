@@ -50,11 +50,6 @@ VoxelMap::VoxelMap(const VoxelMapConfig& config, std::size_t most_blocks)
       most_blocks_(std::min(most_blocks, VoxelRef::kMostBlocks)),
       metres_per_unit_(config.truncation_m() / VoxelBlock::kTsdfScale) {}
 
-std::size_t VoxelMap::KeyHash::operator()(std::uint64_t key) const {
-  key *= 0x9e3779b97f4a7c15ull;
-  return static_cast<std::size_t>(key ^ key >> 32);
-}
-
 const VoxelBlock* VoxelMap::find(const BlockIndex& index) const {
   const std::uint32_t slot = find_slot(index);
   return slot == kNoBlock ? nullptr : &block(slot);

@@ -221,10 +221,7 @@ class VoxelMap {
   std::uint64_t content_hash() const;
 
  private:
-  struct KeyHash {  // robin_map takes the low bits, so the high ones are mixed in
-    std::size_t operator()(std::uint64_t key) const;
-  };
-  using RegionPositions = tsl::robin_map<std::uint64_t, std::uint32_t, KeyHash>;
+  using RegionPositions = tsl::robin_map<std::uint64_t, std::uint32_t, PackedIndexHash>;
   BlockRegion& find_or_create_region(const BlockIndex& region);
   void replace_frozen(std::uint32_t slot);
 
