@@ -42,6 +42,11 @@ void describe(const SurfaceExtent& extent, InstanceSummary& summary) {
     summary.centroid = (extent.sum / static_cast<double>(extent.points)).cast<float>();
 }
 
+const InstanceSummary* find_instance(std::span<const InstanceSummary> instances, InstanceId id) {
+  const auto found = std::ranges::find(instances, id, &InstanceSummary::id);
+  return found == instances.end() ? nullptr : &*found;
+}
+
 void give_box(const Eigen::AlignedBox3f& box, InstanceSummary& summary) {
   summary.box = box;
   summary.centroid = summary.centroid.cwiseMax(box.min()).cwiseMin(box.max());

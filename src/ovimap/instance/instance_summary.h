@@ -4,6 +4,7 @@
 
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,9 @@ struct InstanceSummary {
   /// does not rate them, and of what a person put together.
   std::optional<float> confidence;
 };
+
+/// The one with that id; null: none has it.
+const InstanceSummary* find_instance(std::span<const InstanceSummary> instances, InstanceId id);
 
 /// Sets its points, box and centroid.
 void describe(const SurfaceExtent& extent, InstanceSummary& summary);

@@ -47,15 +47,11 @@ class EditDesk {
     for (auto found = aliases_.find(id); found != aliases_.end(); found = aliases_.find(id))
       id = found->second;
     for (const auto* list : {&corrected_.instances, &corrected_.hidden})
-      for (const InstanceSummary& instance : *list)
-        if (instance.id == id) return instance;
+      if (const InstanceSummary* found = find_instance(*list, id)) return *found;
     throw Error(concat("the map has no object ", asked, "; `ovimap info` lists those it has"));
   }
 
-  bool is_hidden(InstanceId id) const {
-    return std::any_of(corrected_.hidden.begin(), corrected_.hidden.end(),
-                       [&](const InstanceSummary& instance) { return instance.id == id; });
-  }
+  bool is_hidden(InstanceId id) const { return find_instance(corrected_.hidden, id) != nullptr; }
 
   void refuse_locked(InstanceId id) const {
     if (!corrected_.locked.contains(id)) return;

@@ -14,8 +14,8 @@ InstanceId last_instance(const MapRecord& record) {
 
 Appearance appearance_of(const MapRecord& record, InstanceId id) {
   for (const auto* list : {&record.instances, &record.hidden})
-    for (const InstanceSummary& instance : *list)
-      if (instance.id == id) return appearance_of(record.semantics.looks, instance.super_points);
+    if (const InstanceSummary* found = find_instance(*list, id))
+      return appearance_of(record.semantics.looks, found->super_points);
   return {};
 }
 

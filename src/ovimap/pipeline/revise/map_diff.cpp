@@ -75,11 +75,6 @@ std::vector<Eigen::Vector3f> surface_of(const MapRecord& map, InstanceId id) {
   return found == map.surfaces.end() ? std::vector<Eigen::Vector3f>{} : found->second;
 }
 
-const InstanceSummary& instance_of(const MapRecord& map, InstanceId id) {
-  return *std::find_if(map.instances.begin(), map.instances.end(),
-                       [&](const InstanceSummary& instance) { return instance.id == id; });
-}
-
 std::string metres(float value) {
   char text[24];
   std::snprintf(text, sizeof text, "%.2f m", double{value});
@@ -187,8 +182,8 @@ class MapComparison {
   }
 
   Eigen::Vector3f shift(InstanceId before, InstanceId after) const {
-    return before_from_after_.cast<float>() * instance_of(after_, after).centroid -
-           instance_of(before_, before).centroid;
+    return before_from_after_.cast<float>() * find_instance(after_.instances, after)->centroid -
+           find_instance(before_.instances, before)->centroid;
   }
 
   /// What went from one place and came to another is one thing when it looks alike; the most alike
@@ -204,8 +199,8 @@ class MapComparison {
         if (changes_[i].kind != ChangeKind::kRemoved || changes_[j].kind != ChangeKind::kNew)
           continue;
         const auto cosine = look_similarity(before_, changes_[i].before, after_, changes_[j].after);
-        const float size = size_similarity(instance_of(before_, changes_[i].before),
-                                           instance_of(after_, changes_[j].after));
+        const float size = size_similarity(*find_instance(before_.instances, changes_[i].before),
+                                           *find_instance(after_.instances, changes_[j].after));
         if (cosine && *cosine >= config_.moved_cosine && size >= config_.moved_size &&
             stands_out(changes_[i].before, changes_[j].after, *cosine))
           candidates.push_back({*cosine, i, j});

@@ -18,18 +18,11 @@ namespace ovimap {
 
 namespace {
 
-const InstanceSummary* find_instance(const MapRecord& record, InstanceId id) {
-  const auto found =
-      std::find_if(record.instances.begin(), record.instances.end(),
-                   [id](const InstanceSummary& instance) { return instance.id == id; });
-  return found == record.instances.end() ? nullptr : &*found;
-}
-
 Eigen::AlignedBox3f box_of(const MapDocument& map, InstanceId id) {
   const auto surface = map.surfaces.find(id);
   if (surface != map.surfaces.end() && !surface->second.empty())
     return box_without_specks(surface->second, surface_spacing_m(map.map.config().voxel_size_m));
-  const InstanceSummary* instance = find_instance(map, id);
+  const InstanceSummary* instance = find_instance(map.instances, id);
   return instance ? instance->box : Eigen::AlignedBox3f();
 }
 
@@ -45,7 +38,7 @@ std::array<std::uint8_t, 3> color_at(VoxelFinder& finder, const Eigen::Vector3f&
 
 /// What will be known of an object when it is not there any more; null where it has no surface.
 std::shared_ptr<const PastObject> past_of(const MapDocument& map, InstanceId id) {
-  const InstanceSummary* instance = find_instance(map, id);
+  const InstanceSummary* instance = find_instance(map.instances, id);
   const auto surface = map.surfaces.find(id);
   if (instance == nullptr || surface == map.surfaces.end() || surface->second.empty())
     return nullptr;
@@ -251,7 +244,7 @@ class VisitTeller {
 
   /// Place of the visit's frame that showed the instance first.
   std::int64_t first_frame(InstanceId id) const {
-    const InstanceSummary* instance = find_instance(after_, id);
+    const InstanceSummary* instance = find_instance(after_.instances, id);
     const std::int64_t begin = after_.history.visits.back().first_frame;
     if (instance == nullptr) return begin;
     const std::int64_t number =
@@ -266,8 +259,8 @@ class VisitTeller {
   void keep_ids() {
     for (const ObjectChange& change : changes_) {
       if (change.before == 0 || change.after == 0 || change.before == change.after) continue;
-      const bool new_id = find_instance(before_, change.after) == nullptr;
-      const bool nothing_left = find_instance(after_, change.before) == nullptr;
+      const bool new_id = find_instance(before_.instances, change.after) == nullptr;
+      const bool nothing_left = find_instance(after_.instances, change.before) == nullptr;
       const bool trades = change.kind == ChangeKind::kMoved  ? new_id || is_alone(change)
                           : change.kind == ChangeKind::kSame ? new_id && nothing_left
                                                              : false;

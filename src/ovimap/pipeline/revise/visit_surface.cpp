@@ -119,8 +119,7 @@ class Remains {
   }
 
   void forget_object(InstanceId id, std::size_t forgotten) {
-    const auto found = std::find_if(after_.instances.begin(), after_.instances.end(),
-                                    [id = id](const auto& instance) { return instance.id == id; });
+    const auto found = std::ranges::find(after_.instances, id, &InstanceSummary::id);
     keep_observed(after_.map, after_.surfaces[id]);
     found->points -= std::min(found->points, forgotten);
     if (found->points >= static_cast<std::size_t>(InstanceSummaryConfig{}.min_instance_voxels))

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/pipeline/search/past_objects.h"
 
-#include <algorithm>
-
 #include "ovimap/base/error.h"
 
 namespace ovimap {
@@ -59,11 +57,6 @@ void undo(const ObjectEvent& event, std::size_t number, PastStates& states) {
   }
 }
 
-bool is_hidden(const MapRecord& record, InstanceId id) {
-  return std::any_of(record.hidden.begin(), record.hidden.end(),
-                     [id](const InstanceSummary& instance) { return instance.id == id; });
-}
-
 }  // namespace
 
 PastStates states_at(const MapRecord& corrected, const HistoryDates& dates,
@@ -72,7 +65,8 @@ PastStates states_at(const MapRecord& corrected, const HistoryDates& dates,
   const std::vector<ObjectEvent>& events = corrected.history.events;
   PastStates states = states_now(corrected);
   for (std::size_t i = events.size(); i-- > 0;)
-    if (!dates.happened(corrected.history, i, moment) && !is_hidden(corrected, events[i].instance))
+    if (!dates.happened(corrected.history, i, moment) &&
+        !find_instance(corrected.hidden, events[i].instance))
       undo(events[i], i, states);
   return states;
 }
@@ -81,7 +75,8 @@ PastStates states_before_last(const MapRecord& corrected) {
   const std::vector<ObjectEvent>& events = corrected.history.events;
   PastStates states = states_now(corrected);
   for (std::size_t i = 0; i < events.size(); ++i)  // later events replace what earlier ones left
-    if (events[i].kind != ObjectEventKind::kAppeared && !is_hidden(corrected, events[i].instance))
+    if (events[i].kind != ObjectEventKind::kAppeared &&
+        !find_instance(corrected.hidden, events[i].instance))
       undo(events[i], i, states);
   return states;
 }
