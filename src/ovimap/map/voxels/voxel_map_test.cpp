@@ -3,6 +3,7 @@
 #include "ovimap/map/voxels/voxel_map.h"
 
 #include <random>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -20,6 +21,15 @@ TEST(PackIndex, RoundTripsAndOrdersByZThenYThenX) {
   }
   EXPECT_LT(pack_index({5, 5, -1}), pack_index({-5, -5, 0}));
   EXPECT_LT(pack_index({5, -1, 0}), pack_index({-5, 0, 0}));
+}
+
+TEST(PackedIndexHash, SpreadsAWallOfOneX) {  // a table of them took 20 GB
+  constexpr int kSide = 64;
+  std::set<std::size_t> places;
+  for (int z = 0; z < kSide; ++z)
+    for (int y = 0; y < kSide; ++y)
+      places.insert(PackedIndexHash{}(pack_index({25, y, z})) % (kSide * kSide));
+  EXPECT_GT(places.size(), kSide * kSide / 2u) << "chance leaves a third of the places empty";
 }
 
 TEST(VoxelMap, FindsWhatWasCreated) {
