@@ -53,6 +53,7 @@ inline BlockIndex unpack_index(std::uint64_t packed) {
 /// For hash tables that take the low bits of a hash: those of packed words are x alone.
 struct PackedIndexHash {
   std::size_t operator()(std::uint64_t packed) const {
+    packed ^= packed >> 32;
     packed *= 0x9e3779b97f4a7c15ull;
     return static_cast<std::size_t>(packed ^ packed >> 32);
   }
