@@ -21,7 +21,7 @@ import lasting
 import speed
 import tracking
 import visits
-from speed import run_json
+from speed import map_recording, run, run_json
 
 TUNED, UNSEEN = ["living-room", "bedroom", "kitchen"], ["office", "bathroom"]
 MASKS = ["gt", "sam", "none"]
@@ -35,10 +35,6 @@ SECTIONS = ["tiny", "rooms", "exact", "apartments", "desks", "speed", "track", "
 NEED_KITCHEN = ["speed", "lasting"]
 # Two crops a view instead of six: the ablations compare, and embedding is most of their time.
 FEW_CROPS = ["--set", "crops.scales=1"]
-
-
-def run(*command):
-    subprocess.run([str(word) for word in command], check=True, stdout=subprocess.DEVNULL)
 
 
 def processor():
@@ -56,7 +52,7 @@ def tiny_rows(program, work):
         run(program, "synth", room, "--room", "tiny", *(["--noise"] if noise else []))
         for masks, options in (("gt", []), ("sam", ["--set", "mask_interval=1"]), ("none", [])):
             map_file = work / "tiny" / "room.ovimap"
-            run(program, "run", room / "room", "--masks", masks, "--encoder", "none", *options, "-o", map_file)
+            map_recording(program, room / "room", map_file, "--masks", masks, "--encoder", "none", *options)
             scores = run_json(program, "eval", map_file, "--gt", room / "room", "--encoder", "none")
             standard, reference = scores["standard"]["class_agnostic"], scores["reference"]["class_agnostic"]
             geometry = scores["standard"]["geometry"]
@@ -85,7 +81,7 @@ def map_of(program, work, rooms, name, masks):
     file.parent.mkdir(parents=True, exist_ok=True)
     if not file.exists():
         encoder = [] if masks != "none" else ["--encoder", "none"]
-        run(program, "run", rooms / name, "--masks", masks, *FEW_CROPS, *encoder, "-o", file)
+        map_recording(program, rooms / name, file, "--masks", masks, *FEW_CROPS, *encoder)
     return file
 
 
@@ -168,7 +164,7 @@ def place_map(program, work, scene, masks):
     file = work / "maps" / f"{scene.parent.name}-{scene.name}-{masks}.ovimap"
     file.parent.mkdir(parents=True, exist_ok=True)
     if not file.exists():
-        run(program, "run", scene, "--masks", masks, "--encoder", "none", *PLACE_MASKS[masks], "-o", file)
+        map_recording(program, scene, file, "--masks", masks, "--encoder", "none", *PLACE_MASKS[masks])
     return file
 
 
@@ -241,7 +237,7 @@ def surface_rows(program, scene, folder):
     rows = []
     for name, settings in FUSIONS.items():
         options = [word for setting in settings for word in ("--set", setting)]
-        run(program, "run", scene, "--masks", "gt", "--encoder", "none", *options, "-o", folder / "surface.ovimap")
+        map_recording(program, scene, folder / "surface.ovimap", "--masks", "gt", "--encoder", "none", *options)
         rows.append(surface_row(program, scene, name, folder / "surface.ovimap"))
     return rows + open3d_rows(program, scene, folder)
 

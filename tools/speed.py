@@ -23,6 +23,17 @@ def run_json(*command):
     return json.loads(subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True).stdout)
 
 
+def run(program, *words):
+    subprocess.run([str(word) for word in (program, *words)], check=True, stdout=subprocess.DEVNULL)
+
+
+def map_recording(program, recording, file, *options):
+    """From its beginning: what a run left that was broken off goes."""
+    for left in file.parent.glob(f"{file.name}.partial*"):
+        left.unlink()
+    run(program, "run", recording, *options, "-o", file)
+
+
 def measure_live(program, recording, *options):
     with tempfile.TemporaryDirectory() as folder:
         return run_json(program, "run", recording, "--live", "--fps", 30, *options, "-o", pathlib.Path(folder) / "map.ovimap")

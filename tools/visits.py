@@ -2,20 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rooms that change between visits, for tools/benchmarks.py: what the map keeps of what left, and what it tells."""
 import functools
-import subprocess
 import sys
 
-from speed import run_json
+from speed import map_recording, run, run_json
 
 ROOMS = ["tiny", "kitchen", "office"]
 MOVER_ROOMS = ["office", "living-room"]
 VISITS = 4
 MASKS = ["gt", "sam"]
 KINDS = ["moved", "removed", "added"]
-
-
-def run(*command):
-    subprocess.run([str(word) for word in command], check=True, stdout=subprocess.DEVNULL)
 
 
 @functools.cache
@@ -26,10 +21,10 @@ def render(program, folder, room, *options):
 
 def continued_map(program, folder, masks, settings):
     file = folder / f"{masks}.ovimap"
-    common = ["--masks", masks, "--encoder", "none", *settings, "-o", file]
-    run(program, "run", folder / "visit1", *common)
+    common = ["--masks", masks, "--encoder", "none", *settings]
+    map_recording(program, folder / "visit1", file, *common)
     for visit in range(2, VISITS + 1):
-        run(program, "run", folder / f"visit{visit}", "--continue", file, *common)
+        map_recording(program, folder / f"visit{visit}", file, "--continue", file, *common)
     return file
 
 
@@ -48,7 +43,7 @@ def mover_row(program, work, room, mode):
     folder = work / "movers" / room
     render(program, folder, room, "--walk", "--fps", 8, "--seconds", 30, "--visits", 1, "--figure", "--size", "320x240")
     map_file = folder / f"{mode}.ovimap"
-    run(program, "run", folder / "visit1", "--masks", "gt", "--encoder", "none", "--dynamic", mode, "-o", map_file)
+    map_recording(program, folder / "visit1", map_file, "--masks", "gt", "--encoder", "none", "--dynamic", mode)
     scores = run_json(program, "eval-changes", map_file, folder)
     now = run_json(program, "eval", map_file, "--gt", folder / "visit1", "--encoder", "none")["standard"]
     return (f"| {room} | {mode} | {100 * scores['mover_left']:.2f} % | {100 * scores['static_kept']:.1f} % "
