@@ -20,6 +20,28 @@ constexpr int kSteps = 8;    // ... are drawn together: a mean of what was seen 
 constexpr double kNearShare = 0.8;  // of the points; the others were hidden from the other visit
 constexpr std::size_t kMostPoints = 400;
 
+/// Adds a colour of 16 bits a channel to the cells around it, by how near it is to their middles:
+/// one that lies between two cells, and is a little lighter elsewhere, is still the same.
+void add_color(const std::array<std::uint16_t, 3>& color, std::array<float, 64>& shares) {
+  std::array<std::size_t, 3> lower;
+  std::array<float, 3> upper_share;
+  for (std::size_t channel = 0; channel < color.size(); ++channel) {
+    const float place = std::clamp(color[channel] / 16384.f - 0.5f, 0.f, 3.f);
+    lower[channel] = std::min<std::size_t>(static_cast<std::size_t>(place), 2);
+    upper_share[channel] = place - static_cast<float>(lower[channel]);
+  }
+  for (std::size_t corner = 0; corner < 8; ++corner) {
+    std::size_t cell = 0;
+    float share = 1;
+    for (std::size_t channel = 0; channel < color.size(); ++channel) {
+      const bool upper = (corner >> channel & 1) != 0;
+      cell = 4 * cell + lower[channel] + (upper ? 1 : 0);
+      share *= upper ? upper_share[channel] : 1 - upper_share[channel];
+    }
+    shares[cell] += share;
+  }
+}
+
 /// The colours of a map's voxels at points.
 std::array<float, 64> colors_at(const VoxelMap& map, const std::vector<Eigen::Vector3f>& points) {
   std::array<float, 64> shares{};
@@ -28,14 +50,11 @@ std::array<float, 64> colors_at(const VoxelMap& map, const std::vector<Eigen::Ve
   for (const Eigen::Vector3f& point : points) {
     if (!finder.seek(point)) continue;
     const auto v = static_cast<std::size_t>(finder.voxel());
-    std::size_t cell = 0;
-    int sum = 0;
-    for (const auto& channel : finder.block().color) {
-      cell = 4 * cell + (channel[v] >> 14);
-      sum += channel[v];
-    }
-    if (sum == 0) continue;
-    shares[cell] += 1;
+    std::array<std::uint16_t, 3> color;
+    for (std::size_t channel = 0; channel < color.size(); ++channel)
+      color[channel] = finder.block().color[channel][v];
+    if (color == std::array<std::uint16_t, 3>{}) continue;
+    add_color(color, shares);
     known += 1;
   }
   for (float& share : shares) share /= std::max(known, 1.f);

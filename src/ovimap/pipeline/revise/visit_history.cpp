@@ -172,13 +172,12 @@ class VisitTeller {
 
   /// In shape and colours, of what could be one thing; none where two things cannot be one.
   std::optional<float> difference_of(const ThingLook& was, const ThingLook& is) const {
-    const float colors = common_colors(was, is);
-    if (colors < config_.same_colors) return std::nullopt;
-    const float distance = shape_distance(was, is);
     const float coarse = config_.coarse_voxels * before_.map.config().voxel_size_m /
                          std::max(was.reach_m, is.reach_m);
-    if (distance > std::max(config_.same_shape, coarse)) return std::nullopt;
-    return distance + 1.f - colors;
+    const float shapes = shape_distance(was, is) / std::max(config_.same_shape, coarse);
+    const float difference = shapes + 1.f - common_colors(was, is);
+    if (difference > config_.most_difference) return std::nullopt;
+    return difference;
   }
 
   /// Pairs that could be one thing, the likeliest first.

@@ -11,11 +11,11 @@ struct VisitHistoryConfig {
   MapDiffConfig diff;
   float least_shift_m = 0.08f;  ///< what moved less than that has not
   float same_shape = 0.15f;   ///< mean distance of two surfaces laid over each other, as a share of
-                              ///< their reach, up to which they may be of one thing
-  float coarse_voxels = 1.f;  ///< surfaces that differ by no more than that may be as well
-  float same_colors = 0.4f;   ///< least share of two surfaces that has the same colours
-  float doubt = 0.1f;  ///< the likeliest pair is one thing when shape and colours of the next
-                       ///< differ by so much more: two chairs of a kind differ by nearly as much
+                              ///< their reach, that counts as much as no colour in common, ...
+  float coarse_voxels = 1.f;  ///< ... but at least so much: surfaces are as rough
+  float most_difference = 1.25f;  ///< of shapes and colours, both added, of what may be one thing
+  float doubt = 0.25f;  ///< the likeliest pair is one thing when the next differs by so much more:
+                        ///< two chairs of a kind differ by nearly as much
 };
 
 /// Gives a header, which may name one visit with its date, the history of the map that it goes on
