@@ -18,6 +18,7 @@ using Eight = Eigen::Array<float, 8, 1>;  // of a point all at once
 std::array<Eigen::Vector2f, 8> octagon_of(std::span<const Eigen::Vector2f> points) {
   const Eight outward_x{{1, 1, 0, -1, -1, -1, 0, 1}}, outward_y{{0, 1, 1, 1, 0, -1, -1, -1}};
   std::array<Eigen::Vector2f, 8> farthest;
+  farthest.fill(points.front());
   Eight most = Eight::Constant(std::numeric_limits<float>::lowest());
   for (const Eigen::Vector2f& point : points) {
     const Eight out = outward_x * point.x() + outward_y * point.y();
