@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/pipeline/revise/thing_look.h"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -57,6 +58,27 @@ TEST(ThingLook, AnotherShapeLiesOffIt) {
   EXPECT_GT(shape_distance(box, box_look({0.9f, 0.1f, 0.1f}, 4)), 0.25f);
   EXPECT_GT(shape_distance(box, box_look({0.4f, 0.3f, 1.2f}, 4)), 0.15f);
   EXPECT_EQ(shape_distance(box, ThingLook{}), 1.f) << "of nothing nothing is known";
+}
+
+/// The look of a thing of one colour, 0 to 255.
+ThingLook painted(int red, int green, int blue) {
+  constexpr InstanceId kThing = 3;
+  MapDocument map;
+  VoxelBlock& block = map.map.writable_block(map.map.find_or_create({0, 0, 0}));
+  const std::array<int, 3> color = {red, green, blue};
+  for (std::size_t channel = 0; channel < color.size(); ++channel)
+    block.color[channel].fill(static_cast<std::uint16_t>(color[channel] << 8));
+  map.surfaces[kThing] = {Eigen::Vector3f::Constant(0.01f), Eigen::Vector3f::Constant(0.03f)};
+  return thing_look(map, kThing, Eigen::Vector3f::UnitZ());
+}
+
+TEST(ThingLook, AShadeLighterIsTheSameColor) {
+  const ThingLook mug = painted(125, 60, 190);
+  EXPECT_NEAR(common_colors(mug, mug), 1.f, 1e-5f);
+  EXPECT_GT(common_colors(mug, painted(131, 66, 196)), 0.75f) << "on the other side of all cells";
+  EXPECT_LT(common_colors(mug, painted(190, 125, 60)), 0.1f);
+  EXPECT_NEAR(common_colors(painted(0, 0, 1), painted(1, 0, 0)), 1.f, 0.1f);
+  EXPECT_LT(common_colors(painted(0, 0, 1), painted(255, 255, 255)), 1e-5f);
 }
 
 TEST(ThingLook, ColorsThatAreNotKnownSayNothing) {
