@@ -13,7 +13,7 @@ struct VisitHistoryConfig {
   float same_shape = 0.15f;   ///< mean distance of two surfaces laid over each other, as a share of
                               ///< their reach, that counts as much as no colour in common, ...
   float coarse_voxels = 1.f;  ///< ... but at least so much: surfaces are as rough
-  float most_difference = 1.25f;  ///< of shapes and colours, both added, of what may be one thing
+  float most_difference = 1.3f;  ///< of shapes and colours, both added, of what may be one thing
   float doubt = 0.25f;  ///< the likeliest pair is one thing when the next differs by so much more:
                         ///< two chairs of a kind differ by nearly as much
 };
