@@ -3,9 +3,8 @@
 """Tracking for tools/benchmarks.py: poses found without any given, against the true ones, beside those of Open3D and OpenCV."""
 import pathlib
 import shutil
-import subprocess
 
-from speed import RIVALS, run_json
+from speed import RIVALS, map_recording, run, run_json
 
 # Name, what makes it beside --room or --plan, aim of the ATE in cm.
 WALKS = [("living-room", ["--room", "living-room", "--walk", "--seconds", "10"], 1.0),
@@ -24,7 +23,7 @@ def recordings(program, work, kitchen):
     for name, options, aim in WALKS:
         folder = work / "walks" / name
         if not (folder / "done").exists():
-            subprocess.run([str(program), "synth", str(folder), *options], check=True, stdout=subprocess.DEVNULL)
+            run(program, "synth", folder, *options)
             (folder / "done").touch()
         yield name, folder / options[1], 1, aim
 
@@ -115,7 +114,7 @@ def with_tracked_poses(recording, trajectory, folder):
 
 
 def object_row(program, poses, recording, truth, file):
-    run_json(program, "run", recording, "--masks", "gt", "--encoder", "none", "-o", file)
+    map_recording(program, recording, file, "--masks", "gt", "--encoder", "none")
     scores = run_json(program, "eval", file, "--gt", truth, "--encoder", "none", "--protocol", "standard")["standard"]["class_agnostic"]
     return f"| {poses} | {scores['ap50']:.3f} | {scores['ap25']:.3f} |"
 

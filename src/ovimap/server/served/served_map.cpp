@@ -3,6 +3,7 @@
 #include "ovimap/server/served/served_map.h"
 
 #include "ovimap/base/thread_priority.h"
+#include "ovimap/instance/instance_mesh.h"
 #include "ovimap/io/corrections/map_corrections.h"
 #include "ovimap/io/corrections/map_edit_desk.h"
 #include "ovimap/io/map_file/map_edits.h"
