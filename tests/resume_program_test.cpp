@@ -187,6 +187,20 @@ TEST_F(ResumeProgramTest, AnotherVisitGoesOnWithAMap) {
   EXPECT_NE(history.out.find("visit 3, 30 frames"), std::string::npos) << history.out;
 }
 
+TEST_F(ResumeProgramTest, ALiveVisitGoesOnWithAMap) {
+  ASSERT_EQ(run(std::string(kRun) + "-o home.ovimap").code, 0);
+  const std::string before = slurp(path("home.ovimap"));
+  const std::string visit = std::string(kRun) + "--live --fps 100 --continue home.ovimap ";
+  ASSERT_EQ(run(visit + "-o live.ovimap").code, 0);
+  EXPECT_TRUE(slurp(path("home.ovimap")) == before);
+  const nlohmann::json history = run_json("info live.ovimap --json")["history"];
+  EXPECT_EQ(history["visits"].size(), 2u);
+  EXPECT_TRUE(history["events"].empty()) << history["events"].dump();
+  expect_complaint(std::string(kRun) + "--repeat live.ovimap -o again.ovimap", {"several visits"});
+  ASSERT_EQ(run(visit).code, 0) << "the map itself";
+  EXPECT_EQ(run_json("info home.ovimap --json")["history"]["visits"].size(), 2u);
+}
+
 TEST_F(ResumeProgramTest, AVisitThatWasKilledGoesOn) {
   ASSERT_EQ(run(std::string(kRun) + "-o home.ovimap").code, 0);
   const std::string visit = std::string(kRun) + "--continue home.ovimap ";

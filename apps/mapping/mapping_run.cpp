@@ -74,12 +74,29 @@ void skip_done(std::vector<std::int64_t>& range, const MapRecord& begun) {
   std::erase_if(range, [&](std::int64_t position) { return first + position <= last; });
 }
 
-/// Throws Error unless the recording lies where the map is.
-void require_fit(const MapDocument& begun, const MappingInputs& inputs) {
-  if (!inputs.config.visit.enabled || inputs.tracking) return;
+/// The first frames that are pushed, which stay where they wait.
+std::vector<Frame> first_pushed(FrameIntake& intake, int count) {
+  constexpr std::chrono::milliseconds kLook{50};  // between looks at what was interrupted
+  std::optional<std::vector<Frame>> first;
+  while (!(first = intake.peek(static_cast<std::size_t>(count), kLook)))
+    if (interrupted()) intake.finish();
+  return std::move(*first);
+}
+
+/// Throws Error unless the frames lie where the map is.
+void require_fit(const MapDocument& begun, const MappingInputs& inputs, FrameIntake* intake) {
+  const VisitFitConfig& config = inputs.config.visit;
+  if (!config.enabled || inputs.tracking) return;
+  VisitFitter fitter(begun.map, inputs.config.track, config);
+  if (intake) {
+    const std::vector<Frame> first = first_pushed(*intake, config.frames);
+    if (first.empty()) return;  // so will be the run
+    for (const Frame& frame : first) fitter.add(frame);
+  }
   const std::string fault = misfit(
-      fit_visit(begun.map, *inputs.source, inputs.range, inputs.config.track, inputs.config.visit),
-      inputs.config.visit);
+      intake ? fitter.fit()
+             : fit_visit(begun.map, *inputs.source, inputs.range, inputs.config.track, config),
+      config);
   if (!fault.empty())
     throw Error(concat("the recording does not fit the map, which stays as it was: ", fault,
                        "; map it by itself and bring the two together with `ovimap merge --align`, "
@@ -87,15 +104,15 @@ void require_fit(const MapDocument& begun, const MappingInputs& inputs) {
 }
 
 /// Gives `mapper`, a Mapper or a LiveMapper, what an earlier run had, and `header` what people told
-/// that run's map, which no run finds anew; returns its frames.
+/// that run's map, which no run finds anew; returns its frames. `intake`: where frames are pushed.
 template <class AnyMapper>
-SequenceResult resume(BegunRun& begun, MapHeader& header, MappingInputs& inputs,
-                      AnyMapper& mapper) {
+SequenceResult resume(BegunRun& begun, MapHeader& header, MappingInputs& inputs, AnyMapper& mapper,
+                      FrameIntake* intake = nullptr) {
   SequenceResult sequence;
   if (!begun.document) return sequence;
   if (begun.new_visit) {
     require_same_map(*begun.document, mapper.config().map, inputs.encoder);
-    require_fit(*begun.document, inputs);
+    require_fit(*begun.document, inputs, intake);
     discount_past(begun.document->map, inputs.config.visit.past);
     begun.document->seen_free.clear();  // between two visits anything may have come
     begin_visit(*begun.document, header);
@@ -109,6 +126,10 @@ SequenceResult resume(BegunRun& begun, MapHeader& header, MappingInputs& inputs,
   header.edits = begun.document->edits;
   sequence.frames = begun.document->frames;
   sequence.depth_camera = begun.document->depth_camera;
+  if (intake && !sequence.frames.empty())  // another visit may have another camera
+    intake->resume_at(
+        sequence.frames.back().index + 1,
+        begun.new_visit ? std::nullopt : std::optional<PinholeCamera>(sequence.depth_camera));
   mapper.restore(std::move(*begun.document));
   const auto& visits = header.history.visits;
   if (!inputs.source || visits.empty()) return sequence;  // pushed frames have the map's numbers
@@ -219,6 +240,8 @@ struct RepeatedRun {
 RepeatedRun find_repeated(const RunTarget& target, const MapHeader& header, bool tracked,
                           const std::shared_ptr<ImageTextEncoder>& encoder) {
   MapRecord live = load_map_without_voxels(target.repeated);
+  if (live.history.visits.size() > 1)
+    throw Error("the map cannot be made again: it is of several visits");
   require_repeatable(live.live_steps, tracked);
   require_same_settings(live.config_text, header.config_text, "--repeat");
   require_same_encoder(live.semantics.encoder, encoder);
@@ -309,9 +332,13 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
   const std::string pace = intake ? std::string("pushed") : concat(fps, " frames/s");
   header.config_text.insert(
       0, target.repeated.empty() ? concat("# live, ", pace, "\n") : repeated.title);
-  const SequenceResult done = resume(begun, header, inputs, mapper);
-  if (intake && !done.frames.empty())
-    intake->resume_at(done.frames.back().index + 1, done.depth_camera);
+  watch_for_interrupt(kEndsOfALiveRun);
+  if (audience)
+    audience->begin(mapper.config(),
+                    inputs.encoder ? inputs.encoder->identity() : EncoderIdentity{},
+                    begun.document ? begun.document->names : std::map<InstanceId, std::string>{},
+                    begun.document ? begun.document->edits : MapEdits{});
+  const SequenceResult done = resume(begun, header, inputs, mapper, intake);
   auto checkpoints = make_checkpointer(begun, inputs, header, done.frames.size());
   mapper.after_frame = [&](Mapper& map, const auto& frames, const PinholeCamera& depth_camera) {
     if (audience) audience->after_frame(map, frames, depth_camera);
@@ -320,21 +347,19 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
   };
   if (audience)
     mapper.after_tracking = [audience](const auto& frame) { audience->after_tracking(frame); };
-  if (audience)
-    audience->begin(mapper.config(),
-                    inputs.encoder ? inputs.encoder->identity() : EncoderIdentity{}, header.names,
-                    header.edits);
-  watch_for_interrupt(kEndsOfALiveRun);
   if (camera) camera->start();
   LiveRunResult live = target.repeated.empty()
                            ? feed(mapper, inputs, fps, intake)
                            : repeat_live(*inputs.source, repeated.steps, mapper, LiveProgressBar());
   if (audience) header.edits = audience->end();
   if (live.sequence.depth_camera.width == 0) live.sequence.depth_camera = done.depth_camera;
+  const MemoryConfig memory = inputs.config.memory;
+  const PastEvidenceConfig past = inputs.config.visit.past;
   MappingRun run = finished_run(std::move(inputs), std::move(header), mapper.take(), live.sequence,
                                 std::move(checkpoints));
   run.frames_before = done.frames.size();
   run.live = std::move(live);
+  if (!target.continued.empty()) tell_visit(target, memory, past, *begun.tiles, run.document);
   return run;
 }
 

@@ -40,7 +40,6 @@ void check_for_camera(const RunOptions& options) {
       throw Error(
           concat(option, " is for recordings; leave it away where a camera sends the frames"));
   };
-  refuse(!options.continued.empty(), "--continue");
   refuse(!options.repeated.empty(), "--repeat");
   refuse(!options.pictures.empty(), "--pictures");
 }
@@ -121,7 +120,6 @@ Action add_run(CLI::App& command) {
           "--continue", options->continued,
           "a map of the same place to go on with, in whose world frame the recording's poses "
           "are: what is gone leaves it, ids, names and corrections stay")
-      ->excludes(live)
       ->excludes(repeat);
   command.add_option(
       "--recorded", options->recorded,

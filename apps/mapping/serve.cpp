@@ -21,7 +21,7 @@ namespace {
 
 struct ServeOptions {
   std::string subject;  ///< the map, or with `live` the recording
-  std::filesystem::path output;
+  std::filesystem::path output, continued;
   MappingOptions mapping;
   ServerConfig server;
   ServedMapConfig served;
@@ -86,7 +86,7 @@ int serve_live(ServeOptions options) {
   const ProgramConfig config = read_program_config(options.mapping);
   FrameIntake intake(static_cast<std::size_t>(config.live.queue));
   LiveService service{options.mapping,
-                      {options.output, options.resume},
+                      {options.output, options.resume, options.continued},
                       options.fps,
                       options.server,
                       options.served};
@@ -149,6 +149,9 @@ int serve(ServeOptions options) {
   (void)read_taught_file(options.served.taught);  // says now what is wrong with it
   if (options.pushed() && options.mapping.frames != ":")
     throw Error("--frames chooses frames of a recording; leave it away where clients send them");
+  if (options.output.empty()) options.output = options.continued;
+  if (options.live && options.output.empty())
+    throw Error("say where the map goes with --output, or which one to go on with by --continue");
   watch_for_interrupt();
   if (options.live) return serve_live(std::move(options));
   serve_map(options);
@@ -182,9 +185,15 @@ void add_live_options(CLI::App& command, ServeOptions& options) {
       command.add_flag("--live", options.live,
                        "map the recording MAP names, at a camera's pace, and serve the map "
                        "meanwhile");
-  auto* output = command.add_option("-o,--output", options.output, "map file that --live writes");
-  live->needs(output);
-  output->needs(live);
+  command
+      .add_option(
+          "-o,--output", options.output,
+          "map file that --live writes; with --continue the map itself where it is not given")
+      ->needs(live);
+  command
+      .add_option("--continue", options.continued,
+                  "a map of the same place that --live goes on with (docs/changes.md)")
+      ->needs(live);
   command.add_option("--fps", options.fps, "that pace, frames a second")
       ->check(CLI::Range(0.1, 1000.))
       ->needs(live)

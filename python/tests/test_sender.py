@@ -28,9 +28,9 @@ FRAMES = 12
 class Serving:
     """`ovimap serve --live http`, until the block ends."""
 
-    def __init__(self, out, *options):
+    def __init__(self, out, *options, errors=None):
         self.process = subprocess.Popen([PROGRAM, "serve", "http", "--live", "-o", out, "--port", "0", "--viewer", "none", "--json", *options],
-                                        stdout=subprocess.PIPE, text=True)  # fmt: skip
+                                        stdout=subprocess.PIPE, stderr=errors, text=True)  # fmt: skip
         self.address = json.loads(self.process.stdout.readline())["address"]
 
     def __enter__(self):
@@ -126,6 +126,36 @@ def test_a_graph_moves_what_was_sent(shots, tmp_path):
     with Serving(tmp_path / "fixed.ovimap") as server:
         with pytest.raises(SendError, match="frame_store.max_mb"):
             FrameSender(server.address, shots.camera).correct_poses({0.0: np.eye(4)})
+
+
+@needs_program
+def test_another_visit_goes_on_with_a_map(shots, tmp_path):
+    home, options = tmp_path / "home.ovimap", ("--masks", "none", "--encoder", "none")
+    with Serving(home, *options) as server:
+        sender = FrameSender(server.address, shots.camera)
+        shots.send(sender, range(FRAMES))
+        sender.finish()
+        server.saved()
+    away = np.eye(4)
+    away[:3, 3] = 0.04
+    with open(tmp_path / "fault", "w+") as fault, Serving(tmp_path / "away.ovimap", "--continue", home, *options, errors=fault) as server:
+        with pytest.raises((SendError, OSError)):  # it is told while it waits, or finds nobody there
+            sender = FrameSender(server.address, shots.camera)
+            for files, pose in zip(shots.files, shots.poses):
+                sender.send(*files, away @ pose, patience_s=60)
+            sender.finish()
+        assert server.process.wait(timeout=60) == 2
+        fault.seek(0)
+        assert "does not fit the map, which stays as it was: its poses are" in fault.read()
+    with Serving(home, "--continue", home, *options) as server:
+        sender = FrameSender(server.address, shots.camera)
+        shots.send(sender, range(FRAMES))
+        sender.finish()
+        assert server.saved()["frames"] == 2 * FRAMES
+    info = subprocess.run([PROGRAM, "info", home, "--json"], check=True, capture_output=True, text=True)
+    history = json.loads(info.stdout)["history"]
+    assert [visit["first_frame"] for visit in history["visits"]] == [0, FRAMES]
+    assert history["events"] == []
 
 
 @needs_program

@@ -64,15 +64,26 @@ void FrameIntake::finish() {
   changed_.notify_all();
 }
 
-void FrameIntake::resume_at(std::int64_t index, const PinholeCamera& depth_camera) {
+void FrameIntake::resume_at(std::int64_t index, const std::optional<PinholeCamera>& depth_camera) {
   const std::lock_guard lock(mutex_);
   next_index_ = index;
+  if (!depth_camera) return;
   depth_camera_ = depth_camera;
   const auto others = static_cast<std::int64_t>(std::erase_if(
-      frames_, [&](const Frame& frame) { return frame.depth_camera != depth_camera; }));
+      frames_, [&](const Frame& frame) { return frame.depth_camera != *depth_camera; }));
   frames_before_update_ = std::min(frames_before_update_, frames_.size());
   taken_ -= others;
   skipped_ += others;
+}
+
+std::optional<std::vector<Frame>> FrameIntake::peek(std::size_t count,
+                                                    std::chrono::milliseconds patience) {
+  std::unique_lock lock(mutex_);
+  const std::size_t wanted = std::min(count, capacity_);
+  if (!changed_.wait_for(lock, patience, [&] { return finished_ || frames_.size() >= wanted; }))
+    return std::nullopt;
+  const auto first = static_cast<std::ptrdiff_t>(std::min(wanted, frames_.size()));
+  return std::vector<Frame>(frames_.begin(), frames_.begin() + first);
 }
 
 std::optional<PinholeCamera> FrameIntake::depth_camera() const {

@@ -8,6 +8,7 @@
 #include <deque>
 #include <mutex>
 #include <optional>
+#include <vector>
 
 #include "ovimap/frames/frame/frame.h"
 #include "ovimap/pipeline/sequence/moved_frames.h"
@@ -42,8 +43,11 @@ class FrameIntake {
   void finish();
 
   /// Before the first frame is handed out: a resumed run goes on counting, with its camera. What
-  /// waits of another is left out, and counted.
-  void resume_at(std::int64_t index, const PinholeCamera& depth_camera);
+  /// waits of another is left out, and counted. nullopt: any camera may come.
+  void resume_at(std::int64_t index, const std::optional<PinholeCamera>& depth_camera);
+  /// Copies of the oldest `count` that wait, or of as many as can, once they do; of those that are
+  /// there when no more come. nullopt when it came to neither for so long.
+  std::optional<std::vector<Frame>> peek(std::size_t count, std::chrono::milliseconds patience);
   /// Of the frames so far; nullopt before the first.
   std::optional<PinholeCamera> depth_camera() const;
   /// The oldest frame that waits, once there is one; nullopt when none came for so long, none comes

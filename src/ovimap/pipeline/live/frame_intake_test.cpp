@@ -201,6 +201,23 @@ TEST(FrameIntake, ListsFramesOfWhichAFilterLeavesNothing) {
   }
 }
 
+TEST(FrameIntake, ShowsTheFirstFramesAndKeepsThem) {
+  FrameIntake intake(3);
+  intake.resume_at(20, std::nullopt);
+  EXPECT_FALSE(intake.peek(2, milliseconds(0))) << "none came yet";
+  Frame frame;
+  for (const double time : {0.1, 0.2}) {
+    frame.timestamp_s = time;
+    intake.offer(frame);
+  }
+  ASSERT_EQ(intake.peek(2, milliseconds(0))->size(), 2u);
+  EXPECT_DOUBLE_EQ(intake.peek(1, milliseconds(0))->front().timestamp_s, 0.1);
+  EXPECT_FALSE(intake.peek(16, milliseconds(0))) << "one more may wait";
+  intake.finish();
+  EXPECT_EQ(intake.peek(16, milliseconds(0))->size(), 2u) << "no more come";
+  EXPECT_EQ(intake.next(milliseconds(0))->index, 20);
+}
+
 TEST(FrameIntake, EndsWhenItIsTold) {
   const fixture::Sequence sequence;
   FrameIntake intake(3);

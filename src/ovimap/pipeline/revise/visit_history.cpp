@@ -276,10 +276,19 @@ class VisitTeller {
 
   void trade_ids(InstanceId a, InstanceId b) {
     swap_instances(after_, a, b);
+    pass_corrections(b, a);
     const auto other = [a, b](InstanceId id) { return id == a ? b : id == b ? a : id; };
     for (ObjectChange& change : changes_) change.after = other(change.after);
     for (ObjectEvent& event : events_)
       if (event.kind == ObjectEventKind::kAppeared) event.instance = other(event.instance);
+  }
+
+  /// What people said of an object while a live visit took it for another.
+  void pass_corrections(InstanceId from, InstanceId to) {
+    MapEdits& edits = after_.edits;
+    for (std::size_t i = before_.edits.size(); i < edits.size(); ++i)
+      if (auto& ids = edits[i].instances; std::find(ids.begin(), ids.end(), to) == ids.end())
+        std::replace(ids.begin(), ids.end(), from, to);
   }
 
   const MapDocument& before_;

@@ -27,7 +27,8 @@ void begin_visit(const MapRecord& begun, MapHeader& header);
 /// gone from one place and found at another is the same when its looks (diff_maps), or else its
 /// shape and colours, say so, and goes on under the id that it had. Where several could be it, each
 /// found one is a new object that says which gone one it may be. An object at its old place that
-/// the visit took for a new one gets its id back. What is left of things that left their places,
+/// the visit took for a new one gets its id back, and with it what people corrected of it meanwhile
+/// (edits of `after` beyond those of `before`). What is left of things that left their places,
 /// where the visit did not look, goes (forget_remains).
 ///
 /// `store`: where voxels may be meanwhile that the visit touched; null: in memory.

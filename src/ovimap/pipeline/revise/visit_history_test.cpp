@@ -84,6 +84,27 @@ TEST(VisitHistory, TellsWhatMovedWentAndCameAndKeepsIds) {
   EXPECT_EQ(at(after, kChest), at(before, kChest));
 }
 
+TEST(VisitHistory, WhatWasSaidOfAThingMeanwhileStaysWithIt) {
+  const FurnishedRoom evening = room_with({kChest, kRedBox}),
+                      morning = room_with({kChest, kRedBoxAway});
+  MapDocument before = map_of(evening);
+  MapEdit earlier, meanwhile, of_both;
+  earlier.instances = {at(before, kChest)};
+  before.edits = {earlier};
+  MapDocument after = map_of(morning, map_of(evening));
+  const InstanceId found = at(after, kRedBoxAway), red = at(before, kRedBox);
+  ASSERT_NE(found, red) << "while the visit lasts it is a new thing";
+  meanwhile.instances = {found};
+  of_both.action = EditAction::kMerge;
+  of_both.instances = {found, red};
+  after.edits = {earlier, meanwhile, of_both};
+  tell_visit(before, after);
+  ASSERT_EQ(at(after, kRedBoxAway), red);
+  EXPECT_EQ(after.edits[0], earlier);
+  EXPECT_EQ(after.edits[1].instances, std::vector<InstanceId>{red});
+  EXPECT_EQ(after.edits[2].instances, (std::vector<InstanceId>{found, red})) << "names both";
+}
+
 TEST(VisitHistory, WhatComesToAnotherThingsPlaceIsNotThatThing) {
   // The blue box comes to where the red one was, and a little aside.
   const Furniture there = furniture(0.75f, 0.4f, {0.35f, 0.25f, 0.4f}, {20, 30, 220});

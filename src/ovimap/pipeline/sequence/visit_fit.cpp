@@ -60,22 +60,30 @@ void list_fields(VisitFitConfig& config, ConfigFields& fields) {
   fields.group("past", [&](ConfigFields& f) { list_fields(config.past, f); });
 }
 
+void VisitFitter::add(const Frame& frame) {
+  if (!frame.posed) return;
+  const auto alignment = align_to_map(frame, map_, track_, config_);
+  if (!alignment) return;
+  offsets_m_.push_back(alignment->reference_from_frame.translation().norm());
+  turns_rad_.push_back(Eigen::AngleAxisd(alignment->reference_from_frame.linear()).angle());
+  agreements_.push_back(alignment->quality.agreement);
+}
+
+VisitFit VisitFitter::fit() const {
+  return {static_cast<int>(offsets_m_.size()), share_of(offsets_m_, 0.75),
+          share_of(turns_rad_, 0.75), share_of(agreements_, 0.5)};
+}
+
 VisitFit fit_visit(const VoxelMap& map, const FrameSource& source,
                    const std::vector<std::int64_t>& positions, const TrackConfig& track,
                    const VisitFitConfig& config) {
-  std::vector<double> offsets, turns, agreements;
+  VisitFitter fitter(map, track, config);
   const std::size_t count = std::min(positions.size(), static_cast<std::size_t>(config.frames));
   for (std::size_t i = 0; i < count; ++i) {
     const FrameRead read = source.read(positions[(2 * i + 1) * positions.size() / (2 * count)]);
-    if (!read.frame || !read.frame->posed) continue;
-    const auto alignment = align_to_map(*read.frame, map, track, config);
-    if (!alignment) continue;
-    offsets.push_back(alignment->reference_from_frame.translation().norm());
-    turns.push_back(Eigen::AngleAxisd(alignment->reference_from_frame.linear()).angle());
-    agreements.push_back(alignment->quality.agreement);
+    if (read.frame) fitter.add(*read.frame);
   }
-  return {static_cast<int>(offsets.size()), share_of(offsets, 0.75), share_of(turns, 0.75),
-          share_of(agreements, 0.5)};
+  return fitter.fit();
 }
 
 std::string misfit(const VisitFit& fit, const VisitFitConfig& config) {

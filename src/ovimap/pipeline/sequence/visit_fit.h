@@ -36,9 +36,27 @@ struct VisitFit {
   double agreement = 0;  ///< median share of what they see that lies on the map's surface then
 };
 
-/// Aligns some frames of the recording at `positions` to the map's surface, by depth alone and each
-/// by itself, from the poses that they come with. What moved since counts little (the alignment is
-/// robust), what the map does not have not at all. Frames that cannot be read are passed over.
+/// Aligns frames of a recording to a map's surface, by depth alone and each by itself, from the
+/// poses that they come with. What moved since counts little (the alignment is robust), what the
+/// map does not have not at all. The references must outlive it.
+class VisitFitter {
+ public:
+  VisitFitter(const VoxelMap& map, const TrackConfig& track, const VisitFitConfig& config)
+      : map_(map), track_(track), config_(config) {}
+
+  /// A frame without a pose is passed over.
+  void add(const Frame& frame);
+  VisitFit fit() const;
+
+ private:
+  const VoxelMap& map_;
+  const TrackConfig& track_;
+  const VisitFitConfig& config_;
+  std::vector<double> offsets_m_, turns_rad_, agreements_;
+};
+
+/// The same of `config.frames` of the recording at `positions`. Frames that cannot be read are
+/// passed over.
 VisitFit fit_visit(const VoxelMap& map, const FrameSource& source,
                    const std::vector<std::int64_t>& positions, const TrackConfig& track,
                    const VisitFitConfig& config);
