@@ -43,7 +43,8 @@ TEST_F(SynthProgramTest, VisitsAreRecordingsInOneFrameWithTheTruthBetweenThem) {
   const auto truth = nlohmann::json::parse(slurp(path("out/changes.json")));
   EXPECT_EQ(truth["visits"], nlohmann::json({"visit1", "visit2"}));
   EXPECT_TRUE(truth["changes"].empty()) << "nothing stands in a bare room";
-  expect_complaint("synth more --room rooms-v1 --visits 2", {"--visits", "one room"});
+  for (const char* set : {"rooms-v1", "apartments-v1"})
+    expect_complaint(concat("synth more --visits 2 --room ", set), {"--visits", "one room", set});
 }
 
 TEST_F(SynthProgramTest, SaysWhatIsWrong) {

@@ -77,20 +77,8 @@ WrittenRoom render(const SynthOptions& options, const std::string& room, const s
   });
 }
 
-std::vector<WrittenRoom> render_visits(const SynthOptions& options) {
-  if (options.room.room == kRoomsV1 || !benchmark_scenes(options.room.room).empty())
-    throw Error(concat("--visits is of one room or plan, not of '", options.room.room,
-                       "'; name one with --room or --plan"));
-  Progress progress("rendering visits");
-  return write_visits(options.out, chosen_room(options, options.room.room), options.visits,
-                      [&](std::int64_t done, std::int64_t total) {
-                        progress.show(static_cast<std::size_t>(done),
-                                      static_cast<std::size_t>(total));
-                      });
-}
-
 /// A scene of apartments-v1 or desks-v1, filmed as the set says but for what was asked for.
-WrittenRoom render_scene(SynthOptions options, const BenchmarkScene& scene) {
+SynthOptions filmed_as(SynthOptions options, const BenchmarkScene& scene) {
   const float asked_fps = options.video.walk.fps, asked_seconds = options.video.walk.seconds,
               asked_speed = options.video.walk.speed_mps;
   options.video.walk = scene.walk;
@@ -101,7 +89,21 @@ WrittenRoom render_scene(SynthOptions options, const BenchmarkScene& scene) {
     if (option->get_name() == "--speed") options.video.walk.speed_mps = asked_speed;
   }
   options.room.scene = scene;
-  return render(options, scene.name, scene.name);
+  return options;
+}
+
+std::vector<WrittenRoom> render_visits(SynthOptions options) {
+  const std::vector<BenchmarkScene> scenes = benchmark_scenes(options.room.room);
+  if (options.room.room == kRoomsV1 || scenes.size() > 1)
+    throw Error(concat("--visits is of one room or plan, not of '", options.room.room,
+                       "'; name one with --room or --plan"));
+  if (!scenes.empty()) options = filmed_as(std::move(options), scenes.front());
+  Progress progress("rendering visits");
+  return write_visits(options.out, chosen_room(options, options.room.room), options.visits,
+                      [&](std::int64_t done, std::int64_t total) {
+                        progress.show(static_cast<std::size_t>(done),
+                                      static_cast<std::size_t>(total));
+                      });
 }
 
 int synth(const SynthOptions& options) {
@@ -120,7 +122,8 @@ int synth(const SynthOptions& options) {
   else if (!options.room.plan.empty())
     rooms.push_back(render(options, options.room.plan, options.room.plan));
   else if (const auto scenes = benchmark_scenes(options.room.room); !scenes.empty())
-    for (const BenchmarkScene& scene : scenes) rooms.push_back(render_scene(options, scene));
+    for (const BenchmarkScene& scene : scenes)
+      rooms.push_back(render(filmed_as(options, scene), scene.name, scene.name));
   else if (options.room.room == kRoomsV1)
     for (const std::string& name : rooms_v1_names()) rooms.push_back(render(options, name, name));
   else
@@ -213,8 +216,8 @@ Action add_synth(CLI::App& command) {
   command
       .add_option(
           "--visits", options->visits,
-          "so many visits to the room, OUT/visit1, OUT/visit2, ...: things move, go and come "
-          "in between; OUT/changes.json tells which")
+          "so many visits to the room, OUT/visit1, OUT/visit2, ...: things move, go and come, and "
+          "doors of flats turn in between; OUT/changes.json tells which")
       ->check(CLI::Range(1, 1000));
   command.add_flag("--figure", options->figure,
                    "somebody walks through with a carton in the hands, in every visit");

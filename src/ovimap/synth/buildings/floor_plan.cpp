@@ -145,6 +145,7 @@ RoomObject door_leaf(const PlanRoom& room, const Doorway& doorway, std::uint64_t
   OrientedBox place = doorway_box(room.spec, doorway, 0);
   const Eigen::Vector2f hinge =
       place.world_from_box({-place.half_m.x() + kDoorFrame_m + kLeafThickness_m, -kFrameProud_m});
+  object.hinge = {hinge + room.origin_m, place.yaw_rad};
   place.yaw_rad -= random.uniform(kLeafOpen_rad[0], kLeafOpen_rad[1]);
   place.half_m = {width / 2, kLeafThickness_m / 2};
   place.center_m = hinge + room.origin_m;

@@ -53,13 +53,16 @@ Pose pose_of(const OrientedBox& box) {
   return pose;
 }
 
-void move(RoomObject& object, const OrientedBox& place) {
-  const Eigen::Isometry3f moved =
-      (pose_of(place) * pose_of(*object.footprint).inverse()).cast<float>();
-  for (Eigen::Vector3f& vertex : object.mesh.vertices) vertex = moved * vertex;
-  for (Eigen::Vector3f& normal : object.mesh.normals) normal = moved.linear() * normal;
-  object.box = bounds(object.mesh);
+/// Moves the object.
+RoomChange moved(RoomObject& object, const OrientedBox& place) {
+  RoomChange change{RoomChangeKind::kMoved, object.id, object.box, {}};
+  change.new_from_old = pose_of(place) * pose_of(*object.footprint).inverse();
+  const Eigen::Isometry3f new_from_old = change.new_from_old.cast<float>();
+  for (Eigen::Vector3f& vertex : object.mesh.vertices) vertex = new_from_old * vertex;
+  for (Eigen::Vector3f& normal : object.mesh.normals) normal = new_from_old.linear() * normal;
+  change.to = object.box = bounds(object.mesh);
   object.footprint = place;
+  return change;
 }
 
 void take_away(RoomObject& object) {
@@ -100,7 +103,34 @@ class Rearranger {
     return std::nullopt;
   }
 
+  /// Ids of the doors' leaves that turn, in random order.
+  std::vector<std::uint16_t> doors() {
+    std::vector<std::uint16_t> ids;
+    for (const RoomObject& object : room_.objects)
+      if (present(object) && object.hinge) ids.push_back(object.id);
+    random_.shuffle(ids);
+    return ids;
+  }
+
+  /// A leaf, opened further or less far; nothing where something stands in its way.
+  std::optional<OrientedBox> other_angle(const RoomObject& door) {
+    for (int i = 0; i < kPlaces; ++i) {
+      const float open = random_.uniform(config_.least_open_rad, config_.most_open_rad);
+      const float turn = door.hinge->shut_yaw_rad - open - door.footprint->yaw_rad;
+      const OrientedBox place = door.footprint->turned(door.hinge->at_m, turn);
+      if (std::abs(turn) >= config_.least_turn_rad && is_free(place, door.id)) return place;
+    }
+    return std::nullopt;
+  }
+
  private:
+  bool is_free(const OrientedBox& place, std::uint16_t id) const {
+    const auto in_it = [&](const OrientedBox& box) { return overlap(box, place) > 0; };
+    return std::none_of(kept_.begin(), kept_.end(), in_it) &&
+           std::none_of(room_.objects.begin(), room_.objects.end(), [&](const RoomObject& other) {
+             return other.footprint && other.id != id && in_it(*other.footprint);
+           });
+  }
   bool is_handy(const OrientedBox& box) const {
     return box.top_m - box.bottom_m >= config_.least_height_m &&
            2 * box.half_m.maxCoeff() >= config_.least_side_m &&
@@ -182,21 +212,18 @@ Visit next_visit(const Visit& before, const SynthRoom& full, std::uint64_t seed,
   std::vector<OrientedBox> kept;
   for (const std::uint16_t id : later) kept.push_back(*full.objects[id - 1u].footprint);
   Rearranger rearranger(visit.room, config, seed, std::move(kept));
-  int removed = 0, moved = 0, added = 0;
+  int removed = 0, away = 0, added = 0;
   for (const std::uint16_t id : rearranger.movable()) {
     RoomObject& object = visit.room.objects[id - 1u];
-    const Eigen::AlignedBox3f from = object.box;
     if (removed < config.removed) {
+      visit.changes.push_back({RoomChangeKind::kRemoved, id, object.box, {}});
       take_away(object);
-      visit.changes.push_back({RoomChangeKind::kRemoved, id, from, {}});
       ++removed;
-    } else if (moved < config.moved) {
+    } else if (away < config.moved) {
       const auto place = rearranger.new_place(object);
       if (!place) continue;
-      const Pose new_from_old = pose_of(*place) * pose_of(*object.footprint).inverse();
-      move(object, *place);
-      visit.changes.push_back({RoomChangeKind::kMoved, id, from, object.box, new_from_old});
-      ++moved;
+      visit.changes.push_back(moved(object, *place));
+      ++away;
     }
   }
   for (; added < config.added && !later.empty(); later.pop_back()) {
@@ -205,6 +232,13 @@ Visit next_visit(const Visit& before, const SynthRoom& full, std::uint64_t seed,
     visit.changes.push_back({RoomChangeKind::kAdded, object.id, {}, object.box});
     ++added;
   }
+  int turned = 0;
+  for (const std::uint16_t id : rearranger.doors())
+    if (turned < config.doors)
+      if (const auto place = rearranger.other_angle(visit.room.objects[id - 1u])) {
+        visit.changes.push_back(moved(visit.room.objects[id - 1u], *place));
+        ++turned;
+      }
   std::sort(visit.changes.begin(), visit.changes.end(),
             [](const RoomChange& a, const RoomChange& b) { return a.object < b.object; });
   return visit;
@@ -223,6 +257,11 @@ void list_fields(VisitsConfig& config, ConfigFields& fields) {
   fields.add("tallest_m", config.tallest_m, 0.f, 100.f, "taller pieces stay, metres");
   fields.add("least_way_m", config.least_way_m, 0.f, 10.f,
              "a thing that moves goes at least so far, metres");
+  fields.add("doors", config.doors, 0, 1000, "doors between rooms that are opened or pushed to");
+  fields.add("least_open_rad", config.least_open_rad, 0.f, 3.f, "so far they stay open, radians");
+  fields.add("most_open_rad", config.most_open_rad, 0.f, 3.f, "and no further, radians");
+  fields.add("least_turn_rad", config.least_turn_rad, 0.f, 3.f,
+             "a door that is turned turns at least so far, radians");
 }
 
 std::vector<Visit> plan_visits(const SynthRoom& room, int visits, const VisitsConfig& config) {

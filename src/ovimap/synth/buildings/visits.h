@@ -20,6 +20,10 @@ struct VisitsConfig {
   float largest_footprint_m2 = 1;         ///< larger pieces stay where they are
   float tallest_m = 1.5f;                 ///< taller ones likewise, as doors and cupboards
   float least_way_m = 0.3f;               ///< a thing that moves goes at least so far
+  int doors = 1;                          ///< leaves that are turned, of doors between rooms
+  float least_open_rad = 0.9f;            ///< they never shut: one can still walk through
+  float most_open_rad = 1.65f;
+  float least_turn_rad = 0.45f;  ///< a leaf that is turned turns at least so far
 };
 void list_fields(VisitsConfig& config, ConfigFields& fields);
 
@@ -41,8 +45,9 @@ struct Visit {
 };
 
 /// The room on several occasions in one world frame: between two, things that stand free are moved,
-/// carried off, or brought in. Those brought in are things of the room that earlier visits lacked.
-/// Walls, what hangs on them, lamps and pieces that carry others stay. The same room gives the same
+/// carried off, or brought in, and doors that have hinges are opened wider or pushed to. Those
+/// brought in are things of the room that earlier visits lacked. Walls, what hangs on them, lamps
+/// and pieces that carry others stay. The same room gives the same
 /// visits on every machine; the camera walks and errs differently in each (SynthRoom::seed).
 std::vector<Visit> plan_visits(const SynthRoom& room, int visits, const VisitsConfig& config = {});
 

@@ -85,6 +85,33 @@ TEST(Visits, ThingsGoWhereThereIsRoomAndWhatCarriesOthersStays) {
   }
 }
 
+TEST(Visits, DoorsTurnAboutTheirHingesAndStayOpen) {
+  SynthRoom room = boxes_room();
+  RoomObject door = room.objects.front();
+  door.name = "door";
+  door.id = static_cast<std::uint16_t>(room.objects.size() + 1);
+  door.hinge = {{2.6f, 1.6f}, 0};
+  const OrientedBox shut = {{3, 1.58f}, {0.4f, 0.02f}, 0, 0.01f, 2};
+  door.footprint = shut.turned(door.hinge->at_m, -1.4f);
+  room.objects.push_back(door);
+  int turns = 0;
+  const std::vector<Visit> visits = plan_visits(room, 6);
+  for (std::size_t i = 1; i < visits.size(); ++i)
+    for (const RoomChange& change : visits[i].changes) {
+      if (change.object != door.id) continue;
+      ++turns;
+      EXPECT_EQ(change.kind, RoomChangeKind::kMoved);
+      const OrientedBox &was = *visits[i - 1].room.objects[door.id - 1u].footprint,
+                        &is = *visits[i].room.objects[door.id - 1u].footprint;
+      EXPECT_GE(std::abs(is.yaw_rad - was.yaw_rad), 0.45f);
+      EXPECT_LE(is.yaw_rad, -0.9f) << "one can walk through";
+      EXPECT_GE(is.yaw_rad, -1.65f);
+      const Eigen::Vector3d hinge(2.6, 1.6, 1);
+      EXPECT_LT((change.new_from_old * hinge - hinge).norm(), 1e-3);
+    }
+  EXPECT_GE(turns, 3);
+}
+
 TEST(Visits, TheSameSeedGivesTheSameVisits) {
   const SynthRoom room = boxes_room();
   const std::vector<Visit> once = plan_visits(room, 4), again = plan_visits(room, 4);

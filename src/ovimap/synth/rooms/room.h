@@ -15,6 +15,12 @@
 
 namespace ovimap {
 
+/// What a door's leaf turns about, upright. Opening turns it clockwise, seen from above.
+struct Hinge {
+  Eigen::Vector2f at_m = Eigen::Vector2f::Zero();
+  float shut_yaw_rad = 0;  ///< of the leaf's footprint when it is shut
+};
+
 /// One instance of a room: a piece of furniture, a wall, the floor, a picture.
 struct RoomObject {
   std::uint16_t id = 0;     ///< 1, 2, ... in the room's order
@@ -25,6 +31,7 @@ struct RoomObject {
   TexturedMesh mesh;        ///< in the world frame: metres, z up, floor at z = 0
   Eigen::AlignedBox3f box;  ///< of the mesh
   std::optional<OrientedBox> footprint;  ///< the space it takes; floor, walls and ceiling have none
+  std::optional<Hinge> hinge;            ///< of a door's leaf that can turn
 };
 
 /// A rectangle that shines to one side.

@@ -19,6 +19,13 @@ Eigen::Vector2f OrientedBox::world_from_box(const Eigen::Vector2f& point) const 
   return center_m + point.x() * x_axis() + point.y() * y_axis();
 }
 
+OrientedBox OrientedBox::turned(const Eigen::Vector2f& about_m, float by_rad) const {
+  OrientedBox box = *this;
+  box.center_m = about_m + Eigen::Rotation2Df(by_rad) * (center_m - about_m);
+  box.yaw_rad += by_rad;
+  return box;
+}
+
 std::array<Eigen::Vector2f, 4> OrientedBox::corners() const {
   const float x = half_m.x(), y = half_m.y();
   return {world_from_box({-x, -y}), world_from_box({x, -y}), world_from_box({x, y}),

@@ -19,6 +19,8 @@ struct OrientedBox {
   Eigen::Vector2f y_axis() const;
   std::array<Eigen::Vector2f, 4> corners() const;
   Eigen::Vector2f world_from_box(const Eigen::Vector2f& point) const;
+  /// It, turned counter-clockwise about a point of the floor plan.
+  OrientedBox turned(const Eigen::Vector2f& about_m, float by_rad) const;
 
   /// Whether the footprint lies in [margin, size - margin] on the floor plan.
   bool inside(const Eigen::Vector2f& room_size_m, float margin_m) const;
