@@ -187,11 +187,31 @@ class Knowable {
   }
 
   bool knows(const TrueChange& change) const {
-    return (change.from.isEmpty() || knows(change.object, change.visit - 1, change.visit)) &&
-           (change.to.isEmpty() || knows(change.object, change.visit, change.visit - 1));
+    return (change.from.isEmpty() || knows_left(change)) &&
+           (change.to.isEmpty() || knows_came(change));
+  }
+
+  /// The change as far as it can be known: of what moved out of sight, that it left; of what came
+  /// from there, that it is new.
+  std::vector<TrueChange> as_known(const TrueChange& change) const {
+    if (change.kind != "moved" || knows(change)) return {change};
+    TrueChange removed = change, added = change;
+    removed.kind = "removed", added.kind = "added";
+    removed.to.setEmpty(), added.from.setEmpty();
+    std::vector<TrueChange> known;
+    if (!knows_came(change)) known.push_back(removed);
+    if (!knows_left(change)) known.push_back(added);
+    return known;
   }
 
  private:
+  bool knows_left(const TrueChange& change) const {
+    return knows(change.object, change.visit - 1, change.visit);
+  }
+  bool knows_came(const TrueChange& change) const {
+    return knows(change.object, change.visit, change.visit - 1);
+  }
+
   using Place = std::tuple<std::int32_t, int, int>;  ///< a thing, who shows it, and who looks there
 
   /// Whether one visit shows the thing, and the other looks where it was then.
@@ -238,15 +258,22 @@ void score_events(const MapHistory& history, const TrueChanges& truth,
                   ChangeScores& scores) {
   EventMatcher matcher(history.events, config);
   const Knowable knowable(truth, visits, config);
-  for (const TrueChange& change : truth.changes) {
-    const ObjectEvent* event = matcher.match(change);
+  const auto score = [&](const TrueChange& change, bool told) {
     ChangeCounts& counts = counts_of(change.kind, scores);
-    counts.real += event != nullptr || knowable.knows(change);
-    counts.right += event != nullptr;
-    counts.told += event != nullptr;
-    if (change.kind != "moved") continue;
-    scores.ids_kept += event != nullptr;
-    scores.in_doubt += event == nullptr && matcher.tells_in_doubt(change);
+    counts.real += told || knowable.knows(change);
+    counts.right += told;
+    counts.told += told;
+  };
+  std::vector<TrueChange> untold;
+  for (const TrueChange& change : truth.changes)
+    if (matcher.match(change))
+      score(change, true), scores.ids_kept += change.kind == "moved";
+    else
+      untold.push_back(change);
+  for (const TrueChange& change : untold) {
+    scores.in_doubt += change.kind == "moved" && matcher.tells_in_doubt(change);
+    for (const TrueChange& known : knowable.as_known(change))
+      score(known, matcher.match(known) != nullptr);
   }
   for (const ObjectEvent& event : matcher.wrong())
     ++counts_of(EventMatcher::name_of(event.kind), scores).told;
