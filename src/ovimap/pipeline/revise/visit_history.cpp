@@ -26,6 +26,16 @@ Eigen::AlignedBox3f box_of(const MapDocument& map, InstanceId id) {
   return instance ? instance->box : Eigen::AlignedBox3f();
 }
 
+/// Whether an object's surface may be a thing's: it is no smaller than the smallest side of its
+/// box. What is left of a thing that went, or was taken for others, lies scattered where it was.
+bool is_scattered(const MapDocument& map, InstanceId id) {
+  const InstanceSummary* instance = find_instance(map.instances, id);
+  if (instance == nullptr) return true;
+  const float voxel_m = map.map.config().voxel_size_m;
+  const Eigen::Vector3f sides = box_of(map, id).sizes();
+  return static_cast<float>(instance->points) * voxel_m * voxel_m < sides.prod() / sides.maxCoeff();
+}
+
 /// The colour of the voxel at a point, sRGB; all 0 where it has none.
 std::array<std::uint8_t, 3> color_at(VoxelFinder& finder, const Eigen::Vector3f& point) {
   std::array<std::uint8_t, 3> color{};
@@ -73,6 +83,7 @@ class VisitTeller {
   void tell() {
     changes_ = changes_of_visit();
     find_remains();
+    leave_out_scattered();
     part_strangers();
     match_by_shape();
     join_unknown_strangers();
@@ -107,6 +118,18 @@ class VisitTeller {
       }
   }
 
+  /// They go, and nothing is said of it.
+  void leave_out_scattered() {
+    for (ObjectChange& change : changes_) {
+      if (change.kind == ChangeKind::kRemoved && is_scattered(before_, change.before)) {
+        remains_.insert(change.before);
+        change.kind = ChangeKind::kUnseen;
+      }
+      if (change.before == 0 && change.after != 0 && is_scattered(seen_, change.after))
+        change.after = 0;
+    }
+  }
+
   bool has_left(const ObjectChange& change) const {
     if (change.overlap < config_.diff.same_iou) return is_away(change, config_.diff);
     return change.before == change.after && change.seen_through >= config_.diff.gone_share;
@@ -114,7 +137,7 @@ class VisitTeller {
 
   /// The things that are not where they were.
   std::set<InstanceId> places_left() const {
-    std::set<InstanceId> left;
+    std::set<InstanceId> left = remains_;
     for (const ObjectChange& change : changes_)
       if (change.kind == ChangeKind::kRemoved || change.kind == ChangeKind::kMoved)
         left.insert(change.before);
@@ -296,6 +319,7 @@ class VisitTeller {
   const VisitHistoryConfig& config_;
   MapDocument seen_;  ///< of `after`, in the visit
   std::vector<ObjectChange> changes_;
+  std::set<InstanceId> remains_;  ///< of what was no thing any more before the visit
   std::vector<std::pair<std::size_t, std::size_t>> strangers_;  ///< what left, and what came there
   std::map<InstanceId, InstanceId> may_be_;  ///< found objects and the gone ones that they resemble
   std::map<InstanceId, ThingLook> looks_before_, looks_now_;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/pipeline/revise/visit_history.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "ovimap/frames/recording/sequence_fixture.h"
@@ -150,6 +152,21 @@ TEST(VisitHistory, WhatLeftLeavesNoSurface) {
     EXPECT_LT(vertices_in(after, thing), vertices_in(before, thing) / 50);
   }
   EXPECT_GT(vertices_in(after, kChest), vertices_in(before, kChest) * 97 / 100);
+}
+
+TEST(VisitHistory, OfScatteredRemainsNothingIsTold) {
+  const FurnishedRoom evening = room_with({kChest, kRedBox, kBlueBox}),
+                      morning = room_with({kChest, kRedBox});
+  MapDocument before = map_of(evening), after = map_of(morning, map_of(evening));
+  const InstanceId blue = at(before, kBlueBox);
+  std::vector<Eigen::Vector3f> some;
+  for (std::size_t i = 0; i < before.surfaces[blue].size(); i += 40)
+    some.push_back(before.surfaces[blue][i]);
+  before.surfaces[blue] = some;
+  std::ranges::find(before.instances, blue, &InstanceSummary::id)->points = some.size();
+  tell_visit(before, after);
+  EXPECT_TRUE(after.history.events.empty());
+  EXPECT_EQ(find_instance(after.instances, blue), nullptr) << "they go all the same";
 }
 
 TEST(VisitHistory, TellsTheSameOfMapsWhoseVoxelsLieInFiles) {
