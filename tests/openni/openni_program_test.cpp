@@ -62,6 +62,19 @@ TEST_F(OpenNiProgramTest, MapsWhatACameraShowsUntilItIsUnplugged) {
   }
 }
 
+TEST_F(OpenNiProgramTest, AnotherVisitGoesOnWithAMap) {
+  const std::string with_frames = std::string(kRun) + "--set frame_store.max_mb=100 ";
+  plug_in();
+  EXPECT_EQ(run(with_frames).code, 1) << "unplugged";
+  expect_complaint("run openni: --set map.voxel_size_m=0.03 --continue map.ovimap",
+                   {"map.voxel_size_m"});
+  const auto report = nlohmann::json::parse(run(with_frames + "--json --continue map.ovimap").out);
+  EXPECT_GE(report["tracking"]["frames_tracked"], 12) << "it finds its place in the map";
+  const auto history = run_json("info map.ovimap --json")["history"];
+  EXPECT_EQ(history["visits"].size(), 2u);
+  EXPECT_TRUE(history["events"].empty()) << history["events"].dump();
+}
+
 TEST_F(OpenNiProgramTest, CtrlCSavesTheMap) {
   sequence_.frames = 40;
   plug_in(1);  // a frame a second: long enough for any machine
