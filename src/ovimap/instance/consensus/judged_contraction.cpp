@@ -18,6 +18,9 @@ namespace {
 
 using Node = std::uint32_t;  ///< place of a root among all roots in order
 
+constexpr int kWitnesses = 3;  // frames that say the same of two clusters, and none otherwise
+constexpr float kSure = 16.f;  // what they say comes before what is only likely
+
 class LearnedJudge : public PairJudge {
  public:
   float log_odds(const PairFeatures& features, Label, Label) override {
@@ -86,8 +89,10 @@ class JudgedContraction {
     if (const auto found = shapes.of.find(root); found != shapes.of.end())
       cluster.shape = found->second;
     const std::int64_t vertices = std::max<std::int64_t>(1, cluster.shape.vertices);
-    for (const EntitySighting& sighting : sightings.at(root))
+    for (const EntitySighting& sighting : sightings.at(root)) {
       cluster.shares.push_back({sighting, vertices, 0});
+      cluster.rated |= sighting.is_rated();
+    }
     return cluster;
   }
 
@@ -150,12 +155,18 @@ class JudgedContraction {
 
   float log_odds_of(Node old, Node young) {
     const PointCluster &a = clusters_[old], &b = clusters_[young];
-    if (a.shape.vertices == 0 || b.shape.vertices == 0) {
-      const Meetings met = meetings_of(a, b);
-      return static_cast<float>(std::log1p(met.joined) - std::log1p(apart_weight_ * met.apart));
-    }
-    return judge_.log_odds(pair_features(a, b, borders_of_[old].at(young), agreement_), roots_[old],
-                           roots_[young]);
+    const Meetings met = meetings_of(a, b);
+    const auto by_masks =
+        static_cast<float>(std::log1p(met.joined) - std::log1p(apart_weight_ * met.apart));
+    if (a.shape.vertices == 0 || b.shape.vertices == 0) return by_masks;
+    if (!a.rated && !b.rated && are_unanimous(met)) return kSure * by_masks;
+    return judge_.log_odds(pair_features(a, b, met, borders_of_[old].at(young), agreement_),
+                           roots_[old], roots_[young]);
+  }
+
+  static bool are_unanimous(const Meetings& met) {
+    return (met.apart == 0 && met.joined >= kWitnesses) ||
+           (met.joined == 0 && met.apart >= kWitnesses);
   }
 
   void contract(Node old, Node young) {

@@ -24,8 +24,10 @@ class PairJudge {
 /// (agglomeration by a learned judge, as in connectomics: Nunez-Iglesias et al., PLOS ONE 2013).
 /// Judged are clusters that touch and those that some entity shows together. `shapes`: of the map's
 /// surface by now. Of super-points without any, which left, masks alone tell: a frame that keeps
-/// two apart weighs `apart_weight` against one that joins them. Returns the oldest (lowest) root of
-/// each one's cluster.
+/// two apart weighs `apart_weight` against one that joins them. So do masks alone where their
+/// source does not rate them, as true ones, and three frames or more say the same and none
+/// otherwise: the judge has learned from rendered rooms, and would part a bed from a headboard of
+/// another make. Returns the oldest (lowest) root of each one's cluster.
 std::map<Label, Label> contract_by_judge(std::span<const Label> roots,
                                          const EntitySightings& sightings,
                                          const SuperPointShapes& shapes, double apart_weight,

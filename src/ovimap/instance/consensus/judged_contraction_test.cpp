@@ -12,6 +12,7 @@ namespace ovimap {
 namespace {
 
 constexpr double kApartWeight = 0.5;
+constexpr std::uint8_t kRating = 200;
 
 std::vector<Label> roots_of(const EntitySightings& sightings) {
   std::vector<Label> roots;
@@ -73,7 +74,8 @@ std::map<Label, Label> plain_objects(const EntitySightings& sightings,
         SuperPointBorder border;
         if (!neighbours(a->second, b->second, border)) continue;
         const float odds =
-            plain_odds(pair_features(a->second.cluster, b->second.cluster, border, 1));
+            plain_odds(pair_features(a->second.cluster, b->second.cluster,
+                                     meetings_of(a->second.cluster, b->second.cluster), border, 1));
         if (odds > best) best = odds, chosen = {a->first, b->first};
       }
     if (best <= 0) break;
@@ -111,7 +113,7 @@ TEST(JudgedContraction, IsThePlainOneOnRandomSightings) {
       for (std::uint32_t frame = 0; frame < 12; ++frame)
         if (random() % 3 != 0)
           sightings[root].push_back(
-              {frame, static_cast<std::uint16_t>(1 + root / 4 + (random() % 4 == 0))});
+              {frame, static_cast<std::uint16_t>(1 + root / 4 + (random() % 4 == 0)), kRating});
       if (root > 1 && random() % 4 != 0)
         shapes.borders[{root - 1, root}] = {static_cast<std::int64_t>(1 + random() % 40), 0, 0};
     }
@@ -122,13 +124,44 @@ TEST(JudgedContraction, IsThePlainOneOnRandomSightings) {
   }
 }
 
+/// Says the same of all.
+class SureJudge : public PairJudge {
+ public:
+  explicit SureJudge(float odds) : odds_(odds) {}
+  float log_odds(const PairFeatures&, Label, Label) override { return odds_; }
+
+ private:
+  float odds_;
+};
+
+TEST(JudgedContraction, UnratedMasksThatAllSayTheSameAreBelieved) {
+  SuperPointShapes shapes;
+  for (const Label root : {1u, 2u}) shapes.of[root] = shape_at(0.1 * root, 100);
+  shapes.borders[{1, 2}] = {10, 0, 0};
+  const auto are_one = [&](int joined, int apart, std::uint8_t rating, float odds) {
+    EntitySightings sightings;
+    for (int i = 0; i < joined + apart; ++i) {
+      const auto frame = static_cast<std::uint32_t>(i);
+      sightings[1].push_back({frame, 1, rating});
+      sightings[2].push_back({frame, static_cast<std::uint16_t>(i < joined ? 1 : 2), rating});
+    }
+    SureJudge judge(odds);
+    return contract_by_judge(roots_of(sightings), sightings, shapes, kApartWeight, judge).at(2) ==
+           1;
+  };
+  EXPECT_TRUE(are_one(3, 0, kHighestRating, -1));
+  EXPECT_FALSE(are_one(2, 0, kHighestRating, -1)) << "too few";
+  EXPECT_FALSE(are_one(9, 1, kHighestRating, -1)) << "not all";
+  EXPECT_FALSE(are_one(3, 0, kRating, -1)) << "of a network";
+  EXPECT_FALSE(are_one(0, 3, kHighestRating, 1));
+  EXPECT_TRUE(are_one(0, 2, kHighestRating, 1));
+  EXPECT_TRUE(are_one(0, 3, kRating, 1));
+}
+
 TEST(JudgedContraction, WhatHasNoSurfaceIsToldByMasksAlone) {
   const EntitySightings sightings = {
       {1, {{0, 1}, {1, 1}}}, {2, {{0, 1}, {1, 2}}}, {3, {{0, 2}, {1, 3}}}};
-  class Refusing : public PairJudge {
-   public:
-    float log_odds(const PairFeatures&, Label, Label) override { return -1; }
-  } refusing;
+  SureJudge refusing(-1);
   const std::map<Label, Label> objects =
       contract_by_judge(roots_of(sightings), sightings, {}, kApartWeight, refusing);
   EXPECT_EQ(objects, (std::map<Label, Label>{{1, 1}, {2, 1}, {3, 3}}));

@@ -92,7 +92,7 @@ Meetings meetings_of(const PointCluster& a, const PointCluster& b) {
 }
 
 PointCluster united(const PointCluster& a, const PointCluster& b) {
-  PointCluster both{{}, a.shape};
+  PointCluster both{{}, a.shape, a.rated || b.rated};
   both.shape += b.shape;
   both.shares.reserve(a.shares.size() + b.shares.size());
   std::merge(a.shares.begin(), a.shares.end(), b.shares.begin(), b.shares.end(),
@@ -109,14 +109,13 @@ PointCluster united(const PointCluster& a, const PointCluster& b) {
   return both;
 }
 
-PairFeatures pair_features(const PointCluster& a, const PointCluster& b,
+PairFeatures pair_features(const PointCluster& a, const PointCluster& b, const Meetings& met,
                            const SuperPointBorder& border, float agreement) {
   const bool swapped = a.shape.vertices > b.shape.vertices;
   const SuperPointShape& small = swapped ? b.shape : a.shape;
   const SuperPointShape& large = swapped ? a.shape : b.shape;
   const double small_size = static_cast<double>(std::max<std::int64_t>(1, small.vertices));
   const double large_size = static_cast<double>(std::max<std::int64_t>(1, large.vertices));
-  const Meetings met = meetings_of(a, b);
   const Eigen::Vector3d color =
       (small.color_sum / small_size - large.color_sum / large_size).cwiseAbs();
   const Eigen::Vector3d small_normal = small.normal_sum / small_size;

@@ -22,6 +22,7 @@ struct EntityShare {
 struct PointCluster {
   std::vector<EntityShare> shares;  ///< by sighting
   SuperPointShape shape;
+  bool rated = false;  ///< the source of some mask says how good it is
 };
 PointCluster united(const PointCluster& a, const PointCluster& b);
 
@@ -63,7 +64,8 @@ struct Meetings {
 };
 Meetings meetings_of(const PointCluster& a, const PointCluster& b);
 
-PairFeatures pair_features(const PointCluster& a, const PointCluster& b,
+/// `met`: meetings_of(a, b).
+PairFeatures pair_features(const PointCluster& a, const PointCluster& b, const Meetings& met,
                            const SuperPointBorder& border, float agreement);
 
 /// How sure it is that two clusters are one thing: the logarithm of the odds, by a small network

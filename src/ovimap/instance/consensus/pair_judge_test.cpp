@@ -59,12 +59,17 @@ TEST(PairJudge, UnitedClustersAddUp) {
   EXPECT_FLOAT_EQ(both.shape.box.max().x(), 0.8f);
 }
 
+PairFeatures features_of(const PointCluster& a, const PointCluster& b,
+                         const SuperPointBorder& border) {
+  return pair_features(a, b, meetings_of(a, b), border, kAgreement);
+}
+
 TEST(PairJudge, FeaturesDoNotDependOnTheOrder) {
   const PointCluster a = cluster(piece(0, 100, 50), {{0, 1}, {2, 5}});
   const PointCluster b = cluster(piece(0.4f, 50, 80), {{0, 1}, {1, 2}, {2, 6}});
   const SuperPointBorder border{.edges = 10, .fold = -1, .color_step = 640};
-  const PairFeatures features = pair_features(a, b, border, kAgreement);
-  EXPECT_EQ(features, pair_features(b, a, border, kAgreement));
+  const PairFeatures features = features_of(a, b, border);
+  EXPECT_EQ(features, features_of(b, a, border));
   EXPECT_FLOAT_EQ(at(features, PairFeature::kJoined), std::log(2.f));
   EXPECT_FLOAT_EQ(at(features, PairFeature::kJoinedShare), 0.5f);
   EXPECT_FLOAT_EQ(at(features, PairFeature::kSmallSize), std::log(50.f));
@@ -85,16 +90,15 @@ TEST(PairJudge, TellsPiecesOfAPlaneFromAThingOnIt) {
     other.push_back({frame, 2});
   }
   const SuperPointBorder seam{.edges = 80, .fold = 0, .color_step = 80};
-  EXPECT_GT(
-      log_odds_of_one(pair_features(cluster(piece(0, 1600, 90), one, 3200),
-                                    cluster(piece(0.4f, 1600, 90), same, 3200), seam, kAgreement)),
-      1);
+  EXPECT_GT(log_odds_of_one(features_of(cluster(piece(0, 1600, 90), one, 3200),
+                                        cluster(piece(0.4f, 1600, 90), same, 3200), seam)),
+            1);
   SuperPointShape mug = piece(0.1f, 300, 220);
   mug.normal_sum *= 0.2;
   mug.box = {Eigen::Vector3f(0.1f, 0.1f, 0), Eigen::Vector3f(0.18f, 0.18f, 0.1f)};
   const SuperPointBorder foot{.edges = 60, .fold = -40, .color_step = 60 * 300};
-  EXPECT_LT(log_odds_of_one(pair_features(cluster(piece(0, 1600, 90), one, 1600),
-                                          cluster(mug, other, 300), foot, kAgreement)),
+  EXPECT_LT(log_odds_of_one(features_of(cluster(piece(0, 1600, 90), one, 1600),
+                                        cluster(mug, other, 300), foot)),
             -1);
 }
 
