@@ -123,7 +123,7 @@ void write_samples(const MapDocument& document, const LabelledTruth& truth,
   const EntitySightings& sightings = document.registry.entity_sightings;
   for (unsigned round = 0; round < kRounds; ++round) {
     Sampler sampler(truth.shares, round, file);
-    contract_by_judge(roots_of(sightings), sightings, shapes,
+    contract_by_judge(roots_of(sightings), sightings, false, shapes,  // it learns of all pairs
                       document.instance_config.consensus.apart_weight, sampler);
   }
   std::fclose(file);
@@ -162,7 +162,7 @@ void print_scores(const MapDocument& document, const LabelledTruth& truth,
                   const SuperPointShapes& shapes) {
   InstanceRegistry registry(document.instance_config);
   registry.restore(document.registry);
-  registry.settle(shapes);
+  registry.settle(shapes, document.mask_frames > 0);
   std::map<Label, std::uint32_t> ideal;
   for (const auto& [label, shares] : truth.shares)
     ideal[label] = static_cast<std::uint32_t>(std::max(owner(shares), 0));

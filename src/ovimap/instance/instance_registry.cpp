@@ -152,8 +152,8 @@ void InstanceRegistry::settle() {
   if (config_.instances == InstanceReading::kConsensus) group(listed(consensus_.settle()));
 }
 
-void InstanceRegistry::settle(const SuperPointShapes& shapes) {
-  group(listed(consensus_.settle(shapes)));
+void InstanceRegistry::settle(const SuperPointShapes& shapes, bool masked) {
+  group(listed(consensus_.settle(shapes, masked)));
 }
 
 /// An object goes by the oldest id among its super-points. The others are its aliases for as long

@@ -77,8 +77,9 @@ class InstanceRegistry {
   /// After the last frame: finds the objects anew from all that was seen. observe() does so among
   /// those in sight.
   void settle();
-  /// The same by what the map's surface tells as well; for consensus alone.
-  void settle(const SuperPointShapes& shapes);
+  /// The same by what the map's surface tells as well; for consensus alone. `masked`: entities are
+  /// masks, not regions of depth.
+  void settle(const SuperPointShapes& shapes, bool masked);
 
   /// The instance of a super-point root; 0 when it is none (background, too little evidence).
   InstanceId instance_of(Label root) const;

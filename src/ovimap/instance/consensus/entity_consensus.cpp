@@ -161,8 +161,8 @@ std::map<Label, Label> EntityConsensus::settle() {
   return regrouped(contract_edges(take_all(), sightings_, config_.apart_weight));
 }
 
-std::map<Label, Label> EntityConsensus::settle(const SuperPointShapes& shapes) {
-  return regrouped(contract_by_judge(take_all(), sightings_, shapes, config_.apart_weight));
+std::map<Label, Label> EntityConsensus::settle(const SuperPointShapes& shapes, bool masked) {
+  return regrouped(contract_by_judge(take_all(), sightings_, masked, shapes, config_.apart_weight));
 }
 
 /// Every root; none waits for update() any more.

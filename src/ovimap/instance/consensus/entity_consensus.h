@@ -62,7 +62,7 @@ class EntityConsensus {
   /// The same of all super-points, by all sightings: the oldest (lowest) root of each one's object.
   std::map<Label, Label> settle();
   /// Of all super-points by a judge that looks at their surfaces as well (contract_by_judge).
-  std::map<Label, Label> settle(const SuperPointShapes& shapes);
+  std::map<Label, Label> settle(const SuperPointShapes& shapes, bool masked);
 
   const EntitySightings& sightings() const { return sightings_; }
   /// The roots of the object that a root is in, ascending.

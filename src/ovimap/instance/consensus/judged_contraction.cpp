@@ -31,9 +31,10 @@ class LearnedJudge : public PairJudge {
 /// A cluster goes by its oldest node.
 class JudgedContraction {
  public:
-  JudgedContraction(std::span<const Label> roots, const EntitySightings& sightings,
+  JudgedContraction(std::span<const Label> roots, const EntitySightings& sightings, bool masked,
                     const SuperPointShapes& shapes, double apart_weight, PairJudge& judge)
       : roots_(roots),
+        masked_(masked),
         apart_weight_(apart_weight),
         judge_(judge),
         borders_of_(roots.size()),
@@ -159,7 +160,7 @@ class JudgedContraction {
     const auto by_masks =
         static_cast<float>(std::log1p(met.joined) - std::log1p(apart_weight_ * met.apart));
     if (a.shape.vertices == 0 || b.shape.vertices == 0) return by_masks;
-    if (!a.rated && !b.rated && are_unanimous(met)) return kSure * by_masks;
+    if (masked_ && !a.rated && !b.rated && are_unanimous(met)) return kSure * by_masks;
     return judge_.log_odds(pair_features(a, b, met, borders_of_[old].at(young), agreement_),
                            roots_[old], roots_[young]);
   }
@@ -188,6 +189,7 @@ class JudgedContraction {
   }
 
   std::span<const Label> roots_;
+  bool masked_;
   double apart_weight_;
   PairJudge& judge_;
   std::vector<PointCluster> clusters_;
@@ -201,19 +203,19 @@ class JudgedContraction {
 }  // namespace
 
 std::map<Label, Label> contract_by_judge(std::span<const Label> roots,
-                                         const EntitySightings& sightings,
+                                         const EntitySightings& sightings, bool masked,
                                          const SuperPointShapes& shapes, double apart_weight,
                                          PairJudge& judge) {
-  JudgedContraction contraction(roots, sightings, shapes, apart_weight, judge);
+  JudgedContraction contraction(roots, sightings, masked, shapes, apart_weight, judge);
   contraction.run();
   return contraction.objects();
 }
 
 std::map<Label, Label> contract_by_judge(std::span<const Label> roots,
-                                         const EntitySightings& sightings,
+                                         const EntitySightings& sightings, bool masked,
                                          const SuperPointShapes& shapes, double apart_weight) {
   LearnedJudge judge;
-  return contract_by_judge(roots, sightings, shapes, apart_weight, judge);
+  return contract_by_judge(roots, sightings, masked, shapes, apart_weight, judge);
 }
 
 }  // namespace ovimap

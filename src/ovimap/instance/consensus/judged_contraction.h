@@ -27,15 +27,16 @@ class PairJudge {
 /// two apart weighs `apart_weight` against one that joins them. So do masks alone where their
 /// source does not rate them, as true ones, and three frames or more say the same and none
 /// otherwise: the judge has learned from rendered rooms, and would part a bed from a headboard of
-/// another make. Returns the oldest (lowest) root of each one's cluster.
+/// another make. `masked`: entities are masks, not regions of depth, which are parts of things.
+/// Returns the oldest (lowest) root of each one's cluster.
 std::map<Label, Label> contract_by_judge(std::span<const Label> roots,
-                                         const EntitySightings& sightings,
+                                         const EntitySightings& sightings, bool masked,
                                          const SuperPointShapes& shapes, double apart_weight,
                                          PairJudge& judge);
 
 /// The same by the network that comes with the program.
 std::map<Label, Label> contract_by_judge(std::span<const Label> roots,
-                                         const EntitySightings& sightings,
+                                         const EntitySightings& sightings, bool masked,
                                          const SuperPointShapes& shapes, double apart_weight);
 
 }  // namespace ovimap

@@ -118,7 +118,7 @@ TEST(JudgedContraction, IsThePlainOneOnRandomSightings) {
         shapes.borders[{root - 1, root}] = {static_cast<std::int64_t>(1 + random() % 40), 0, 0};
     }
     PlainJudge judge;
-    EXPECT_EQ(contract_by_judge(roots_of(sightings), sightings, shapes, kApartWeight, judge),
+    EXPECT_EQ(contract_by_judge(roots_of(sightings), sightings, true, shapes, kApartWeight, judge),
               plain_objects(sightings, shapes))
         << "round " << round;
   }
@@ -138,7 +138,8 @@ TEST(JudgedContraction, UnratedMasksThatAllSayTheSameAreBelieved) {
   SuperPointShapes shapes;
   for (const Label root : {1u, 2u}) shapes.of[root] = shape_at(0.1 * root, 100);
   shapes.borders[{1, 2}] = {10, 0, 0};
-  const auto are_one = [&](int joined, int apart, std::uint8_t rating, float odds) {
+  const auto are_one = [&](int joined, int apart, std::uint8_t rating, float odds,
+                           bool masked = true) {
     EntitySightings sightings;
     for (int i = 0; i < joined + apart; ++i) {
       const auto frame = static_cast<std::uint32_t>(i);
@@ -146,8 +147,8 @@ TEST(JudgedContraction, UnratedMasksThatAllSayTheSameAreBelieved) {
       sightings[2].push_back({frame, static_cast<std::uint16_t>(i < joined ? 1 : 2), rating});
     }
     SureJudge judge(odds);
-    return contract_by_judge(roots_of(sightings), sightings, shapes, kApartWeight, judge).at(2) ==
-           1;
+    return contract_by_judge(roots_of(sightings), sightings, masked, shapes, kApartWeight, judge)
+               .at(2) == 1;
   };
   EXPECT_TRUE(are_one(3, 0, kHighestRating, -1));
   EXPECT_FALSE(are_one(2, 0, kHighestRating, -1)) << "too few";
@@ -156,6 +157,7 @@ TEST(JudgedContraction, UnratedMasksThatAllSayTheSameAreBelieved) {
   EXPECT_FALSE(are_one(0, 3, kHighestRating, 1));
   EXPECT_TRUE(are_one(0, 2, kHighestRating, 1));
   EXPECT_TRUE(are_one(0, 3, kRating, 1));
+  EXPECT_TRUE(are_one(0, 3, kHighestRating, 1, false)) << "regions of depth are parts of things";
 }
 
 TEST(JudgedContraction, WhatHasNoSurfaceIsToldByMasksAlone) {
@@ -163,7 +165,7 @@ TEST(JudgedContraction, WhatHasNoSurfaceIsToldByMasksAlone) {
       {1, {{0, 1}, {1, 1}}}, {2, {{0, 1}, {1, 2}}}, {3, {{0, 2}, {1, 3}}}};
   SureJudge refusing(-1);
   const std::map<Label, Label> objects =
-      contract_by_judge(roots_of(sightings), sightings, {}, kApartWeight, refusing);
+      contract_by_judge(roots_of(sightings), sightings, true, {}, kApartWeight, refusing);
   EXPECT_EQ(objects, (std::map<Label, Label>{{1, 1}, {2, 1}, {3, 3}}));
 }
 
@@ -175,7 +177,7 @@ TEST(JudgedContraction, AUnionIsToldToTheJudge) {
     void united(Label old, Label young) override { unions.emplace_back(old, young); }
     std::vector<std::pair<Label, Label>> unions;
   } judge;
-  contract_by_judge(roots_of(sightings), sightings, shapes, kApartWeight, judge);
+  contract_by_judge(roots_of(sightings), sightings, true, shapes, kApartWeight, judge);
   EXPECT_EQ(judge.unions, (std::vector<std::pair<Label, Label>>{{1, 2}}));
 }
 

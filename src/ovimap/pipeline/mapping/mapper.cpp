@@ -315,7 +315,7 @@ void Mapper::settle() {
   if (settled_) return;
   auto t = timers_.measure("objects");
   if (config_.instance.instances == InstanceReading::kConsensus && config_.instance.judged)
-    registry_.settle(measure_super_points(map_));
+    registry_.settle(measure_super_points(map_), mask_frames_ > 0);
   else
     registry_.settle();
   settled_ = true;
