@@ -182,6 +182,11 @@ class VoxelMap {
   /// An empty block to be filled for `bring_back`.
   std::unique_ptr<VoxelBlock> spare_block(const BlockIndex& index) const;
   void bring_back(std::uint32_t slot, std::unique_ptr<VoxelBlock> block) const;
+  /// Frees evicted blocks that wait to be used again, all but so many; returns how many wait.
+  std::size_t keep_spares(std::size_t most) const {
+    if (spares_.size() > most) spares_.resize(most);
+    return spares_.size();
+  }
   /// Creates a block that is in the store alone. There must be none at `index`.
   void create_away(const BlockIndex& index);
   /// The part of `bytes` that only grows: what leads to blocks, not blocks.

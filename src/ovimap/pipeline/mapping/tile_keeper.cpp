@@ -148,10 +148,16 @@ std::vector<std::uint64_t> TileKeeper::choose_tiles(const VoxelMap& map) const {
 }
 
 void TileKeeper::trim(const VoxelMap& map) {
-  if (!wants_room(map)) {
-    ++now_;
-    return;
+  if (wants_room(map)) let_tiles_leave(map);
+  if (bounded()) {
+    const std::size_t used = used_bytes(map),
+                      bound = static_cast<std::size_t>(memory_.max_mb) * kMegabyte;
+    map.keep_spares(used < bound ? (bound - used) / sizeof(VoxelBlock) : 0);
   }
+  ++now_;
+}
+
+void TileKeeper::let_tiles_leave(const VoxelMap& map) {
   if (std::exchange(all_changed_, false))
     for (const Tile& tile : tiles_of(map)) {
       changed_.insert(tile.key);
@@ -165,7 +171,6 @@ void TileKeeper::trim(const VoxelMap& map) {
     changed_.erase(tile.key);
     last_used_.erase(tile.key);
   }
-  ++now_;
 }
 
 /// Puts those of the tiles into the file that are not there as they are.

@@ -67,6 +67,7 @@ class TileKeeper : public BlockStore {
  private:
   std::size_t used_bytes(const VoxelMap& map) const;
   double full_bytes() const;  ///< of voxels from which on tiles leave
+  void let_tiles_leave(const VoxelMap& map);
   std::vector<std::uint64_t> choose_tiles(const VoxelMap& map) const;
   void store_changed(const VoxelMap& map, std::span<const Tile> tiles);
 

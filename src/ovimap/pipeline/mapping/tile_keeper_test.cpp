@@ -6,6 +6,7 @@
 #include <sys/resource.h>
 
 #include <csignal>
+#include <limits>
 #include <optional>
 
 #include "ovimap/frames/recording/sequence_fixture.h"
@@ -263,6 +264,12 @@ TEST_F(TileKeeperTest, ASavedMapGoesOnWithinTheBound) {
   const std::uint64_t stored_hash = load_map(saved).map.content_hash();
   EXPECT_EQ(document.map.content_hash(), stored_hash);
   EXPECT_LE(document.map.blocks_in_memory() * sizeof(VoxelBlock), kBound_mb * 1000000u);
+  constexpr int kLess_mb = kBound_mb / 3;
+  tiles->set_bound({kLess_mb});
+  document.map.trim();
+  const std::size_t spares = document.map.keep_spares(std::numeric_limits<std::size_t>::max());
+  EXPECT_LE((document.map.blocks_in_memory() + spares) * sizeof(VoxelBlock), kLess_mb * 1000000u)
+      << "what left is given back";
 }
 
 TEST_F(TileKeeperTest, ABoundBelowWhatOneFrameSeesIsRefused) {

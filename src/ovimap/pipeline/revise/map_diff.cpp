@@ -20,7 +20,8 @@ namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kObjectsPerPart = 32;  // then maps may make room
+// Then maps may make room. A floor alone leads to most of a flat's voxels.
+constexpr std::size_t kObjectsPerPart = 32, kPointsPerPart = 10000;
 
 std::vector<Pose> camera_poses(const MapRecord& map) {
   std::vector<Pose> poses;
@@ -70,9 +71,10 @@ class Witness {
   ObservedSpace space_;
 };
 
-std::vector<Eigen::Vector3f> surface_of(const MapRecord& map, InstanceId id) {
+const std::vector<Eigen::Vector3f>& surface_of(const MapRecord& map, InstanceId id) {
+  static const std::vector<Eigen::Vector3f> kNone;
   const auto found = map.surfaces.find(id);
-  return found == map.surfaces.end() ? std::vector<Eigen::Vector3f>{} : found->second;
+  return found == map.surfaces.end() ? kNone : found->second;
 }
 
 std::string metres(float value) {
@@ -141,13 +143,23 @@ class MapComparison {
         change.kind =
             change.surface_there >= config_.gone_share ? ChangeKind::kSame : ChangeKind::kUnseen;
     };
-    for (std::size_t first = 0; first < changes_.size(); first += kObjectsPerPart) {
-      parallel_for(std::min(kObjectsPerPart, changes_.size() - first), 1,
-                   [&](std::size_t i) { judge(first + i); });
+    for (std::size_t first = 0, end = 0; first < changes_.size(); first = end) {
+      end = end_of_part(first);
+      parallel_for(end - first, 1, [&](std::size_t i) { judge(first + i); });
       before_.map.trim();
       after_.map.trim();
     }
     part_from_remains(arrived);
+  }
+
+  std::size_t end_of_part(std::size_t first) const {
+    std::size_t end = first, points = 0;
+    while (end < changes_.size() && end - first < kObjectsPerPart && points < kPointsPerPart) {
+      points += surface_of(before_, changes_[end].before).size() +
+                surface_of(after_, changes_[end].after).size();
+      ++end;
+    }
+    return end;
   }
 
   /// What came to where remains of another thing lie is an object of its own: the two share hardly

@@ -150,7 +150,10 @@ MapDocument seen_in_visit(const MapDocument& before, const MapDocument& after,
   seen.up = after.up;
   seen.instances = after.instances;
   seen.surfaces = after.surfaces;
-  for (auto& [id, points] : seen.surfaces) keep_observed(seen.map, points);
+  for (auto& [id, points] : seen.surfaces) {
+    keep_observed(seen.map, points);
+    seen.map.trim();
+  }
   std::erase_if(seen.instances, [&](const InstanceSummary& instance) {
     const auto surface = seen.surfaces.find(instance.id);
     return surface == seen.surfaces.end() || surface->second.size() < kLeastPoints;
