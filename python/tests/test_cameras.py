@@ -15,8 +15,8 @@ import pytest
 import yaml
 from ovimap.camera_command import Session, main
 from ovimap.cameras import Feed, Relay, TurnRate, Wanted
+from sender_fixture import PROGRAM, Serving, needs_program
 from test_camera_relay import Sent
-from test_sender import PROGRAM, Serving, needs_program
 
 rs = pytest.importorskip("pyrealsense2", reason="pyrealsense2 is not installed; run tools/setup.sh --tests")
 from ovimap.cameras.realsense import open_realsense  # noqa: E402
