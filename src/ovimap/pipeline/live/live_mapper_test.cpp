@@ -20,10 +20,8 @@ constexpr int kRounds = 2;  // the camera goes round the desk twice
 std::vector<Frame> desk_frames() {
   const DeskScene scene;
   std::vector<Frame> frames;
-  for (std::int64_t i = 0; i < kRounds * scene.size(); ++i) {
+  for (std::int64_t i = 0; i < kRounds * scene.size(); ++i)
     frames.push_back(*scene.read(i % scene.size()).frame);
-    frames.back().index = i % scene.size();
-  }
   return frames;
 }
 
