@@ -187,28 +187,6 @@ TrackingRun finish_tracking(const PoseFinder& finder, const ProgramConfig& confi
   return tracking;
 }
 
-MappingRun finished_run(MappingInputs&& inputs, MapHeader header, Mapper&& mapper,
-                        SequenceResult sequence, std::unique_ptr<Checkpointer> checkpoints) {
-  MappingRun run;
-  if (checkpoints && inputs.tracking)  // who kills the closing of loops leaves all frames mapped
-    checkpoints->store(mapper, sequence.frames, sequence.depth_camera);
-  if (checkpoints) checkpoints->let_tiles_leave(mapper);
-  if (inputs.finder)
-    run.tracking = finish_tracking(*inputs.finder, inputs.config, mapper, sequence);
-  if (inputs.finder) run.tracking->placing = std::move(inputs.placing);
-  run.source = std::move(inputs.source);
-  run.masks_wanted = inputs.masks != nullptr;
-  if (inputs.people) run.people_frames = inputs.people->frames_with_people();
-  run.sequence = std::move(sequence);
-  mapper.finish();
-  if (checkpoints) checkpoints->report(mapper.timers());
-  run.timers = mapper.timers();
-  run.document = make_document(std::move(mapper), run.sequence, std::move(header));
-  if (inputs.keeps_for_loops) run.document.kept_frames.clear();
-  run.checkpoints = std::move(checkpoints);
-  return run;
-}
-
 /// A file of voxels beside the checkpoint, for as long as it is in use.
 std::shared_ptr<TileKeeper> tiles_beside(std::filesystem::path checkpoint, const char* ending,
                                          const MemoryConfig& memory) {
@@ -227,6 +205,31 @@ void tell_visit(const RunTarget& target, const MemoryConfig& memory, const PastE
   discount_past(before.map, past);
   const auto seen = third.max_mb > 0 ? tiles_beside(tiles.path(), ".seen", third) : nullptr;
   ovimap::tell_visit(before, after, {}, seen);
+}
+
+MappingRun finished_run(MappingInputs&& inputs, MapHeader header, Mapper&& mapper,
+                        SequenceResult sequence, std::unique_ptr<Checkpointer> checkpoints,
+                        const RunTarget& target, TileKeeper* tiles) {
+  MappingRun run;
+  if (checkpoints && inputs.tracking)  // who kills the closing of loops leaves all frames mapped
+    checkpoints->store(mapper, sequence.frames, sequence.depth_camera);
+  if (checkpoints) checkpoints->let_tiles_leave(mapper);
+  if (inputs.finder)
+    run.tracking = finish_tracking(*inputs.finder, inputs.config, mapper, sequence);
+  if (inputs.finder) run.tracking->placing = std::move(inputs.placing);
+  run.source = std::move(inputs.source);
+  run.masks_wanted = inputs.masks != nullptr;
+  if (inputs.people) run.people_frames = inputs.people->frames_with_people();
+  run.sequence = std::move(sequence);
+  mapper.finish();
+  if (checkpoints) checkpoints->report(mapper.timers());
+  run.timers = mapper.timers();
+  run.document = make_document(std::move(mapper), run.sequence, std::move(header));
+  if (inputs.keeps_for_loops) run.document.kept_frames.clear();
+  run.checkpoints = std::move(checkpoints);
+  if (!target.continued.empty())
+    tell_visit(target, inputs.config.memory, inputs.config.visit.past, *tiles, run.document);
+  return run;
 }
 
 /// A live run that is to be done again.
@@ -302,12 +305,10 @@ MappingRun map_recording(const MappingOptions& options, const std::string& title
         },
         std::move(sequence), checkpoints.get(), finder.get());
   }
-  const MemoryConfig memory = inputs.config.memory;
-  const PastEvidenceConfig past = inputs.config.visit.past;
-  MappingRun run = finished_run(std::move(inputs), std::move(header), std::move(mapper),
-                                std::move(sequence), std::move(checkpoints));
+  MappingRun run =
+      finished_run(std::move(inputs), std::move(header), std::move(mapper), std::move(sequence),
+                   std::move(checkpoints), target, begun.tiles.get());
   run.frames_before = frames_before;
-  if (!target.continued.empty()) tell_visit(target, memory, past, *begun.tiles, run.document);
   return run;
 }
 
@@ -353,13 +354,10 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
                            : repeat_live(*inputs.source, repeated.steps, mapper, LiveProgressBar());
   if (audience) header.edits = audience->end();
   if (live.sequence.depth_camera.width == 0) live.sequence.depth_camera = done.depth_camera;
-  const MemoryConfig memory = inputs.config.memory;
-  const PastEvidenceConfig past = inputs.config.visit.past;
   MappingRun run = finished_run(std::move(inputs), std::move(header), mapper.take(), live.sequence,
-                                std::move(checkpoints));
+                                std::move(checkpoints), target, begun.tiles.get());
   run.frames_before = done.frames.size();
   run.live = std::move(live);
-  if (!target.continued.empty()) tell_visit(target, memory, past, *begun.tiles, run.document);
   return run;
 }
 

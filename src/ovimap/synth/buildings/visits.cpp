@@ -125,10 +125,14 @@ class Rearranger {
 
  private:
   bool is_free(const OrientedBox& place, std::uint16_t id) const {
-    const auto in_it = [&](const OrientedBox& box) { return overlap(box, place) > 0; };
-    return std::none_of(kept_.begin(), kept_.end(), in_it) &&
-           std::none_of(room_.objects.begin(), room_.objects.end(), [&](const RoomObject& other) {
-             return other.footprint && other.id != id && in_it(*other.footprint);
+    return !any_other(id, [&](const OrientedBox& box) { return overlap(box, place) > 0; });
+  }
+  /// Whether the box of some other thing passes the test, also of one that is yet to come.
+  template <class Test>
+  bool any_other(std::uint16_t id, const Test& test) const {
+    return std::any_of(kept_.begin(), kept_.end(), test) ||
+           std::any_of(room_.objects.begin(), room_.objects.end(), [&](const RoomObject& other) {
+             return other.footprint && other.id != id && test(*other.footprint);
            });
   }
   bool is_handy(const OrientedBox& box) const {
@@ -151,11 +155,8 @@ class Rearranger {
                        [&](const AreaLight& light) { return around.contains(light.center_m); });
   }
   bool carries(const RoomObject& object) const {
-    const auto carried = [&](const OrientedBox& box) { return rests_on(box, *object.footprint); };
-    return std::any_of(kept_.begin(), kept_.end(), carried) ||
-           std::any_of(room_.objects.begin(), room_.objects.end(), [&](const RoomObject& other) {
-             return other.footprint && other.id != object.id && carried(*other.footprint);
-           });
+    return any_other(object.id,
+                     [&](const OrientedBox& box) { return rests_on(box, *object.footprint); });
   }
 
   RoomLayout layout_without(std::uint16_t id) {
