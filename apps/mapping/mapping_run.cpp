@@ -346,6 +346,11 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
     if (audience && checkpoints) checkpoints->set_edits(audience->edits());
     if (checkpoints) checkpoints->after_frame(map, frames, depth_camera);
   };
+  mapper.while_waiting = [&](Mapper& map, const auto& frames, const PinholeCamera& depth_camera) {
+    if (audience) audience->while_waiting(map, frames, depth_camera);
+    if (audience && checkpoints) checkpoints->set_edits(audience->edits());
+    if (checkpoints) checkpoints->while_waiting(map, frames, depth_camera);
+  };
   if (audience)
     mapper.after_tracking = [audience](const auto& frame) { audience->after_tracking(frame); };
   if (camera) camera->start();

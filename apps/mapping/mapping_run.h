@@ -74,6 +74,9 @@ class LiveAudience {
   /// As LiveMapper::after_frame.
   virtual void after_frame(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
                            const PinholeCamera& depth_camera) = 0;
+  /// As LiveMapper::while_waiting.
+  virtual void while_waiting(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
+                             const PinholeCamera& depth_camera) = 0;
   /// As LiveMapper::after_tracking.
   virtual void after_tracking(const TrackedFrame& frame) = 0;
   /// Corrections by now.

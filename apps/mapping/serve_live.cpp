@@ -36,6 +36,10 @@ class Service : public LiveAudience {
                    const PinholeCamera& depth_camera) override {
     feed_->after_frame(mapper, frames, depth_camera);
   }
+  void while_waiting(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
+                     const PinholeCamera& depth_camera) override {
+    feed_->while_waiting(mapper, frames, depth_camera);
+  }
   void after_tracking(const TrackedFrame& frame) override { feed_->after_tracking(frame); }
   MapEdits edits() const override { return map_->snapshot()->record->edits; }
   MapEdits end() override {

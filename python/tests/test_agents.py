@@ -22,6 +22,8 @@ from agent_fixture import agent_over_http, agent_over_stdio, http_server, needs_
 from ovimap import mcp_command  # noqa: E402
 from ovimap.agents import MapFault, open_map  # noqa: E402
 from ovimap.agents.backend import moment  # noqa: E402
+from ovimap.sender import FrameSender  # noqa: E402
+from sender_fixture import FRAMES, Shots  # noqa: E402
 
 
 @pytest.fixture
@@ -260,17 +262,20 @@ def test_corrections_go_through_the_server(copy):
 
 @needs_program
 def test_a_map_that_is_being_made(room, tmp_path):
-    out = tmp_path / "live.ovimap"
-    with serving("--live", room, "--masks", "gt", "--encoder", "default", "--recognizer", "none", "--fps", "4", "--set", "map.voxel_size_m=0.02", "-o", out) as server:
+    shots = Shots(room)
+    with serving("http", "--live", "--masks", "none", "--encoder", "default", "--recognizer", "none", "--set", "map.voxel_size_m=0.02", "-o", tmp_path / "live.ovimap") as server:
         with agent_over_stdio(f"live={server.address}", f"gone={server.address}") as agent:
-            seen = []
-            while agent.maps().value[0]["being_made"]:
-                seen.append(agent.objects(map="live").value["total"])
+            sender = FrameSender(server.address, shots.camera)
+            shots.send(sender, range(FRAMES))
+            while not agent.objects(map="live").value["total"]:
                 time.sleep(0.3)  # the server takes ten questions a second
                 said = agent.find(map="live", text="chair")
                 assert said.value is not None or "search" in said.error or "embedding" in said.error, said.error
-            assert seen and seen[-1] > 0, "the map was made before it was asked"
-            assert agent.find(map="live", text="chair").value["found"]
+            assert agent.maps().value[0]["being_made"]
+            sender.finish()
+            while agent.maps().value[0]["being_made"]:
+                time.sleep(0.3)
+            assert agent.find(map="live", text="chair").value["matches"]
             server.terminate()
             server.wait(timeout=60)
             in_one_line(agent.find(map="live", text="chair"), "does not answer")

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/pipeline/live/frame_intake.h"
 
+#include <atomic>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -135,6 +136,26 @@ TEST(FrameIntake, CorrectedPosesMoveTheMap) {
         << frame.index;
   const Mapper made = live.take();
   EXPECT_GT(shown, made.map().block_count() * 9 / 10) << "whoever shows the map hears of all";
+}
+
+TEST(FrameIntake, APauseIsTold) {
+  const fixture::Sequence sequence;
+  FrameIntake intake(3);
+  LiveMapper live({}, {});
+  std::atomic<std::size_t> seen = 0;
+  live.while_waiting = [&](Mapper& mapper, const auto& frames, const PinholeCamera&) {
+    EXPECT_EQ(static_cast<std::size_t>(mapper.frames()), frames.size());
+    seen = frames.size();
+  };
+  std::thread camera([&] {
+    for (int i = 0; i < 2; ++i) {
+      intake.offer(frame_of(sequence, i));
+      while (seen != static_cast<std::size_t>(i + 1)) std::this_thread::sleep_for(milliseconds(1));
+    }
+    intake.finish();
+  });
+  (void)run_pushed(intake, live);
+  camera.join();
 }
 
 TEST(FrameIntake, PushedFramesMapAsMapperDoes) {

@@ -162,10 +162,12 @@ void LiveMapper::restore(MapDocument&& document) {
 
 // ------------------------------------------------------------------------------------------ fusing
 
-/// While none comes there is time for masks.
+/// While none comes there is time for masks, and for whoever watches.
 std::optional<LiveMapper::Prepared> LiveMapper::next_prepared() {
-  while (!prepared_.wait_for(kLook))
+  while (!prepared_.wait_for(kLook)) {
     if (!repeating_) apply_late_masks();
+    if (while_waiting && !frames_.empty()) while_waiting(*mapper_, frames_, depth_camera_);
+  }
   return prepared_.pop();
 }
 

@@ -112,9 +112,14 @@ class LiveMapper {
 
   /// Called by every stage before it works, on its thread. For tests; set before the first push.
   std::function<void(const char* stage)> before_stage;
-  /// Called after every frame and every change of labels, on the fusing thread, with all frames so
-  /// far. For checkpoints; set before the first push. What it throws ends the run.
-  std::function<void(Mapper&, const std::vector<FrameLogEntry>&, const PinholeCamera&)> after_frame;
+  /// Called on the fusing thread with all frames so far; what it throws ends the run.
+  using Watcher =
+      std::function<void(Mapper&, const std::vector<FrameLogEntry>&, const PinholeCamera&)>;
+  /// Called after every frame and every change of labels. Set before the first push.
+  Watcher after_frame;
+  /// Called now and then while frames are in the map and no further one comes: a camera that pauses
+  /// leaves time to show and to store what it saw. Set before the first push.
+  Watcher while_waiting;
   /// Called with what the tracker made of each frame, on the fusing thread; set before the first
   /// push.
   std::function<void(const TrackedFrame&)> after_tracking;

@@ -29,13 +29,25 @@ void Checkpointer::after_frame(Mapper& mapper, const std::vector<FrameLogEntry>&
                                const PinholeCamera& depth_camera) {
   if (off() && !tiles_->bounded()) return;
   tiles_->note_changes(mapper.map(), mapper.touched_blocks());
-  if (next_) {
-    go_on_writing(mapper);
-  } else if (due(frames.size())) {
-    begin(mapper, frames, depth_camera);
-    go_on_writing(mapper);
-  }
+  news_ = true;
+  go_on(mapper, frames, depth_camera);
   if (tiles_->bounded()) make_room(mapper);
+}
+
+void Checkpointer::while_waiting(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
+                                 const PinholeCamera& depth_camera) {
+  if (!off()) go_on(mapper, frames, depth_camera);
+}
+
+void Checkpointer::go_on(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
+                         const PinholeCamera& depth_camera) {
+  if (!next_ && news_ && due(frames.size())) begin(mapper, frames, depth_camera);
+  if (next_) go_on_writing(mapper);
+}
+
+void Checkpointer::set_edits(MapEdits edits) {
+  news_ |= edits.size() != header_.edits.size();
+  header_.edits = std::move(edits);
 }
 
 void Checkpointer::make_room(Mapper& mapper) {
@@ -77,6 +89,7 @@ void Checkpointer::begin(Mapper& mapper, const std::vector<FrameLogEntry>& frame
   looks_ = mapper.remember_looks();
   last_ = std::chrono::steady_clock::now();
   last_frames_ = frames.size();
+  news_ = false;
 }
 
 void Checkpointer::freeze_changes(VoxelMap& map) {

@@ -39,6 +39,10 @@ class Checkpointer {
   /// could not be written; the one before that stays.
   void after_frame(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
                    const PinholeCamera& depth_camera);
+  /// Call now and then while no frame comes: what a pause leaves time for is stored as well. Throws
+  /// what after_frame throws.
+  void while_waiting(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
+                     const PinholeCamera& depth_camera);
   /// The last frame is fused, or many blocks are about to change: waits for what is being written,
   /// if tiles may have to leave memory from here on.
   void let_tiles_leave(Mapper& mapper);
@@ -49,7 +53,7 @@ class Checkpointer {
   /// Adds what tiles' leaving memory and coming back took (TileKeeper::report).
   void report(StageTimers& timers) { tiles_->report(timers); }
   /// The log of corrections, as later checkpoints keep it.
-  void set_edits(MapEdits edits) { header_.edits = std::move(edits); }
+  void set_edits(MapEdits edits);
   /// The map is saved: no checkpoint is needed any more.
   void remove();
 
@@ -59,6 +63,8 @@ class Checkpointer {
   void begin(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
              const PinholeCamera& depth_camera);
   void freeze_changes(VoxelMap& map);
+  void go_on(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
+             const PinholeCamera& depth_camera);
   void go_on_writing(Mapper& mapper);
   void finish_writing(Mapper& mapper);
   void make_room(Mapper& mapper);
@@ -68,6 +74,7 @@ class Checkpointer {
   MapHeader header_;
   std::chrono::steady_clock::time_point last_;
   std::size_t last_frames_;
+  bool news_ = false;  ///< since then
 
   // The checkpoint under way.
   std::optional<MapCheckpoint> next_;

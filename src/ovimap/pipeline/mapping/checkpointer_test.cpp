@@ -5,7 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <fstream>
+#include <thread>
+#include <utility>
 
 #include "ovimap/frames/recording/sequence_fixture.h"
 #include "ovimap/image/codec.h"
@@ -142,6 +145,38 @@ TEST_F(CheckpointerTest, ARunKilledAfterItsLastFrameEndsAsIfItWasNot) {
   ASSERT_TRUE(holds_checkpoint(partial_));
   EXPECT_EQ(load_map(partial_).frames.size(), sequence.frames.size());
   EXPECT_EQ(resume(), expected);
+}
+
+TEST_F(CheckpointerTest, APauseStoresWhatCameBeforeItOnce) {
+  Mapper begun = mapper();
+  SequenceResult sequence;
+  {
+    Checkpointer checkpoints(
+        std::make_shared<TileKeeper>(partial_, CheckpointFile::Start::kAnew, MemoryConfig{}),
+        {1e-6f, 0}, {}, 0);
+    sequence = run_sequence(scene_, positions({}, scene_.size()), begun, nullptr, {}, &checkpoints);
+    const auto written = [&] { return begun.timers().summary()["checkpoint_end"].count; };
+    const auto pause = [&] {
+      for (int i = 0; i < 100; ++i) {
+        checkpoints.while_waiting(begun, sequence.frames, sequence.depth_camera);
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      }
+    };
+    auto before = written();
+    do pause();
+    while (std::exchange(before, written()) != written());
+    MapEdit rename;
+    rename.id = 1;
+    rename.instances = {1};
+    rename.name = "desk";
+    checkpoints.set_edits({rename});
+    while (written() == before) pause();
+    pause();
+    EXPECT_EQ(written(), before + 1) << "the correction, and then nothing new";
+  }
+  const MapDocument stored = load_map(partial_);
+  EXPECT_EQ(stored.frames.size(), sequence.frames.size());
+  EXPECT_EQ(stored.edits.size(), 1u);
 }
 
 TEST_F(CheckpointerTest, CheckpointsDoNotChangeTheMap) {

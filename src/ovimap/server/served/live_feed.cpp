@@ -73,7 +73,14 @@ void LiveFeed::after_frame(Mapper& mapper, const std::vector<FrameLogEntry>& fra
   const auto now = Clock::now();
   if (now >= next_pose_) send_pose(frames);
   if (now >= next_mesh_) hand_over_surface(mapper);
+  objects_wait_ = true;
   hand_over_objects(mapper, frames, depth_camera);
+}
+
+void LiveFeed::while_waiting(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
+                             const PinholeCamera& depth_camera) {
+  if (Clock::now() >= next_mesh_) hand_over_surface(mapper);
+  if (objects_wait_) hand_over_objects(mapper, frames, depth_camera);
 }
 
 void LiveFeed::note_all(const VoxelMap& map) {
@@ -193,6 +200,7 @@ void LiveFeed::hand_over_objects(Mapper& mapper, const std::vector<FrameLogEntry
   found_ = std::move(found);
   summary_ = mapper.config().summary;
   next_objects_ = pause_after(start, config_.objects_share, config_.objects_interval);
+  objects_wait_ = !dirty_.empty();  // they are found on the surface that clients have
   changed_.notify_one();
 }
 

@@ -40,6 +40,10 @@ class LiveFeed {
   /// Call after every frame and every change of labels, on the fusing thread.
   void after_frame(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
                    const PinholeCamera& depth_camera);
+  /// Call now and then while no frame comes, on the fusing thread: shows what the pace of frames
+  /// left no time for.
+  void while_waiting(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
+                     const PinholeCamera& depth_camera);
   /// Call with what the tracker made of each frame, on the fusing thread: clients hear when the
   /// camera is lost and from where it can be found again, and when it is found.
   void after_tracking(const TrackedFrame& frame);
@@ -69,6 +73,7 @@ class LiveFeed {
   std::vector<bool> shown_;          ///< by slot: whether clients know surface of it
   double allowance_ = 0;             ///< vertices that may be sent
   double vertices_per_slot_ = 50;
+  bool objects_wait_ = false;  ///< for what is known of them by now to be shown
   Clock::time_point allowed_until_, next_mesh_, next_pose_, next_lost_;
   CameraTracking tracking_;  ///< what clients know
 

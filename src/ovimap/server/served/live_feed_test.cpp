@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/server/served/live_feed.h"
 
+#include <chrono>
+#include <thread>
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include "ovimap/io/map_file/map_edits.h"
@@ -173,6 +177,31 @@ TEST_F(LiveFeedTest, SavedSurfaceReplacesTheOneBefore) {
   EXPECT_EQ(joined_surface(*map_->surface()).triangles.size(), triangles);
   EXPECT_GT(map_->surface()->version(), seen);
   for (const int level : {0, 1}) EXPECT_FALSE(map_->surface()->list(level, seen).empty());
+}
+
+/// A camera that pauses: no frame comes any more.
+TEST_F(LiveFeedTest, ShowsWhatIsThereInAPause) {
+  feed_.reset();
+  LiveFeedConfig slow;
+  slow.surface_share = slow.objects_share = slow.spare_share = 1e6;
+  slow.vertices_per_s = 1e5;
+  slow.objects_interval = slow.mesh_interval = std::chrono::milliseconds(1);
+  feed_ = std::make_unique<LiveFeed>(*map_, slow);
+  map_frames(0, scene_.size());
+  const std::size_t triangles = extract_mesh(mapper_->map()).triangles.size();
+  const auto shown = [&] {
+    return joined_surface(*map_->surface()).triangles.size() == triangles &&
+           map_->snapshot()->record->frames.size() == 12 && objects() == 3;
+  };
+  const auto wait = [&] {
+    feed_->while_waiting(*mapper_, sequence_.frames, sequence_.depth_camera);
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  };
+  while (!shown()) wait();
+  std::uint64_t version = 0;
+  while (std::exchange(version, map_->snapshot()->version) != version)
+    for (int i = 0; i < 20; ++i) wait();
+  EXPECT_TRUE(shown()) << "and then there is nothing new to tell";
 }
 
 TEST_F(LiveFeedTest, SendsNoMoreThanItsAllowance) {
