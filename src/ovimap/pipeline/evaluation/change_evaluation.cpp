@@ -3,10 +3,8 @@
 #include "ovimap/pipeline/evaluation/change_evaluation.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <set>
-#include <tuple>
 
 #include "ovimap/base/config.h"
 #include "ovimap/base/error.h"
@@ -16,20 +14,12 @@
 #include "ovimap/io/truth/truth.h"
 #include "ovimap/io/truth/truth_changes.h"
 #include "ovimap/map/surface/mesh_extraction.h"
+#include "ovimap/pipeline/evaluation/knowable_changes.h"
+#include "ovimap/pipeline/evaluation/looked_through.h"
 
 namespace ovimap {
 
 namespace {
-
-using Points = std::vector<Eigen::Vector3f>;
-
-/// Vertices of some instances of a truth, or of all others.
-Points points_of(const Truth& truth, const std::set<std::int32_t>& objects, bool others = false) {
-  Points points;
-  for (std::size_t i = 0; i < truth.mesh.vertices.size(); ++i)
-    if (objects.contains(truth.instances[i]) != others) points.push_back(truth.mesh.vertices[i]);
-  return points;
-}
 
 Points keep_those_apart(const Points& points, const NearestPoints& from, float distance_m) {
   const auto near = from.find_all(points, distance_m);
@@ -45,68 +35,24 @@ std::size_t count_near(const Points& points, const NearestPoints& surface, float
       std::count_if(near.begin(), near.end(), [](const auto& found) { return found.has_value(); }));
 }
 
-/// In how many of a recording's frames each point is looked through, or is at least in sight: what
-/// is seen there lies no nearer than `behind_m` behind the point.
-class LookedThrough {
- public:
-  LookedThrough(const Points& points, float behind_m)
-      : points_(points), counts_(points.size(), 0), behind_m_(behind_m) {}
-
-  void add(const FrameSource& source) {
-    for (std::int64_t i = 0; i < source.size(); ++i)
-      if (const FrameRead read = source.read(i); read.frame) add(*read.frame);
-  }
-  std::size_t count(int frames) const { return count(frames, 0, counts_.size()); }
-  /// Of some of the points.
-  std::size_t count(int frames, std::size_t first, std::size_t points) const {
-    const auto begin = counts_.begin() + static_cast<std::ptrdiff_t>(first);
-    return static_cast<std::size_t>(std::count_if(begin,
-                                                  begin + static_cast<std::ptrdiff_t>(points),
-                                                  [&](int count) { return count >= frames; }));
-  }
-  Points at_least(int frames) const {
-    Points points;
-    for (std::size_t i = 0; i < points_.size(); ++i)
-      if (counts_[i] >= frames) points.push_back(points_[i]);
-    return points;
-  }
-
- private:
-  void add(const Frame& frame) {
-    const Eigen::Isometry3f camera_from_world = frame.world_from_camera.inverse().cast<float>();
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      const Eigen::Vector3f point = camera_from_world * points_[i];
-      if (point.z() <= 0.f) continue;
-      const Eigen::Vector2f pixel = frame.depth_camera.project(point);
-      const int x = static_cast<int>(std::lround(pixel.x())),
-                y = static_cast<int>(std::lround(pixel.y()));
-      if (frame.depth.contains(x, y) && frame.depth.at(x, y) > 0.f &&
-          frame.depth.at(x, y) > point.z() + behind_m_)
-        ++counts_[i];
-    }
-  }
-
-  const Points& points_;
-  std::vector<int> counts_;
-  float behind_m_;
-};
-
 /// Where a thing is in neither, both agree.
 float box_overlap(const Eigen::AlignedBox3f& a, const Eigen::AlignedBox3f& b) {
   return a.isEmpty() && b.isEmpty() ? 1.f : overlap(a, b);
 }
 
-/// One event for each change, the best first come.
+/// One event for each change, the best first come, told while the thing was as the change left it:
+/// in the visit before which it changed, or one up to `last`.
 class EventMatcher {
  public:
   EventMatcher(const std::vector<ObjectEvent>& events, const ChangeScoresConfig& config)
       : events_(events), used_(events.size(), false), config_(config) {}
 
-  const ObjectEvent* match(const TrueChange& change) {
+  const ObjectEvent* match(const TrueChange& change, int last) {
     std::size_t best = events_.size();
     float best_overlap = config_.same_place;
     for (std::size_t i = 0; i < events_.size(); ++i) {
-      if (used_[i] || events_[i].visit != change.visit || name_of(events_[i].kind) != change.kind)
+      if (used_[i] || !told_in_time(events_[i], change, last) ||
+          name_of(events_[i].kind) != change.kind)
         continue;
       const float overlap = std::min(box_overlap(events_[i].before, change.from),
                                      box_overlap(events_[i].after, change.to));
@@ -118,12 +64,12 @@ class EventMatcher {
   }
 
   /// Whether one event says that the thing is gone and another that it may be at its new place.
-  bool tells_in_doubt(const TrueChange& change) const {
+  bool tells_in_doubt(const TrueChange& change, int last) const {
     return std::any_of(events_.begin(), events_.end(), [&](const ObjectEvent& event) {
-      return event.visit == change.visit && event.may_be != 0 &&
+      return told_in_time(event, change, last) && event.may_be != 0 &&
              box_overlap(event.after, change.to) >= config_.same_place &&
              std::any_of(events_.begin(), events_.end(), [&](const ObjectEvent& gone) {
-               return gone.visit == change.visit && gone.kind == ObjectEventKind::kGone &&
+               return gone.visit == event.visit && gone.kind == ObjectEventKind::kGone &&
                       box_overlap(gone.before, change.from) >= config_.same_place;
              });
     });
@@ -144,6 +90,10 @@ class EventMatcher {
   }
 
  private:
+  static bool told_in_time(const ObjectEvent& event, const TrueChange& change, int last) {
+    return event.visit >= change.visit && event.visit <= last;
+  }
+
   bool doubtful(const ObjectEvent& event) const {
     return event.may_be != 0 ||
            std::any_of(events_.begin(), events_.end(), [&](const ObjectEvent& other) {
@@ -160,120 +110,30 @@ ChangeCounts& counts_of(const std::string& kind, ChangeScores& scores) {
   return kind == "moved" ? scores.moved : kind == "removed" ? scores.removed : scores.added;
 }
 
-/// By object, how many frames of a recording show it by at least so many pixels.
-std::map<std::int32_t, int> frames_showing(const FrameSource& source, int least_px) {
-  std::map<std::int32_t, int> frames;
-  for (std::int64_t position = 0; position < source.size(); ++position) {
-    const auto ids = source.truth_ids(position);
-    if (!ids) continue;
-    std::map<std::int32_t, int> pixels;
-    for (const std::uint16_t id : *ids) ++pixels[id];
-    for (const auto& [id, count] : pixels) frames[id] += count >= least_px;
-  }
-  return frames;
-}
-
-/// What can be known of a truth's changes. Each visit's frames are read once.
-class Knowable {
- public:
-  Knowable(const TrueChanges& truth, const std::vector<Truth>& visits,
-           const ChangeScoresConfig& config)
-      : config_(config) {
-    for (std::size_t visit = 0; visit < visits.size(); ++visit) {
-      const auto source = open_frame_source(truth.visits[visit], {});
-      frames_.push_back(frames_showing(*source, config.seen_px));
-      look_at_others(truth, visits, static_cast<int>(visit) + 1, *source);
-    }
-  }
-
-  bool knows(const TrueChange& change) const {
-    return (change.from.isEmpty() || knows_left(change)) &&
-           (change.to.isEmpty() || knows_came(change));
-  }
-
-  /// The change as far as it can be known: of what moved out of sight, that it left; of what came
-  /// from there, that it is new.
-  std::vector<TrueChange> as_known(const TrueChange& change) const {
-    if (change.kind != "moved" || knows(change)) return {change};
-    TrueChange removed = change, added = change;
-    removed.kind = "removed", added.kind = "added";
-    removed.to.setEmpty(), added.from.setEmpty();
-    std::vector<TrueChange> known;
-    if (!knows_came(change)) known.push_back(removed);
-    if (!knows_left(change)) known.push_back(added);
-    return known;
-  }
-
- private:
-  bool knows_left(const TrueChange& change) const {
-    return knows(change.object, change.visit - 1, change.visit);
-  }
-  bool knows_came(const TrueChange& change) const {
-    return knows(change.object, change.visit, change.visit - 1);
-  }
-
-  using Place = std::tuple<std::int32_t, int, int>;  ///< a thing, who shows it, and who looks there
-
-  /// Whether one visit shows the thing, and the other looks where it was then.
-  bool knows(std::int32_t object, int shows, int looks) const {
-    const auto& frames = frames_[static_cast<std::size_t>(shows - 1)];
-    const auto seen = frames.find(object);
-    return seen != frames.end() && seen->second >= config_.seen_frames &&
-           in_sight_.contains({object, shows, looks});
-  }
-
-  /// Where things stood in the visit before that left, and came to in the one after.
-  void look_at_others(const TrueChanges& truth, const std::vector<Truth>& visits, int looks,
-                      const FrameSource& source) {
-    std::map<Place, Points> places;
-    for (const TrueChange& change : truth.changes) {
-      const int shows = change.visit == looks       ? looks - 1
-                        : change.visit == looks + 1 ? looks + 1
-                                                    : 0;
-      if (shows == 0) continue;
-      places[{change.object, shows, looks}] =
-          points_of(visits[static_cast<std::size_t>(shows - 1)], {change.object});
-    }
-    Points all;
-    for (const auto& [place, points] : places) all.insert(all.end(), points.begin(), points.end());
-    LookedThrough looked(all, -config_.through_m);
-    looked.add(source);
-    std::size_t first = 0;
-    for (const auto& [place, points] : places) {
-      const auto count =
-          static_cast<float>(looked.count(config_.seen_frames, first, points.size()));
-      if (!points.empty() && count >= config_.seen_share * static_cast<float>(points.size()))
-        in_sight_.insert(place);
-      first += points.size();
-    }
-  }
-
-  const ChangeScoresConfig& config_;
-  std::vector<std::map<std::int32_t, int>> frames_;  ///< by visit: frames_showing
-  std::set<Place> in_sight_;
-};
-
 void score_events(const MapHistory& history, const TrueChanges& truth,
                   const std::vector<Truth>& visits, const ChangeScoresConfig& config,
                   ChangeScores& scores) {
   EventMatcher matcher(history.events, config);
-  const Knowable knowable(truth, visits, config);
-  const auto score = [&](const TrueChange& change, bool told) {
+  const KnowableChanges knowable(truth, visits, config);
+  const auto score = [&](const TrueChange& change, bool told, bool real) {
     ChangeCounts& counts = counts_of(change.kind, scores);
-    counts.real += told || knowable.knows(change);
+    counts.real += real;
     counts.right += told;
     counts.told += told;
   };
   std::vector<TrueChange> untold;
   for (const TrueChange& change : truth.changes)
-    if (matcher.match(change))
-      score(change, true), scores.ids_kept += change.kind == "moved";
+    if (matcher.match(change, knowable.until(change)))
+      score(change, true, true), scores.ids_kept += change.kind == "moved";
     else
       untold.push_back(change);
   for (const TrueChange& change : untold) {
-    scores.in_doubt += change.kind == "moved" && matcher.tells_in_doubt(change);
-    for (const TrueChange& known : knowable.as_known(change))
-      score(known, matcher.match(known) != nullptr);
+    const int last = knowable.until(change);
+    scores.in_doubt += change.kind == "moved" && matcher.tells_in_doubt(change, last);
+    for (const auto& [known, real] : knowable.as_known(change)) {
+      const bool told = matcher.match(known, last) != nullptr;
+      score(known, told, told || real);
+    }
   }
   for (const ObjectEvent& event : matcher.wrong())
     ++counts_of(EventMatcher::name_of(event.kind), scores).told;

@@ -59,11 +59,12 @@ struct ChangeScores {
 };
 
 /// Scores a map that was continued through all visits of `folder` (load_true_changes). Things that
-/// the visits saw too little of (seen_frames, seen_px), and those whose places one of them did not
-/// look at (seen_share), are no changes that a map could tell; they count where it told them all
-/// the same. What moved out of sight was removed, as far as can be known, and what moved into sight
-/// was added. Throws Error where the map was not made from that many
-/// visits, and what the parts throw.
+/// the visits saw too little of (seen_frames, seen_px), and those whose places nobody looked at
+/// (seen_share), are no changes that a map could tell; they count where it told them all the same.
+/// What moved out of sight was removed, as far as can be known, and what moved into sight was
+/// added. A change may be told in any visit while the thing stays as it left it: where nobody
+/// looked in the first of them it is news in a later one. Throws Error where the map was not made
+/// from that many visits, and what the parts throw.
 ChangeScores score_changes(const MapDocument& map, const std::filesystem::path& folder,
                            const ChangeScoresConfig& config = {});
 
