@@ -6,6 +6,7 @@
 
 #include "ovimap/base/edit_distance.h"
 #include "ovimap/base/error.h"
+#include "ovimap/base/listed.h"
 
 namespace ovimap::apps {
 
@@ -23,12 +24,6 @@ std::vector<std::string> long_options(const CLI::App& command) {
   for (const CLI::Option* option : command.get_options())
     for (const std::string& name : option->get_lnames()) names.push_back(name);
   return names;
-}
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
 }
 
 /// ", did you mean 'WORD'?"; only where one is near.
@@ -93,7 +88,7 @@ std::string action_fault(const CLI::App& command, const CLI::ParseError& error,
   });
   if (actions.empty() || chosen || dynamic_cast<const CLI::RequiredError*>(&error) == nullptr)
     return {};
-  return concat("say what ", name, " is to do: ", joined(actions), "; `ovimap ", name,
+  return concat("say what ", name, " is to do: ", listed(actions), "; `ovimap ", name,
                 " --help` explains each");
 }
 
@@ -116,7 +111,7 @@ std::string usage_fault(const CLI::App& app, const CLI::ParseError& error,
                         const std::vector<std::string>& arguments) {
   const std::vector<std::string> commands = command_names(app);
   if (arguments.empty())
-    return concat("say what to do: ", joined(commands), "; `ovimap --help` explains each");
+    return concat("say what to do: ", listed(commands), "; `ovimap --help` explains each");
   const std::string& first = arguments.front();
   if (!contains(commands, first)) return fault_before_command(app, first);
   const CLI::App& command = *app.get_subcommand(first);

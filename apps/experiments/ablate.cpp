@@ -10,6 +10,7 @@
 #include "apps/command/file_slug.h"
 #include "apps/command/kept_settings.h"
 #include "apps/mapping/mapping_run.h"
+#include "ovimap/base/listed.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/base/version.h"
 #include "ovimap/image/codec.h"
@@ -143,11 +144,9 @@ AblationResult measure(const AblateOptions& options, const Ablation& ablation,
 }
 
 std::string heading(const AblateOptions& options) {
-  std::string scenes;
-  for (const std::string& scene : options.scenes)
-    scenes += (scenes.empty() ? "" : ", ") + scene_name(scene);
   return concat("`ovimap ablate ", options.name, "`, masks ", options.mapping.masks,
-                ", percent, scenes pooled: ", scenes, ". ", version(), " (", commit(),
+                ", percent, scenes pooled: ", listed(options.scenes, scene_name), ". ", version(),
+                " (", commit(),
                 "). Published figures are the paper's, with its own networks on its own data.");
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 
+#include "ovimap/base/listed.h"
 #include "ovimap/hub/catalogue/catalogue.h"
 #include "ovimap/inference/models/model_folder.h"
 
@@ -98,10 +99,8 @@ void print_repetition(const Repetition& repetition) {
     std::printf("the same map as %s, bit for bit\n", repetition.of.c_str());
     return;
   }
-  std::string tables;
-  for (const std::string& name : repetition.differing)
-    tables += (tables.empty() ? "" : ", ") + name;
-  std::printf("another map than %s; they differ in: %s\n", repetition.of.c_str(), tables.c_str());
+  std::printf("another map than %s; they differ in: %s\n", repetition.of.c_str(),
+              listed(repetition.differing).c_str());
 }
 
 nlohmann::json placing_json(const std::optional<AlignmentSearch>& placing) {

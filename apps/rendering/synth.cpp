@@ -5,6 +5,7 @@
 
 #include "apps/command/command.h"
 #include "ovimap/base/error.h"
+#include "ovimap/base/listed.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/synth/buildings/benchmark_scenes.h"
 #include "ovimap/synth/buildings/floor_plan.h"
@@ -138,12 +139,6 @@ int synth(const SynthOptions& options) {
   if (options.json)
     print_json(rooms.size() > 1 ? nlohmann::ordered_json{{"scenes", scenes}} : scenes[0]);
   return kDone;
-}
-
-std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
 }
 
 std::vector<std::string> scene_names() {

@@ -8,6 +8,7 @@
 
 #include "ovimap/base/bounded_json.h"
 #include "ovimap/base/error.h"
+#include "ovimap/base/listed.h"
 #include "ovimap/hub/description/image_processor.h"
 #include "ovimap/hub/description/tokenizer_files.h"
 #include "ovimap/inference/models/onnx_session.h"
@@ -27,9 +28,7 @@ bool has(const std::vector<TensorInfo>& tensors, const std::string& name) {
 }
 
 std::string names_of(const std::vector<TensorInfo>& tensors) {
-  std::string names;
-  for (const TensorInfo& tensor : tensors) names += (names.empty() ? "" : ", ") + tensor.name;
-  return names;
+  return listed(tensors, &TensorInfo::name);
 }
 
 /// Those of `roles` that the network has.

@@ -8,6 +8,7 @@
 
 #include "ovimap/base/error.h"
 #include "ovimap/base/installation/installed_data.h"
+#include "ovimap/base/listed.h"
 #include "ovimap/inference/models/model_folder.h"
 
 namespace ovimap {
@@ -104,9 +105,8 @@ fs::path named_model(const std::string& name, const std::vector<fs::path>& searc
 fs::path find_model(const std::string& name, const std::vector<fs::path>& search_path) {
   for (const fs::path& place : search_path)
     if (fs::is_regular_file(place / name / "model.yaml")) return place / name;
-  std::string searched;
-  for (const fs::path& place : search_path)
-    searched += (searched.empty() ? "" : ", ") + place.string();
+  const std::string searched =
+      listed(search_path, [](const fs::path& place) { return place.string(); });
   throw Error(
       concat("model '", name, "' was not found in ", searched.empty() ? "any folder" : searched,
              "; `ovimap models list` says what is there and what `ovimap models fetch NAME` "

@@ -12,6 +12,7 @@
 
 #include "ovimap/base/config.h"
 #include "ovimap/base/error.h"
+#include "ovimap/base/listed.h"
 
 namespace ovimap {
 
@@ -150,10 +151,8 @@ const TensorInfo& find_tensor(const std::vector<TensorInfo>& tensors, const std:
       std::find_if(tensors.begin(), tensors.end(),
                    [&name](const TensorInfo& tensor) { return tensor.name == name; });
   if (found != tensors.end()) return *found;
-  std::string names;
-  for (const TensorInfo& tensor : tensors) names += (names.empty() ? "" : ", ") + tensor.name;
   throw Error(concat("network ", file.string(), " has no ", role, " named '", name, "'; it has ",
-                     names, ". Correct the name in model.yaml"));
+                     listed(tensors, &TensorInfo::name), ". Correct the name in model.yaml"));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "ovimap/base/config.h"
+#include "ovimap/base/listed.h"
 #include "ovimap/instance/instance_mesh.h"
 #include "ovimap/io/map_file/map_edits.h"
 #include "ovimap/io/mesh/ply.h"
@@ -179,12 +180,6 @@ std::string lacking(const std::vector<Draft>& drafts, const EvaluationOptions& o
   return {};
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
-
 std::map<std::uint32_t, std::int32_t> numbers_of_guesses(
     const SearchIndex& index, const std::vector<std::vector<ClassGuess>>& guesses) {
   std::map<std::uint32_t, std::int32_t> numbers;
@@ -201,7 +196,7 @@ void add_classes(Draft& draft, const LabelSet& set, ImageTextEncoder& encoder,
   NumberedClasses numbered = number_classes(draft.classes, set);
   if (!numbered.unknown.empty())
     notices.push_back(concat("not scored, because ", set.name,
-                             " has no class for it: ", joined(numbered.unknown), " (",
+                             " has no class for it: ", listed(numbered.unknown), " (",
                              static_cast<int>(std::lround(100 * numbered.unknown_share)),
                              " % of the truth of ", draft.paths.source.string(), ")"));
   draft.scene.labels.truth_classes = std::move(numbered.numbers);

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "ovimap/base/error.h"
+#include "ovimap/base/listed.h"
 #include "ovimap/semantics/query/query_text.h"
 #include "ovimap/semantics/words/materials.h"
 
@@ -46,9 +47,7 @@ void admit_unjudged(const QueryPhrase& phrase, QueryAnswer& answer) {
   std::vector<std::string> words;
   collect_materials(phrase, words);
   if (words.empty()) return;
-  std::string list;
-  for (const std::string& word : words) list += (list.empty() ? "" : ", ") + word;
-  answer.reason += concat(answer.reason.empty() ? "" : "; ", "not judged: ", list);
+  answer.reason += concat(answer.reason.empty() ? "" : "; ", "not judged: ", listed(words));
 }
 
 bool asks_for_parts(const QueryPhrase& phrase) {
