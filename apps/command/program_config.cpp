@@ -136,12 +136,15 @@ ProgramConfig read_program_config(const MappingOptions& options) {
   return config;
 }
 
+Error no_surface(const std::filesystem::path& map) {
+  return Error(concat("map '", map.string(),
+                      "' holds objects without a surface, as `ovimap embed` makes them; draw the "
+                      "mesh they were made from"));
+}
+
 Mesh mesh_of(const MapDocument& document, const std::filesystem::path& map) {
   Mesh mesh = visible_mesh(document);
-  if (mesh.vertices.empty())
-    throw Error(concat("map '", map.string(),
-                       "' holds objects without a surface, as `ovimap embed` makes them; draw the "
-                       "mesh they were made from"));
+  if (mesh.vertices.empty()) throw no_surface(map);
   return mesh;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
+#include <functional>
 
 #include "apps/command/command.h"
 #include "export.h"
@@ -12,6 +13,7 @@
 #include "ovimap/io/exports/object_folder.h"
 #include "ovimap/io/map_file/map_edits.h"
 #include "ovimap/io/map_file/map_file.h"
+#include "ovimap/io/mesh/map_mesh.h"
 #include "ovimap/io/mesh/ply.h"
 #include "ovimap/io/pictures/palette.h"
 #include "ovimap/io/pictures/pictures.h"
@@ -24,11 +26,18 @@ namespace ovimap::apps {
 
 namespace {
 
-/// The map's mesh with instance ids as labels, coloured as --what says.
+/// Colours a mesh with instance ids as labels as --what says.
+std::function<void(Mesh&)> coloring_of(const ExportOptions& options) {
+  if (options.what == "instances")
+    return [](Mesh& mesh) { mesh.colors = instance_colors(mesh.labels); };
+  if (options.what == "semantic")
+    return [classes = classify(options)](Mesh& mesh) { mesh.colors = class_colors(mesh, classes); };
+  return [](Mesh&) {};
+}
+
 Mesh colored_mesh(const MapDocument& document, const ExportOptions& options) {
   Mesh mesh = mesh_of(document, options.map);
-  if (options.what == "instances") mesh.colors = instance_colors(mesh.labels);
-  if (options.what == "semantic") mesh.colors = class_colors(mesh, classify(options));
+  coloring_of(options)(mesh);
   return mesh;
 }
 
@@ -73,10 +82,19 @@ void export_glb(const ExportOptions& options) {
 
 void export_png(const ExportOptions& options) {
   const MapDocument document = load_corrected_map(options.map);
-  PictureConfig config;
-  config.coloring = MeshColoring::kColors;
-  write_file(options.out,
-             encode_png(top_down(colored_mesh(document, options), document.up, config)));
+  const auto color = coloring_of(options);
+  bool any = false;
+  const MeshParts parts = [&](const auto& visit) {
+    for_each_visible_part(document, [&](Mesh part) {
+      any = true;
+      color(part);
+      visit(part);
+    });
+  };
+  constexpr MeshColoring kOwn[] = {MeshColoring::kColors};
+  const std::vector<RgbImage> pictures = top_down(parts, document.up, kOwn);
+  if (!any) throw no_surface(options.map);
+  write_file(options.out, encode_png(pictures.front()));
 }
 
 void export_grid(const ExportOptions& options) {

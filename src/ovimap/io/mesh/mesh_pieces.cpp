@@ -27,6 +27,11 @@ std::vector<Value> chosen(const std::vector<Value>& values,
   return result;
 }
 
+template <class Value>
+void append(const std::vector<Value>& from, std::vector<Value>& to) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
 /// The triangles with the vertices that they need.
 Mesh piece_of(const Mesh& mesh, Triangles triangles) {
   std::vector<std::uint32_t> used;
@@ -48,6 +53,16 @@ Mesh piece_of(const Mesh& mesh, Triangles triangles) {
 }
 
 }  // namespace
+
+void append(const Mesh& part, Mesh& mesh) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  append(part.vertices, mesh.vertices);
+  append(part.normals, mesh.normals);
+  append(part.colors, mesh.colors);
+  append(part.labels, mesh.labels);
+  for (const auto& [a, b, c] : part.triangles)
+    mesh.triangles.push_back({first + a, first + b, first + c});
+}
 
 std::map<std::uint32_t, Mesh> split_by_label(const Mesh& mesh) {
   std::map<std::uint32_t, Triangles> triangles;

@@ -9,6 +9,9 @@
 
 namespace ovimap {
 
+/// Adds a mesh to another one.
+void append(const Mesh& part, Mesh& mesh);
+
 /// The mesh cut by label. A triangle goes to the label of most of its corners, else to that of its
 /// first; each part has the vertices that its triangles need, in their order. Vertices without
 /// triangle are in no part.

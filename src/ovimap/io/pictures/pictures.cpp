@@ -23,17 +23,20 @@ namespace {
 constexpr Rgb8 kGround = {247, 247, 244};
 constexpr float kMargin = 0.04f;  // around a view from above, as a share of its longest side
 constexpr std::size_t kRowsPerTask = 16;
+constexpr std::size_t kMostVertices = 1u << 22;  // that tell how large a scene is
 
 /// Shades the foremost triangle of each pixel.
 class Shader {
  public:
-  Shader(const Mesh& mesh, const RasterView& view, const PictureConfig& config)
+  Shader(const Mesh& mesh, const RasterView& view, MeshColoring coloring,
+         const PictureConfig& config)
       : mesh_(mesh),
+        coloring_(coloring),
         config_(config),
         world_from_camera_(view.world_from_camera.cast<float>()),
         to_lamp_(world_from_camera_.linear() *
                  Eigen::Vector3f(-0.35f, -0.55f, -0.75f).normalized()) {
-    if (config.coloring == MeshColoring::kInstances)
+    if (coloring == MeshColoring::kInstances)
       colors_ = instance_colors(mesh.labels);
     else
       colors_ = mesh.colors;
@@ -83,7 +86,7 @@ class Shader {
       const auto& [r, g, b] = colors_[vertex];
       return Eigen::Vector3f(r, g, b);
     };
-    if (config_.coloring == MeshColoring::kColors)
+    if (coloring_ == MeshColoring::kColors)
       return color(t[0]) * weights[0] + color(t[1]) * weights[1] + color(t[2]) * weights[2];
     // Instances are never mixed: the nearest corner decides.
     int nearest = 0;
@@ -92,57 +95,109 @@ class Shader {
   }
 
   const Mesh& mesh_;
+  const MeshColoring coloring_;
   const PictureConfig& config_;
   Eigen::Isometry3f world_from_camera_;
   Eigen::Vector3f to_lamp_;
   std::vector<std::array<std::uint8_t, 3>> colors_;
 };
 
-/// Draws at `supersampling` times the size and shrinks.
-RgbImage draw(const Mesh& mesh, RasterView view, const PictureConfig& config) {
-  const int width = view.camera.width, height = view.camera.height;
-  view.camera = view.camera.scaled_to(width * config.supersampling, height * config.supersampling);
-  const RasterResult raster = rasterize(mesh, view);
-  const Shader shader(mesh, view, config);
-  RgbImage image(view.camera.width, view.camera.height, kGround);
-  parallel_for(static_cast<std::size_t>(image.height()), kRowsPerTask, [&](std::size_t row) {
-    const int y = static_cast<int>(row);
-    for (int x = 0; x < image.width(); ++x) {
-      const std::uint32_t triangle = raster.triangle.at(x, y);
-      if (triangle == RasterResult::kNoTriangle) continue;
-      image.at(x, y) = shader.shade(triangle, point_in_camera(view, x, y, raster.depth_m.at(x, y)));
-    }
-  });
-  return config.supersampling == 1 ? image : resize_bilinear(image, width, height);
-}
+/// Pictures of a mesh that comes in parts, one for each colouring, drawn at `supersampling` times
+/// the size and shrunk.
+class Canvas {
+ public:
+  Canvas(const RasterView& view, std::span<const MeshColoring> colorings,
+         const PictureConfig& config)
+      : config_(config),
+        size_(view.camera.width, view.camera.height),
+        view_(enlarged(view, config.supersampling)),
+        raster_(view_),
+        colorings_(colorings.begin(), colorings.end()),
+        images_(colorings.size(), RgbImage(view_.camera.width, view_.camera.height, kGround)) {}
+
+  void add(const Mesh& part) {
+    const RasterResult raster = raster_.draw(part);
+    for (std::size_t i = 0; i < images_.size(); ++i)
+      paint(raster, Shader(part, view_, colorings_[i], config_), images_[i]);
+  }
+
+  std::vector<RgbImage> finish() {
+    if (config_.supersampling > 1)
+      for (RgbImage& image : images_) image = resize_bilinear(image, size_.x(), size_.y());
+    return std::move(images_);
+  }
+
+ private:
+  static RasterView enlarged(RasterView view, int times) {
+    view.camera = view.camera.scaled_to(view.camera.width * times, view.camera.height * times);
+    return view;
+  }
+
+  void paint(const RasterResult& raster, const Shader& shader, RgbImage& image) const {
+    parallel_for(static_cast<std::size_t>(image.height()), kRowsPerTask, [&](std::size_t row) {
+      const int y = static_cast<int>(row);
+      for (int x = 0; x < image.width(); ++x) {
+        const std::uint32_t triangle = raster.triangle.at(x, y);
+        if (triangle == RasterResult::kNoTriangle) continue;
+        image.at(x, y) =
+            shader.shade(triangle, point_in_camera(view_, x, y, raster.depth_m.at(x, y)));
+      }
+    });
+  }
+
+  const PictureConfig& config_;
+  const Eigen::Vector2i size_;
+  const RasterView view_;
+  PartRasterizer raster_;
+  const std::vector<MeshColoring> colorings_;
+  std::vector<RgbImage> images_;
+};
 
 struct Interval {
   float low = 0, high = 0;
   float length() const { return high - low; }
 };
 
-/// The interval of the vertices along a direction, without `trim` of them at each end.
-Interval extent(const Mesh& mesh, const Eigen::Vector3f& direction, float trim) {
-  std::vector<float> along;
-  along.reserve(mesh.vertices.size());
-  for (const Eigen::Vector3f& vertex : mesh.vertices) along.push_back(vertex.dot(direction));
-  const auto skipped = static_cast<std::ptrdiff_t>(trim * static_cast<float>(along.size()));
-  std::nth_element(along.begin(), along.begin() + skipped, along.end());
-  const float low = along[static_cast<std::size_t>(skipped)];
-  std::nth_element(along.begin(), along.end() - 1 - skipped, along.end());
-  return {low, *(along.end() - 1 - skipped)};
-}
+/// Where the surface of a mesh that comes in parts lies and how it faces, in bounded memory.
+struct SceneExtent {
+  SurfaceDirections directions;
+  std::vector<Eigen::Vector3f> vertices;  ///< every step-th
+  std::size_t step = 1, count = 0;
 
-/// A camera over the mesh that looks down; the longer side of the scene lies across the picture.
-RasterView view_from_above(const Mesh& mesh, const Eigen::Vector3f& up, const PictureConfig& config,
-                           std::optional<float> max_height_m) {
-  Eigen::Vector3f right = guess_wall_direction(mesh, up), down = right.cross(up);
-  Interval across = extent(mesh, right, config.trim), along = extent(mesh, down, config.trim);
+  void add(const Mesh& part) {
+    directions.add(part);
+    for (const Eigen::Vector3f& vertex : part.vertices)
+      if (count++ % step == 0) vertices.push_back(vertex);
+    while (vertices.size() > kMostVertices) {
+      for (std::size_t i = 0; 2 * i < vertices.size(); ++i) vertices[i] = vertices[2 * i];
+      vertices.resize((vertices.size() + 1) / 2);
+      step *= 2;
+    }
+  }
+
+  /// The interval of the vertices along a direction, without `trim` of them at each end.
+  Interval along(const Eigen::Vector3f& direction, float trim) const {
+    std::vector<float> places;
+    places.reserve(vertices.size());
+    for (const Eigen::Vector3f& vertex : vertices) places.push_back(vertex.dot(direction));
+    const auto skipped = static_cast<std::ptrdiff_t>(trim * static_cast<float>(places.size()));
+    std::nth_element(places.begin(), places.begin() + skipped, places.end());
+    const float low = places[static_cast<std::size_t>(skipped)];
+    std::nth_element(places.begin(), places.end() - 1 - skipped, places.end());
+    return {low, *(places.end() - 1 - skipped)};
+  }
+};
+
+/// A camera over the scene that looks down; the longer side of the scene lies across the picture.
+RasterView view_from_above(SceneExtent& scene, const Eigen::Vector3f& up,
+                           const PictureConfig& config, std::optional<float> max_height_m) {
+  Eigen::Vector3f right = guess_wall_direction(scene.directions, up), down = right.cross(up);
+  Interval across = scene.along(right, config.trim), along = scene.along(down, config.trim);
   if (along.length() > across.length()) {
     right = down, down = right.cross(up);
-    across = extent(mesh, right, config.trim), along = extent(mesh, down, config.trim);
+    across = scene.along(right, config.trim), along = scene.along(down, config.trim);
   }
-  const Interval height = extent(mesh, up, config.trim);
+  const Interval height = scene.along(up, config.trim);
   const float top = max_height_m.value_or(height.high - config.drop_top * height.length());
 
   const float longest_m = std::max(across.length(), 1e-3f);
@@ -186,14 +241,31 @@ void list_fields(PictureConfig& config, ConfigFields& fields) {
   fields.add("scale_bar", config.scale_bar, "whether a view from above has a scale bar");
 }
 
+std::vector<RgbImage> top_down(const MeshParts& parts, const Eigen::Vector3f& up,
+                               std::span<const MeshColoring> colorings, const PictureConfig& config,
+                               std::optional<float> max_height_m) {
+  SceneExtent scene;
+  bool any = false;
+  parts([&](const Mesh& part) {
+    scene.add(part);
+    any = any || !part.triangles.empty();
+  });
+  if (!any)
+    return std::vector<RgbImage>(colorings.size(),
+                                 RgbImage(config.longest_side_px, config.longest_side_px, kGround));
+  const RasterView view = view_from_above(scene, up.normalized(), config, max_height_m);
+  Canvas canvas(view, colorings, config);
+  parts([&](const Mesh& part) { canvas.add(part); });
+  std::vector<RgbImage> images = canvas.finish();
+  if (config.scale_bar)
+    for (RgbImage& image : images) draw_scale_bar(image, view.camera.fx);
+  return images;
+}
+
 RgbImage top_down(const Mesh& mesh, const Eigen::Vector3f& up, const PictureConfig& config,
                   std::optional<float> max_height_m) {
-  if (mesh.triangles.empty())
-    return RgbImage(config.longest_side_px, config.longest_side_px, kGround);
-  const RasterView view = view_from_above(mesh, up.normalized(), config, max_height_m);
-  RgbImage image = draw(mesh, view, config);
-  if (config.scale_bar) draw_scale_bar(image, view.camera.fx);
-  return image;
+  const MeshParts whole = [&](const auto& visit) { visit(mesh); };
+  return std::move(top_down(whole, up, {&config.coloring, 1}, config, max_height_m).front());
 }
 
 RgbImage perspective(const Mesh& mesh, const PinholeCamera& camera, const Pose& world_from_camera,
@@ -202,7 +274,9 @@ RgbImage perspective(const Mesh& mesh, const PinholeCamera& camera, const Pose& 
   view.camera = camera;
   view.world_from_camera = world_from_camera;
   view.cull_back_faces = config.cull_back_faces;
-  return draw(mesh, view, config);
+  Canvas canvas(view, {&config.coloring, 1}, config);
+  canvas.add(mesh);
+  return std::move(canvas.finish().front());
 }
 
 Pose look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, const Eigen::Vector3d& up) {

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -39,6 +41,16 @@ void list_fields(PictureConfig& config, ConfigFields& fields);
 /// empty ground of longest_side_px squared.
 RgbImage top_down(const Mesh& mesh, const Eigen::Vector3f& up, const PictureConfig& config = {},
                   std::optional<float> max_height_m = std::nullopt);
+
+/// A mesh that is never in memory as a whole: calls the function that it gets with one part after
+/// the other, the same whenever it is called.
+using MeshParts = std::function<void(const std::function<void(const Mesh&)>&)>;
+
+/// The same of a mesh in parts, coloured in several ways. config.coloring counts for nothing.
+std::vector<RgbImage> top_down(const MeshParts& parts, const Eigen::Vector3f& up,
+                               std::span<const MeshColoring> colorings,
+                               const PictureConfig& config = {},
+                               std::optional<float> max_height_m = std::nullopt);
 
 /// The mesh as a pinhole camera sees it, the size of `camera`.
 RgbImage perspective(const Mesh& mesh, const PinholeCamera& camera, const Pose& world_from_camera,

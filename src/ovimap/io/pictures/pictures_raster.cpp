@@ -83,8 +83,8 @@ std::vector<ScreenTriangle> screen_triangles(const Mesh& mesh, const RasterView&
 }
 
 /// Draws one triangle into the rows [first_row, end_row).
-void draw(const ScreenTriangle& triangle, int first_row, int end_row, Image<float>& nearness,
-          Image<std::uint32_t>& source) {
+void draw_triangle(const ScreenTriangle& triangle, int first_row, int end_row,
+                   Image<float>& nearness, Image<std::uint32_t>& source) {
   const auto& [a, b, c] = triangle.corners;
   const double area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
   if (area == 0) return;
@@ -117,22 +117,30 @@ Eigen::Vector3f point_in_camera(const RasterView& view, int u, int v, float dept
 }
 
 RasterResult rasterize(const Mesh& mesh, const RasterView& view) {
-  const int width = view.camera.width, height = view.camera.height;
+  return PartRasterizer(view).draw(mesh);
+}
+
+PartRasterizer::PartRasterizer(const RasterView& view)
+    : view_(view), nearness_(view.camera.width, view.camera.height, kNothing) {}
+
+RasterResult PartRasterizer::draw(const Mesh& part) {
+  const int width = view_.camera.width, height = view_.camera.height;
   RasterResult result{Image<std::uint32_t>(width, height, RasterResult::kNoTriangle),
                       Image<float>(width, height)};
-  Image<float> nearness(width, height, kNothing);
-  const std::vector<ScreenTriangle> triangles = screen_triangles(mesh, view);
+  const std::vector<ScreenTriangle> triangles = screen_triangles(part, view_);
   // A band of rows belongs to one task, so no two tasks write the same pixel.
-  parallel_for_ranges(
-      static_cast<std::size_t>(height), kRowsPerBand, [&](std::size_t begin, std::size_t end) {
-        for (const ScreenTriangle& triangle : triangles)
-          draw(triangle, static_cast<int>(begin), static_cast<int>(end), nearness, result.triangle);
-        for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
-          for (int x = 0; x < width; ++x) {
-            const float near = nearness.at(x, y);
-            if (near != kNothing) result.depth_m.at(x, y) = view.orthographic ? -near : 1 / near;
-          }
-      });
+  parallel_for_ranges(static_cast<std::size_t>(height), kRowsPerBand,
+                      [&](std::size_t begin, std::size_t end) {
+                        for (const ScreenTriangle& triangle : triangles)
+                          draw_triangle(triangle, static_cast<int>(begin), static_cast<int>(end),
+                                        nearness_, result.triangle);
+                        for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
+                          for (int x = 0; x < width; ++x) {
+                            if (result.triangle.at(x, y) == RasterResult::kNoTriangle) continue;
+                            const float near = nearness_.at(x, y);
+                            result.depth_m.at(x, y) = view_.orthographic ? -near : 1 / near;
+                          }
+                      });
   return result;
 }
 

@@ -37,6 +37,18 @@ struct RasterResult {
 /// first wins, so the result does not depend on the number of threads.
 RasterResult rasterize(const Mesh& mesh, const RasterView& view);
 
+/// The same of a mesh that comes in parts: draws one of them where it lies before all others.
+class PartRasterizer {
+ public:
+  explicit PartRasterizer(const RasterView& view);
+  /// The pixels at which the part is foremost so far.
+  RasterResult draw(const Mesh& part);
+
+ private:
+  RasterView view_;
+  Image<float> nearness_;  ///< of what was drawn
+};
+
 /// The point that pixel (u, v) shows at a depth, in the camera frame.
 Eigen::Vector3f point_in_camera(const RasterView& view, int u, int v, float depth_m);
 

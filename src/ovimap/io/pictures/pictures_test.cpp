@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "ovimap/base/config.h"
+#include "ovimap/io/mesh/mesh_pieces.h"
 #include "ovimap/io/pictures/palette.h"
 #include "ovimap/io/pictures/pictures_scale_bar.h"
 
@@ -92,6 +93,27 @@ TEST(TopDown, ShowsVertexColoursOrGrey) {
   Mesh bare = room();
   bare.colors.clear();
   EXPECT_GT(count(top_down(bare, Vector3f::UnitZ(), config), instance_color(0)), 75000u);
+}
+
+TEST(TopDown, DrawsAMeshThatComesInParts) {
+  Mesh mesh = room();
+  mesh.normals.assign(mesh.vertices.size(), Vector3f(0.6f, 0, 0.8f));
+  add_quad(mesh, 9, {2, 1, 0.5f}, {1, 0, 0.5f},
+           {0, 1, 0.2f});  // through the table's height, aslant
+  mesh.normals.resize(mesh.vertices.size(), Vector3f::UnitZ());
+  constexpr MeshColoring kBoth[] = {MeshColoring::kColors, MeshColoring::kInstances};
+  const std::vector<RgbImage> pictures = top_down(
+      [&](const auto& visit) {
+        for (const auto& [label, part] : split_by_label(mesh)) visit(part);
+        visit(Mesh());
+      },
+      Vector3f::UnitZ(), kBoth);
+  ASSERT_EQ(pictures.size(), 2u);
+  for (const std::size_t i : {0u, 1u}) {
+    PictureConfig config;
+    config.coloring = kBoth[i];
+    EXPECT_EQ(pictures[i], top_down(mesh, Vector3f::UnitZ(), config)) << i;
+  }
 }
 
 TEST(TopDown, AMeshWithoutTrianglesIsEmptyGround) {

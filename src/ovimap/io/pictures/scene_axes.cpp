@@ -181,10 +181,10 @@ Eigen::Vector3f guess_up(SurfaceDirections& directions, std::span<const Pose> wo
   return guess_up(directions.area_normals(), world_from_camera, config);
 }
 
-Eigen::Vector3f guess_wall_direction(const Mesh& mesh, const Eigen::Vector3f& up) {
+Eigen::Vector3f guess_wall_direction(SurfaceDirections& directions, const Eigen::Vector3f& up) {
   const auto [right, forward] = axes_across(up);
   std::array<QuarterBin, kQuarterBins> bins{};
-  for (const Eigen::Vector3f& normal : area_normals(mesh)) {
+  for (const Eigen::Vector3f& normal : directions.area_normals()) {
     const float area = normal.norm();
     if (std::abs(normal.dot(up)) >= kUprightCosine * area) continue;
     const float quarters = std::atan2(normal.dot(forward), normal.dot(right)) / kQuarterTurn;

@@ -45,6 +45,6 @@ Eigen::Vector3f guess_up(SurfaceDirections& directions, std::span<const Pose> wo
 /// A horizontal direction along most walls: the commonest normal of upright
 /// surface, by area and modulo 90 degrees. Some horizontal direction where there are no walls.
 /// Unit length.
-Eigen::Vector3f guess_wall_direction(const Mesh& mesh, const Eigen::Vector3f& up);
+Eigen::Vector3f guess_wall_direction(SurfaceDirections& directions, const Eigen::Vector3f& up);
 
 }  // namespace ovimap

@@ -97,13 +97,16 @@ TEST(GuessWallDirection, LiesAlongTheWalls) {
     add_quad(mesh, {1, 1, 0}, {0.7f, 0.5f, 0}, {0, 0, 1});  // a screen across the attic
     const Eigen::AngleAxisf turn(degrees * static_cast<float>(EIGEN_PI) / 180, Vector3f::UnitZ());
     for (Vector3f& vertex : mesh.vertices) vertex = turn * vertex;
-    const Vector3f direction = guess_wall_direction(mesh, Vector3f::UnitZ());
+    SurfaceDirections directions;
+    directions.add(mesh);
+    const Vector3f direction = guess_wall_direction(directions, Vector3f::UnitZ());
     const float along_x = std::abs(direction.dot(turn * Vector3f::UnitX()));
     const float along_y = std::abs(direction.dot(turn * Vector3f::UnitY()));
     EXPECT_GT(std::max(along_x, along_y), std::cos(0.1 * EIGEN_PI / 180)) << degrees;
     EXPECT_NEAR(direction.z(), 0, 1e-6);
   }
-  EXPECT_NEAR(guess_wall_direction(Mesh{}, Vector3f::UnitY()).norm(), 1, 1e-6);
+  SurfaceDirections none;
+  EXPECT_NEAR(guess_wall_direction(none, Vector3f::UnitY()).norm(), 1, 1e-6);
 }
 
 TEST(SceneAxesConfig, ListsItsFields) {

@@ -33,13 +33,10 @@ IdImage project_instances(const MapDocument& document, const Frame& frame,
 }  // namespace
 
 TopDownPictures top_down_pictures(const MapDocument& document) {
-  const Mesh mesh = visible_mesh(document);
-  const auto colored = [&](MeshColoring coloring) {
-    PictureConfig config;
-    config.coloring = coloring;
-    return top_down(mesh, document.up, config);
-  };
-  return {colored(MeshColoring::kInstances), colored(MeshColoring::kColors)};
+  constexpr MeshColoring kBoth[] = {MeshColoring::kInstances, MeshColoring::kColors};
+  std::vector<RgbImage> pictures = top_down(
+      [&](const auto& visit) { for_each_visible_part(document, visit); }, document.up, kBoth);
+  return {std::move(pictures[0]), std::move(pictures[1])};
 }
 
 RgbImage contact_sheet_picture(const MapDocument& document, const FrameSource& source, int frames) {

@@ -21,21 +21,6 @@ std::vector<SurfaceExtent> extents_by_label(const Mesh& mesh) {
   return extents;
 }
 
-template <class Value>
-void append(const std::vector<Value>& from, std::vector<Value>& to) {
-  to.insert(to.end(), from.begin(), from.end());
-}
-
-void append(const Mesh& from, Mesh& to) {
-  const auto first = static_cast<std::uint32_t>(to.vertices.size());
-  append(from.vertices, to.vertices);
-  append(from.normals, to.normals);
-  append(from.colors, to.colors);
-  append(from.labels, to.labels);
-  for (const auto& [a, b, c] : from.triangles)
-    to.triangles.push_back({first + a, first + b, first + c});
-}
-
 }  // namespace
 
 LabelTable label_table(const MapRecord& corrected, const LabelForest& forest) {
