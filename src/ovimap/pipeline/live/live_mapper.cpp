@@ -166,9 +166,13 @@ void LiveMapper::restore(MapDocument&& document) {
 std::optional<LiveMapper::Prepared> LiveMapper::next_prepared() {
   while (!prepared_.wait_for(kLook)) {
     if (!repeating_) apply_late_masks();
-    if (while_waiting && !frames_.empty()) while_waiting(*mapper_, frames_, depth_camera_);
+    tell_waiting();
   }
   return prepared_.pop();
+}
+
+void LiveMapper::tell_waiting() {
+  if (while_waiting && !frames_.empty()) while_waiting(*mapper_, frames_, depth_camera_);
 }
 
 void LiveMapper::fuse_frames() {
@@ -179,10 +183,12 @@ void LiveMapper::fuse_frames() {
       move(*next->update);
       continue;
     }
-    if (!finder_ || locate(*next->frame))
+    if (!finder_ || locate(*next->frame)) {
       fuse(std::move(*next), told);
-    else
+    } else {
       mapper_->note({LiveStep::Kind::kFrame, mapper_->number_of(*next->frame->frame)});
+      tell_waiting();
+    }
   }
   if (repeating_)
     (void)repeat_until_frame();

@@ -117,8 +117,8 @@ class LiveMapper {
       std::function<void(Mapper&, const std::vector<FrameLogEntry>&, const PinholeCamera&)>;
   /// Called after every frame and every change of labels. Set before the first push.
   Watcher after_frame;
-  /// Called now and then while frames are in the map and no further one comes: a camera that pauses
-  /// leaves time to show and to store what it saw. Set before the first push.
+  /// Called now and then while frames are in the map and no further one is fused: a camera that
+  /// pauses or is lost leaves time to show and to store what it saw. Set before the first push.
   Watcher while_waiting;
   /// Called with what the tracker made of each frame, on the fusing thread; set before the first
   /// push.
@@ -146,6 +146,7 @@ class LiveMapper {
   void prepare_frames();
   std::optional<Prepared> next_prepared();
   void fuse_frames();
+  void tell_waiting();
   void find_masks();
   const LiveStep* repeat_until_frame();
   bool locate(PreparedFrame& prepared);

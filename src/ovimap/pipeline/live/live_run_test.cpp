@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/pipeline/live/live_run.h"
 
+#include <memory>
 #include <numeric>
 
 #include <gtest/gtest.h>
 
 #include "ovimap/pipeline/mapping/desk_fixture.h"
+#include "ovimap/pipeline/sequence/pose_finder.h"
 
 namespace ovimap {
 namespace {
@@ -129,6 +131,28 @@ class BrokenSource : public DeskScene {
 
 TEST(RunLive, CarriesOutWhatReadingThrows) {
   EXPECT_EQ(failure_of(BrokenSource(), all_positions()), "the disk is gone");
+}
+
+/// A camera that is lost for good, while its frames go on coming.
+TEST(RunLive, WhileTheCameraIsLostWhoeverWatchesIsTold) {
+  const DeskScene scene;
+  MapperConfig config;
+  config.map.voxel_size_m = 0.02f;
+  LiveMapper mapper(config, {});
+  mapper.track_with(std::make_shared<PoseFinder>(Tracker(TrackConfig{}), LoopConfig{}));
+  std::size_t told = 0;
+  mapper.while_waiting = [&](Mapper&, const auto& frames, const PinholeCamera&) {
+    told = frames.size();
+  };
+  Frame frame = *scene.read(0).frame;
+  mapper.push_and_wait(frame);
+  for (const float far_m : {5.f, 5.f}) {  // nothing that the map knows
+    for (float& depth : frame.depth) depth = far_m;
+    mapper.push_and_wait(frame);
+  }
+  mapper.drain();
+  EXPECT_EQ(mapper.statistics().frames_lost, 2);
+  EXPECT_EQ(told, 1u);
 }
 
 }  // namespace
