@@ -9,32 +9,14 @@
 #include <utility>
 
 #include "ovimap/base/error.h"
-#include "ovimap/instance/object_boxes.h"
 #include "ovimap/map/rays/surface_lookup.h"
+#include "ovimap/pipeline/revise/scattered.h"
 #include "ovimap/pipeline/revise/thing_look.h"
 #include "ovimap/pipeline/revise/visit_surface.h"
 
 namespace ovimap {
 
 namespace {
-
-Eigen::AlignedBox3f box_of(const MapDocument& map, InstanceId id) {
-  const auto surface = map.surfaces.find(id);
-  if (surface != map.surfaces.end() && !surface->second.empty())
-    return box_without_specks(surface->second, surface_spacing_m(map.map.config().voxel_size_m));
-  const InstanceSummary* instance = find_instance(map.instances, id);
-  return instance ? instance->box : Eigen::AlignedBox3f();
-}
-
-/// Whether an object's surface may be a thing's: it is no smaller than the smallest side of its
-/// box. What is left of a thing that went, or was taken for others, lies scattered where it was.
-bool is_scattered(const MapDocument& map, InstanceId id) {
-  const InstanceSummary* instance = find_instance(map.instances, id);
-  if (instance == nullptr) return true;
-  const float voxel_m = map.map.config().voxel_size_m;
-  const Eigen::Vector3f sides = box_of(map, id).sizes();
-  return static_cast<float>(instance->points) * voxel_m * voxel_m < sides.prod() / sides.maxCoeff();
-}
 
 /// The colour of the voxel at a point, sRGB; all 0 where it has none.
 std::array<std::uint8_t, 3> color_at(VoxelFinder& finder, const Eigen::Vector3f& point) {
@@ -121,11 +103,13 @@ class VisitTeller {
   /// They go, and nothing is said of it.
   void leave_out_scattered() {
     for (ObjectChange& change : changes_) {
-      if (change.kind == ChangeKind::kRemoved && is_scattered(before_, change.before)) {
+      if (change.kind == ChangeKind::kRemoved &&
+          is_scattered(before_, change.before, config_.least_filled)) {
         remains_.insert(change.before);
         change.kind = ChangeKind::kUnseen;
       }
-      if (change.before == 0 && change.after != 0 && is_scattered(seen_, change.after))
+      if (change.before == 0 && change.after != 0 &&
+          is_scattered(seen_, change.after, config_.least_filled))
         change.after = 0;
     }
   }

@@ -10,6 +10,9 @@ namespace ovimap {
 struct VisitHistoryConfig {
   MapDiffConfig diff;
   float least_shift_m = 0.08f;  ///< what moved less than that has not
+  float least_filled = 0.125f;  ///< what has less surface, as a share of the largest side of its
+                                ///< box along its own axes, is no thing: the tubes of a bicycle
+                                ///< have a sixth, reckoned from their lengths
   float same_shape = 0.15f;   ///< mean distance of two surfaces laid over each other, as a share of
                               ///< their reach, that counts as much as no colour in common, ...
   float coarse_voxels = 1.f;  ///< ... but at least so much: surfaces are as rough
