@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "ovimap/instance/instance_mesh.h"
 #include "ovimap/io/mesh/mesh_pieces.h"
 #include "ovimap/map/surface/incremental_mesh.h"
 #include "ovimap/map/surface/mesh_extraction.h"

@@ -3,9 +3,9 @@
 #include "ovimap/io/pictures/pictures.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <numeric>
-#include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "ovimap/base/config.h"

@@ -3,7 +3,6 @@
 #include "ovimap/pipeline/evaluation/change_evaluation.h"
 
 #include <algorithm>
-#include <map>
 #include <set>
 
 #include "ovimap/base/config.h"

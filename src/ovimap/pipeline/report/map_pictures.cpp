@@ -3,6 +3,8 @@
 #include "ovimap/pipeline/report/map_pictures.h"
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "ovimap/base/error.h"
 #include "ovimap/image/codec.h"
