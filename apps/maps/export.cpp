@@ -86,7 +86,7 @@ void export_png(const ExportOptions& options) {
   bool any = false;
   const MeshParts parts = [&](const auto& visit) {
     for_each_visible_part(document, [&](Mesh part) {
-      any = true;
+      any = any || !part.triangles.empty();
       color(part);
       visit(part);
     });

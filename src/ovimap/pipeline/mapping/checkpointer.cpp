@@ -37,6 +37,7 @@ void Checkpointer::after_frame(Mapper& mapper, const std::vector<FrameLogEntry>&
 void Checkpointer::while_waiting(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
                                  const PinholeCamera& depth_camera) {
   if (!off()) go_on(mapper, frames, depth_camera);
+  if (tiles_->bounded()) make_room(mapper);  // whoever shows the map reads voxels meanwhile
 }
 
 void Checkpointer::go_on(Mapper& mapper, const std::vector<FrameLogEntry>& frames,

@@ -8,7 +8,6 @@
 #include <chrono>
 #include <fstream>
 #include <thread>
-#include <utility>
 
 #include "ovimap/frames/recording/sequence_fixture.h"
 #include "ovimap/image/codec.h"
@@ -155,24 +154,29 @@ TEST_F(CheckpointerTest, APauseStoresWhatCameBeforeItOnce) {
         std::make_shared<TileKeeper>(partial_, CheckpointFile::Start::kAnew, MemoryConfig{}),
         {1e-6f, 0}, {}, 0);
     sequence = run_sequence(scene_, positions({}, scene_.size()), begun, nullptr, {}, &checkpoints);
-    const auto written = [&] { return begun.timers().summary()["checkpoint_end"].count; };
-    const auto pause = [&] {
-      for (int i = 0; i < 100; ++i) {
-        checkpoints.while_waiting(begun, sequence.frames, sequence.depth_camera);
-        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    const auto times = [&](const char* stage) { return begun.timers().summary()[stage].count; };
+    const auto wait = [&] {
+      checkpoints.while_waiting(begun, sequence.frames, sequence.depth_camera);
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    };
+    // One is due at any time, so where none is under way the next call begins what is left to
+    // store.
+    const auto settle = [&] {
+      for (;;) {
+        do wait();
+        while (times("checkpoint_end") != times("checkpoint"));
+        const auto before = times("checkpoint");
+        wait();
+        if (times("checkpoint") == before) return before;
       }
     };
-    auto before = written();
-    do pause();
-    while (std::exchange(before, written()) != written());
+    const auto before = settle();
     MapEdit rename;
     rename.id = 1;
     rename.instances = {1};
     rename.name = "desk";
     checkpoints.set_edits({rename});
-    while (written() == before) pause();
-    pause();
-    EXPECT_EQ(written(), before + 1) << "the correction, and then nothing new";
+    EXPECT_EQ(settle(), before + 1) << "the correction, and nothing else";
   }
   const MapDocument stored = load_map(partial_);
   EXPECT_EQ(stored.frames.size(), sequence.frames.size());

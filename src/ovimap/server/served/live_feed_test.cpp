@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <thread>
-#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -198,9 +197,10 @@ TEST_F(LiveFeedTest, ShowsWhatIsThereInAPause) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   };
   while (!shown()) wait();
-  std::uint64_t version = 0;
-  while (std::exchange(version, map_->snapshot()->version) != version)
+  for (std::uint64_t before = 0; before != map_->snapshot()->version;) {
+    before = map_->snapshot()->version;
     for (int i = 0; i < 20; ++i) wait();
+  }
   EXPECT_TRUE(shown()) << "and then there is nothing new to tell";
 }
 
