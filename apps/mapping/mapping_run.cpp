@@ -312,6 +312,22 @@ MappingRun map_recording(const MappingOptions& options, const std::string& title
   return run;
 }
 
+namespace {
+
+/// Lets the audience see the map, then stores it with the corrections that were made meanwhile.
+/// Either may be null.
+template <class Show, class Store>
+LiveMapper::Watcher watcher(LiveAudience* audience, Checkpointer* checkpoints, Show show,
+                            Store store) {
+  return [=](Mapper& mapper, const auto& frames, const PinholeCamera& depth_camera) {
+    if (audience) (audience->*show)(mapper, frames, depth_camera);
+    if (audience && checkpoints) checkpoints->set_edits(audience->edits());
+    if (checkpoints) (checkpoints->*store)(mapper, frames, depth_camera);
+  };
+}
+
+}  // namespace
+
 MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& target,
                     LiveAudience* audience, FrameIntake* intake, CameraFeed* camera) {
   MappingInputs inputs(options, intake == nullptr);
@@ -341,16 +357,10 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
                     begun.document ? begun.document->edits : MapEdits{});
   const SequenceResult done = resume(begun, header, inputs, mapper, intake);
   auto checkpoints = make_checkpointer(begun, inputs, header, done.frames.size());
-  mapper.after_frame = [&](Mapper& map, const auto& frames, const PinholeCamera& depth_camera) {
-    if (audience) audience->after_frame(map, frames, depth_camera);
-    if (audience && checkpoints) checkpoints->set_edits(audience->edits());
-    if (checkpoints) checkpoints->after_frame(map, frames, depth_camera);
-  };
-  mapper.while_waiting = [&](Mapper& map, const auto& frames, const PinholeCamera& depth_camera) {
-    if (audience) audience->while_waiting(map, frames, depth_camera);
-    if (audience && checkpoints) checkpoints->set_edits(audience->edits());
-    if (checkpoints) checkpoints->while_waiting(map, frames, depth_camera);
-  };
+  mapper.after_frame =
+      watcher(audience, checkpoints.get(), &LiveAudience::after_frame, &Checkpointer::after_frame);
+  mapper.while_waiting = watcher(audience, checkpoints.get(), &LiveAudience::while_waiting,
+                                 &Checkpointer::while_waiting);
   if (audience)
     mapper.after_tracking = [audience](const auto& frame) { audience->after_tracking(frame); };
   if (camera) camera->start();

@@ -30,20 +30,14 @@ void Checkpointer::after_frame(Mapper& mapper, const std::vector<FrameLogEntry>&
   if (off() && !tiles_->bounded()) return;
   tiles_->note_changes(mapper.map(), mapper.touched_blocks());
   news_ = true;
-  go_on(mapper, frames, depth_camera);
-  if (tiles_->bounded()) make_room(mapper);
+  while_waiting(mapper, frames, depth_camera);
 }
 
 void Checkpointer::while_waiting(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
                                  const PinholeCamera& depth_camera) {
-  if (!off()) go_on(mapper, frames, depth_camera);
-  if (tiles_->bounded()) make_room(mapper);  // whoever shows the map reads voxels meanwhile
-}
-
-void Checkpointer::go_on(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
-                         const PinholeCamera& depth_camera) {
   if (!next_ && news_ && due(frames.size())) begin(mapper, frames, depth_camera);
   if (next_) go_on_writing(mapper);
+  if (tiles_->bounded()) make_room(mapper);  // whoever shows the map reads voxels meanwhile
 }
 
 void Checkpointer::set_edits(MapEdits edits) {

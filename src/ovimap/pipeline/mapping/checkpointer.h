@@ -63,8 +63,6 @@ class Checkpointer {
   void begin(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
              const PinholeCamera& depth_camera);
   void freeze_changes(VoxelMap& map);
-  void go_on(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
-             const PinholeCamera& depth_camera);
   void go_on_writing(Mapper& mapper);
   void finish_writing(Mapper& mapper);
   void make_room(Mapper& mapper);

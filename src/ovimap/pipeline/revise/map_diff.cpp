@@ -297,16 +297,10 @@ using ChangeColor = std::array<std::uint8_t, 3>;
 constexpr ChangeColor kNewColor{40, 170, 70}, kMovedColor{40, 90, 220},
     kOldPlaceColor{140, 190, 250}, kRemovedColor{215, 45, 45};
 
-void append(Mesh& mesh, const Mesh& piece, const ChangeColor& color) {
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  mesh.vertices.insert(mesh.vertices.end(), piece.vertices.begin(), piece.vertices.end());
-  mesh.normals.insert(mesh.normals.end(), piece.normals.begin(), piece.normals.end());
-  mesh.colors.resize(mesh.vertices.size(), color);
-  mesh.labels.resize(mesh.vertices.size(), 0);
-  for (auto triangle : piece.triangles) {
-    for (std::uint32_t& corner : triangle) corner += first;
-    mesh.triangles.push_back(triangle);
-  }
+void append(Mesh& mesh, Mesh piece, const ChangeColor& color) {
+  piece.colors.assign(piece.vertices.size(), color);
+  piece.labels.assign(piece.vertices.size(), 0);
+  append(piece, mesh);
 }
 
 /// Half-way to a light grey, so that changes stand out.

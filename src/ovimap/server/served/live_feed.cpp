@@ -70,11 +70,9 @@ void LiveFeed::after_frame(Mapper& mapper, const std::vector<FrameLogEntry>& fra
                            const PinholeCamera& depth_camera) {
   if (waits_.empty()) note_all(mapper.map());  // of an earlier run that this one goes on with
   note_changes(mapper.touched_blocks());
-  const auto now = Clock::now();
-  if (now >= next_pose_) send_pose(frames);
-  if (now >= next_mesh_) hand_over_surface(mapper);
+  if (Clock::now() >= next_pose_) send_pose(frames);
   objects_wait_ = true;
-  hand_over_objects(mapper, frames, depth_camera);
+  while_waiting(mapper, frames, depth_camera);
 }
 
 void LiveFeed::while_waiting(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
