@@ -225,6 +225,16 @@ TEST_F(TrackProgramTest, ObjectsSayWhereAVisitBegins) {
   EXPECT_EQ(run_json("info visit.ovimap --json")["frames"], 28);
 }
 
+TEST_F(TrackProgramTest, AVisitThatBeginsElsewhereIsToldToBeginInTheMap) {
+  ASSERT_EQ(run(std::string(kRun) + "--set frame_store.max_mb=100").code, 0);
+  for (int frame = 0; frame < 12; ++frame) show(frame, behind(frame));
+  const ProgramResult visit =
+      run("run unposed --live --fps 1000 --poses track --set live.queue=20 --continue map.ovimap "
+          "--set map.voxel_size_m=0.02 -o visit.ovimap");
+  EXPECT_NE(visit.err.find("followed in 8 of 20 frames only: no frame before"), std::string::npos)
+      << visit.err;
+}
+
 TEST_F(TrackProgramTest, WhatNeedsPosesSaysSo) {
   expect_complaint("check unposed", {"no poses", "ovimap run"});
   expect_complaint("run unposed --poses given -o map.ovimap", {"no poses"});

@@ -38,8 +38,7 @@ AlignmentSearch ask_objects(const MapDocument& map, MappingInputs& inputs) {
 
 }  // namespace
 
-void find_start(const MapDocument* begun, bool new_visit, MappingInputs& inputs) {
-  if (!inputs.finder || !begun || begun->frames.empty()) return;
+void find_start(const MapDocument& begun, bool new_visit, MappingInputs& inputs) {
   const ProgramConfig& config = inputs.config;
   const std::vector<Keyframe>& keyframes = inputs.finder->tracker().keyframes();
   // Both maps must be in memory.
@@ -47,8 +46,8 @@ void find_start(const MapDocument* begun, bool new_visit, MappingInputs& inputs)
       new_visit && inputs.source && config.visit.object_frames > 0 && config.memory.max_mb == 0;
   if (may_ask &&
       !shows_known_place(*inputs.source, first_of(inputs.range, config.track.part_frames),
-                         begun->map, keyframes, config.track))
-    inputs.placing = ask_objects(*begun, inputs);
+                         begun.map, keyframes, config.track))
+    inputs.placing = ask_objects(begun, inputs);
   if (!keyframes.empty()) return;
   // A map of which only a part could be fused again keeps nothing.
   inputs.config.mapper.frame_store.max_mb = 0;

@@ -10,7 +10,7 @@ namespace ovimap::apps {
 /// goes on with. Where none of a new visit's first frames shows a place that the map's keyframes
 /// know, the objects of both are asked (place_by_objects), and what they say is left in
 /// `inputs.placing` and proposed to the tracker. Throws Error where the map keeps no frames and
-/// objects do not tell. `begun`: null where nothing is gone on with. Before the mapper is made.
-void find_start(const MapDocument* begun, bool new_visit, MappingInputs& inputs);
+/// objects do not tell. Before the mapper is made.
+void find_start(const MapDocument& begun, bool new_visit, MappingInputs& inputs);
 
 }  // namespace ovimap::apps

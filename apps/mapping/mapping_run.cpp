@@ -111,14 +111,12 @@ SequenceResult resume(BegunRun& begun, MapHeader& header, MappingInputs& inputs,
   SequenceResult sequence;
   if (!begun.document) return sequence;
   if (begun.new_visit) {
-    require_same_map(*begun.document, mapper.config().map, inputs.encoder);
     require_fit(*begun.document, inputs, intake);
     discount_past(begun.document->map, inputs.config.visit.past);
     begun.document->seen_free.clear();  // between two visits anything may have come
     begin_visit(*begun.document, header);
   } else {
     require_same_settings(begun.document->config_text, header.config_text, "--resume");
-    require_same_encoder(begun.document->semantics.encoder, inputs.encoder);
     header.history = begun.document->history;
     skip_done(inputs.range, *begun.document);
   }
@@ -167,6 +165,19 @@ std::shared_ptr<PoseFinder> make_finder(const MappingInputs& inputs, const Begun
     tracker.begin_in(keyframes_of(begun.document->frames, begun.document->kept_frames,
                                   begun.document->depth_camera, inputs.config.track.keyframes));
   return std::make_shared<PoseFinder>(std::move(tracker), inputs.config.loops);
+}
+
+/// Begins the search for the camera in what the run goes on with; throws Error where that has other
+/// voxels or embeddings, before anything that takes long.
+void begin_in(const BegunRun& begun, MappingInputs& inputs) {
+  inputs.finder = make_finder(inputs, begun);
+  if (!begun.document) return;
+  if (begun.new_visit)
+    require_same_map(*begun.document, inputs.config.mapper.map, inputs.encoder);
+  else
+    require_same_encoder(begun.document->semantics.encoder, inputs.encoder);
+  if (inputs.finder && !begun.document->frames.empty())
+    find_start(*begun.document, begun.new_visit, inputs);
 }
 
 /// What tracking did; where the camera came by a place again, the map's loops are closed.
@@ -286,9 +297,9 @@ MappingRun map_recording(const MappingOptions& options, const std::string& title
   MappingInputs inputs(options);
   BegunRun begun = find_begun(target, inputs.config.memory);
   inputs.open_networks(options, keep_masks);
-  const auto finder = inputs.finder = make_finder(inputs, begun);
   watch_for_interrupt();
-  find_start(begun.document ? &*begun.document : nullptr, begun.new_visit, inputs);
+  begin_in(begun, inputs);
+  const auto finder = inputs.finder;
   Mapper mapper(inputs.config.mapper, inputs.masks, inputs.encoder);
   mapper.recognize_with(inputs.recognizer);
   MapHeader header = make_header(inputs, options, mapper.config());
@@ -337,11 +348,10 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
     lower_thread_priority();
     inputs.open_networks(options);
   }).get();
+  begin_in(begun, inputs);
   LiveMapper mapper(inputs.config.mapper, inputs.config.live, inputs.masks, inputs.encoder);
   mapper.recognize_with(inputs.recognizer);
-  const auto finder = inputs.finder = make_finder(inputs, begun);
-  find_start(begun.document ? &*begun.document : nullptr, begun.new_visit, inputs);
-  mapper.track_with(finder);
+  mapper.track_with(inputs.finder);
   MapHeader header = make_header(inputs, options, mapper.config());
   RepeatedRun repeated;
   if (!target.repeated.empty())

@@ -188,12 +188,15 @@ double frames_per_second(const MappingRun& run) {
 }
 
 void advise_on_lost_camera(const MappingRun& run) {
-  std::fprintf(
-      stderr,
-      "ovimap: the camera was followed in %zu of %zu frames only: its pictures must overlap "
-      "and follow one another closely, some 10 to 30 a second; record slower turns with "
-      "more frames, or give poses (docs/tracking.md)\n",
-      run.tracking->summary.tracked, run.tracking->summary.frames);
+  const TrackSummary& summary = run.tracking->summary;
+  const char* const advice =
+      2 * summary.unplaced > summary.frames - summary.tracked
+          ? "no frame before shows a place that the map knows; begin where it was made from, and "
+            "look at that place for a moment (docs/tracking.md)"
+          : "its pictures must overlap and follow one another closely, some 10 to 30 a second; "
+            "record slower turns with more frames, or give poses (docs/tracking.md)";
+  std::fprintf(stderr, "ovimap: the camera was followed in %zu of %zu frames only: %s\n",
+               summary.tracked, summary.frames, advice);
 }
 
 }  // namespace

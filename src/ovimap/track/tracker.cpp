@@ -288,6 +288,7 @@ TrackSummary summarise(const std::vector<TrackedFrame>& log) {
   bool lost = false;
   for (const TrackedFrame& frame : log) {
     summary.tracked += frame.tracked;
+    summary.unplaced += !frame.tracked && summary.tracked == 0;
     summary.degenerate += frame.tracked && frame.degenerate > 0;
     summary.found_times += frame.tracked && lost;
     if (!frame.tracked && !lost) summary.lost.emplace_back(frame.index, frame.index);

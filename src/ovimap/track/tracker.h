@@ -28,6 +28,7 @@ struct TrackedFrame {
 
 struct TrackSummary {
   std::size_t frames = 0, tracked = 0, lost_times = 0, found_times = 0, degenerate = 0;
+  std::size_t unplaced = 0;  ///< frames before the first whose place in a begun map was known
   std::vector<std::pair<std::int64_t, std::int64_t>> lost;  ///< first and last index, in order
 };
 
