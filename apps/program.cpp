@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "program.h"
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -91,6 +92,7 @@ Program::Program()
 }
 
 int Program::run(std::vector<std::string> arguments) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is told as a full disk is
   try {
     app_.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
     const int code = actions_.at(app_.get_subcommands().front())();

@@ -144,6 +144,9 @@ TEST_F(ResumeProgramTest, GoesOnWithAMap) {
   expect_complaint("run long/scene --masks none -o room.ovimap --resume", {"masks gt", "--resume"});
   expect_complaint(std::string(kRun) + "-o room.ovimap --resume --set map.voxel_size_m=0.02",
                    {"voxel_size_m", "0.02"});
+  std::filesystem::rename(path("long/scene"), path("long/another"));
+  expect_complaint("run long/another --masks gt --encoder none -o room.ovimap --resume",
+                   {"long/scene", "long/another", "--continue"});
 }
 
 TEST_F(ResumeProgramTest, ALiveRunThatWasKilledIsRepeatedWithItsPause) {
@@ -187,6 +190,29 @@ TEST_F(ResumeProgramTest, AnotherVisitGoesOnWithAMap) {
   EXPECT_NE(history.out.find("visit 3, 30 frames"), std::string::npos) << history.out;
 }
 
+/// Corrections that are made while another visit is mapped are in the map that replaces it; a map
+/// that is merged has no past.
+TEST_F(ResumeProgramTest, AVisitKeepsWhatIsCorrectedMeanwhile) {
+  ASSERT_EQ(run(std::string(kRun) + "-o room.ovimap").code, 0);
+  const auto ids = run_json("info room.ovimap --json")["instances"];
+  const std::string id = std::to_string(ids[0]["id"].get<int>());
+  const pid_t visit = ::fork();
+  if (visit == 0)
+    execute({"run", "long/scene", "--masks", "gt", "--encoder", "none", "--set",
+             "map.voxel_size_m=0.03", "--live", "--fps", "5", "--continue", "room.ovimap"});
+  EXPECT_EQ(run("edit room.ovimap rename " + id + " 'tea pot'").code, 0);
+  int status = 0;
+  ::waitpid(visit, &status, 0);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  EXPECT_NE(run("edit room.ovimap log").out.find("tea pot"), std::string::npos);
+  EXPECT_EQ(run_json("info room.ovimap --json")["history"]["visits"].size(), 2u);
+  ASSERT_EQ(run(std::string(kRun) + "-o other.ovimap").code, 0);
+  expect_complaint("merge other.ovimap room.ovimap -o room.ovimap", {"several visits", "-o"});
+  const ProgramResult merged = run("merge other.ovimap room.ovimap -o both.ovimap");
+  EXPECT_EQ(merged.code, 0);
+  EXPECT_NE(merged.err.find("room.ovimap is of several visits"), std::string::npos) << merged.err;
+}
+
 TEST_F(ResumeProgramTest, ALiveVisitGoesOnWithAMap) {
   ASSERT_EQ(run(std::string(kRun) + "-o home.ovimap").code, 0);
   const std::string before = slurp(path("home.ovimap"));
@@ -228,6 +254,9 @@ TEST_F(ResumeProgramTest, AVisitThatDoesNotFitChangesNothing) {
   expect_complaint(
       "run off/scene --masks gt --encoder none --set map.voxel_size_m=0.03 --continue home.ovimap",
       {"does not fit", "cm", "align"});
+  expect_complaint(
+      "run off/scene --masks gt --encoder none --set map.voxel_size_m=0.03 -o home.ovimap --resume",
+      {"another recording", "--continue"});
   expect_complaint("run long/scene --masks gt --encoder none --continue home.ovimap",
                    {"map.voxel_size_m"});
   expect_complaint("run long/scene --masks gt --encoder none", {"-o", "--continue"});

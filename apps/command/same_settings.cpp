@@ -26,7 +26,23 @@ std::vector<std::string> deciding_lines(const std::string& config) {
   return lines;
 }
 
+/// "kind:last/part" of a source: the same recording may be named from elsewhere.
+std::string short_source(const std::string& source) {
+  const std::size_t kind = source.find(':');
+  const std::filesystem::path place = source.substr(kind == std::string::npos ? 0 : kind + 1);
+  const std::filesystem::path last = place.has_filename() ? place : place.parent_path();
+  return source.substr(0, kind) + ":" + last.filename().string();
+}
+
 }  // namespace
+
+void require_same_source(const MapDocument& begun, const std::string& source) {
+  const auto& visits = begun.history.visits;
+  const std::string& before = visits.empty() ? begun.source : visits.back().source;
+  if (before.empty() || short_source(before) == short_source(source)) return;
+  throw Error(concat("the run to go on with maps '", before, "', and this recording is '", source,
+                     "'; --resume goes on with the same one, --continue with the same place"));
+}
 
 void require_same_settings(const std::string& begun, const std::string& now, const char* option) {
   const std::vector<std::string> before = deciding_lines(begun), after = deciding_lines(now);

@@ -6,6 +6,10 @@
 
 namespace ovimap::apps {
 
+/// Throws Error where a run is resumed with another recording than its last one: two places would
+/// lie in one map.
+void require_same_source(const MapDocument& begun, const std::string& source);
+
 /// Throws Error naming the first setting in which two runs differ, of those that decide what the
 /// map becomes. `option`: the one by which this one goes on with the other.
 void require_same_settings(const std::string& begun, const std::string& now, const char* option);

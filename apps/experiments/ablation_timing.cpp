@@ -24,7 +24,7 @@ constexpr std::array kStages{
     PaperStage{"2D masks", "mapper", 964.8, 30, {"masks", ""}},
     PaperStage{"depth segmentation", "mapper", 88.4, 30, {"surface", "regions"}},
     PaperStage{"2D-3D association", "mapper", 76.3, 30, {"associate", "registry"}},
-    PaperStage{"fusion", "mapper", 0, 1, {"integrate", ""}},
+    PaperStage{"fusion", "mapper", 0, 1, {"allocate", "integrate"}},
     PaperStage{"view selection", "mapper", 140.8, 10, {"project", "views"}},
     PaperStage{"view features", "encoder's", 131.3, 10, {"embed", ""}},
 };

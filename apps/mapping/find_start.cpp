@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "find_start.h"
 
+#include <chrono>
+#include <optional>
+
 #include "ovimap/pipeline/sequence/visit_start.h"
 
 namespace ovimap::apps {
@@ -36,6 +39,25 @@ AlignmentSearch ask_objects(const MapDocument& map, MappingInputs& inputs) {
   }
 }
 
+/// The first frames that are pushed, which stay where they wait.
+std::vector<Frame> first_pushed(FrameIntake& intake, int count) {
+  constexpr std::chrono::milliseconds kLook{50};  // between looks at what was interrupted
+  std::optional<std::vector<Frame>> first;
+  while (!(first = intake.peek(static_cast<std::size_t>(count), kLook)))
+    if (interrupted()) intake.finish();
+  return std::move(*first);
+}
+
+/// nullopt: none came, and so the run will be empty.
+std::optional<VisitFit> fit_pushed(const VoxelMap& map, FrameIntake& intake,
+                                   const ProgramConfig& config) {
+  const std::vector<Frame> first = first_pushed(intake, config.visit.frames);
+  if (first.empty()) return std::nullopt;
+  VisitFitter fitter(map, config.track, config.visit);
+  for (const Frame& frame : first) fitter.add(frame);
+  return fitter.fit();
+}
+
 }  // namespace
 
 void find_start(const MapDocument& begun, bool new_visit, MappingInputs& inputs) {
@@ -56,6 +78,30 @@ void find_start(const MapDocument& begun, bool new_visit, MappingInputs& inputs)
         concat("the map to go on with keeps no frames to find the camera's place by; map it "
                "with --set frame_store.max_mb=1000",
                inputs.placing ? concat(" (", inputs.placing->doubt, ")") : std::string()));
+}
+
+void require_fit(const MapDocument& begun, const MappingInputs& inputs, FrameIntake* intake) {
+  const ProgramConfig& config = inputs.config;
+  if (!config.visit.enabled || inputs.tracking) return;
+  const std::optional<VisitFit> fit =
+      intake ? fit_pushed(begun.map, *intake, config)
+             : fit_visit(begun.map, *inputs.source, inputs.range, config.track, config.visit);
+  const std::string fault = fit ? misfit(*fit, config.visit) : "";
+  if (!fault.empty())
+    throw Error(concat("the recording does not fit the map, which stays as it was: ", fault,
+                       "; map it by itself and bring the two together with `ovimap merge --align`, "
+                       "or give poses in the map's world frame"));
+}
+
+void require_same_recording(const MapDocument& begun, const MappingInputs& inputs,
+                            const std::vector<std::int64_t>& done) {
+  if (!inputs.config.visit.enabled || inputs.tracking || !inputs.source || done.empty()) return;
+  const VisitFitConfig& config = inputs.config.visit;
+  const std::string fault =
+      misfit(fit_visit(begun.map, *inputs.source, done, inputs.config.track, config), config);
+  if (!fault.empty())
+    throw Error(concat("the map was made of another recording, for this one does not fit it: ",
+                       fault, "; --resume goes on with the same one, --continue with the place"));
 }
 
 }  // namespace ovimap::apps

@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "mapping_inputs.h"
+#include "ovimap/pipeline/live/frame_intake.h"
 
 namespace ovimap::apps {
 
@@ -12,5 +16,15 @@ namespace ovimap::apps {
 /// `inputs.placing` and proposed to the tracker. Throws Error where the map keeps no frames and
 /// objects do not tell. Before the mapper is made.
 void find_start(const MapDocument& begun, bool new_visit, MappingInputs& inputs);
+
+/// Throws Error unless the frames of a new visit lie where the map is: those of the recording or,
+/// where it is given, the first that come to `intake`, which stay there. Where poses are tracked
+/// anything fits.
+void require_fit(const MapDocument& begun, const MappingInputs& inputs, FrameIntake* intake);
+
+/// Throws Error unless the frames of which the map was made, by position in the recording, lie in
+/// it: else two places would. Likewise.
+void require_same_recording(const MapDocument& begun, const MappingInputs& inputs,
+                            const std::vector<std::int64_t>& done);
 
 }  // namespace ovimap::apps

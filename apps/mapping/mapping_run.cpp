@@ -65,42 +65,17 @@ BegunRun find_begun(const RunTarget& target, const MemoryConfig& memory) {
   return begun;
 }
 
-/// Frames that are not in the map yet.
-void skip_done(std::vector<std::int64_t>& range, const MapRecord& begun) {
-  if (begun.frames.empty()) return;
+/// Takes frames that are in the map already out of those that are left, and returns them.
+std::vector<std::int64_t> take_done(std::vector<std::int64_t>& left, const MapRecord& begun) {
+  if (begun.frames.empty()) return {};
   const std::int64_t first =
                          begun.history.visits.empty() ? 0 : begun.history.visits.back().first_index,
                      last = begun.frames.back().index;
-  std::erase_if(range, [&](std::int64_t position) { return first + position <= last; });
-}
-
-/// The first frames that are pushed, which stay where they wait.
-std::vector<Frame> first_pushed(FrameIntake& intake, int count) {
-  constexpr std::chrono::milliseconds kLook{50};  // between looks at what was interrupted
-  std::optional<std::vector<Frame>> first;
-  while (!(first = intake.peek(static_cast<std::size_t>(count), kLook)))
-    if (interrupted()) intake.finish();
-  return std::move(*first);
-}
-
-/// Throws Error unless the frames lie where the map is.
-void require_fit(const MapDocument& begun, const MappingInputs& inputs, FrameIntake* intake) {
-  const VisitFitConfig& config = inputs.config.visit;
-  if (!config.enabled || inputs.tracking) return;
-  VisitFitter fitter(begun.map, inputs.config.track, config);
-  if (intake) {
-    const std::vector<Frame> first = first_pushed(*intake, config.frames);
-    if (first.empty()) return;  // so will be the run
-    for (const Frame& frame : first) fitter.add(frame);
-  }
-  const std::string fault = misfit(
-      intake ? fitter.fit()
-             : fit_visit(begun.map, *inputs.source, inputs.range, inputs.config.track, config),
-      config);
-  if (!fault.empty())
-    throw Error(concat("the recording does not fit the map, which stays as it was: ", fault,
-                       "; map it by itself and bring the two together with `ovimap merge --align`, "
-                       "or give poses in the map's world frame"));
+  const auto not_done = std::stable_partition(
+      left.begin(), left.end(), [&](std::int64_t position) { return first + position <= last; });
+  std::vector<std::int64_t> done(left.begin(), not_done);
+  left.erase(left.begin(), not_done);
+  return done;
 }
 
 /// Gives `mapper`, a Mapper or a LiveMapper, what an earlier run had, and `header` what people told
@@ -116,9 +91,10 @@ SequenceResult resume(BegunRun& begun, MapHeader& header, MappingInputs& inputs,
     begun.document->seen_free.clear();  // between two visits anything may have come
     begin_visit(*begun.document, header);
   } else {
+    require_same_source(*begun.document, header.source);
     require_same_settings(begun.document->config_text, header.config_text, "--resume");
     header.history = begun.document->history;
-    skip_done(inputs.range, *begun.document);
+    require_same_recording(*begun.document, inputs, take_done(inputs.range, *begun.document));
   }
   header.names = begun.document->names;
   header.edits = begun.document->edits;

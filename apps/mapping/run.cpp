@@ -10,6 +10,7 @@
 #include "ovimap/semantics/past/time_words.h"
 #include "run_parts.h"
 #include "run_report.h"
+#include "save_run.h"
 
 namespace ovimap::apps {
 
@@ -68,7 +69,7 @@ int run(RunOptions options) {
   MappingRun mapped = map_source(options, target, camera);
   const double fps = camera ? sent_fps(*mapped.live) : options.fps;
   report_faults(mapped);
-  save_map(options.map, mapped.document);
+  save_run(target, mapped);
   mapped.checkpoints->remove();
   if (!mapped.live) mapped.parts = map_parts(options.mapping, options.map, mapped);
   if (!options.trajectory.empty()) write_trajectory(options.trajectory, mapped.document.frames);

@@ -21,6 +21,12 @@ void report_skipped(const SequenceResult& result) {
   if (interrupted()) std::fprintf(stderr, "ovimap: interrupted; saving what was mapped so far\n");
 }
 
+void report_bad_frames(const LiveStatistics& done) {
+  if (done.frames_failed > 0)
+    std::fprintf(stderr, "ovimap: %lld frame(s) were left out, the first: %s\n",
+                 static_cast<long long>(done.frames_failed), done.frame_fault.c_str());
+}
+
 void report_bad_masks(const LiveStatistics& done) {
   if (done.masks_failed > 0)
     std::fprintf(stderr, "ovimap: the masks of %lld frame(s) are bad, the first: %s\n",
@@ -61,6 +67,7 @@ nlohmann::json live_json(const LiveRunResult& live, double fps) {
           {"frames_fused", done.frames_fused},
           {"frames_dropped", done.frames_dropped},
           {"frames_lost", done.frames_lost},
+          {"frames_failed", done.frames_failed},
           {"pose_updates", done.pose_updates},
           {"frames_read_late", live.frames_read_late},
           {"camera_seconds", live.camera_seconds},
@@ -184,7 +191,8 @@ bool masks_all_absent(const MappingRun& run) {
 }
 
 double frames_per_second(const MappingRun& run) {
-  return static_cast<double>(run.sequence.frames.size()) / run.sequence.seconds;
+  const std::size_t fused = run.sequence.frames.size() - run.frames_before;
+  return fused == 0 ? 0 : static_cast<double>(fused) / run.sequence.seconds;
 }
 
 void advise_on_lost_camera(const MappingRun& run) {
@@ -215,6 +223,7 @@ void report_faults(const MappingRun& run) {
                  "name a mask file after its frame or its number, or map with --masks none\n",
                  run.sequence.frames.size());
   if (!run.live) return;
+  report_bad_frames(run.live->statistics);
   report_bad_masks(run.live->statistics);
   report_encoder(run.live->statistics);
 }

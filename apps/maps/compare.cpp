@@ -204,9 +204,26 @@ void refuse_contradiction(const MapAlignment& alignment) {
              " % agrees; give the transform with --transform FILE, or find it with --align"));
 }
 
+/// Says that a map's past does not go into a merged one, and refuses to replace the only one.
+void tell_lost_past(const CompareOptions& options) {
+  for (const std::filesystem::path& map : {options.a, options.b}) {
+    if (read_map_info(map).history.visits.size() < 2) continue;
+    std::error_code ignored;
+    if (std::filesystem::equivalent(map, options.out, ignored))
+      throw Error(concat("'", map.string(),
+                         "' is of several visits, whose history a merged map does not have; write "
+                         "to another file with -o"));
+    std::fprintf(stderr,
+                 "ovimap: %s is of several visits; what changed between them (`info --history`) "
+                 "does not go into the merged map\n",
+                 map.c_str());
+  }
+}
+
 int merge(const CompareOptions& options) {
   const ThreadLimit limit(options.threads);
   check_map_target(options.out);
+  tell_lost_past(options);
   const MapDocument b = load_map(options.b);
   MapAlignment alignment;
   {

@@ -45,7 +45,7 @@ int reembed_map(const ReembedOptions& options) {
                 {"views", summary.views},
                 {"views_dropped", summary.dropped}});
   else
-    std::printf("%s: %zu objects have embeddings of %s, from %zu kept crops\n", out.c_str(),
+    std::printf("%s: %zu super-points have embeddings of %s, from %zu kept crops\n", out.c_str(),
                 summary.objects, encoder->identity().name.c_str(), summary.views);
   return kDone;
 }

@@ -80,9 +80,10 @@ def agent_over_stdio(*arguments, **variables):
 
 
 @contextlib.contextmanager
-def http_server(*arguments, **variables):
-    """`ovimap-mcp --http 0`; gives its address and, where it made one, its token."""
-    command = [sys.executable, "-m", "ovimap.mcp_command", *map(str, arguments), "--http", "0"]
+def http_server(*arguments, first="", **variables):
+    """`ovimap-mcp --http 0`; gives its address and, where it made one, its token. first: Python that it runs before."""
+    code = f"import sys\nfrom ovimap import mcp_command\n{first}\nsys.exit(mcp_command.main())"
+    command = [sys.executable, "-c", code, *map(str, arguments), "--http", "0"]
     with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=environment(**variables)) as server:
         address = token = ""
         while not address:

@@ -7,11 +7,13 @@ import http.server
 import os
 import pathlib
 import shutil
+import socket
 import subprocess
 import sys
 import threading
 import time
 import urllib.error
+import urllib.parse
 import urllib.request
 
 import ovimap
@@ -379,6 +381,71 @@ def test_a_token_is_made_where_none_is_given(saved_map):
         assert status_of(address, {}) == 401
     with http_server(f"room={saved_map}", OVIMAP_MCP_TOKEN="other") as (address, token):
         assert token == "" and status_of(address, {"Authorization": "Bearer other"}) == 400
+
+
+HALF_A_HEAD = b"POST /mcp HT"
+WITH_TOKEN = (
+    b"POST /mcp HTTP/1.1\r\nHost: localhost\r\nAuthorization: Bearer secret\r\nContent-Type: application/json\r\n"
+    b"Accept: application/json, text/event-stream\r\nContent-Length: 8\r\n"
+)
+ENOUGH = 120  # seconds that no machine takes
+
+
+def limits(files, head_s):
+    """Of a server: how many files it may have open, how long a head may take."""
+    return f"""
+import resource
+from ovimap.agents import over_http
+resource.setrlimit(resource.RLIMIT_NOFILE, ({files}, {files}))
+over_http.HEAD_LIMIT_S = {head_s}
+"""
+
+
+def connected(stack, address, sent):
+    where = urllib.parse.urlsplit(address)
+    connection = stack.enter_context(socket.create_connection((where.hostname, where.port), timeout=ENOUGH))
+    with contextlib.suppress(ConnectionError):  # cut off already
+        connection.sendall(sent)
+    return connection
+
+
+def is_cut_off(connection):
+    """Waits for it."""
+    with contextlib.suppress(ConnectionError):
+        while connection.recv(4096):
+            pass
+    return True
+
+
+def test_connections_without_the_token_give_way(saved_map):
+    with contextlib.ExitStack() as stack:
+        address, _ = stack.enter_context(http_server(f"room={saved_map}", first=limits(256, 3600), OVIMAP_MCP_TOKEN="secret"))
+        known = connected(stack, address, WITH_TOKEN + b"Expect: 100-continue\r\n\r\n")
+        assert known.recv(4096).startswith(b"HTTP/1.1 100 ")
+        crowd = [connected(stack, address, HALF_A_HEAD) for _ in range(400)]
+        assert all(is_cut_off(connection) for connection in crowd[:-128])
+        assert status_of(address, {"Authorization": "Bearer secret"}) == 400
+        known.sendall(b"nonsense")
+        assert known.recv(4096).startswith(b"HTTP/1.1 400 ")
+
+
+def test_it_outlives_having_no_file_left(saved_map):
+    with http_server(f"room={saved_map}", first=limits(64, 3600), OVIMAP_MCP_TOKEN="secret") as (address, _):
+        with contextlib.ExitStack() as stack:
+            for _ in range(64):
+                connected(stack, address, HALF_A_HEAD)
+        assert status_of(address, {"Authorization": "Bearer secret"}) == 400
+
+
+def test_a_head_that_takes_too_long_is_cut_off(saved_map):
+    with contextlib.ExitStack() as stack:
+        address, _ = stack.enter_context(http_server(f"room={saved_map}", first=limits(256, 0.5), OVIMAP_MCP_TOKEN="secret"))
+        without_token = WITH_TOKEN.replace(b"secret", b"wrong") + b"\r\n"
+        slow = [connected(stack, address, sent) for sent in (b"", HALF_A_HEAD, without_token, WITH_TOKEN + b"\r\nnonsense")]
+        with contextlib.suppress(ConnectionError):
+            slow[-1].recv(4096)
+            slow[-1].sendall(HALF_A_HEAD)  # the second one
+        assert all(is_cut_off(connection) for connection in slow)
 
 
 def status_of(address, headers):

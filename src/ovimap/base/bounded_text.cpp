@@ -24,11 +24,13 @@ constexpr std::size_t kPiece = std::size_t{1} << 16;  // bytes read at once
 std::string read_bounded_text(const std::filesystem::path& file, std::size_t most_bytes) {
   if (std::filesystem::is_directory(file))
     throw Error(concat(file.string(), " is a folder, expected a file"));
+  if (std::filesystem::is_fifo(file))  // would hold us up
+    throw Error(concat(file.string(), " is a pipe, expected a file"));
   std::ifstream in(file, std::ios::binary);
   if (!in)
     throw Error(
         concat("cannot open ", file.string(), ": ", std::generic_category().message(errno)));
-  std::string text;  // grows with what is there: neither pipes nor devices tell their size
+  std::string text;  // grows with what is there: devices do not tell their size
   std::size_t got = 0;
   do {
     const std::size_t wanted = std::min(kPiece, most_bytes + 1 - text.size());

@@ -83,15 +83,16 @@ bool write_all(int fd, std::span<const std::uint8_t> bytes) {
 }  // namespace
 
 Bytes read_file(const std::filesystem::path& path) {
-  const Descriptor file(path, O_RDONLY);
+  const Descriptor file(path, O_RDONLY | O_NONBLOCK);  // a pipe in its place would hold us up
   if (file.get() < 0) throw Error(concat("cannot open ", path.string(), ": ", reason(errno)));
   struct stat status {};
   if (::fstat(file.get(), &status) != 0)
     throw Error(concat("cannot read ", path.string(), ": ", reason(errno)));
   if (S_ISDIR(status.st_mode)) throw Error(concat(path.string(), " is a folder, expected a file"));
+  if (!S_ISREG(status.st_mode))
+    throw Error(concat(path.string(), " is a device or a pipe, expected a file"));
 
-  // One byte more than the size told, so that the end is met without growing; pipes tell 0 and
-  // grow.
+  // One byte more than the size told, so that the end is met without growing.
   Bytes bytes(static_cast<std::size_t>(status.st_size) + 1);
   std::size_t length = 0;
   while (true) {

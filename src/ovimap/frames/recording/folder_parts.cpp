@@ -6,6 +6,7 @@
 #include <map>
 
 #include "ovimap/base/error.h"
+#include "ovimap/base/text/ascii.h"
 #include "ovimap/frames/recording/natural_order.h"
 #include "ovimap/frames/recording/number_text.h"
 
@@ -24,7 +25,7 @@ fs::path find_one(const fs::path& folder, const Names& names, bool as_folder) {
 std::vector<fs::path> list_files(const fs::path& folder, const Names& extensions) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(folder)) {
-    const std::string extension = entry.path().extension().string();
+    const std::string extension = lower_case(entry.path().extension().string());
     if (std::find(extensions.begin(), extensions.end(), extension) != extensions.end())
       files.push_back(entry.path());
   }
@@ -49,6 +50,8 @@ std::vector<fs::path> partner_files(const std::vector<fs::path>& colors, const f
   }
   if (any_equal) return found;
   if (files.size() == colors.size()) return files;
+  if (files.empty() && extension == ".png")
+    throw Error(concat(folder.string(), " holds no .png file; depth is read from PNG of 16 bits"));
   throw Error(
       concat(folder.string(), " has ", files.size(), " ", extension, " files for ", colors.size(),
              " colour images and no name in common; name them alike (color/12.jpg, depth/12.png)"));

@@ -58,6 +58,10 @@ Trajectory read_trajectory_if_needed(const std::filesystem::path& file, PoseNeed
   std::error_code unreadable;
   const bool there = std::filesystem::exists(file, unreadable);
   if (need == PoseNeed::kNone || (need == PoseNeed::kAllOrNone && !there)) return {};
+  if (!there)
+    throw Error(
+        concat("no poses: there is no ", file.string(),
+               "; `ovimap run` finds them itself, what else it takes is in docs/sources.md"));
   return read_trajectory(file);
 }
 

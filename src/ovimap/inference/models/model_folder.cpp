@@ -5,6 +5,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <set>
 
@@ -19,6 +20,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kModelFile = "model.yaml";
+constexpr int kLargestInput_px = 4096;
 
 [[noreturn]] void fault(const fs::path& folder, const std::string& what) {
   throw Error(concat("model file ", (folder / kModelFile).string(), ": ", what));
@@ -67,7 +69,9 @@ ImageInputSpec parse_input(const YAML::Node& node, const std::string& kind,
                                                               {"bicubic", ResizeFilter::kBicubic}};
   ImageInputSpec spec;
   spec.size_px = node["size"] ? node["size"].as<int>() : 0;
-  if (spec.size_px < 1) fault(folder, "'input.size' must be the side of the input in pixels");
+  if (spec.size_px < 1 || spec.size_px > kLargestInput_px)
+    fault(folder, concat("'input.size' must be the side of the input in pixels, at most ",
+                         kLargestInput_px));
   const auto pixels = [&](const char* key) {
     const int value = node[key] ? node[key].as<int>() : 0;
     if (value < 0 || value > spec.size_px)
@@ -80,8 +84,11 @@ ImageInputSpec parse_input(const YAML::Node& node, const std::string& kind,
   spec.filter = word_of<ResizeFilter>(node, "filter", filters, ResizeFilter::kBilinear, folder);
   spec.mean = three_numbers(node, "mean", folder);
   spec.std = three_numbers(node, "std", folder);
-  if (*std::min_element(spec.std.begin(), spec.std.end()) <= 0)
-    fault(folder, "'input.std' must be positive");
+  const auto finite = [](float value) { return std::isfinite(value); };
+  if (!std::all_of(spec.mean.begin(), spec.mean.end(), finite) ||
+      !std::all_of(spec.std.begin(), spec.std.end(), finite) ||
+      *std::min_element(spec.std.begin(), spec.std.end()) <= 0)
+    fault(folder, "'input.mean' and 'input.std' must be finite, and 'input.std' positive");
   return spec;
 }
 

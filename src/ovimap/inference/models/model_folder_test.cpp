@@ -57,8 +57,12 @@ TEST(ModelFolder, SaysWhatIsWrong) {
   EXPECT_TRUE(contains(message(edited("kind: sam", "kid: sam")), "'kind' is missing"));
   EXPECT_TRUE(contains(message(edited("stretch", "crop")), "accepted is long_side or stretch"));
   EXPECT_TRUE(contains(message(edited("size: 64", "size: 64, row_step: 65")), "'input.row_step'"));
+  for (const char* size : {"size: 0", "size: 4097", "size: 2147483647"})
+    EXPECT_TRUE(contains(message(edited("size: 64", size)), "at most 4096")) << size;
+  for (const char* std : {"std: [.nan, 1, 1]", "std: [.inf, 1, 1]", "std: [0, 1, 1]"})
+    EXPECT_TRUE(contains(message(edited("std: [4, 5, 6]", std)), "must be finite")) << std;
   EXPECT_TRUE(contains(message(edited("[1, 2, 3]", "[1, 2]")), "three numbers"));
-  EXPECT_TRUE(contains(message(edited("[4, 5, 6]", "[4, 0, 6]")), "must be positive"));
+  EXPECT_TRUE(contains(message(edited("[4, 5, 6]", "[4, 0, 6]")), "positive"));
   EXPECT_TRUE(contains(message(edited("file: encoder", "file: ../encoder")), "inside the model"));
   EXPECT_TRUE(
       contains(message(edited("{encoder.onnx: b", "{other.onnx: b")), "no digest of encoder"));

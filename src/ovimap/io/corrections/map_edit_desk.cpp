@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "ovimap/base/error.h"
+#include "ovimap/base/text/printable.h"
 #include "ovimap/io/corrections/map_edit_log.h"
 
 namespace ovimap {
@@ -67,9 +68,7 @@ class EditDesk {
     if (letters > kLongestName)
       throw Error(
           concat("a name of ", letters, " letters is too long; give at most ", kLongestName));
-    const bool plain = std::none_of(name.begin(), name.end(),
-                                    [](unsigned char c) { return c < 0x20 || c == 0x7f; });
-    if (!plain || !is_utf8(name))
+    if (!is_printable(name))
       throw Error("a name is one line of UTF-8 text; give one without control characters");
   }
 

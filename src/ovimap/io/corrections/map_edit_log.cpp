@@ -83,15 +83,6 @@ std::string edit_arguments_json(const MapEdit& edit) {
   return arguments.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-bool is_utf8(const std::string& text) {
-  try {
-    (void)Json(text).dump();
-    return true;
-  } catch (const Json::exception&) {
-    return false;
-  }
-}
-
 MapEdits effective_edits(const MapEdits& log) {
   MapEdits marked = log;
   mark_undone(marked);

@@ -25,9 +25,6 @@ MapEdits effective_edits(const MapEdits& log);
 /// Sets undone_by throughout.
 void mark_undone(MapEdits& log);
 
-/// Whether a text is valid UTF-8, which the log's JSON asks for.
-bool is_utf8(const std::string& text);
-
 /// The table `edits`. Reading an older map gives an empty log. Throws Error with a phrase when the
 /// table is not what was written.
 void write_edits(SQLite::Database& database, const MapEdits& log);

@@ -4,10 +4,18 @@
 
 #include <charconv>
 #include <cmath>
+#include <string_view>
 
 namespace ovimap {
 
 namespace {
+
+/// Spreadsheets would take a name that begins so for a formula, and obey it.
+std::string no_formula(const std::string& text) {
+  const bool formula =
+      !text.empty() && std::string_view("=+-@\t\r").find(text.front()) != std::string_view::npos;
+  return formula ? "'" + text : text;
+}
 
 std::string quoted(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
@@ -31,7 +39,8 @@ std::string instances_csv(std::span<const InstanceSummary> instances,
       "views,confidence\r\n";
   for (const InstanceSummary& instance : instances) {
     const auto name = names.find(instance.id);
-    csv += std::to_string(instance.id) + ',' + (name == names.end() ? "" : quoted(name->second));
+    csv += std::to_string(instance.id) + ',' +
+           (name == names.end() ? "" : quoted(no_formula(name->second)));
     for (const Eigen::Vector3f& point : {Eigen::Vector3f(instance.box.min()),
                                          Eigen::Vector3f(instance.box.max()), instance.centroid})
       for (const float value : point) csv += ',' + number(value);

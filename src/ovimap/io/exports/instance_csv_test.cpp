@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "ovimap/base/error.h"
+
 namespace ovimap {
 namespace {
 
@@ -25,6 +27,17 @@ TEST(InstanceCsv, QuotesWhatNeedsIt) {
       << csv;
   EXPECT_NE(csv.find("\r\n8,,"), std::string::npos);
   EXPECT_TRUE(csv.ends_with(",0,\r\n")) << csv;  // nobody said how sure
+}
+
+TEST(InstanceCsv, NamesAreNoFormulas) {
+  InstanceSummary thing;
+  thing.id = 1;
+  for (const char* name : {"=1+1", "+1", "-1+1|cmd", "@SUM(1)"})
+    EXPECT_NE(instances_csv(std::vector{thing}, {{1, name}}).find(concat("\r\n1,'", name, ",")),
+              std::string::npos)
+        << name;
+  EXPECT_NE(instances_csv(std::vector{thing}, {{1, "=\"a\""}}).find("1,\"'=\"\"a\"\"\","),
+            std::string::npos);
 }
 
 }  // namespace

@@ -72,7 +72,12 @@ CheckpointFile::~CheckpointFile() {
 }
 
 void CheckpointFile::open(Start start) {
-  if (start == Start::kAnew) remove_map(path_);
+  if (start == Start::kAnew) {
+    if (holds_checkpoint(path_))  // throws where another run, begun since, is writing it
+      throw Error(concat("another run left '", path_.string(),
+                         "' since this one began; give this one another map to write"));
+    remove_map(path_);
+  }
   database_ = open_growing_map(path_);
   if (start == Start::kGoOn)
     read_as_map(path_, *database_, [&](SQLite::Database& database) {

@@ -66,6 +66,23 @@ TEST_F(Checkpoints, EachOneIsTheWholeMap) {
   EXPECT_TRUE(read_map_info(path).unfinished);
 }
 
+/// Two runs that were to write the same map, of which one was faster.
+TEST_F(Checkpoints, AreNotTakenFromAnotherRun) {
+  const MapDocument document = random_document(40, 1);
+  const fs::path path = root_ / "a.partial";
+  const auto fault = [&] {
+    return fault_of([&] { CheckpointFile slower(path, CheckpointFile::Start::kAnew); });
+  };
+  {
+    CheckpointFile faster(path, CheckpointFile::Start::kAnew);
+    faster.write(checkpoint_of(document, document.map.ordered_slots()));
+    EXPECT_NE(fault().find("in use by another program"), std::string::npos) << fault();
+    faster.write(checkpoint_of(document, {}));
+  }
+  EXPECT_NE(fault().find("another run left"), std::string::npos) << fault();
+  EXPECT_EQ(difference(document, load_map(path)), "");
+}
+
 TEST_F(Checkpoints, GoOnInTheSameFile) {
   std::mt19937 random(2);
   MapDocument document = random_document(40, 2);

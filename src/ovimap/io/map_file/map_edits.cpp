@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/io/map_file/map_edits.h"
 
+#include <algorithm>
+#include <map>
 #include <optional>
 
+#include "ovimap/base/error.h"
 #include "ovimap/io/corrections/map_edit_desk.h"
 #include "ovimap/io/corrections/map_edit_log.h"
 #include "ovimap/io/corrections/map_file_corrections.h"
@@ -42,6 +45,36 @@ MapEdits read_edits(const std::filesystem::path& path) {
   MapEdits log;
   file.read([&](SQLite::Database& database) { log = read_edits(database); });
   return log;
+}
+
+std::vector<std::string> carry_later_edits(const std::filesystem::path& path,
+                                           MapDocument& document) {
+  const auto same = [](const MapEdit& a, const MapEdit& b) {
+    return a.id == b.id && a.action == b.action && a.time_s == b.time_s;
+  };
+  const MapEdits log = read_edits(path);
+  auto later =
+      std::mismatch(log.begin(), log.end(), document.edits.begin(), document.edits.end(), same)
+          .first;
+  std::vector<std::string> lost;
+  std::map<std::int64_t, std::int64_t> ids;    // in the document, by what they are in the file
+  std::map<InstanceId, InstanceId> split_off;  // likewise
+  for (; later != log.end(); ++later) {
+    MapEdit edit = *later;
+    if (const auto found = ids.find(edit.undoes); found != ids.end()) edit.undoes = found->second;
+    for (InstanceId& id : edit.instances)
+      if (const auto found = split_off.find(id); found != split_off.end()) id = found->second;
+    try {
+      const MapEdit carried = append_edit(
+          document, document.map.labels(), [&]() -> const VoxelMap& { return document.map; }, edit);
+      ids[later->id] = carried.id;
+      if (carried.new_instance != 0) split_off[later->new_instance] = carried.new_instance;
+    } catch (const Error& fault) {
+      lost.push_back(
+          concat("edit ", later->id, " (", edit_action_name(edit.action), "): ", fault.what()));
+    }
+  }
+  return lost;
 }
 
 MapDocument load_corrected_map(const std::filesystem::path& path) {

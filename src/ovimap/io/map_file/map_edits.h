@@ -3,6 +3,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "ovimap/io/corrections/map_edit_log.h"
 
@@ -19,6 +21,13 @@ MapEdit edit_map(const std::filesystem::path& path, MapEdit edit);
 
 /// The map's log, oldest first.
 MapEdits read_edits(const std::filesystem::path& path);
+
+/// Before `document`, which goes on with the map at `path`, replaces it: what people corrected
+/// there since `document` was read is corrected in it as well, under ids that are free in it.
+/// Returns what makes no sense any more, a line for each such edit. Throws Error when the map
+/// cannot be read.
+std::vector<std::string> carry_later_edits(const std::filesystem::path& path,
+                                           MapDocument& document);
 
 /// The map as people corrected it, for everybody who shows or exports it. It must not be saved:
 /// that would take the corrections for findings. Its voxels are read when they are asked for

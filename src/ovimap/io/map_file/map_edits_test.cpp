@@ -111,6 +111,37 @@ TEST_F(MapEditing, APartTakenOffHasAnIdOfItsOwn) {
   EXPECT_EQ(split(1, {1}).new_instance, 5u);
 }
 
+/// A run goes on with a map while somebody corrects it, and then replaces it.
+TEST_F(MapEditing, WhatIsCorrectedMeanwhileIsCarriedOver) {
+  edit_map(path_, renamed(3, "table"));
+  MapDocument continued = load_map(path_);
+  continued.registry.last_id = 9;  // objects that the run found
+  EXPECT_TRUE(carry_later_edits(path_, continued).empty());
+  EXPECT_EQ(continued.edits.size(), 1u);
+  const MapEdit part = split(1, {4});
+  edit_map(path_, renamed(part.new_instance, "lid"));
+  edit_map(path_, simple(EditAction::kDelete, {3}));
+  edit_map(path_, simple(EditAction::kUndo));
+  EXPECT_TRUE(carry_later_edits(path_, continued).empty());
+  save_map(path_, continued);
+  const MapInfo info = read_map_info(path_);
+  EXPECT_EQ(info.names.at(3), "table");
+  EXPECT_EQ(info.names.at(10), "lid");
+  EXPECT_EQ(info.instances.size(), 3u);
+  EXPECT_EQ(read_edits(path_).size(), 5u);
+}
+
+TEST_F(MapEditing, WhatMakesNoSenseAnyMoreIsToldAndLeftOut) {
+  MapDocument continued = load_map(path_);
+  edit_map(path_, renamed(1, "cup"));
+  edit_map(path_, renamed(3, "table"));
+  std::erase_if(continued.instances, [](const InstanceSummary& it) { return it.id == 1; });
+  const std::vector<std::string> lost = carry_later_edits(path_, continued);
+  ASSERT_EQ(lost.size(), 1u);
+  EXPECT_NE(lost[0].find("edit 1 (rename): the map has no object 1"), std::string::npos) << lost[0];
+  EXPECT_EQ(continued.edits.size(), 1u);
+}
+
 TEST_F(MapEditing, NothingIsForgotten) {
   edit_map(path_, renamed(1, "cup"));
   edit_map(path_, simple(EditAction::kDelete, {3}));

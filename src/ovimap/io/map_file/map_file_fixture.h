@@ -127,7 +127,7 @@ inline MapDocument random_document(int block_count, std::uint32_t seed) {
   handle.confidence.reset();
   handle.views = 4;
   document.parts = {handle};
-  document.names = {{1, "Tasse \xc3\xa4 'x'\n\"y\""}, {2, ""}};
+  document.names = {{1, "Tasse \xc3\xa4 'x' \"y\""}, {2, ""}};
   document.semantics.encoder = {"colours", 3, std::string(64, 'a')};
   document.semantics.views.theta_novel = 0.21f;
   document.semantics.crops.kept_views = 7;

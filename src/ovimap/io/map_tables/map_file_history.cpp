@@ -9,6 +9,7 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
+#include "ovimap/base/text/printable.h"
 #include "ovimap/io/map_tables/map_file_record.h"
 #include "ovimap/io/map_tables/map_file_rows.h"
 #include "ovimap/io/map_tables/map_file_semantics.h"
@@ -62,7 +63,7 @@ std::vector<MapVisit> read_visits(SQLite::Database& database, std::int64_t frame
   while (rows.next()) {
     if (rows.integer<std::size_t>() != visits.size() + 1) rows.fail("has a gap");
     MapVisit visit;
-    visit.source = rows.text();
+    visit.source = printable(rows.text());
     visit.first_frame = take_within(rows, visits.empty() ? 0 : visits.back().first_frame, frames);
     visit.first_index = rows.integer<std::int64_t>();
     visits.push_back(std::move(visit));

@@ -8,6 +8,7 @@
 #include <functional>
 #include <set>
 
+#include "ovimap/base/text/printable.h"
 #include "ovimap/io/map_tables/map_file_frames.h"
 #include "ovimap/io/map_tables/map_file_history.h"
 #include "ovimap/io/map_tables/map_file_motion.h"
@@ -230,7 +231,7 @@ void read_instances(SQLite::Database& database, MapRecord& record, const Instanc
   RowReader names(database, tables.names);
   while (names.next()) {
     const auto id = names.integer<InstanceId>();
-    record.names[id] = names.text();
+    record.names[id] = printable(names.text());
   }
 }
 
@@ -241,7 +242,7 @@ void read_frames(SQLite::Database& database, MapRecord& record) {
     FrameLogEntry frame;
     frame.index = rows.integer<std::int64_t>();
     frame.timestamp_s = rows.real();
-    frame.name = rows.text();
+    frame.name = printable(rows.text());
     const std::span<const std::uint8_t> pose = rows.blob();
     if (pose.size() != pose_bytes(frame.world_from_camera).size())
       rows.fail(concat("has a pose of ", pose.size(), " bytes"));

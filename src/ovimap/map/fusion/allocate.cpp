@@ -34,6 +34,23 @@ void check_reach(const VoxelMapConfig& config, const Pose& world_from_camera) {
                        "(map.voxel_size_m)"));
 }
 
+/// Throws FrameError where memory has no room for the blocks that a frame is fused into.
+void check_room(const VoxelMap& map, const std::vector<std::uint64_t>& keys) {
+  constexpr std::size_t kMegabyte = 1000000;
+  std::size_t blocks = keys.size();  // with a store all others may leave memory
+  if (!map.has_store())
+    blocks = map.blocks_in_memory() +
+             static_cast<std::size_t>(std::count_if(keys.begin(), keys.end(), [&](auto key) {
+               return map.find_slot(unpack_index(key)) == kNoBlock;
+             }));
+  if (blocks <= map.room_bytes() / sizeof(VoxelBlock)) return;
+  throw FrameError(concat("with what the frame shows the map takes ",
+                          blocks * sizeof(VoxelBlock) / kMegabyte, " MB of memory, and ",
+                          map.room_bytes() / kMegabyte,
+                          " MB are its room; if its depth is not noise, take larger voxels "
+                          "(map.voxel_size_m) or bound the memory (--max-memory)"));
+}
+
 /// Block keys, with most repetitions left out: neighbouring pixels run through the same blocks.
 class KeyCollector {
  public:
@@ -140,6 +157,7 @@ std::vector<std::uint32_t> allocate_blocks(VoxelMap& map, const Observation& obs
     reached.put(begin / kDepthRowsPerTask, reached_here);
   });
   const std::vector<std::uint64_t> to_create = needed.all(), to_find = reached.all();
+  check_room(map, to_create);
   std::vector<std::uint64_t> keys;
   std::set_union(to_create.begin(), to_create.end(), to_find.begin(), to_find.end(),
                  std::back_inserter(keys));

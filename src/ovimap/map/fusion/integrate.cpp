@@ -13,27 +13,34 @@ namespace {
 constexpr std::size_t kUpdatedBlocksPerTask = 16;
 
 template <class Update>
-std::vector<std::uint32_t> update_blocks(VoxelMap& map, const Observation& observation,
-                                         const Update& update) {
-  std::vector<std::uint32_t> slots = allocate_blocks(map, observation);
+void update_blocks(VoxelMap& map, const Observation& observation,
+                   std::span<const std::uint32_t> slots, const Update& update) {
   const FusionView view(map.config(), observation);
   parallel_for(slots.size(), kUpdatedBlocksPerTask, [&](std::size_t i) {
     VoxelBlock& block = map.writable_block(slots[i]);
     resolve_labels(block, map.labels());
     update(view, block);
   });
-  return slots;
 }
 
 }  // namespace
 
 std::vector<std::uint32_t> integrate(VoxelMap& map, const Observation& observation) {
-  return update_blocks(map, observation, update_block);
+  std::vector<std::uint32_t> slots = allocate_blocks(map, observation);
+  integrate_in(map, observation, slots);
+  return slots;
+}
+
+void integrate_in(VoxelMap& map, const Observation& observation,
+                  std::span<const std::uint32_t> slots) {
+  update_blocks(map, observation, slots, update_block);
 }
 
 std::vector<std::uint32_t> vote_labels(VoxelMap& map, const Observation& observation) {
   OVIMAP_ASSERT(observation.segment_ids != nullptr);
-  return update_blocks(map, observation, vote_in_block);
+  std::vector<std::uint32_t> slots = allocate_blocks(map, observation);
+  update_blocks(map, observation, slots, vote_in_block);
+  return slots;
 }
 
 }  // namespace ovimap

@@ -53,6 +53,10 @@ inline constexpr float kBandSigmas = 3.f, kMostBand_m = 1.f;
 /// The only writer of voxels, with vote_labels and clear_free_space. Returns the slots of the
 /// blocks it visited, in block-index order.
 std::vector<std::uint32_t> integrate(VoxelMap& map, const Observation& observation);
+/// The same for whoever has allocated the blocks already: `slots` is what allocate_blocks returned
+/// for this depth, camera and pose.
+void integrate_in(VoxelMap& map, const Observation& observation,
+                  std::span<const std::uint32_t> slots);
 
 /// The frame's label votes alone, for masks that come after their frame was fused: the same voxels
 /// as `integrate` would ask, without touching distance, weight or colour. The observation must have
@@ -61,7 +65,9 @@ std::vector<std::uint32_t> vote_labels(VoxelMap& map, const Observation& observa
 
 /// Creates the blocks within the truncation of the observed surface and returns their slots, and
 /// those of other blocks that are there within the band of an uncertain depth, in block-index
-/// order; of Observation::blocks alone.
+/// order; of Observation::blocks alone. Throws FrameError, with the map as it was, where memory has
+/// no room for them (VoxelMap::room_bytes): noise in place of depth lies in more blocks than any
+/// surface.
 std::vector<std::uint32_t> allocate_blocks(VoxelMap& map, const Observation& observation);
 
 }  // namespace ovimap

@@ -252,6 +252,21 @@ TEST(AllocateBlocks, RefusesBlocksThatWouldHaveTheKeysOfOthers) {
   }
 }
 
+TEST(AllocateBlocks, LeavesTheMapAsItWasWhereMemoryHasNoRoom) {
+  const PinholeCamera camera{64, 48, 50, 50, 31.5f, 23.5f};
+  const DepthImage near(64, 48, 1.f), far(64, 48, 8.f);
+  const Pose pose = Pose::Identity();
+  VoxelMap map;
+  const std::size_t blocks =
+      allocate_blocks(map, {.depth = near, .camera = camera, .world_from_camera = pose}).size();
+  map.set_room(2 * blocks * sizeof(VoxelBlock));
+  const Observation large{.depth = far, .camera = camera, .world_from_camera = pose};
+  EXPECT_THROW(allocate_blocks(map, large), FrameError);
+  EXPECT_EQ(map.block_count(), blocks);
+  map.set_room(std::size_t{1} << 40);
+  EXPECT_GT(allocate_blocks(map, large).size(), 2 * blocks);
+}
+
 TEST(AllocateBlocks, CreatesNoneBeyondTheTruncationButReturnsThoseThatAreThere) {
   const PinholeCamera camera{64, 48, 50, 50, 31.5f, 23.5f};
   const DepthImage near(64, 48, 2.f), far(64, 48, 2.3f);

@@ -8,6 +8,7 @@
 #include <xxhash.h>
 
 #include "ovimap/base/config.h"
+#include "ovimap/base/memory/usable_memory.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/map/voxels/block_tiles.h"
 #include "ovimap/map/voxels/label_slots.h"
@@ -48,6 +49,7 @@ void list_fields(VoxelMapConfig& config, ConfigFields& fields) {
 VoxelMap::VoxelMap(const VoxelMapConfig& config, std::size_t most_blocks)
     : config_(config),
       most_blocks_(std::min(most_blocks, VoxelRef::kMostBlocks)),
+      room_bytes_(usable_memory() / 4 * 3),
       metres_per_unit_(config.truncation_m() / VoxelBlock::kTsdfScale) {}
 
 const VoxelBlock* VoxelMap::find(const BlockIndex& index) const {

@@ -194,6 +194,11 @@ class VoxelMap {
   /// Blocks in memory, copies that `freeze` made included.
   std::size_t blocks_in_memory() const { return in_memory_ + copies_; }
 
+  /// Bytes that blocks may take in memory: a frame that needs more is refused (allocate_blocks).
+  /// Three quarters of what the process may use, unless it is told.
+  std::size_t room_bytes() const { return room_bytes_; }
+  void set_room(std::size_t bytes) { room_bytes_ = bytes; }
+
   /// Until `thaw`, these blocks stay as they are where the returned pointers lead: the map goes on
   /// with a copy of each block that it writes to. So they can be stored beside the mapping. Not
   /// while blocks are frozen already.
@@ -236,6 +241,7 @@ class VoxelMap {
 
   VoxelMapConfig config_;
   std::size_t most_blocks_;
+  std::size_t room_bytes_;
   float metres_per_unit_;
   mutable std::vector<BlockPlace> blocks_;
   std::vector<BlockIndex> indices_;  ///< of the blocks, by slot

@@ -63,7 +63,7 @@ std::string grid_yaml(const OccupancyGrid& grid, const GridSlice& slice, const s
 void write_grid_slice(const std::filesystem::path& path, const OccupancyGrid& grid,
                       const GridSlice& slice) {
   const std::string stem = path.stem().string();
-  const std::string image = stem + ".png", esdf = stem + "_esdf.png";
+  const std::string image = stem + "_grid.png", esdf = stem + "_esdf.png";
   write_file(path.parent_path() / image, encode_png(slice.occupancy));
   write_file(path.parent_path() / esdf, encode_png(in_millimetres(slice.distance_m)));
   const std::string yaml = grid_yaml(grid, slice, image, esdf);

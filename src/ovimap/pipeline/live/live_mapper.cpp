@@ -264,7 +264,7 @@ void LiveMapper::fuse(Prepared prepared, const LiveStep* told) {
   step.asked = told ? told->asked : wants_masks(frame);
   if (step.asked) ask_for_masks(prepared);
   depth_camera_ = frame.depth_camera;
-  mapper_->fuse(*prepared.frame, prepared.cut.get());
+  if (!take_in(prepared)) return;
   const double lag_ms = milliseconds_since(prepared.pushed);
   frames_.push_back({step.frame, frame.timestamp_s, frame.name, frame.world_from_camera,
                      prepared.cut != nullptr});
@@ -281,6 +281,18 @@ void LiveMapper::fuse(Prepared prepared, const LiveStep* told) {
   ++statistics_.frames_fused;
   statistics_.mask_frames += prepared.cut && prepared.cut->masked;
   lags_.add("geometry", lag_ms);
+}
+
+/// False where the frame itself is at fault.
+bool LiveMapper::take_in(const Prepared& prepared) {
+  try {
+    mapper_->fuse(*prepared.frame, prepared.cut.get());
+    return true;
+  } catch (const FrameError& fault) {
+    const std::lock_guard lock(mutex_);
+    if (statistics_.frames_failed++ == 0) statistics_.frame_fault = fault.what();
+    return false;
+  }
 }
 
 /// Whether it is the turn of a look at the objects, and there is time for one.

@@ -37,6 +37,7 @@ void list_fields(LiveConfig& config, ConfigFields& fields);
 struct LiveStatistics {
   std::int64_t frames_pushed = 0, frames_fused = 0, frames_dropped = 0;
   std::int64_t frames_lost = 0;    ///< fused nowhere, for the camera was lost
+  std::int64_t frames_failed = 0;  ///< fused nowhere, for they were at fault themselves
   std::int64_t pose_updates = 0;   ///< that moved the map
   std::int64_t mask_frames = 0;    ///< frames whose masks are in the map
   std::int64_t masks_late = 0;     ///< ... after their frame was fused
@@ -47,7 +48,8 @@ struct LiveStatistics {
   std::int64_t views_skipped = 0;  ///< looks at objects left out
   std::int64_t views_failed = 0;   ///< views without embedding, because the encoder threw
   StageSummary geometry_lag, mask_lag;
-  std::string mask_fault;     ///< of the first that failed
+  std::string frame_fault;    ///< of the first that failed
+  std::string mask_fault;     ///< likewise
   std::string encoder_fault;  ///< likewise
 };
 
@@ -55,8 +57,9 @@ struct LiveStatistics {
 /// (registration, surface, and regions where there are no masks), one fuses, one runs the mask
 /// network, one the encoder. Masks that come late are applied with the depth and pose of their own
 /// frame, those of frames that waited too long after the last frame. When it falls behind it puts
-/// off masks first, leaves out views second, frames last, and counts them. Bad masks and an encoder
-/// that throws cost what they were asked for, and are counted too; whatever else throws ends the
+/// off masks first, leaves out views second, frames last, and counts them. Frames that are at fault
+/// themselves (FrameError), bad masks and an encoder that throws cost what they were asked for, and
+/// are counted too; whatever else throws ends the
 /// run. All calls but `statistics` come from one thread.
 class LiveMapper {
  public:
@@ -152,6 +155,7 @@ class LiveMapper {
   bool locate(PreparedFrame& prepared);
   void move(const PoseUpdate& update);
   void fuse(Prepared prepared, const LiveStep* told);
+  bool take_in(const Prepared& prepared);
   bool wants_masks(const Frame& frame);
   void ask_for_masks(Prepared& prepared);
   bool time_for_views();

@@ -68,15 +68,14 @@ void LiveMapper::take_answer(std::optional<Prepared> late) {
 void LiveMapper::apply_masks(Prepared late, const LiveStep* told) {
   LiveStep step{LiveStep::Kind::kMasks, mapper_->number_of(*late.frame->frame)};
   step.looked = told ? told->looked : late.cut && (catching_up_ || keeps_up());
+  const auto entry = std::find_if(frames_.rbegin(), frames_.rend(),
+                                  [&](const FrameLogEntry& e) { return e.index == step.frame; });
+  if (entry == frames_.rend()) return schedule_.went_without();  // the frame itself was at fault
   mapper_->note(step);
   if (!late.cut) return schedule_.went_without();
   begin("apply_masks");
-  const auto entry = std::find_if(frames_.rbegin(), frames_.rend(),
-                                  [&](const FrameLogEntry& e) { return e.index == step.frame; });
-  if (entry != frames_.rend()) {
-    entry->labelled = true;
-    move_to(entry->world_from_camera, *late.frame);
-  }
+  entry->labelled = true;
+  move_to(entry->world_from_camera, *late.frame);
   mapper_->label(*late.frame, *late.cut);
   if (step.looked) mapper_->look_at_objects(*late.frame->frame, Mapper::Encoder::kRunOn);
   if (after_frame) after_frame(*mapper_, frames_, late.frame->frame->depth_camera);

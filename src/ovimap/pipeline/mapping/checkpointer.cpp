@@ -47,10 +47,13 @@ void Checkpointer::set_edits(MapEdits edits) {
 
 void Checkpointer::make_room(Mapper& mapper) {
   VoxelMap& map = mapper.map();
-  if (!map.has_store()) map.keep_in(tiles_);
+  if (!map.has_store()) map.keep_in(tiles_), map.set_room(tiles_->bound_bytes());
   if (tiles_->wants_room(map)) finish_writing(mapper);
   map.trim();
-  tiles_->require_room(map);
+}
+
+void Checkpointer::require_room(const Mapper& mapper) const {
+  tiles_->require_room(mapper.map());
 }
 
 void Checkpointer::let_tiles_leave(Mapper& mapper) {

@@ -43,6 +43,10 @@ class Checkpointer {
   /// what after_frame throws.
   void while_waiting(Mapper& mapper, const std::vector<FrameLogEntry>& frames,
                      const PinholeCamera& depth_camera);
+  /// Throws Error when the bound on memory, if there is one, is less than what the last frame
+  /// needs: so will be that of most others. A live run goes on; what one frame needs leaves with
+  /// it.
+  void require_room(const Mapper& mapper) const;
   /// The last frame is fused, or many blocks are about to change: waits for what is being written,
   /// if tiles may have to leave memory from here on.
   void let_tiles_leave(Mapper& mapper);

@@ -120,6 +120,12 @@ FrameReport Mapper::fuse(const PreparedFrame& prepared, const FrameSegments* cut
   const MovingPixels moving = find_motion(prepared);
   const std::optional<FrameSegments> still = without(moving.ids, cut);
   if (still) cut = &*still;
+  DepthImage copy;
+  const DepthImage& depth = without(moving.ids, prepared.estimate.depth_m, copy);
+  {
+    auto t = timers_.measure("allocate");  // first: a frame without room changes nothing
+    touched_blocks_ = allocate_blocks(map_, observation_of(prepared, nullptr, {}, depth));
+  }
   const std::vector<SegmentAssociation> associations = find_labels(prepared, cut);
   const std::vector<Label> labels = labels_of(associations);
   // Before what moves, space is as free as before anything else.
@@ -127,16 +133,14 @@ FrameReport Mapper::fuse(const PreparedFrame& prepared, const FrameSegments* cut
   const std::vector<std::uint32_t> taken_back = take_back(prepared, moving);
   {
     auto t = timers_.measure("integrate");
-    DepthImage copy;
-    const DepthImage& depth = without(moving.ids, prepared.estimate.depth_m, copy);
-    touched_blocks_ = integrate(map_, observation_of(prepared, cut, labels, depth));
+    integrate_in(map_, observation_of(prepared, cut, labels, depth), touched_blocks_);
   }
   add_slots(cleared, map_, touched_blocks_);
   add_slots(taken_back, map_, touched_blocks_);
   if (config_.frame_store.max_mb > 0) {
     auto t = timers_.measure("keep_frame");
-    DepthImage copy;
-    frame_store_.add(number_of(*prepared.frame), without(moving.ids, prepared.frame->depth, copy),
+    DepthImage seen;
+    frame_store_.add(number_of(*prepared.frame), without(moving.ids, prepared.frame->depth, seen),
                      prepared.color, cut ? &cut->segments.ids : nullptr, labels);
   }
   ++frames_;

@@ -93,8 +93,12 @@ std::size_t TileKeeper::used_bytes(const VoxelMap& map) const {
   return map.index_bytes() + map.blocks_in_memory() * sizeof(VoxelBlock);
 }
 
+std::size_t TileKeeper::bound_bytes() const {
+  return static_cast<std::size_t>(memory_.max_mb) * kMegabyte;
+}
+
 double TileKeeper::full_bytes() const {
-  return kFullShare * static_cast<double>(memory_.max_mb) * kMegabyte;
+  return kFullShare * static_cast<double>(bound_bytes());
 }
 
 bool TileKeeper::wants_room(const VoxelMap& map) const {
@@ -103,7 +107,7 @@ bool TileKeeper::wants_room(const VoxelMap& map) const {
 
 void TileKeeper::require_room(const VoxelMap& map) const {
   const std::size_t used = used_bytes(map);
-  if (!bounded() || used <= static_cast<std::size_t>(memory_.max_mb) * kMegabyte) return;
+  if (!bounded() || used <= bound_bytes()) return;
   const auto megabytes = static_cast<std::size_t>(static_cast<double>(used) / kFullShare);
   throw Error(concat("what one frame sees takes ", used / kMegabyte, " MB of voxels, and ",
                      memory_.max_mb, " MB is the bound; give --max-memory ",

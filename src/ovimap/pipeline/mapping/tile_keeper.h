@@ -39,6 +39,7 @@ class TileKeeper : public BlockStore {
 
   const std::filesystem::path& path() const { return path_; }
   bool bounded() const { return memory_.max_mb > 0; }
+  std::size_t bound_bytes() const;
   /// From now on; where there is a bound.
   void set_bound(const MemoryConfig& memory) { memory_ = memory; }
   CheckpointFile& file();

@@ -82,6 +82,7 @@ SequenceResult run_sequence(const FrameSource& source, const std::vector<std::in
                                frame.world_from_camera, report.labelled});
       if (finder) finder->close_loops(mapper, result.frames, result.depth_camera);
       if (checkpoints) checkpoints->after_frame(mapper, result.frames, result.depth_camera);
+      if (checkpoints) checkpoints->require_room(mapper);
     } else {
       result.skipped.push_back({positions[i], current.fault});
     }

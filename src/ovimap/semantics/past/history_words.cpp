@@ -6,7 +6,7 @@
 #include <array>
 #include <limits>
 
-#include "ovimap/base/ascii.h"
+#include "ovimap/base/text/ascii.h"
 #include "ovimap/semantics/query/query_words.h"
 #include "ovimap/semantics/words/one_of.h"
 

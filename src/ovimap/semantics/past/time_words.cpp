@@ -8,8 +8,8 @@
 #include <cmath>
 #include <ctime>
 
-#include "ovimap/base/ascii.h"
 #include "ovimap/base/error.h"
+#include "ovimap/base/text/ascii.h"
 #include "ovimap/semantics/query/query_words.h"
 
 namespace ovimap {

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/semantics/query/query_grammar.h"
 
-#include "ovimap/base/ascii.h"
 #include "ovimap/base/error.h"
+#include "ovimap/base/text/ascii.h"
 #include "ovimap/semantics/query/query_words.h"
 
 namespace ovimap {

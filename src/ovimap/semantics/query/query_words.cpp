@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdlib>
 
-#include "ovimap/base/ascii.h"
+#include "ovimap/base/text/ascii.h"
 #include "ovimap/semantics/words/one_of.h"
 
 namespace ovimap {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "ovimap/base/ascii.h"
 #include "ovimap/base/error.h"
+#include "ovimap/base/text/ascii.h"
 #include "ovimap/semantics/query/query_words.h"
 #include "ovimap/semantics/words/word_lists.h"
 

@@ -6,8 +6,8 @@
 #include <array>
 #include <sstream>
 
-#include "ovimap/base/ascii.h"
 #include "ovimap/base/error.h"
+#include "ovimap/base/text/ascii.h"
 
 namespace ovimap {
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <sstream>
 
-#include "ovimap/base/ascii.h"
+#include "ovimap/base/text/ascii.h"
 #include "ovimap/semantics/words/one_of.h"
 
 namespace ovimap {

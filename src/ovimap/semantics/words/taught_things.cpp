@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ovimap/base/ascii.h"
 #include "ovimap/base/error.h"
+#include "ovimap/base/text/ascii.h"
 
 namespace ovimap {
 

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "ovimap/base/text/printable.h"
 #include "ovimap/server/http/multipart.h"
 #include "ovimap/server/http/request_body.h"
 
@@ -119,8 +120,10 @@ PoseUpdate update_of(const json& body, const CameraRig& rig) {
 std::string name_of(const json& about) {
   const std::string name = field<std::string>(about, "name").value_or("");
   if (name.size() > kLongestName || name.find_first_of("/\\") != std::string::npos ||
-      name.starts_with('.'))
-    throw BadRequest(400, "'name' must have at most 200 bytes, no slash and no leading dot");
+      name.starts_with('.') || !is_printable(name))
+    throw BadRequest(400,
+                     "'name' must have at most 200 bytes, no slash, no leading dot and no control "
+                     "characters");
   return name;
 }
 

@@ -26,6 +26,8 @@ namespace {
 
 using nlohmann::json;
 
+constexpr std::size_t kMostNotTexts = 8;  // each is encoded
+
 HttpReply json_reply(const json& value, int status = 200) {
   return text_reply(status, "application/json",
                     value.dump(-1, ' ', false, json::error_handler_t::replace));
@@ -85,7 +87,7 @@ HttpReply answer_query(const ServedMap& map, const HttpRequest& request) {
   MapQuestion question;
   const auto text = field<std::string>(body, "text");
   question.like = field<InstanceId>(body, "like");
-  question.query.not_texts = texts_field(body, "not");
+  question.query.not_texts = texts_field(body, "not", kMostNotTexts);
   question.query.relevance = field<bool>(body, "heat").value_or(false);
   const std::string at = time_field(body, "at"), since = time_field(body, "since");
   const bool timed = !at.empty() || !since.empty();

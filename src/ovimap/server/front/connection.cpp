@@ -60,6 +60,7 @@ void Connection::be_done_in(milliseconds time) {
 void Connection::end() {
   if (state_ == State::kIdle || state_ == State::kHead || state_ == State::kBody) return close();
   ending_ = true;
+  unwanted_ = true;
   if (state_ == State::kWriting) be_done_in(config_.patience);
   if (state_ == State::kStreaming && !writing_) pump();
 }
@@ -67,6 +68,7 @@ void Connection::end() {
 void Connection::close() {
   if (state_ == State::kClosed) return;
   enter(State::kClosed);
+  unwanted_ = true;
   wire_->close();
   reply_ = {};
   decision_ = {};
@@ -150,7 +152,11 @@ void Connection::more_body(std::size_t bytes) {
 void Connection::work() {
   enter(State::kWorking);
   wire_->clear_deadline();
+  wire_->wait_for_end([self = shared_from_this()] {
+    if (self->state_ == State::kWorking) self->close();
+  });
   const bool begun = host_.work(decision_.cost, client_, [self = shared_from_this()] {
+    if (self->unwanted_) return self->host_.post([self] { self->close(); });
     HttpReply reply;
     try {
       reply = self->host_.desk().answer(self->request_);

@@ -85,6 +85,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   State state_ = State::kHead;
   Clock::time_point since_ = Clock::now();
   bool ending_ = false;
+  std::atomic<bool> unwanted_ = false;  ///< nobody waits for what has not been begun
 
   std::array<char, 1 << 14> buffer_;
   std::string in_;  ///< read, but not used yet

@@ -3,8 +3,13 @@
 // Clients that nobody would wish for: malformed, slow, vanishing, many.
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <future>
+#include <thread>
+
 #include "ovimap/io/map_file/map_file_fixture.h"
 #include "ovimap/server/front/server_fixture.h"
+#include "ovimap/server/http/http_io.h"
 
 namespace ovimap {
 namespace {
@@ -257,6 +262,33 @@ TEST_F(HttpClientsTest, AStalledHeadOrBodyEnds) {
   EXPECT_EQ(answers("POST /api/query HTTP/1.1\r\nHost: localhost\r\n"
                     "Content-Type: application/json\r\nContent-Length: 50\r\n\r\n{"),
             "");
+}
+
+/// Whether the loop says that a client is gone which does this.
+bool is_missed(const std::function<void(const RawConnection&)>& says) {
+  IoLoop loop({"127.0.0.1", 0, {}, {}});
+  std::promise<void> waiting;
+  bool missed = false;
+  std::thread thread([&] {
+    loop.run([&](std::unique_ptr<Wire> wire) {
+      loop.stop_accepting();  // run() returns when nobody is waited for any more
+      const std::shared_ptr<Wire> client(std::move(wire));
+      client->wait_for_end([&missed, client] { missed = true; });
+      waiting.set_value();
+    });
+  });
+  {
+    const RawConnection client(loop.port());
+    waiting.get_future().wait();
+    says(client);
+  }
+  thread.join();
+  return missed;
+}
+
+TEST(IoLoopTest, SaysWhenAClientIsGone) {
+  EXPECT_TRUE(is_missed([](const auto&) {}));
+  EXPECT_FALSE(is_missed([](const auto& client) { client.send("GET"); }));
 }
 
 }  // namespace

@@ -12,7 +12,8 @@ namespace {
 
 // Threads for each cost. What costs little must not stand behind what costs more, be it a piece of
 // surface that is packed; frames are decoded one at a time; a query may have to wait for its
-// encoder, a correction not for queries.
+// encoder, a correction not for queries. Of work one thread is left to others than who keeps them
+// all busy.
 constexpr int kLittleThreads = 2, kLargeThreads = 2, kWorkThreads = 4, kFrameThreads = 1;
 constexpr std::size_t kMostWaiting = 64;  // requests, for work and frames each
 
@@ -48,10 +49,10 @@ struct HttpServer::Parts : ConnectionHost {
         loop({given.host, given.port, given.tls_certificate, given.tls_key}),
         table(allowed(given.max_connections, given), allowed(given.max_connections_of_one, given)),
         // Each connection asks for one thing at a time.
-        little(kLittleThreads, static_cast<std::size_t>(given.max_connections)),
-        large(kLargeThreads, static_cast<std::size_t>(given.max_connections)),
-        much(kWorkThreads, kMostWaiting),
-        frames(kFrameThreads, kMostWaiting) {}
+        little(kLittleThreads, static_cast<std::size_t>(given.max_connections), kLittleThreads),
+        large(kLargeThreads, static_cast<std::size_t>(given.max_connections), kLargeThreads),
+        much(kWorkThreads, kMostWaiting, kWorkThreads - 1),
+        frames(kFrameThreads, kMostWaiting, kFrameThreads) {}
 
   const ConnectionConfig& connection_config() const override { return connection; }
   RequestDesk& desk() override { return requests; }

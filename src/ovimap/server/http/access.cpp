@@ -63,8 +63,12 @@ std::string cookie_token(const std::string& cookies) {
   return {};
 }
 
+/// Browsers name the page that asks in Origin, or where they leave that out, as for pictures, say
+/// in Sec-Fetch-Site that it is another one's. Whoever follows a link to the page opens it himself.
 bool comes_from_other_page(const HttpRequest& request) {
-  const std::string origin = request.header("origin");
+  const std::string origin = request.header("origin"), site = request.header("sec-fetch-site");
+  const bool opened = request.path == "/" && request.header("sec-fetch-mode") == "navigate";
+  if ((site == "cross-site" || site == "same-site") && !opened) return true;
   if (origin.empty()) return false;
   return origin != "http://" + request.header("host") &&
          origin != "https://" + request.header("host");

@@ -71,6 +71,22 @@ TEST(AccessRuleTest, OtherPagesAreRefused) {
       refused(open, request_of({{"host", "127.0.0.1:80"}, {"origin", "http://127.0.0.1:80"}})), 0);
 }
 
+TEST(AccessRuleTest, WhatBrowsersSayOfOtherPagesCounts) {
+  const AccessRule open({});
+  const auto asked = [&](const char* site, const char* mode, const char* path) {
+    return refused(
+        open,
+        request_of({{"host", "localhost:8080"}, {"sec-fetch-site", site}, {"sec-fetch-mode", mode}},
+                   path));
+  };
+  EXPECT_EQ(asked("cross-site", "no-cors", "/api/export.glb"), 403);
+  EXPECT_EQ(asked("same-site", "no-cors", "/api/rooms"), 403);  // another port of this machine
+  EXPECT_EQ(asked("cross-site", "navigate", "/api/rooms"), 403);
+  EXPECT_EQ(asked("cross-site", "navigate", "/"), 0) << "a link to the page is followed";
+  EXPECT_EQ(asked("same-origin", "cors", "/api/rooms"), 0);
+  EXPECT_EQ(asked("none", "navigate", "/api/rooms"), 0) << "typed by a person";
+}
+
 TEST(AccessRuleTest, TheTokenIsDemanded) {
   const AccessRule rule({.token = "secret", .host_names = {}});
   const std::string host = "192.168.1.5:8080";

@@ -12,8 +12,8 @@
 #include <charconv>
 #include <limits>
 
-#include "ovimap/base/ascii.h"
 #include "ovimap/base/error.h"
+#include "ovimap/base/text/ascii.h"
 
 namespace ovimap {
 

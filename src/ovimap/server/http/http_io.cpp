@@ -13,7 +13,10 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/write.hpp>
 
+#include <sys/socket.h>
+
 #include <array>
+#include <cerrno>
 
 #include "ovimap/base/error.h"
 
@@ -57,6 +60,12 @@ class SocketWire : public Wire {
   void read_some(std::span<char> into, Done done) override {
     stream_.async_read_some(asio::buffer(into.data(), into.size()), ending_in(std::move(done)));
   }
+  void wait_for_end(std::function<void()> gone) override {
+    stream_.lowest_layer().async_wait(tcp::socket::wait_read,
+                                      [this, gone = std::move(gone)](Fault fault) {
+                                        if (!fault && has_ended()) gone();
+                                      });
+  }
   void write(std::string_view first, std::string_view second, Done done) override {
     const std::array<asio::const_buffer, 2> both = {asio::buffer(first), asio::buffer(second)};
     asio::async_write(stream_, both, ending_in(std::move(done)));
@@ -87,6 +96,14 @@ class SocketWire : public Wire {
 
  private:
   static constexpr bool kEncrypted = std::is_same_v<Stream, TlsStream>;
+
+  /// Of a socket that has something to say: its end or a fault.
+  bool has_ended() {
+    char byte = 0;
+    const ssize_t got =
+        ::recv(stream_.lowest_layer().native_handle(), &byte, 1, MSG_PEEK | MSG_DONTWAIT);
+    return got == 0 || (got < 0 && errno != EAGAIN && errno != EINTR);
+  }
 
   Stream stream_;
   asio::steady_timer deadline_;

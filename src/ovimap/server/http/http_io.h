@@ -24,6 +24,8 @@ class Wire {
   virtual void shake_hands(Done done) = 0;
   /// Reads at least one byte; not `ok`: the client has ended, or is gone.
   virtual void read_some(std::span<char> into, Done done) = 0;
+  /// Calls `gone` if the client ends, or is gone, before it sends anything more.
+  virtual void wait_for_end(std::function<void()> gone) = 0;
   /// Writes all of both, which must stay until then.
   virtual void write(std::string_view first, std::string_view second, Done done) = 0;
   /// Tells the client that nothing more is sent; reading goes on.

@@ -52,10 +52,10 @@ std::optional<Value> field(const nlohmann::json& body, const char* name) {
   return value.get<Value>();
 }
 
-/// Likewise a list, of texts (at most so many, none where the field is missing) or of whole numbers
+/// Likewise a list, of texts (at most so many; none where the field is missing) or of whole numbers
 /// (at least one).
 std::vector<std::string> texts_field(const nlohmann::json& body, const char* name,
-                                     std::size_t most = 100);
+                                     std::size_t most);
 template <class Number>
 std::vector<Number> numbers_field(const nlohmann::json& body, const char* name) {
   const auto fits = [](const nlohmann::json& item) {

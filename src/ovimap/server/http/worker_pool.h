@@ -17,7 +17,8 @@ namespace ovimap {
 /// that nobody waits for more than one job of each other client. Thread-safe.
 class WorkerPool {
  public:
-  WorkerPool(int threads, std::size_t most_waiting);
+  /// `most_of_one`: so many threads at most work for one client.
+  WorkerPool(int threads, std::size_t most_waiting, int most_of_one);
   /// Waits for the jobs under way; those that nobody has begun are dropped.
   ~WorkerPool();
   WorkerPool(const WorkerPool&) = delete;
@@ -28,15 +29,22 @@ class WorkerPool {
 
  private:
   using Job = std::function<void()>;
+  struct Turn {
+    std::string client;
+    Job job;
+  };
 
   void work();
-  Job take_next();
+  std::deque<std::string>::iterator next_turn();
+  Turn take(std::deque<std::string>::iterator turn);
 
   const std::size_t most_waiting_;
+  const int most_of_one_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::map<std::string, std::deque<Job>> jobs_of_;  ///< of the clients that have any
   std::deque<std::string> turns_;                   ///< these clients, the next one first
+  std::map<std::string, int> threads_of_;           ///< that work for a client
   std::size_t waiting_ = 0;                         ///< jobs of all
   bool ending_ = false;
   std::vector<std::thread> threads_;
