@@ -260,7 +260,7 @@ def test_the_grid_is_that_of_map_server(named_map, tmp_path):
     pillow = pytest.importorskip("PIL.Image")
     grid = grid_of(named_map[0])
     subprocess.run([PROGRAM, "export", named_map[0], tmp_path / "grid.yaml"], check=True, capture_output=True)
-    picture = np.array(pillow.open(tmp_path / "grid.png"))
+    picture = np.array(pillow.open(tmp_path / "grid_grid.png"))
     assert np.array_equal(grid.cells[::-1] == 100, picture == 0) and np.array_equal(grid.cells[::-1] == 0, picture == 254)
     assert grid.cell_m == 0.05 and np.allclose(grid.world_from_grid @ grid.world_from_grid.T, np.eye(3), atol=1e-5)
 

@@ -9,6 +9,7 @@
 
 #include "ovimap/base/error.h"
 #include "ovimap/base/listed.h"
+#include "ovimap/base/text/ascii.h"
 #include "ovimap/semantics/query/query_text.h"
 #include "ovimap/semantics/words/materials.h"
 
@@ -65,6 +66,13 @@ std::vector<std::size_t> some_embedded(const SearchIndex& index, std::size_t mos
   return some;
 }
 
+/// Whether people call an object so: "the red mug on the table" may be a name.
+bool is_name(const SearchIndex& index, const std::string& text) {
+  for (std::size_t i = 0; i < index.size(); ++i)
+    if (lower_case(index.object(i).name) == lower_case(text)) return true;
+  return false;
+}
+
 }  // namespace
 
 QueryEngine::QueryEngine(const SearchIndex& index, ImageTextEncoder* encoder,
@@ -108,7 +116,7 @@ QueryAnswer QueryEngine::find(const Query& query) const {
       negatives.push_back(std::move(term));
   QueryPhrase phrase;
   phrase.things = text;
-  if (config_.grammar)
+  if (config_.grammar && !is_name(index_, text))
     phrase =
         parse_query(text, {.colors = scene_.colors != nullptr, .parts = scene_.parts != nullptr});
   QueryAnswer result = phrase.free_text() ? find_text(text, negatives, query)

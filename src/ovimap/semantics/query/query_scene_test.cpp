@@ -144,6 +144,16 @@ TEST_F(QuerySceneTest, FreeTextHasNoReading) {
   EXPECT_TRUE(plain.find({"mug on the table", {}}).reading.empty());
 }
 
+TEST_F(QuerySceneTest, ANameIsNoPhrase) {
+  std::vector<SearchObject> objects;
+  for (std::size_t i = 0; i < index_.size(); ++i) objects.push_back(index_.object(i));
+  objects[10].name = "the mug on the floor";  // the bucket
+  const SearchIndex index(std::move(objects), index_.embeddings());
+  const QueryEngine engine(index, &encoder_, pictures_alone(), Embeddings{}, scene_);
+  EXPECT_TRUE(engine.find({"The mug on the floor", {}}).reading.empty());
+  EXPECT_FALSE(engine.find({"mug on the table", {}}).reading.empty());
+}
+
 TEST_F(QuerySceneTest, NegativesLeaveOutThings) {
   const QueryAnswer answer = engine_->find({"anything on the counter", {"bag"}});
   EXPECT_EQ(answer.verdict, Verdict::kFound) << answer.reason;

@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 // What clients correct in a served map.
+#include <chrono>
 #include <fstream>
+#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -30,6 +32,20 @@ TEST_F(HttpServerTest, KeepsNamesInTheMapFile) {
   post("/api/corrections", rename("two\nlines"), 409);
   post("/api/corrections", rename(std::string(300, 'x')), 409);
   EXPECT_EQ(get("/api/instances")["instances"][1]["name"], "");
+}
+
+/// `ovimap edit` beside the server: an undo in the browser must not take back what nobody saw.
+TEST_F(HttpServerTest, SeesWhatOtherProgramsCorrect) {
+  serve();
+  MapEdit edit;
+  edit.instances = {3};
+  edit.name = "bench";
+  edit_map(map_, edit);
+  const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (get("/api/corrections")["corrections"].empty() &&
+         std::chrono::steady_clock::now() < patience)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(get("/api/instances")["instances"][1]["name"], "bench");
 }
 
 /// What is named in the browser teaches other maps, where the server was told so.

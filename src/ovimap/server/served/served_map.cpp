@@ -41,7 +41,7 @@ void require_same_map(const std::filesystem::path& path, const MapInfo& seen) {
 ServedMap::ServedMap(const std::filesystem::path& map, const ServedMapConfig& config)
     : path_(map), config_(config) {
   open_saved();
-  preparation_ = std::thread([this] { prepare_search(); });
+  background_ = std::thread([this] { prepare_search(), follow_file(); });
 }
 
 ServedMap::ServedMap(const std::filesystem::path& map, FoundMap begun,
@@ -54,12 +54,17 @@ ServedMap::ServedMap(const std::filesystem::path& map, FoundMap begun,
   begun.live = true;
   found_ = std::make_shared<FoundMap>(std::move(begun));
   rebuild();
-  preparation_ = std::thread([this] { prepare_search(); });
+  background_ = std::thread([this] { prepare_search(), follow_file(); });
 }
 
 ServedMap::~ServedMap() {
   events_.close();
-  preparation_.join();
+  {
+    const std::lock_guard lock(mutex_);
+    ended_ = true;
+  }
+  ending_.notify_all();
+  background_.join();
 }
 
 std::shared_ptr<const ServedSurface> ServedMap::surface() const {
@@ -264,59 +269,6 @@ std::shared_ptr<const MapSnapshot> ServedMap::prepared_snapshot() const {
   return snapshot_;
 }
 
-MapAnswer ServedMap::ask(const MapQuestion& question) const {
-  std::shared_ptr<const MapSnapshot> now = prepared_snapshot();
-  if (question.past) return ask_past(std::move(now), question);
-  if (!now->engine) throw SearchUnavailable(now->why_no_search);
-  const bool relevance = question.query.relevance;
-  return {question.like ? now->engine->find_like(*question.like, relevance)
-                        : now->engine->find(question.query),
-          now};
-}
-
-std::optional<HistoryPhrase> ServedMap::past_of(const std::string& text, const std::string& at,
-                                                const std::string& since) const {
-  const bool timed = !at.empty() || !since.empty();
-  if (!text.empty() || !timed) checked_query_text(text, config_.query.max_text_chars);
-  if (!config_.query.grammar && !timed) return std::nullopt;
-  return history_of_question(text, at, since, seconds_now());
-}
-
-/// What changed can be told of any map; what a text means needs its encoder.
-MapAnswer ServedMap::ask_past(std::shared_ptr<const MapSnapshot> now,
-                              const MapQuestion& question) const {
-  const auto found = std::make_shared<HistorySearch>(
-      search_history(*now->record, now->objects->info, *question.past, config_.query.shapes));
-  found->search.scene.taught = now->objects->scene.taught;
-  const std::shared_ptr<const HistorySearch> past = found;
-  const bool listing = past->for_anything() && question.query.not_texts.empty();
-  if (!now->engine && !listing) throw SearchUnavailable(now->why_no_search);
-  std::optional<QueryEngine> engine;
-  if (!listing)
-    engine.emplace(past->search.index, encoder_.get(), config_.query, Embeddings{},
-                   past->search.scene);
-  QueryAnswer answer = ask_history(*past, engine ? &*engine : nullptr, question.query);
-  answer.query = question.query.text;
-  return {std::move(answer), std::move(now), past};
-}
-
-WordsOfObjects ServedMap::words_with_gone(const MapSnapshot& now) const {
-  if (!now.engine) return {};
-  const std::lock_guard lock(words_mutex_);
-  if (words_version_ != now.version)
-    words_ = ovimap::words_with_gone(*now.record, now.objects->info, *encoder_, config_.query,
-                                     now.objects->scene.taught);
-  words_version_ = now.version;
-  return words_;
-}
-
-std::vector<Gap> ServedMap::gaps(const GapsConfig& config) const {
-  const auto surface = this->surface();
-  SurfaceErrors errors;
-  for (const auto& [block, error] : surface->errors()) errors[block] = error_of_byte(error);
-  return find_gaps(snapshot()->record->seen_free, errors, surface->grid().block_m(), config);
-}
-
 std::shared_ptr<const StandingSpace> ServedMap::standing_space() const {
   const auto now = snapshot();
   if (now->live) throw Error("the map is still being made; ask when it is finished");
@@ -350,6 +302,35 @@ MapEdit ServedMap::correct(MapEdit edit) {
   rebuild();
   teach_names();
   return edit;
+}
+
+void ServedMap::follow_file() {
+  constexpr std::chrono::seconds kLook{1};
+  std::unique_lock lock(mutex_);
+  while (!ending_.wait_for(lock, kLook, [this] { return ended_; })) {
+    lock.unlock();
+    take_corrections_of_others();
+    lock.lock();
+  }
+}
+
+void ServedMap::take_corrections_of_others() {
+  std::error_code gone;
+  const auto written = std::filesystem::last_write_time(path_, gone);
+  const std::lock_guard lock(changing_);
+  if (gone || written == written_ || found_->live || log_closed_) return;
+  written_ = written;
+  try {
+    require_same_map(path_, found_->info);
+    MapEdits log = read_edits(path_);
+    if (log == log_) return;
+    log_ = std::move(log);
+    learn_names();
+    rebuild();
+  } catch (const std::exception&) {
+    // It is being written, and is looked at again once that is done; or it is another map by now,
+    // which is told to who corrects.
+  }
 }
 
 // ---------------------------------------------------------------------------- while it is being

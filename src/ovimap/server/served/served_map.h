@@ -68,7 +68,8 @@ struct Teaching {
 
 /// One map as clients see it: its surface, its objects, answers to queries, corrections. Whoever
 /// serves it over a network only reads it. A saved map, or one that is still being made, of which
-/// it is told what is found. Thread-safe.
+/// it is told what is found. What other programs correct in the file of a saved map is seen within
+/// seconds. Thread-safe.
 class ServedMap {
  public:
   /// Reads the map but for its voxels, which are read as its surface is asked for. Search and names
@@ -141,6 +142,8 @@ class ServedMap {
   MapRecord corrected() const;
   void set_search(MapSnapshot& next) const;
   void learn_names();
+  void follow_file();
+  void take_corrections_of_others();
   void teach_names();
   void show(const Teaching& teaching);
   MapAnswer ask_past(std::shared_ptr<const MapSnapshot> now, const MapQuestion& question) const;
@@ -154,6 +157,7 @@ class ServedMap {
   std::shared_ptr<const FoundMap> found_;
   MapEdits log_;
   bool log_closed_ = false;
+  std::filesystem::file_time_type written_;    ///< when the file was, as last looked at
   std::unique_ptr<ImageTextEncoder> encoder_;  ///< engines of snapshots use it
   std::string why_no_encoder_;                 ///< empty: there is one, or it is being opened
   std::optional<LabelSet> classes_;            ///< once their names are encoded
@@ -161,6 +165,8 @@ class ServedMap {
 
   mutable std::mutex mutex_;  ///< held for a moment only
   mutable std::condition_variable prepared_;
+  bool ended_ = false;
+  std::condition_variable ending_;
   std::shared_ptr<const ServedSurface> surface_;
   std::shared_ptr<const MapSnapshot> snapshot_;
   CameraTracking tracking_;
@@ -173,7 +179,7 @@ class ServedMap {
   mutable std::mutex words_mutex_;           ///< guards what follows; held while they are found
   mutable WordsOfObjects words_;             ///< of the objects that are and were
   mutable std::uint64_t words_version_ = 0;  ///< of the snapshot that they speak of
-  std::thread preparation_;
+  std::thread background_;  ///< prepares search, then sees what others write into the file
 };
 
 }  // namespace ovimap
