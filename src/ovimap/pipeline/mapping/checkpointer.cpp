@@ -47,7 +47,8 @@ void Checkpointer::set_edits(MapEdits edits) {
 
 void Checkpointer::make_room(Mapper& mapper) {
   VoxelMap& map = mapper.map();
-  if (!map.has_store()) map.keep_in(tiles_), map.set_room(tiles_->bound_bytes());
+  if (!map.has_store()) map.keep_in(tiles_);
+  map.set_room(tiles_->bound_bytes());
   if (tiles_->wants_room(map)) finish_writing(mapper);
   map.trim();
 }
