@@ -41,12 +41,12 @@ int reembed_map(const ReembedOptions& options) {
     print_json({{"map", out.string()},
                 {"encoder", encoder->identity().name},
                 {"dimension", encoder->identity().dimension},
-                {"instances", summary.objects},
+                {"instances", summary.super_points},
                 {"views", summary.views},
                 {"views_dropped", summary.dropped}});
   else
     std::printf("%s: %zu super-points have embeddings of %s, from %zu kept crops\n", out.c_str(),
-                summary.objects, encoder->identity().name.c_str(), summary.views);
+                summary.super_points, encoder->identity().name.c_str(), summary.views);
   return kDone;
 }
 

@@ -59,8 +59,8 @@ struct LiveStatistics {
 /// frame, those of frames that waited too long after the last frame. When it falls behind it puts
 /// off masks first, leaves out views second, frames last, and counts them. Frames that are at fault
 /// themselves (FrameError), bad masks and an encoder that throws cost what they were asked for, and
-/// are counted too; whatever else throws ends the
-/// run. All calls but `statistics` come from one thread.
+/// are counted too; whatever else throws ends the run. All calls but `statistics` come from one
+/// thread.
 class LiveMapper {
  public:
   LiveMapper(const MapperConfig& config, const LiveConfig& live,

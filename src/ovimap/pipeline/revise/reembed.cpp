@@ -35,8 +35,8 @@ void reembed_views(SuperPointLook& look, const CropConfig& config, ImageTextEnco
   const std::vector<Eigen::VectorXf> embeddings = embed_objects(encoder, objects, config);
   for (std::size_t i = 0; i < views.size(); ++i) views[i]->embedding = embeddings[i];
   summary.views += views.size();
-  summary.objects += std::any_of(embeddings.begin(), embeddings.end(),
-                                 [](const auto& embedding) { return embedding.size() > 0; });
+  summary.super_points += std::any_of(embeddings.begin(), embeddings.end(),
+                                      [](const auto& embedding) { return embedding.size() > 0; });
 }
 
 }  // namespace

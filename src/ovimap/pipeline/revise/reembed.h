@@ -10,12 +10,12 @@
 namespace ovimap {
 
 struct ReembedSummary {
-  std::size_t objects = 0;  ///< with an embedding now
-  std::size_t views = 0;    ///< kept crops that were embedded
-  std::size_t dropped = 0;  ///< views without a kept crop, which lose their embedding
+  std::size_t super_points = 0;  ///< with an embedding now
+  std::size_t views = 0;         ///< kept crops that were embedded
+  std::size_t dropped = 0;       ///< views without a kept crop, which lose their embedding
 };
 
-/// Called after every object.
+/// Called after every super-point.
 using ReembedProgress = std::function<void(std::size_t done, std::size_t total)>;
 
 /// Embeds the crops that a map kept with another encoder, as if it had been there when the map was

@@ -33,7 +33,7 @@ TEST(Reembed, GivesWhatTheEncoderWouldHaveGivenWhileMapping) {
       reembed(later, encoder, [&](std::size_t done, std::size_t) { told = done; });
   EXPECT_EQ(told, later.looks.size());
   const auto has_views = [](const auto& look) { return !look.second.views.empty(); };
-  EXPECT_EQ(static_cast<std::ptrdiff_t>(summary.objects),
+  EXPECT_EQ(static_cast<std::ptrdiff_t>(summary.super_points),
             std::count_if(direct.looks.begin(), direct.looks.end(), has_views));
   EXPECT_EQ(summary.dropped, 0u);
   EXPECT_EQ(later.encoder, encoder.identity());

@@ -68,9 +68,11 @@ std::vector<std::size_t> some_embedded(const SearchIndex& index, std::size_t mos
 
 /// Whether people call an object so: "the red mug on the table" may be a name.
 bool is_name(const SearchIndex& index, const std::string& text) {
-  for (std::size_t i = 0; i < index.size(); ++i)
-    if (lower_case(index.object(i).name) == lower_case(text)) return true;
-  return false;
+  const std::string wanted = lower_case(text);
+  return std::any_of(
+      index.objects().begin(), index.objects().end(), [&](const SearchObject& object) {
+        return object.name.size() == wanted.size() && lower_case(object.name) == wanted;
+      });
 }
 
 }  // namespace
