@@ -5,8 +5,12 @@
 #include <algorithm>
 #include <charconv>
 #include <optional>
+#include <utility>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
+#include "ovimap/base/bounded_json.h"
 #include "ovimap/base/error.h"
 #include "ovimap/frames/frame/frame_source.h"
 #include "ovimap/image/codec.h"
@@ -27,6 +31,48 @@ std::optional<std::int64_t> number_at_end(const std::string& text) {
   const auto [read_end, error] = std::from_chars(text.data() + begin, end, number);
   if (begin == text.size() || error != std::errc() || read_end != end) return std::nullopt;
   return number;
+}
+
+/// Beside a mask: how sure its maker is of each entity.
+fs::path scores_file(const fs::path& mask) {
+  return fs::path(mask).replace_extension(".json");
+}
+
+/// {"scores": [of id 1, of id 2, ...]}, each from 0 to 1; empty where there is no such file.
+std::vector<float> read_scores(const fs::path& mask, std::uint16_t last_id) {
+  const fs::path file = scores_file(mask);
+  if (!fs::exists(file)) return {};
+  const auto refuse = [&](const std::string& what) {
+    throw Error(concat("scores ", file.string(), " ", what, "; write {\"scores\": [0.9, 0.75]}, ",
+                       "for id 1, id 2 and so on from 0 to 1"));
+  };
+  const nlohmann::json document = read_json(file, kLargeDocument);
+  const auto list = document.find("scores");  // end() of what is no object
+  if (list == document.end() || !list->is_array()) refuse("hold no list of scores");
+  std::vector<float> scores;
+  for (const nlohmann::json& score : *list) {
+    const double value = score.is_number() ? score.get<double>() : -1;
+    if (value < 0 || value > 1) refuse("hold what is no score");
+    scores.push_back(static_cast<float>(value));
+  }
+  if (scores.size() < last_id)
+    refuse(concat("hold ", scores.size(), " scores, but ", mask.filename().string(), " has id ",
+                  last_id));
+  return scores;
+}
+
+/// The entities of a mask that is kept as a file.
+Entities read_entities(const fs::path& mask, const IdImage& ids) {
+  const std::uint16_t last_id = ids.size() > 0 ? *std::max_element(ids.begin(), ids.end()) : 0;
+  const std::vector<float> of_id = read_scores(mask, last_id);
+  if (of_id.empty()) return entities_of_ids(ids);
+  return keep_visible({ids, {of_id.begin(), of_id.begin() + last_id}}, 0);
+}
+
+void write_entities(const fs::path& mask, const Entities& entities) {
+  const std::string scores = nlohmann::json{{"scores", entities.scores}}.dump() + "\n";
+  write_file(scores_file(mask), Bytes(scores.begin(), scores.end()));
+  write_file(mask, encode_png(entities.ids));  // last: whoever sees it may read its scores
 }
 
 /// Reads something of one frame; what is wrong with it is that frame's fault alone.
@@ -104,7 +150,7 @@ std::optional<Entities> DirMaskSource::entities(const Frame& frame, std::span<co
                             mask.values.height(), ", but the colour image of frame ", frame.index,
                             " is ", frame.color.width(), "x", frame.color.height(),
                             "; write masks at the colour image's size"));
-  return entities_of_ids(mask.values);
+  return of_this_frame([&] { return read_entities(*file, mask.values); });
 }
 
 KeptMaskSource::KeptMaskSource(fs::path folder, std::unique_ptr<MaskSource> source)
@@ -119,11 +165,10 @@ KeptMaskSource::KeptMaskSource(fs::path folder, std::unique_ptr<MaskSource> sour
 std::optional<Entities> KeptMaskSource::entities(const Frame& frame,
                                                  std::span<const MaskPrompt> prompts) {
   const fs::path file = folder_ / concat(frame.index, ".png");
-  if (fs::exists(file)) return entities_of_ids(read_gray(file).values);
-  const std::optional<Entities> entities = source_->entities(frame, prompts);
-  if (!entities) return std::nullopt;
-  write_file(file, encode_png(entities->ids));
-  return entities_of_ids(entities->ids);
+  if (fs::exists(file)) return read_entities(file, read_gray(file).values);
+  std::optional<Entities> entities = source_->entities(frame, prompts);
+  if (entities) write_entities(file, *entities);
+  return entities;
 }
 
 }  // namespace ovimap

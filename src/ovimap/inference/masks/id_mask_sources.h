@@ -29,14 +29,16 @@ class GtMaskSource : public MaskSource {
 /// Entities from a folder of grey PNGs with 8 or 16 bits, one a frame, 0 = no entity, written by
 /// any tool. A frame's file has the frame's name (`frame-000012.color` or `frame-000012`), or ends
 /// in its index with any number of leading zeros (`12.png`, `mask_0012.png`). A frame without a
-/// file is not masked; one whose file is all 0 shows no entity.
+/// file is not masked; one whose file is all 0 shows no entity. A `12.json` beside it says how sure
+/// that tool is of each id, {"scores": [0.9, 0.75]}; without it each entity has score 1.
 class DirMaskSource : public MaskSource {
  public:
   /// Throws Error when the folder holds no PNG, or when `frames` is given and no file matches any
   /// frame.
   explicit DirMaskSource(const std::filesystem::path& folder, const FrameSource* frames = nullptr);
   std::string kind() const override { return "dir"; }
-  /// Throws Error when the frame's mask is not a grey PNG of the colour image's size.
+  /// Throws Error when the frame's mask is not a grey PNG of the colour image's size, or its scores
+  /// are none.
   std::optional<Entities> entities(const Frame& frame,
                                    std::span<const MaskPrompt> prompts) override;
 
@@ -49,16 +51,16 @@ class DirMaskSource : public MaskSource {
   std::map<std::int64_t, std::filesystem::path> by_index_;
 };
 
-/// Another source's entities, kept as PNGs so that they are computed once: a folder that a
-/// DirMaskSource reads. Whoever changes what the entities depend on takes another folder.
+/// Another source's entities, kept as PNGs and scores so that they are computed once: a folder that
+/// a DirMaskSource reads. Whoever changes what the entities depend on takes another folder.
 class KeptMaskSource : public MaskSource {
  public:
   /// Throws Error when the folder cannot be made.
   KeptMaskSource(std::filesystem::path folder, std::unique_ptr<MaskSource> source);
   std::string kind() const override { return source_->kind(); }
   bool is_slow() const override { return source_->is_slow(); }
-  /// Scores are all 1. Frames that the source has no masks of are asked for again. Throws what the
-  /// source throws, and Error when a mask cannot be written.
+  /// Frames that the source has no masks of are asked for again. Throws what the source throws, and
+  /// Error when a mask cannot be written.
   std::optional<Entities> entities(const Frame& frame,
                                    std::span<const MaskPrompt> prompts) override;
 

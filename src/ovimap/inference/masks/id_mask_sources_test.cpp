@@ -86,7 +86,7 @@ TEST(KeptMaskSource, AsksOnlyOnce) {
     EXPECT_TRUE(source.is_slow());
     for (std::int64_t i = 0; i < 2; ++i) {
       const Entities entities = *source.entities(frame_at(i), {});
-      EXPECT_EQ(entities.scores, (std::vector<float>{1, 1}));
+      EXPECT_EQ(entities.scores, (std::vector<float>{0.5f, 0.25f}));
       EXPECT_EQ(entities.ids.at(0, 0), 2);
       EXPECT_EQ(entities.ids.at(1, 0), 1);
     }
@@ -96,7 +96,8 @@ TEST(KeptMaskSource, AsksOnlyOnce) {
   EXPECT_FALSE(source.entities(frame_at(2), {})) << "not masked";
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "masks/2.png")) << "and so not kept";
   // What was kept is what any folder of masks is.
-  EXPECT_EQ(DirMaskSource(folder.path() / "masks").entities(frame_at(1), {})->scores.size(), 2u);
+  EXPECT_EQ(DirMaskSource(folder.path() / "masks").entities(frame_at(1), {})->scores,
+            (std::vector<float>{0.5f, 0.25f}));
 }
 
 TEST(GtMaskSource, NeedsTruth) {
@@ -141,6 +142,36 @@ TEST(DirMaskSource, NamesFileAndBothSizes) {
   const std::string message = error_of([&] { source.entities(frame_at(0), {}); });
   EXPECT_TRUE(contains(message, "0.png is 5x3")) << message;
   EXPECT_TRUE(contains(message, "is 4x3")) << message;
+}
+
+TEST(DirMaskSource, TakesTheScoresOfTheIdsThatItSees) {
+  const ScratchFolder scratch("dir_scores");
+  IdImage ids(4, 3);
+  ids.at(0, 0) = 2;
+  ids.at(1, 0) = 5;
+  write_file(scratch.path() / "0.png", encode_png(ids));
+  scratch.write("0.json", R"({"scores": [0.1, 0.2, 0.3, 0.4, 0.5, 0.6]})");
+  const Entities entities = *DirMaskSource(scratch.path()).entities(frame_at(0), {});
+  EXPECT_EQ(entities.scores, (std::vector<float>{0.2f, 0.5f}));
+  EXPECT_EQ(entities.ids.at(0, 0), 1);
+  EXPECT_EQ(entities.ids.at(1, 0), 2);
+}
+
+TEST(DirMaskSource, RefusesScoresThatAreNone) {
+  const ScratchFolder scratch("dir_no_scores");
+  write_ids(scratch.path() / "0.png", 4, 3, 2);
+  DirMaskSource source(scratch.path());
+  for (const auto& [text, what] : {std::pair{"[1, 1]", "no list of scores"},
+                                   {R"({"scores": 1})", "no list of scores"},
+                                   {R"({"scores": [1, 2]})", "what is no score"},
+                                   {R"({"scores": [1, "x"]})", "what is no"},
+                                   {R"({"scores": [1]})", "1 scores, but 0.png has id 2"},
+                                   {"{", "0.json"}}) {
+    scratch.write("0.json", text);
+    const std::string message = error_of([&] { source.entities(frame_at(0), {}); });
+    EXPECT_TRUE(contains(message, what)) << message;
+    EXPECT_TRUE(contains(message, "0.json")) << message;
+  }
 }
 
 TEST(DirMaskSource, RefusesColourMasks) {
