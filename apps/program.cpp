@@ -73,7 +73,7 @@ constexpr CommandEntry kCommands[] = {
 };
 
 int complain(const char* message, int code) {
-  std::fprintf(stderr, "ovimap: %s\n", message);
+  warn(message);
   return code;
 }
 

@@ -80,6 +80,21 @@ TEST_F(ProgramTest, WritesAndScoresEntities) {
   expect_complaint("masks recording --score --masks truth", {"instance images"});
 }
 
+TEST_F(ProgramTest, ATerminalObeysNothingThatAFileSays) {
+  std::filesystem::create_directory(path("tum"));
+  const auto complaint_of = [&](const std::string& line) {
+    std::ofstream(path("tum/depth.txt")) << line << "\n";
+    std::ofstream(path("tum/rgb.txt")) << line << "\n";
+    const ProgramResult result = run("run tum -o tum.ovimap");
+    EXPECT_EQ(result.code, 2);
+    return result.err;
+  };
+  const std::string title = complaint_of("abc\x1b]0;title\x07");
+  EXPECT_EQ(title.find_first_of("\x1b\x07"), std::string::npos) << title;
+  EXPECT_NE(title.find("abc\xEF\xBF\xBD]0;title\xEF\xBF\xBD'"), std::string::npos) << title;
+  EXPECT_LT(complaint_of(std::string(1 << 20, 'x')).size(), 5000u);
+}
+
 TEST_F(ProgramTest, SaysHowManyFramesHadMasks) {
   ASSERT_EQ(run("masks replica/scene --masks gt -o some").code, 0);
   for (const auto& entry : std::filesystem::directory_iterator(path("some")))

@@ -156,6 +156,10 @@ class Progress {
   bool shown_ = false;
 };
 
+/// Tells the user one thing on stderr. Texts of files and cameras may be in it: a terminal obeys
+/// none of it, and what is very long is cut off.
+void warn(std::string_view text);
+
 /// As text; what is not UTF-8 in it becomes the replacement character.
 std::string json_text(const nlohmann::json& value);
 /// Prints the one JSON object of a --json run.

@@ -8,6 +8,7 @@
 #include <iostream>
 
 #include "command.h"
+#include "ovimap/base/text/printable.h"
 
 namespace ovimap::apps {
 
@@ -31,6 +32,13 @@ void Progress::show(std::size_t done, std::size_t total, const std::string& deta
   std::fprintf(stderr, "\r%s %zu/%zu %s\x1b[K", what_.c_str(), done, total, detail.c_str());
   std::fflush(stderr);
   shown_ = true;
+}
+
+void warn(std::string_view text) {
+  constexpr std::size_t kLongest = 4000;
+  const bool cut = text.size() > kLongest;
+  std::fprintf(stderr, "ovimap: %s%s\n", printable(text.substr(0, kLongest)).c_str(),
+               cut ? " ..." : "");
 }
 
 std::string json_text(const nlohmann::json& value) {

@@ -41,8 +41,7 @@ int eval(const EvalOptions& options) {
   for (std::size_t i = 0; i < options.maps.size(); ++i)
     pairs.push_back({options.maps[i], options.truths[i]});
   const Evaluation evaluation = evaluate_maps(pairs, evaluation_options, config);
-  for (const std::string& notice : evaluation.notices)
-    std::fprintf(stderr, "ovimap: %s\n", notice.c_str());
+  for (const std::string& notice : evaluation.notices) warn(notice);
   const ProtocolChoice protocols{options.protocol != "reference", options.protocol != "standard"};
   const EvalTable table = table_of(evaluation, config, protocols);
   const std::string tables = eval_markdown(evaluation, table, config.sizes);

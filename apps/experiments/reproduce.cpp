@@ -92,8 +92,7 @@ EvalFigures measure(const ReproduceOptions& options, const PaperDataset& dataset
   evaluation_options.runtime.threads = options.mapping.threads;
   const EvaluationConfig config;
   const Evaluation evaluation = evaluate_maps(pairs, evaluation_options, config);
-  for (const std::string& notice : evaluation.notices)
-    std::fprintf(stderr, "ovimap: %s\n", notice.c_str());
+  for (const std::string& notice : evaluation.notices) warn(notice);
   return figures_of(evaluation, config, {});
 }
 
@@ -117,8 +116,7 @@ std::vector<Reproduction> find_scenes(const ReproduceOptions& options) {
     if (root.empty()) return;
     Reproduction made{
         dataset, find_paper_scenes(dataset, root, options.mapping.masks, config), {}, {}};
-    for (const std::string& line : made.found.missing)
-      std::fprintf(stderr, "ovimap: %s %s\n", dataset.name.c_str(), line.c_str());
+    for (const std::string& line : made.found.missing) warn(concat(dataset.name, " ", line));
     if (!made.found.scenes.empty()) all.push_back(std::move(made));
   };
   if (options.replica.empty() && options.scannet.empty())

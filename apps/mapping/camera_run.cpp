@@ -26,17 +26,15 @@ CameraRun::CameraRun(MappingOptions& options)
       feed_(*camera_, intake_) {
   options.poses = "track";
   if (!camera_->registered())
-    std::fprintf(stderr,
-                 "ovimap: %s does not bring its depth to the colour image, so the two are taken to "
-                 "look from one place; docs/cameras.md says how to calibrate them\n",
-                 camera_->name().c_str());
+    warn(concat(camera_->name(),
+                " does not bring its depth to the colour image, so the two are taken to look from "
+                "one place; docs/cameras.md says how to calibrate them"));
 }
 
 bool CameraRun::report_loss() {
   feed_.stop();
   if (feed_.fault().empty()) return true;
-  std::fprintf(stderr, "ovimap: %s %s; what it showed until then is in the map\n",
-               camera_->name().c_str(), feed_.fault().c_str());
+  warn(concat(camera_->name(), " ", feed_.fault(), "; what it showed until then is in the map"));
   return false;
 }
 

@@ -16,30 +16,25 @@ void report_skipped(const SequenceResult& result) {
   std::vector<std::string> faults;
   for (const SkippedFrame& frame : result.skipped) faults.push_back(frame.fault);
   for (const FaultCount& fault : count_faults(faults))
-    std::fprintf(stderr, "ovimap: skipped %lld frame(s), the first: %s\n",
-                 static_cast<long long>(fault.frames), fault.example.c_str());
-  if (interrupted()) std::fprintf(stderr, "ovimap: interrupted; saving what was mapped so far\n");
+    warn(concat("skipped ", fault.frames, " frame(s), the first: ", fault.example));
+  if (interrupted()) warn("interrupted; saving what was mapped so far");
 }
 
 void report_bad_frames(const LiveStatistics& done) {
   if (done.frames_failed > 0)
-    std::fprintf(stderr, "ovimap: %lld frame(s) were left out, the first: %s\n",
-                 static_cast<long long>(done.frames_failed), done.frame_fault.c_str());
+    warn(concat(done.frames_failed, " frame(s) were left out, the first: ", done.frame_fault));
 }
 
 void report_bad_masks(const LiveStatistics& done) {
   if (done.masks_failed > 0)
-    std::fprintf(stderr, "ovimap: the masks of %lld frame(s) are bad, the first: %s\n",
-                 static_cast<long long>(done.masks_failed), done.mask_fault.c_str());
+    warn(concat("the masks of ", done.masks_failed,
+                " frame(s) are bad, the first: ", done.mask_fault));
 }
 
 void report_encoder(const LiveStatistics& done) {
   if (done.views_failed > 0)
-    std::fprintf(
-        stderr,
-        "ovimap: the encoder failed on %lld view(s), the first: %s; `ovimap reembed` gives "
-        "their objects embeddings\n",
-        static_cast<long long>(done.views_failed), done.encoder_fault.c_str());
+    warn(concat("the encoder failed on ", done.views_failed, " view(s), the first: ",
+                done.encoder_fault, "; `ovimap reembed` gives their objects embeddings"));
 }
 
 nlohmann::json movers_json(const MapRecord& map) {
@@ -203,8 +198,8 @@ void advise_on_lost_camera(const MappingRun& run) {
             "look at that place for a moment (docs/tracking.md)"
           : "its pictures must overlap and follow one another closely, some 10 to 30 a second; "
             "record slower turns with more frames, or give poses (docs/tracking.md)";
-  std::fprintf(stderr, "ovimap: the camera was followed in %zu of %zu frames only: %s\n",
-               summary.tracked, summary.frames, advice);
+  warn(concat("the camera was followed in ", summary.tracked, " of ", summary.frames,
+              " frames only: ", advice));
 }
 
 }  // namespace
@@ -212,16 +207,14 @@ void advise_on_lost_camera(const MappingRun& run) {
 void report_faults(const MappingRun& run) {
   report_skipped(run.sequence);
   if (run.tracking)
-    for (const std::string& doubt : run.tracking->sensor_doubts)
-      std::fprintf(stderr, "ovimap: %s\n", doubt.c_str());
+    for (const std::string& doubt : run.tracking->sensor_doubts) warn(doubt);
   if (run.tracking && run.tracking->placing && !run.tracking->placing->doubt.empty())
-    std::fprintf(stderr, "ovimap: no first frame shows a known place, nor do objects tell it: %s\n",
-                 run.tracking->placing->doubt.c_str());
+    warn("no first frame shows a known place, nor do objects tell it: " +
+         run.tracking->placing->doubt);
   if (masks_all_absent(run))
-    std::fprintf(stderr,
-                 "ovimap: none of the %zu frames had masks, so the map tells no objects apart; "
-                 "name a mask file after its frame or its number, or map with --masks none\n",
-                 run.sequence.frames.size());
+    warn(concat("none of the ", run.sequence.frames.size(),
+                " frames had masks, so the map tells no objects apart; name a mask file after its "
+                "frame or its number, or map with --masks none"));
   if (!run.live) return;
   report_bad_frames(run.live->statistics);
   report_bad_masks(run.live->statistics);
@@ -294,10 +287,8 @@ bool mostly_lost(const MappingRun& run) {
 void advise_on_objects(const MappingRun& run) {
   if (mostly_lost(run)) return advise_on_lost_camera(run);
   if (!run.document.instances.empty() || masks_all_absent(run)) return;
-  std::fprintf(stderr,
-               "ovimap: no object was seen often enough to be kept; map more frames, or --set %s=1 "
-               "where masks are slow\n",
-               run.live ? "live.masks.min_gap" : "mask_interval");
+  warn(concat("no object was seen often enough to be kept; map more frames, or --set ",
+              run.live ? "live.masks.min_gap" : "mask_interval", "=1 where masks are slow"));
 }
 
 void advise_on_encoder(const MappingRun& run,
@@ -306,19 +297,15 @@ void advise_on_encoder(const MappingRun& run,
   for (const ModelListing& model : list_models(model_search_path(model_dirs)))
     if (!used.empty() && model.name == kDefaultEncoder && model.fault.empty() &&
         read_model_folder(model.folder).name == used)
-      std::fprintf(stderr,
-                   "ovimap: words go by the small default encoder; a better one: ovimap models "
-                   "fetch %s\n",
-                   kFirstEncoder);
+      warn(concat("words go by the small default encoder; a better one: ovimap models fetch ",
+                  kFirstEncoder));
 }
 
 void advise_on_writing(const MappingRun& run) {
   if (run.document.semantics.writing_reader.empty() ||
       run.frames_before == run.document.frames.size())
     return;
-  std::fprintf(stderr,
-               "ovimap: what was read on things before is kept; `ovimap read` reads what the new "
-               "frames show\n");
+  warn("what was read on things before is kept; `ovimap read` reads what the new frames show");
 }
 
 }  // namespace ovimap::apps

@@ -14,8 +14,7 @@ void save_run(const RunTarget& target, MappingRun& run) {
   if (!target.continued.empty() &&
       std::filesystem::equivalent(target.map, target.continued, ignored))
     for (const std::string& lost : carry_later_edits(target.map, run.document))
-      std::fprintf(stderr, "ovimap: a correction made meanwhile fits the map no more: %s\n",
-                   lost.c_str());
+      warn("a correction made meanwhile fits the map no more: " + lost);
   save_map(target.map, run.document);
 }
 

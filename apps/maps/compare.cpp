@@ -213,10 +213,9 @@ void tell_lost_past(const CompareOptions& options) {
       throw Error(concat("'", map.string(),
                          "' is of several visits, whose history a merged map does not have; write "
                          "to another file with -o"));
-    std::fprintf(stderr,
-                 "ovimap: %s is of several visits; what changed between them (`info --history`) "
-                 "does not go into the merged map\n",
-                 map.c_str());
+    warn(concat(map.string(),
+                " is of several visits; what changed between them (`info --history`) does not go "
+                "into the merged map"));
   }
 }
 

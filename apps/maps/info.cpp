@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "apps/command/command.h"
+#include "ovimap/base/text/printable.h"
 #include "ovimap/io/exports/instance_json.h"
 #include "ovimap/io/map_file/map_check.h"
 #include "ovimap/io/map_file/map_file.h"
@@ -131,7 +132,7 @@ int info(const InfoOptions& options) {
       "%s: %zu objects, %lld frames, %lld blocks of %g m voxels, %.1f MB, made by ovimap %s\n",
       options.map.c_str(), map.instances.size(), static_cast<long long>(map.frames),
       static_cast<long long>(map.blocks), double{map.voxel_size_m},
-      static_cast<double>(map.size_bytes) / 1e6, map.version.c_str());
+      static_cast<double>(map.size_bytes) / 1e6, printable(map.version).c_str());
   if (map.unfinished)
     std::printf(
         "unfinished: a run was broken off; the same command with --resume goes on with it\n");

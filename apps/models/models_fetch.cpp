@@ -94,7 +94,7 @@ int fetch(const FetchOptions& options) {
   }
   print_fetched(options, target, fetched);
   for (const std::string& warning : fetched.test.warnings)
-    std::fprintf(stderr, "ovimap: WARNING: %s: %s\n", name.c_str(), warning.c_str());
+    warn(concat("WARNING: ", name, ": ", warning));
   return kDone;
 }
 

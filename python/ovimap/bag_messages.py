@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import pathlib
+import struct
 from collections.abc import Iterator
 from typing import Any
 
@@ -150,6 +151,7 @@ def is_depth(message: Any) -> bool:
     return "compressedDepth" in message.format or message.format.startswith(("16UC1", "32FC1"))
 
 
+MOST_DEPTH_PIXELS = 1 << 24  # ten times what depth cameras have; unpacked, a few bytes of a PNG can be gigabytes
 JPEG, PNG = b"\xff\xd8", b"\x89PNG"
 CHANNELS = {"rgb8": 3, "bgr8": 3, "rgba8": 4, "bgra8": 4, "mono8": 1, "8UC1": 1, "8UC3": 3}
 
@@ -176,6 +178,9 @@ def depth_of(message: Any, topic: str) -> npt.NDArray[Any] | bytes:
         raise Error(f"an image of {topic} is compressed as '{image_format}', which holds no PNG; record or send it as 16UC1")
     if not image_format.startswith("32FC1"):
         return png
+    width, height = struct.unpack(">II", png[16:24].ljust(8, b"\0"))
+    if width * height > MOST_DEPTH_PIXELS:
+        raise Error(f"an image of {topic} has {width}x{height} pixels of depth; at most {MOST_DEPTH_PIXELS} are read")
     stored, (a, b) = decode_gray_png(png).astype(np.float32), np.frombuffer(data[4:12], "<f4")
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(stored > 0, a / (stored - b), np.float32(0)).astype(np.float32)

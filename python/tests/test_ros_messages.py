@@ -157,6 +157,16 @@ def test_compressed_depth_is_a_header_and_a_png(kind, given, metres):
         assert read_back.dtype == np.float32 and np.allclose(read_back, metres)
 
 
+def test_a_few_bytes_do_not_unpack_to_gigabytes():
+    png = bytearray(ovimap.encode_png(np.zeros((1, 1), np.uint16)))
+    png[16:24] = np.array([16000, 8000], ">u4").tobytes()
+    header = read("sensor_msgs/msg/Image")[0].header
+    data = np.frombuffer(bytes(12) + bytes(png), np.uint8)
+    message = types.make("sensor_msgs/msg/CompressedImage", header=header, format="32FC1; compressedDepth png", data=data)
+    with pytest.raises(ovimap.Error, match="an image of /d has 16000x8000 pixels of depth"):
+        bag_messages.depth_of(message, "/d")
+
+
 def test_cameras_and_poses_are_read():
     [info] = read("sensor_msgs/msg/CameraInfo")
     info.k = info.k.copy()

@@ -4,11 +4,14 @@
 
 #include <cmath>
 
+#include "ovimap/geometry/camera_limits.h"
+
 namespace ovimap {
 
 bool PinholeCamera::valid() const {
-  return width > 0 && height > 0 && fx > 0 && fy > 0 && std::isfinite(fx) && std::isfinite(fy) &&
-         std::isfinite(cx) && std::isfinite(cy);
+  const auto is_focal = [](float length) { return length > 0 && length <= kMostFocal_px; };
+  const auto is_place = [](float place) { return std::abs(place) <= kMostFocal_px; };
+  return width > 0 && height > 0 && is_focal(fx) && is_focal(fy) && is_place(cx) && is_place(cy);
 }
 
 PinholeCamera PinholeCamera::scaled_to(int new_width, int new_height) const {

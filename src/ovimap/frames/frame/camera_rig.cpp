@@ -11,6 +11,7 @@
 
 #include "ovimap/base/bounded_yaml.h"
 #include "ovimap/base/config.h"
+#include "ovimap/geometry/camera_limits.h"
 #include "ovimap/image/codec.h"
 #include "ovimap/image/size_limits.h"
 
@@ -19,6 +20,7 @@ namespace ovimap {
 namespace {
 
 constexpr double kLargest = std::numeric_limits<float>::max();
+constexpr double kAboveZero = std::numeric_limits<float>::min();
 
 const std::vector<std::string> kDirections = {"world_from_camera", "camera_from_world"};
 const std::vector<std::string> kAxes = {"opencv", "opengl", "ros"};
@@ -116,16 +118,19 @@ class Section {
                        "'; accepted is ", accepted));
   }
 
+  static std::string range_text(double min, double max) {
+    const bool above_0 = min == kAboveZero, bounded = max < kLargest;
+    if (above_0) return bounded ? concat(" above 0, at most ", max) : " above 0";
+    return bounded ? concat(" from ", min, " to ", max) : "";
+  }
+
   double number(const std::string& key, const YAML::Node& node, double min, double max,
                 bool whole) const {
     double value = std::nan("");
     const bool readable = node.IsScalar() && YAML::convert<double>::decode(node, value);
     if (!readable || !(value >= min && value <= max) || (whole && value != std::floor(value)))
       fail(dotted(key), text_of(node),
-           concat(whole ? "a whole number" : "a number", max < kLargest
-                                                             ? concat(" from ", min, " to ", max)
-                                                         : min > 0 ? std::string(" above 0")
-                                                                   : std::string()));
+           concat(whole ? "a whole number" : "a number", range_text(min, max)));
     return value;
   }
 
@@ -149,18 +154,18 @@ Lens read_lens(const Section& section) {
 }
 
 void read_camera(const Section& section, PinholeCamera& camera, Lens& lens) {
-  constexpr double kAboveZero = std::numeric_limits<float>::min();
   section.read("width", camera.width, 1, double{kLargestSide_px});
   section.read("height", camera.height, 1, double{kLargestSide_px});
-  section.read("fx", camera.fx, kAboveZero, kLargest);
-  section.read("fy", camera.fy, kAboveZero, kLargest);
-  section.read("cx", camera.cx, -kLargest, kLargest);
-  section.read("cy", camera.cy, -kLargest, kLargest);
+  constexpr double kMost = kMostFocal_px;
+  section.read("fx", camera.fx, kAboveZero, kMost);
+  section.read("fy", camera.fy, kAboveZero, kMost);
+  section.read("cx", camera.cx, -kMost, kMost);
+  section.read("cy", camera.cy, -kMost, kMost);
   if (section.has("distortion")) lens = read_lens(section.section("distortion"));
 }
 
 void read_depth_storage(const Section& section, CameraRig& rig) {
-  section.read("depth_scale", rig.depth_units_per_m, std::numeric_limits<float>::min(), kLargest);
+  section.read("depth_scale", rig.depth_units_per_m, kAboveZero, kLargest);
   section.read_list("invalid", rig.invalid_depth);
 }
 

@@ -25,7 +25,7 @@ std::optional<std::int64_t> color_number(const fs::path& file) {
   std::int64_t number = 0;
   const char* end = stem.data() + stem.size();
   const auto [rest, error] = std::from_chars(stem.data() + 5, end, number);
-  return error == std::errc() && rest == end ? std::optional(number) : std::nullopt;
+  return error == std::errc() && rest == end && number >= 0 ? std::optional(number) : std::nullopt;
 }
 
 bool is_replica(const fs::path& folder) {
@@ -62,6 +62,10 @@ CameraRig read_rig(const fs::path& file) {
   if (!(rig.depth_units_per_m > 0))
     throw Error(
         concat(file.string(), ": scale is ", rig.depth_units_per_m, "; it must be above 0"));
+  if (!rig.depth_camera.valid())
+    throw Error(concat(file.string(),
+                       ": w, h, fx, fy, cx and cy are of no camera; sizes and focal ",
+                       "lengths lie above 0"));
   rig.color_camera = rig.depth_camera;
   return rig;
 }

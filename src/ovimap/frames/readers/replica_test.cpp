@@ -64,6 +64,13 @@ TEST_F(Replica, TimesAreThoseOfItsFileOrOfThirtyFramesASecond) {
   EXPECT_NE(error().find("timestamps.txt"), std::string::npos) << error();
 }
 
+TEST_F(Replica, NumbersBelowZeroAreNoFrames) {
+  write_text(scene_ / "timestamps.txt", "0\n0.1\n0.2\n");
+  std::filesystem::copy(scene_ / "results/frame000000.jpg", scene_ / "results/frame-1.jpg");
+  std::filesystem::copy(scene_ / "results/frame000000.jpg", scene_ / "results/frame-10000000.jpg");
+  EXPECT_EQ(open_frame_source(scene_)->size(), 3);
+}
+
 TEST_F(Replica, CameraFileMayStandInTheScene) {
   std::filesystem::rename(folder_.path() / "cam_params.json", scene_ / "cam_params.json");
   EXPECT_EQ(open_frame_source(scene_)->size(), 3);
@@ -74,6 +81,10 @@ TEST_F(Replica, BrokenDescriptionsAreNamed) {
   EXPECT_NE(error().find("no cam_params.json"), std::string::npos);
   write_text(folder_.path() / "cam_params.json", "{\"camera\": {\"w\": 80}}");
   EXPECT_NE(error().find("cam_params.json is not a camera description"), std::string::npos);
+  write_text(
+      folder_.path() / "cam_params.json",
+      R"({"camera": {"w": 80, "h": 60, "fx": 1e10, "fy": 60, "cx": 40, "cy": 30, "scale": 1000}})");
+  EXPECT_NE(error().find("are of no camera"), std::string::npos) << "no map could keep it";
   write_text(folder_.path() / "cam_params.json", "{nonsense");
   EXPECT_NE(error().find("cam_params.json is not JSON: line 1"), std::string::npos);
   const auto nested = [](std::size_t levels) {

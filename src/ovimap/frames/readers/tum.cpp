@@ -24,6 +24,12 @@ bool is_tum(const fs::path& folder) {
   return fs::is_regular_file(folder / "rgb.txt") && fs::is_regular_file(folder / "depth.txt");
 }
 
+/// What a list names must lie in its recording: no other file of the machine gets into a map.
+bool is_inside(const fs::path& name) {
+  const fs::path plain = name.lexically_normal();
+  return !plain.empty() && !plain.is_absolute() && *plain.begin() != "..";
+}
+
 std::vector<TimedImage> read_list(const fs::path& file) {
   std::vector<TimedImage> images;
   for (const TextLine& line : read_lines(file)) {
@@ -33,6 +39,9 @@ std::vector<TimedImage> read_list(const fs::path& file) {
     if (!time || time->size() != 1 || name == std::string::npos)
       throw Error(concat(file.string(), " line ", line.number, " is '", line.text,
                          "'; expected a time in seconds and a file name"));
+    if (!is_inside(line.text.substr(name)))
+      throw Error(concat(file.string(), " line ", line.number, " names '", line.text.substr(name),
+                         "', which is not in the recording; name files in its folder"));
     images.push_back({time->front(), file.parent_path() / line.text.substr(name)});
   }
   std::stable_sort(images.begin(), images.end(),

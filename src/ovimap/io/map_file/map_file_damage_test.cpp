@@ -223,7 +223,7 @@ TEST_F(ForgedMap, ClaimedSizesCostNothing) {
   forge_meta("blocks", "1");
   expect_refused("fewer blocks than there are");
   save_map(path_, saved_);
-  forge_meta("last_instance_id", "99999999999");
+  forge_meta("last_instance_id", "4294967295");  // the next object would be number 0
   expect_refused("an id out of range");
   save_map(path_, saved_);
   forge_meta("encoder.dimension", "2000000000");

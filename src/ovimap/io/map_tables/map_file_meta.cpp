@@ -7,6 +7,7 @@
 #include <map>
 
 #include "ovimap/base/config.h"
+#include "ovimap/geometry/camera_limits.h"
 #include "ovimap/io/map_tables/map_file_rows.h"
 
 namespace ovimap {
@@ -19,7 +20,6 @@ using namespace map_tables;
 /// list; a key that a file lacks keeps its default.
 void list_meta(MapRecord& record, VoxelMapConfig& map_config, ConfigFields& fields) {
   constexpr int kMostPixels = 1 << 20;
-  constexpr float kMostFocalPixels = 1e9f;
   fields.add("version", record.version, "of the program that wrote the map");
   fields.add("source", record.source, "where the frames came from");
   fields.add("config", record.config_text, "effective configuration");
@@ -39,10 +39,10 @@ void list_meta(MapRecord& record, VoxelMapConfig& map_config, ConfigFields& fiel
   fields.group("depth_camera", [&](ConfigFields& camera) {
     camera.add("width", record.depth_camera.width, 0, kMostPixels, "pixels");
     camera.add("height", record.depth_camera.height, 0, kMostPixels, "pixels");
-    camera.add("fx", record.depth_camera.fx, 0.f, kMostFocalPixels, "pixels");
-    camera.add("fy", record.depth_camera.fy, 0.f, kMostFocalPixels, "pixels");
-    camera.add("cx", record.depth_camera.cx, -kMostFocalPixels, kMostFocalPixels, "pixels");
-    camera.add("cy", record.depth_camera.cy, -kMostFocalPixels, kMostFocalPixels, "pixels");
+    camera.add("fx", record.depth_camera.fx, 0.f, kMostFocal_px, "pixels");
+    camera.add("fy", record.depth_camera.fy, 0.f, kMostFocal_px, "pixels");
+    camera.add("cx", record.depth_camera.cx, -kMostFocal_px, kMostFocal_px, "pixels");
+    camera.add("cy", record.depth_camera.cy, -kMostFocal_px, kMostFocal_px, "pixels");
   });
   fields.group("encoder", [&](ConfigFields& encoder) {
     constexpr int kMostDimensions = 1 << 16;
@@ -132,10 +132,12 @@ MapMeta read_meta(SQLite::Database& database, MapRecord& record) {
   for (const ConfigField& field : fields.fields())
     if (const auto found = texts.find(field.name); found != texts.end()) field.set(found->second);
   constexpr auto kMost = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+  // Two maps can become one, whose objects can be split.
+  constexpr std::uint64_t kMostInstances = std::numeric_limits<InstanceId>::max() / 4;
   meta.frames = static_cast<std::int64_t>(parse_number(texts, "frames", 10, kMost));
   meta.blocks = parse_number(texts, "blocks", 10, kMost);
-  record.registry.last_id = static_cast<InstanceId>(
-      parse_number(texts, "last_instance_id", 10, std::numeric_limits<InstanceId>::max()));
+  record.registry.last_id =
+      static_cast<InstanceId>(parse_number(texts, "last_instance_id", 10, kMostInstances));
   meta.content_hash =
       parse_number(texts, "content_hash", 16, std::numeric_limits<std::uint64_t>::max());
   record.content_hash = meta.content_hash;

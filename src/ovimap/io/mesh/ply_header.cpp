@@ -96,6 +96,8 @@ class HeaderParser {
 
   void take_element(const std::vector<std::string_view>& words) {
     if (words.size() != 3) fail("should be 'element NAME COUNT'");
+    constexpr std::size_t kMostElements = 100;  // each is compared with all before it
+    if (header_.elements.size() == kMostElements) fail("is one element too many");
     PlyElement element;
     element.name = words[1];
     for (const PlyElement& other : header_.elements)

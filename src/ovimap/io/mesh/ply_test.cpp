@@ -160,6 +160,9 @@ TEST(Ply, NamesWhatIsWrongWithTheHeader) {
   EXPECT_NE(with("element v 0\nproperty quad x").find("unknown number type"), std::string::npos);
   EXPECT_NE(with("element v 0\nproperty list float int x").find("no integer"), std::string::npos);
   EXPECT_NE(with("element v 0\nelement v 0").find("second time"), std::string::npos);
+  std::string many = "element e 0";
+  for (int i = 0; i < 100; ++i) many += "\nelement e" + std::to_string(i) + " 0";
+  EXPECT_NE(with(many).find("one element too many"), std::string::npos);
   EXPECT_NE(with("vertices 3").find("not understood"), std::string::npos);
   EXPECT_NE(with("element vertex 1\nproperty float x\nproperty float y").find("only 0 bytes"),
             std::string::npos);
