@@ -39,7 +39,7 @@ struct SegmentAssociation {
   std::vector<Label>
       overlapped;  ///< two or more labels when the segment says they are one (Spa), ascending
   /// The super-points whose surface it shows, ascending: its own, with all points of the segment,
-  /// and others with as many points as would make them its own.
+  /// and others with as many points as would make them its own, were the mask a true one.
   std::vector<ShownLabel> shown = {};
 };
 

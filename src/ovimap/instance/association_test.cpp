@@ -117,6 +117,21 @@ TEST_F(AssociateTest, MixedGivesTheLoserNoLabelOfLittleSupport) {
   EXPECT_EQ(associate(segments, surface_, map_, config_)[1].label, 5u) << "half of it";
 }
 
+TEST_F(AssociateTest, MixedTakesNoSuperPointThatADoubtfulMaskMayHoldByMistake) {
+  hold(0, 120, 2);
+  Segments segments = cut({{0, 300}});
+  segments.segments[0].entity = 1;
+  EXPECT_EQ(associate(segments, surface_, map_, config_)[0].label, 2u) << "a mask that is true";
+  segments.ratings = {0.65f};
+  EXPECT_EQ(associate(segments, surface_, map_, config_)[0].label, 2u) << "0.4 of it, for 0.35";
+  segments.ratings = {0.55f};
+  const SegmentAssociation doubtful = associate(segments, surface_, map_, config_)[0];
+  EXPECT_TRUE(doubtful.founded) << "0.4 of it, for 0.45";
+  EXPECT_EQ(doubtful.shown.size(), 2u) << "that it shows both is told all the same";
+  config_.association = AssociationRule::kOneToOne;
+  EXPECT_EQ(associate(segments, surface_, map_, config_)[0].label, 2u) << "the paper's rule";
+}
+
 TEST_F(AssociateTest, MixedSharesALabelAmongSegmentsOfOneEntity) {
   hold(0, 300, 2);
   Segments segments = cut({{0, 150}, {150, 200}, {200, 300}});
