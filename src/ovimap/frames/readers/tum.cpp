@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 
 #include "ovimap/base/error.h"
 #include "ovimap/frames/readers/readers.h"
@@ -36,7 +37,7 @@ std::vector<TimedImage> read_list(const fs::path& file) {
     const std::size_t blank = std::min(line.text.find_first_of(" \t"), line.text.size());
     const std::size_t name = line.text.find_first_not_of(" \t", blank);
     const auto time = parse_numbers(std::string_view(line.text).substr(0, blank));
-    if (!time || time->size() != 1 || name == std::string::npos)
+    if (!time || time->size() != 1 || !std::isfinite(time->front()) || name == std::string::npos)
       throw Error(concat(file.string(), " line ", line.number, " is '", line.text,
                          "'; expected a time in seconds and a file name"));
     if (!is_inside(line.text.substr(name)))

@@ -75,6 +75,8 @@ TEST_F(Tum, FrameWithoutAPoseInReachIsAFault) {
 TEST_F(Tum, BrokenListsAreNamed) {
   write_text(folder_.path() / "rgb.txt", "1305031102.1 rgb/a.png\nnonsense\n");
   EXPECT_NE(error().find("rgb.txt line 2 is 'nonsense'"), std::string::npos);
+  write_text(folder_.path() / "rgb.txt", "nan rgb/a.png\n");
+  EXPECT_NE(error().find("rgb.txt line 1 is 'nan rgb/a.png'"), std::string::npos);
   for (const char* elsewhere : {"../a.png", "/tmp/a.png", "rgb/../../a.png"}) {
     write_text(folder_.path() / "rgb.txt", std::string("5.0 ") + elsewhere + "\n");
     EXPECT_NE(error().find("which is not in the recording"), std::string::npos) << elsewhere;
