@@ -4,23 +4,17 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <limits>
 #include <utility>
 #include <vector>
 
 namespace ovimap {
 
+std::uint16_t last_id(const IdImage& ids) {
+  return ids.size() > 0 ? *std::max_element(ids.begin(), ids.end()) : std::uint16_t{0};
+}
+
 Entities entities_of_ids(const IdImage& ids) {
-  constexpr std::size_t kIds = std::numeric_limits<std::uint16_t>::max() + std::size_t{1};
-  std::vector<std::uint16_t> new_id(kIds, 0);
-  for (const std::uint16_t id : ids) new_id[id] = 1;
-  new_id[0] = 0;
-  std::uint16_t count = 0;
-  for (std::uint16_t& id : new_id)
-    if (id != 0) id = ++count;
-  Entities entities{ids, std::vector<float>(count, 1.f)};
-  for (std::uint16_t& id : entities.ids) id = new_id[id];
-  return entities;
+  return keep_visible({ids, std::vector<float>(last_id(ids), 1.f)}, 0);
 }
 
 Entities keep_visible(Entities entities, int min_px) {

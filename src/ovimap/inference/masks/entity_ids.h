@@ -6,6 +6,9 @@
 
 namespace ovimap {
 
+/// The highest id of an image; 0 where it shows none.
+std::uint16_t last_id(const IdImage& ids);
+
 /// Entities of any id image: ids become 1, 2, ... in ascending order of the given ones, each with
 /// score 1.
 Entities entities_of_ids(const IdImage& ids);

@@ -38,10 +38,11 @@ fs::path scores_file(const fs::path& mask) {
   return fs::path(mask).replace_extension(".json");
 }
 
-/// {"scores": [of id 1, of id 2, ...]}, each from 0 to 1; empty where there is no such file.
-std::vector<float> read_scores(const fs::path& mask, std::uint16_t last_id) {
+/// {"scores": [of id 1, of id 2, ...]}, each from 0 to 1, of `count` ids; 1 where there is no such
+/// file.
+std::vector<float> read_scores(const fs::path& mask, std::size_t count) {
   const fs::path file = scores_file(mask);
-  if (!fs::exists(file)) return {};
+  if (!fs::exists(file)) return std::vector<float>(count, 1.f);
   const auto refuse = [&](const std::string& what) {
     throw Error(concat("scores ", file.string(), " ", what, "; write {\"scores\": [0.9, 0.75]}, ",
                        "for id 1, id 2 and so on from 0 to 1"));
@@ -55,18 +56,16 @@ std::vector<float> read_scores(const fs::path& mask, std::uint16_t last_id) {
     if (value < 0 || value > 1) refuse("hold what is no score");
     scores.push_back(static_cast<float>(value));
   }
-  if (scores.size() < last_id)
+  if (scores.size() < count)
     refuse(concat("hold ", scores.size(), " scores, but ", mask.filename().string(), " has id ",
-                  last_id));
+                  count));
+  scores.resize(count);
   return scores;
 }
 
 /// The entities of a mask that is kept as a file.
 Entities read_entities(const fs::path& mask, const IdImage& ids) {
-  const std::uint16_t last_id = ids.size() > 0 ? *std::max_element(ids.begin(), ids.end()) : 0;
-  const std::vector<float> of_id = read_scores(mask, last_id);
-  if (of_id.empty()) return entities_of_ids(ids);
-  return keep_visible({ids, {of_id.begin(), of_id.begin() + last_id}}, 0);
+  return keep_visible({ids, read_scores(mask, last_id(ids))}, 0);
 }
 
 void write_entities(const fs::path& mask, const Entities& entities) {
