@@ -137,6 +137,18 @@ test('keeps a name through a reload', async ({ page, map }) => {
   await expect(page.getByRole('option', { name: 'reading corner' })).toBeVisible();
 });
 
+test('hears what happens while it loads', async ({ page, map }) => {
+  await page.route('**/api/cameras', async (route) => {
+    const { instances } = await (await page.request.get(`${map.address}api/instances`)).json();
+    const correction = { kind: 'rename', instance: instances[1].id, name: 'said meanwhile' };
+    const reply = await page.request.post(`${map.address}api/corrections`, { data: correction });
+    expect(reply.status()).toBe(200);
+    await route.continue();
+  });
+  await open(page, map.address);
+  await expect(page.locator('.row', { hasText: 'said meanwhile' })).toHaveCount(1);
+});
+
 test('measures, cuts, follows the camera', async ({ page, map }) => {
   await open(page, map.address);
   await page.keyboard.press('m');

@@ -132,13 +132,13 @@ export class App {
   /** Loads the map and shows it; faults are shown, never thrown. */
   async start(): Promise<void> {
     try {
-      await waitForFrames(this.status);
+      const seen = await waitForFrames(this.status);
       const [info, instances, labels] = await loadObjects();
       this.takeMap(info, instances);
       this.makeView(info);
       this.view?.setLabels(labels);
       this.repaint();
-      this.follow(await this.loadSurface());
+      this.follow(await this.loadSurface(), seen);
     } catch (error) {
       this.status.setBanner(faultText(error));
       this.status.progress(1);
@@ -219,7 +219,7 @@ export class App {
     performance.mark(name);
   }
 
-  private follow(loader: SurfaceLoader | null): void {
+  private follow(loader: SurfaceLoader | null, seen: number): void {
     const failed = (error: unknown): void => this.status.toast(faultText(error));
     const lost = 'The connection to the server is lost; trying again. What is loaded stays usable.';
     const surfaceChanged = async (): Promise<void> => {
@@ -228,7 +228,7 @@ export class App {
     };
     if (this.state.info?.live && !this.tools.isOn('path')) this.tools.toggle('path');
     if (this.state.info?.live) this.camera.show(this.state.info.tracking);
-    listen({
+    listen(seen, {
       onMap: () => void this.refresh().catch(failed),
       onMesh: () => void surfaceChanged().catch(failed),
       onFrame: (frame) => this.followCamera(frame),

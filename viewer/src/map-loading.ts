@@ -11,11 +11,13 @@ export function loadObjects(): Promise<[MapInfo, Instance[], Labels]> {
   return Promise.all([api.map(), api.instances(), api.labels()]);
 }
 
-/** A map that is being made shows something from its first frame on. */
-export async function waitForFrames(status: Status): Promise<void> {
-  for (let info = await api.map(); info.live && info.frames === 0; info = await api.map()) {
+/** A map that is being made shows something from its first frame on. Returns the latest event before it is loaded. */
+export async function waitForFrames(status: Status): Promise<number> {
+  let info = await api.map();
+  for (; info.live && info.frames === 0; info = await api.map()) {
     status.setBanner('Waiting for the first frames …');
     await new Promise((resolve) => setTimeout(resolve, FIRST_FRAME_MS));
   }
   status.setBanner('');
+  return info.last_event;
 }

@@ -13,9 +13,9 @@ export interface EventHandlers {
   onConnection: (connected: boolean) => void;
 }
 
-/** Listens to the server's events; the browser connects again by itself. */
-export function listen(handlers: EventHandlers): void {
-  const source = new EventSource('/api/events');
+/** Listens to the server's events after one of them; the browser connects again by itself. */
+export function listen(after: number, handlers: EventHandlers): void {
+  const source = new EventSource(`/api/events?after=${after}`);
   let lost = false;
   source.addEventListener('map', handlers.onMap);
   source.addEventListener('mesh', handlers.onMesh);

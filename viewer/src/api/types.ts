@@ -12,6 +12,8 @@ export interface MapInfo {
   program: string;
   version: number;
   mesh_version: number;
+  /** The latest event that this knows of. */
+  last_event: number;
   live: boolean;
   tracking: Tracking;
   frames: number;

@@ -246,7 +246,8 @@ export class MapView {
   }
 
   /** The camera moved on, while the map is made. */
-  addCamera({ index, world_from_camera }: FrameEvent): void {
+  addCamera({ frames, index, world_from_camera }: FrameEvent): void {
+    if (this.cameraCount >= frames) return; // it came with the others
     this.cameras?.frames.push({ index, timestamp_s: 0, labelled: false, world_from_camera });
   }
 

@@ -10,12 +10,12 @@ namespace ovimap {
 
 namespace {
 
-std::uint64_t first_event(const EventHub& hub, const HttpRequest& request) {
+std::uint64_t first_event(const HttpRequest& request, std::uint64_t after) {
   const std::string text = request.header("last-event-id");
   std::uint64_t number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   const bool known = !text.empty() && error == std::errc() && end == text.data() + text.size();
-  return known ? number : hub.last();
+  return known ? number : after;
 }
 
 class EventStream : public ReplyStream {
@@ -45,11 +45,11 @@ class EventStream : public ReplyStream {
 
 }  // namespace
 
-HttpReply event_stream(const EventHub& hub, const HttpRequest& request) {
+HttpReply event_stream(const EventHub& hub, const HttpRequest& request, std::uint64_t after) {
   HttpReply reply;
   reply.type = "text/event-stream";
   reply.headers["Cache-Control"] = "no-store";
-  reply.stream = std::make_shared<EventStream>(hub, first_event(hub, request));
+  reply.stream = std::make_shared<EventStream>(hub, first_event(request, after));
   return reply;
 }
 

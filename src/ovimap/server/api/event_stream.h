@@ -7,9 +7,10 @@
 
 namespace ovimap {
 
-/// A stream of server-sent events (WHATWG HTML, section 9.2). A client that comes back with
-/// Last-Event-ID gets what it missed. When nothing happens a comment goes out now and then, by
-/// which vanished clients are noticed. `hub` must outlive the stream.
-HttpReply event_stream(const EventHub& hub, const HttpRequest& request);
+/// A stream of server-sent events (WHATWG HTML, section 9.2). It begins with what came
+/// after event number `after`, or after Last-Event-ID for a client that comes back. When nothing
+/// happens a comment goes out now and then, by which vanished clients are noticed. `hub` must
+/// outlive the stream.
+HttpReply event_stream(const EventHub& hub, const HttpRequest& request, std::uint64_t after);
 
 }  // namespace ovimap

@@ -254,7 +254,9 @@ Router map_api(ServedMap& map, FrameApi& frames, StandingQueries& standing) {
   get("/api/mesh", [&map](Request r) { return list_chunks(map, r); });
   get_large("/api/mesh/{level}/{x}/{y}/{z}", [&map](Request r) { return show_chunk(map, r); });
   get("/api/cameras", [&map](Request) { return json_reply(cameras_json(map)); });
-  get("/api/events", [&map](Request r) { return event_stream(map.events(), r); });
+  get("/api/events", [&map](Request r) {
+    return event_stream(map.events(), r, query_number(r, "after", map.events().last()));
+  });
   add("GET", "/api/watch", BodyType::kNone, RouteCost::kWork,
       [&map, &standing](Request r) { return watch_of_address(map, standing, r); });
   work("/api/watch", [&map, &standing](Request r) { return watch_of_body(map, standing, r); });

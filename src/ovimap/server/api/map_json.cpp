@@ -174,12 +174,14 @@ json camera_json(const PinholeCamera& camera) {
 }  // namespace
 
 json map_json(const ServedMap& map) {
+  const std::uint64_t last_event = map.events().last();  // before the rest, which may be newer
   const auto now = map.snapshot();
   const MapInfo& info = now->objects->info;
   return {{"title", map.path().stem().string()},
           {"program", version()},
           {"version", now->version},
           {"mesh_version", map.surface()->version()},
+          {"last_event", last_event},
           {"live", now->live},
           {"tracking", json::parse(tracking_json(map.tracking()))},
           {"frames", info.frames},

@@ -60,7 +60,7 @@ TEST(EventStreamTest, SpeaksTheFormatOfServerSentEvents) {
   hub.publish("map", "{\"version\":2}");
   HttpRequest request;
   request.headers["last-event-id"] = "0";
-  HttpReply reply = event_stream(hub, request);
+  HttpReply reply = event_stream(hub, request, 1);
   EXPECT_EQ(reply.stream->next(), "retry: 2000\nid: 0\nevent: hello\ndata: {}\n\n");
   EXPECT_EQ(reply.stream->next(), "id: 1\nevent: map\ndata: {\"version\":2}\n\n");
   EXPECT_EQ(reply.stream->next(), "");
@@ -72,7 +72,7 @@ TEST(EventStreamTest, SpeaksTheFormatOfServerSentEvents) {
 TEST(EventStreamTest, WakesWhoWatchesAsLongAsItLives) {
   EventHub hub;
   int woken = 0;
-  HttpReply reply = event_stream(hub, {});
+  HttpReply reply = event_stream(hub, {}, 0);
   reply.stream->watch([&] { ++woken; });
   hub.publish("map", "{}");
   EXPECT_EQ(woken, 1);
@@ -81,13 +81,23 @@ TEST(EventStreamTest, WakesWhoWatchesAsLongAsItLives) {
   EXPECT_EQ(woken, 1);
 }
 
+TEST(EventStreamTest, ANewClientHearsWhatCameAfterItReadTheMap) {
+  EventHub hub;
+  for (const char* type : {"map", "mesh"}) hub.publish(type, "{}");
+  HttpReply reply = event_stream(hub, {}, 1);
+  EXPECT_NE(reply.stream->next().find("id: 1\nevent: hello"), std::string::npos);
+  EXPECT_EQ(reply.stream->next(), "id: 2\nevent: mesh\ndata: {}\n\n");
+  EXPECT_EQ(reply.stream->next(), "");
+}
+
 TEST(EventStreamTest, ANewClientHearsOnlyWhatIsNew) {
   EventHub hub;
   hub.publish("map", "{}");
   for (const char* id : {"", "abc", "-1", "1x"}) {
     HttpRequest request;
     request.headers["last-event-id"] = id;
-    EXPECT_NE(event_stream(hub, request).stream->next().find("id: 1\n"), std::string::npos) << id;
+    EXPECT_NE(event_stream(hub, request, 1).stream->next().find("id: 1\n"), std::string::npos)
+        << id;
   }
 }
 
