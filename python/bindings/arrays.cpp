@@ -157,6 +157,9 @@ DepthImage read_depth(nb::handle object, std::optional<double> depth_scale, floa
   if (array.ndim() != 2) refuse_value("depth", kExpected, array_text(array));
   if (depth_scale && !(*depth_scale > 0 && std::isfinite(*depth_scale)))
     refuse_value("depth_scale", "above 0: stored values per metre", concat(*depth_scale));
+  if (!(min_depth_m >= 0 && min_depth_m < max_depth_m))
+    refuse_value("min_depth_m", "from 0 on and below max_depth_m",
+                 concat(min_depth_m, " with max_depth_m ", max_depth_m));
   const double scale = depth_scale.value_or(1);
   DepthImage image(static_cast<int>(array.shape(1)), static_cast<int>(array.shape(0)));
   float* out = image.data();

@@ -144,7 +144,8 @@ void bind_reports(nb::module_& module) {
 constexpr const char* kMapperText = R"(Builds a map of objects frame by frame.
 
 masks: None (geometry alone), the name of a model or a folder of PNGs, a MaskSource, or a callable
-    (frame, prompts) -> integer ids [height, width] of frame.color's size, 0 = no entity, or None:
+    (frame, prompts) -> integer ids [height, width] of frame.color's size, 0 = no entity, or a tuple
+    of these and scores (how sure it is of id 1, id 2 and so on, from 0 to 1), or None:
     there are no masks of this frame, which then adds geometry and colour alone, while an image of
     zeros says that no entity is to be seen. It is asked when what is in view has moved by
     mask_motion of the picture's width, or every mask_interval frames if that is set. What it raises ends the call that asked; FrameError leaves that frame out.

@@ -9,6 +9,7 @@
 #include "arrays.h"
 #include "bindings.h"
 #include "callback.h"
+#include "ovimap/base/error.h"
 #include "ovimap/inference/mask_source_factory.h"
 #include "ovimap/inference/masks/entity_ids.h"
 #include "settings.h"
@@ -18,6 +19,22 @@
 namespace ovimap::python {
 
 namespace {
+
+/// How sure a callable is of ids 1 to `count`.
+std::vector<float> read_scores(const nb::object& given, std::size_t count) {
+  std::vector<float> scores;
+  if (!nb::try_cast(given, scores))
+    throw nb::type_error("scores of masks must be a list of numbers, of id 1, id 2 and so on");
+  for (const float score : scores)
+    if (!(score >= 0 && score <= 1))
+      throw nb::value_error(concat("scores of masks must be from 0 to 1, not ", score).c_str());
+  if (scores.size() < count)
+    throw nb::value_error(concat("the masks have id ", count, ", but only ", scores.size(),
+                                 " scores: give one of id 1, id 2 and so on")
+                              .c_str());
+  scores.resize(count);
+  return scores;
+}
 
 /// Masks of a Python callable. Called from whatever thread maps; each call holds the GIL.
 class CallableMasks : public MaskSource {
@@ -51,10 +68,15 @@ class CallableMasks : public MaskSource {
  private:
   std::optional<Entities> ask(const Frame& frame, std::span<const MaskPrompt> prompts) const {
     // A copy: the callable may keep it, and the mapper's frame does not last.
-    const nb::object ids = callable_(Frame(frame), std::vector(prompts.begin(), prompts.end()));
-    if (ids.is_none()) return std::nullopt;
-    return entities_of_ids(read_ids(ids, "what the masks callable returned", frame.color.width(),
-                                    frame.color.height()));
+    const nb::object found = callable_(Frame(frame), std::vector(prompts.begin(), prompts.end()));
+    if (found.is_none()) return std::nullopt;
+    const bool rated = nb::isinstance<nb::tuple>(found) && nb::len(found) == 2;
+    const nb::object ids = rated ? nb::object(found[0]) : found;
+    IdImage image = read_ids(ids, "what the masks callable returned", frame.color.width(),
+                             frame.color.height());
+    if (!rated) return entities_of_ids(image);
+    std::vector<float> scores = read_scores(found[1], last_id(image));
+    return keep_visible({std::move(image), std::move(scores)}, 0);
   }
 
   nb::object callable_;
@@ -96,7 +118,7 @@ std::shared_ptr<MaskSource> to_masks(nb::handle masks) {
   if (PyCallable_Check(masks.ptr())) return std::make_shared<CallableMasks>(masks);
   throw nb::type_error(
       "masks must be None, the name of a model or folder, a MaskSource, or a callable of (frame, "
-      "prompts) that returns an id image or None");
+      "prompts) that returns an id image, (id image, scores) or None");
 }
 
 void bind_masks(nb::module_& module) {

@@ -4,10 +4,9 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include <algorithm>
-
 #include "arrays.h"
 #include "bindings.h"
+#include "ovimap/base/error.h"
 #include "saved_map.h"
 #include "without_gil.h"
 
@@ -30,7 +29,10 @@ nb::object row_of(const QueryMatch& match) {
 
 QueryAnswer query_like(SavedMap& map, const nb::object& what, bool relevance) {
   if (const auto number = read_integer(what)) {
-    const auto id = static_cast<InstanceId>(std::clamp<std::int64_t>(*number, 0, ~InstanceId{0}));
+    if (*number < 0 || *number > ~InstanceId{0})
+      throw Error(
+          concat("the map has no object ", *number, "; Map.instances.ids has those it has"));
+    const auto id = static_cast<InstanceId>(*number);
     const WithoutGil release;
     return map.engine(false).find_like(id, relevance);
   }

@@ -154,6 +154,13 @@ def test_the_table_of_docs_lists_each_corruption():
     assert [(name, finding.strip("`")) for name, finding, _ in rows] == [(name, CORRUPTIONS[name][1]) for name in CORRUPTIONS]
 
 
+def test_few_frames_do_not_make_shifted_colour_a_fault(recording):
+    shift_colors(recording, 20)
+    report = ovimap.check(recording.folder, frames=":8")
+    (found,) = [finding for finding in report.findings if finding.name == "registration"]
+    assert report.ok and found.severity == "warning" and "8 frames do not tell" in found.remedy
+
+
 def copy_of_the_kitchen(kitchen, folder):
     for file in kitchen.iterdir():
         (folder / file.name).symlink_to(file)

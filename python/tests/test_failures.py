@@ -252,7 +252,7 @@ def test_ids_may_be_numpys(saved_map):
     first = opened.instances.ids[0]
     assert opened.query_like(first).matches[0].id == opened.query_like(int(first)).matches[0].id
     for wrong in (-1, 10**12):
-        with pytest.raises(ovimap.Error, match="no object"):
+        with pytest.raises(ovimap.Error, match=f"no object {wrong};"):
             opened.query_like(wrong)
 
 

@@ -104,6 +104,7 @@ def test_depth_that_is_not_finite_is_none(camera, images):
         ({"depth": np.zeros((48, 64), complex)}, TypeError, "came complex128"),
         ({"depth": np.zeros((48, 64, 1), np.float32)}, ValueError, r"came float32 \[48, 64, 1\]"),
         ({"depth": np.ones((48, 64), np.uint16), "depth_scale": 0}, ValueError, "depth_scale must be above 0"),
+        ({"min_depth_m": 2, "max_depth_m": 1}, ValueError, "below max_depth_m; came 2 with max_depth_m 1"),
         ({"world_from_camera": np.eye(3)}, ValueError, r"world_from_camera must be .*\[4, 4\].* came float64 \[3, 3\]"),
         ({"world_from_camera": np.diag([1, 1, -1, 1.0])}, ValueError, "reflection"),
         ({"world_from_camera": np.full((4, 4), np.nan)}, ValueError, "not finite"),

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
 """Mapper: the program's result, and callables that do anything but what they should."""
+import json
 import os
 import shutil
 import subprocess
@@ -63,12 +64,37 @@ def test_masks_of_a_callable_are_those_of_the_truth(room, frames, tmp_path):
     assert asked == [frame.index for frame in frames]
 
 
+def test_rated_masks_of_a_callable_are_those_of_a_rated_folder(room, tmp_path):
+    source = ovimap.open_source(room)
+    kept = tmp_path / "masks"
+    kept.mkdir()
+
+    def rated(frame, prompts):
+        ids = source.truth_ids(frame.index)
+        return ids, [0.5 + 0.4 * (i % 2) for i in range(int(ids.max()))]
+
+    for frame in source.frames(FRAMES):
+        ids, scores = rated(frame, [])
+        (kept / f"{frame.index}.png").write_bytes(ovimap.encode_png(np.ascontiguousarray(ids)))
+        (kept / f"{frame.index}.json").write_text(json.dumps({"scores": scores}))
+
+    def mapped(name, masks):
+        return ovimap.run(room, tmp_path / name, masks=masks, encoder=None, frames=FRAMES, settings={"mask_interval": 1}).content_hash
+
+    hashes = [mapped("mine.ovimap", rated), mapped("kept.ovimap", kept), mapped("plain.ovimap", lambda frame, prompts: rated(frame, prompts)[0])]
+    assert hashes[0] == hashes[1] != hashes[2]
+
+
 @pytest.mark.parametrize(
     "returned, error, words",
     [
         (np.zeros((2, 2), int), ValueError, r"must be integers or bool \[\d+, \d+\], the size of the colour image; came int64 \[2, 2\]"),
         ("full", TypeError, "float64"),
         ("negative", ValueError, "ids from 0 to 65535; came the id -1"),
+        (["high"], TypeError, "list of numbers"),
+        ([1.5], ValueError, "from 0 to 1, not 1.5"),
+        ([0.5, float("nan")], ValueError, "from 0 to 1"),
+        ([0.5], ValueError, "id 2, but only 1 scores"),
     ],
 )
 def test_masks_that_do_not_fit_are_refused(frames, returned, error, words):
@@ -76,6 +102,8 @@ def test_masks_that_do_not_fit_are_refused(frames, returned, error, words):
         if isinstance(returned, str):
             size = frame.color.shape[:2]
             return np.zeros(size) if returned == "full" else np.full(size, -1)
+        if isinstance(returned, list):
+            return np.full(frame.color.shape[:2], 2), returned
         return returned
 
     mapper = ovimap.Mapper(masks, settings={"mask_interval": 1})
