@@ -2,17 +2,20 @@
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
 """Trains the judge that says which super-points are one thing and writes src/ovimap/instance/consensus/pair_judge_weights.h: renders rooms and desks
-of the tuned halves of the benchmarks, of seeds that no benchmark and no other network uses, maps them with MobileSAM's masks and with
-true ones, and learns from all pairs of clusters that a grouping meets (bench/quality/pair_samples.cpp).
+of the tuned halves of the benchmarks, of seeds that no benchmark and no other network uses, maps them with MobileSAM's masks, with
+true ones and by depth alone, and learns from all pairs of clusters that a grouping meets (bench/quality/pair_samples.cpp).
 
     python3 tools/models/train_pair_judge.py build/release/bin WORK_FOLDER    # needs NumPy; an hour on two cores
 
-In every other round the sampler follows the judge that it was built with, so build again and train again to learn from one's mistakes.
+With --beside, networks of earlier judges stay beside the new ones: judges that learned from maps made in different ways err differently
+(docs/experiments.md). In every other round the sampler follows the judge that it was built with, so build again and train again to learn from one's mistakes.
 A broken-off run goes on where it stopped.
 """
 
 import argparse
+import ast
 import pathlib
+import re
 import subprocess
 
 import numpy as np
@@ -24,7 +27,7 @@ WALK, STILL = ["--fps", "1"], ["--noise", "--frames", "40"]
 DESKS, ROOMS = ["writing-desk", "breakfast-table", "book-shelf"], ["living-room", "bedroom", "kitchen"]
 # Kind, seed, options, every how many frames masks are asked for: often and seldom, since recordings differ in how far their frames are apart.
 SCENES = [(kind, seed, WALK if kind in DESKS else STILL, (1, 2, 4)) for seed in (201, 202, 203) for kind in DESKS + ROOMS] + [("courtyard", 201, WALK, (3, 6))]
-TRUE_MASKS = {(kind, 201) for kind in DESKS + ROOMS} | {("writing-desk", 202)}
+OTHER_MASKS = {(kind, 201) for kind in DESKS + ROOMS} | {("writing-desk", 202)}
 
 
 def run(*command):
@@ -58,8 +61,8 @@ def samples(programs, work):
             (rendered / "done").touch()
         scene = next(path.parent for path in rendered.glob("*/results"))
         network = asked_for(programs, work, scene, f"{kind}-{seed}", intervals[0])
-        for masks, interval in [(network, n) for n in intervals] + [("gt", 2)] * ((kind, seed) in TRUE_MASKS):
-            name = f"{kind}-{seed}-{'gt' if masks == 'gt' else 'sam'}-{interval}"
+        for masks, interval in [(network, n) for n in intervals] + [("gt", 2), ("none", 2)] * ((kind, seed) in OTHER_MASKS):
+            name = f"{kind}-{seed}-{masks if masks in ('gt', 'none') else 'sam'}-{interval}"
             file = work / "pairs" / name
             run(programs / "ovimap_pair_samples", mapped(programs, work, scene, name, masks, interval), scene, file)
             values = np.fromfile(file, np.float32).reshape(-1, INPUTS + 1)
@@ -114,12 +117,25 @@ def literal(values):
     return "{" + (", " if values.ndim == 1 else ",\n    ").join(literal(value) for value in values) + "}"
 
 
-def header(networks, mean, inverse_deviation):
-    stacked = [np.stack(parameter) for parameter in zip(*(network.parameters for network in networks))]
-    arrays = [("kMean[kInputs]", mean), ("kInverseDeviation[kInputs]", inverse_deviation),
-              ("kFirst[kNetworks][kHidden][kInputs]", stacked[0]), ("kFirstBias[kNetworks][kHidden]", stacked[1]),
-              ("kSecond[kNetworks][kHidden][kHidden]", stacked[2]), ("kSecondBias[kNetworks][kHidden]", stacked[3]),
-              ("kLast[kNetworks][kHidden]", stacked[4]), ("kLastBias[kNetworks]", stacked[5][:, 0])]  # fmt: skip
+NAMES = ["kFirst[kNetworks][kInputs][kHidden]", "kFirstBias[kNetworks][kHidden]", "kSecond[kNetworks][kHidden][kHidden]",
+         "kSecondBias[kNetworks][kHidden]", "kLast[kNetworks][kHidden]", "kLastBias[kNetworks]"]  # fmt: skip
+
+
+def as_kept(network, mean, inverse_deviation):
+    """Its arrays as the header has them: of features as they are, weights by input."""
+    first, first_bias, second, second_bias, last, last_bias = network.parameters
+    first = first * inverse_deviation
+    return [first.T, first_bias - first @ mean, second.T, second_bias, last, last_bias[0]]
+
+
+def networks_in(text):
+    """The arrays of each network of a header."""
+    found = [re.search(re.escape(name) + r" = (.*?);", text, re.DOTALL)[1] for name in NAMES]
+    return list(zip(*(ast.literal_eval(values.translate(str.maketrans("{}", "[]", "f"))) for values in found)))
+
+
+def header(networks):
+    arrays = list(zip(NAMES, (np.array(array) for array in zip(*networks))))
     lines = ["// SPDX-FileCopyrightText: 2026 The ovimap authors", "// SPDX-License-Identifier: Apache-2.0",
              "// Written by tools/models/train_pair_judge.py.", "#pragma once", "", "#include <cstddef>", "",
              "namespace ovimap::pair_judge_weights {", "",
@@ -134,12 +150,14 @@ def main():
     parser.add_argument("programs", type=pathlib.Path, help="folder of ovimap and ovimap_pair_samples")
     parser.add_argument("work", type=pathlib.Path, help="folder for recordings, masks, maps and pairs, 3 GB")
     parser.add_argument("--out", type=pathlib.Path, default=HEADER)
+    parser.add_argument("--beside", type=pathlib.Path, nargs="*", default=[], help="headers of earlier judges, whose networks stay beside the new ones")
     arguments = parser.parse_args()
     scenes = list(samples(arguments.programs.resolve(), arguments.work))
     inputs = np.concatenate([inputs for inputs, _ in scenes])
     mean, inverse_deviation = inputs.mean(0), 1 / (inputs.std(0) + 1e-6)
-    networks = [trained(scenes, mean, inverse_deviation, seed) for seed in range(NETWORKS)]
-    arguments.out.write_text(header(networks, mean, inverse_deviation))
+    earlier = [network for path in arguments.beside for network in networks_in(path.read_text())]
+    networks = [as_kept(trained(scenes, mean, inverse_deviation, seed), mean, inverse_deviation) for seed in range(NETWORKS)]
+    arguments.out.write_text(header(earlier + networks))
 
 
 if __name__ == "__main__":

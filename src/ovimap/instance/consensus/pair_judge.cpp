@@ -23,17 +23,16 @@ double mean_over(double sum, std::int64_t count) {
   return count > 0 ? sum / static_cast<double>(count) : 0;
 }
 
-/// max(0, weights * inputs + bias).
+/// max(0, inputs * weights + bias), input by input: outputs beside each other fill wide registers.
 template <std::size_t kOutputs, std::size_t kInputs>
-std::array<float, kOutputs> layer(const float (&weights)[kOutputs][kInputs],
+std::array<float, kOutputs> layer(const float (&weights)[kInputs][kOutputs],
                                   const float (&bias)[kOutputs],
                                   const std::array<float, kInputs>& inputs) {
   std::array<float, kOutputs> outputs;
-  for (std::size_t i = 0; i < kOutputs; ++i) {
-    float sum = bias[i];
-    for (std::size_t k = 0; k < kInputs; ++k) sum += weights[i][k] * inputs[k];
-    outputs[i] = std::max(0.f, sum);
-  }
+  std::copy_n(bias, kOutputs, outputs.begin());
+  for (std::size_t k = 0; k < kInputs; ++k)
+    for (std::size_t i = 0; i < kOutputs; ++i) outputs[i] += weights[k][i] * inputs[k];
+  for (float& output : outputs) output = std::max(0.f, output);
   return outputs;
 }
 
@@ -160,12 +159,9 @@ PairFeatures pair_features(const PointCluster& a, const PointCluster& b, const M
 float log_odds_of_one(const PairFeatures& features) {
   using namespace pair_judge_weights;
   static_assert(kInputs == std::tuple_size_v<PairFeatures>);
-  std::array<float, kInputs> inputs;
-  for (std::size_t i = 0; i < kInputs; ++i)
-    inputs[i] = (features[i] - kMean[i]) * kInverseDeviation[i];
   float sum = 0;
   for (std::size_t net = 0; net < kNetworks; ++net) {
-    const auto first = layer(kFirst[net], kFirstBias[net], inputs);
+    const auto first = layer(kFirst[net], kFirstBias[net], features);
     const auto second = layer(kSecond[net], kSecondBias[net], first);
     sum += kLastBias[net];
     for (std::size_t i = 0; i < kHidden; ++i) sum += kLast[net][i] * second[i];
