@@ -72,7 +72,12 @@ class FrameSender:
         self._compress_depth = not _is_this_machine(host) if compress_depth is None else compress_depth
         self.taken = self.skipped = 0
         self._heard = 0.0  # when the last answer came
-        self._post_json("/api/camera", rig)
+        try:
+            self._post_json("/api/camera", rig)
+        except ssl.SSLError:
+            raise
+        except OSError as fault:
+            raise ConnectionError(f"no server answers at {host}:{self._connection.port} ({fault}); start `ovimap serve --live http -o MAP` there") from None
 
     def send(self, color: npt.NDArray[np.uint8] | bytes, depth: npt.NDArray[Any] | bytes, pose: npt.ArrayLike | None, timestamp: float = 0.0, *,
              orientation: npt.ArrayLike | None = None, name: str = "", patience_s: float = 0.0) -> bool:  # fmt: skip

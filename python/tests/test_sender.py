@@ -346,6 +346,14 @@ def test_a_frame_that_is_too_large_is_not_sent():
     server.end()
 
 
+def test_where_nobody_listens_it_says_what_to_start():
+    with socket.socket() as unheard:
+        unheard.bind(("127.0.0.1", 0))
+        address = f"127.0.0.1:{unheard.getsockname()[1]}"
+        with pytest.raises(ConnectionError, match=rf"no server answers at {address} .*refused.*start `ovimap serve --live http"):
+            FrameSender(address, {"width": 4, "height": 3, "fx": 4, "fy": 4, "cx": 2, "cy": 1.5})
+
+
 def test_a_server_that_ends_before_the_map_is_saved_is_told():
     server = Scripted(lambda path, count: 500 if path == "/api/map" else 202)
     sender = FrameSender(server.address, CAMERA)
