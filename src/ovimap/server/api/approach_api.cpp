@@ -75,13 +75,14 @@ HttpReply answer_approach(const ServedMap& map, const HttpRequest& request) {
   const json body = body_of(request);
   check_keys(body, {"instance", "from", "radius_m", "camera_height_m", "fov_deg", "range_m",
                     "least_seen", "good_share", "poses", "low_m"});
-  const auto id = field<InstanceId>(body, "instance");
-  if (!id) throw BadRequest(400, "'instance' is missing: the id of an object");
+  const auto given = field<InstanceId>(body, "instance");
+  if (!given) throw BadRequest(400, "'instance' is missing: the id of an object");
   const ApproachConfig config = config_of(body);
   const std::vector<float> from = start_of(body);
   const auto now = map.snapshot();
-  if (!now->index().find(*id))
-    return fault(404, concat("the map has no object ", *id, "; GET /api/instances lists them"));
+  const InstanceId id = now->current_id(*given);
+  if (!now->index().find(id))
+    return fault(404, concat("the map has no object ", id, "; GET /api/instances lists them"));
   std::shared_ptr<const StandingSpace> space;
   try {
     space = map.standing_space();
@@ -89,9 +90,9 @@ HttpReply answer_approach(const ServedMap& map, const HttpRequest& request) {
     return fault(409, error.what());
   }
   json reply =
-      approach_json(find_approach(*space, *id, config, in_grid(from, space->grid)), space->grid);
+      approach_json(find_approach(*space, id, config, in_grid(from, space->grid)), space->grid);
   reply["version"] = now->version;
-  reply["instance"] = *id;
+  reply["instance"] = id;
   return text_reply(200, "application/json", reply.dump());
 }
 

@@ -49,21 +49,22 @@ Number query_number(const HttpRequest& request, const std::string& name, Number 
   return whole_number<Number>(given->second, "'" + name + "'", 400);
 }
 
-InstanceId instance_of(const HttpRequest& request) {
-  return whole_number<InstanceId>(request.segments[0], "an object's id", 404);
+InstanceId instance_of(const MapSnapshot& now, const HttpRequest& request) {
+  return now.current_id(whole_number<InstanceId>(request.segments[0], "an object's id", 404));
 }
 
 HttpReply show_instance(const ServedMap& map, const HttpRequest& request) {
-  const InstanceId id = instance_of(request);
-  if (!map.snapshot()->index().find(id))
+  const auto now = map.snapshot();
+  const InstanceId id = instance_of(*now, request);
+  if (!now->index().find(id))
     return fault(404, concat("the map has no object ", id, "; GET /api/instances lists them"));
   return json_reply(instance_detail_json(map, id));
 }
 
 HttpReply show_crop(const ServedMap& map, const HttpRequest& request) {
-  const InstanceId id = instance_of(request);
-  const auto ordinal = whole_number<std::size_t>(request.segments[1], "a crop's number", 404);
   const auto now = map.snapshot();
+  const InstanceId id = instance_of(*now, request);
+  const auto ordinal = whole_number<std::size_t>(request.segments[1], "a crop's number", 404);
   const Appearance look = appearance_of(*now->record, id);
   if (ordinal >= look.views.size() || look.views[ordinal]->crop.empty())
     return fault(404, concat("object ", id, " has no crop ", ordinal,
@@ -99,7 +100,9 @@ HttpReply answer_query(const ServedMap& map, const HttpRequest& request) {
   question.query.text = text.value_or("");
   if (!question.like) question.past = map.past_of(question.query.text, at, since);
   if (!question.like) return json_reply(answer_json(map.ask(question)));
-  if (!map.snapshot()->index().find(*question.like))
+  const auto now = map.snapshot();
+  question.like = now->current_id(*question.like);
+  if (!now->index().find(*question.like))
     return fault(404, concat("the map has no object ", *question.like));
   try {
     return json_reply(answer_json(map.ask(question)));
@@ -111,8 +114,8 @@ HttpReply answer_query(const ServedMap& map, const HttpRequest& request) {
 HttpReply show_place(const ServedMap& map, const HttpRequest& request) {
   constexpr int kQuality = 85;
   constexpr float kAround_m = 5.f;  // a room is seen whole, a building is not
-  const InstanceId id = instance_of(request);
   const auto now = map.snapshot();
+  const InstanceId id = instance_of(*now, request);
   const auto place = now->index().find(id);
   if (!place)
     return fault(404, concat("the map has no object ", id, "; GET /api/instances lists them"));

@@ -120,8 +120,10 @@ TEST_F(HttpServerTest, MergesHidesDeletesLocksAndUndoes) {
   EXPECT_EQ(correct({{"kind", "merge"}, {"instance", 3}, {"into", 1}})["edit"], 1);
   EXPECT_EQ(ids(), json({1}));
   EXPECT_EQ(labels_of(1), one + three);
+  EXPECT_EQ(get("/api/instances/3")["id"], 1) << "who knew it by the other id finds it";
   EXPECT_EQ(correct({{"kind", "undo"}})["edit"], 2);
   EXPECT_EQ(ids(), json({1, 3}));
+  EXPECT_EQ(get("/api/instances/3")["id"], 3);
 
   correct({{"kind", "hide"}, {"instance", 3}});
   EXPECT_EQ(ids(), json({1}));

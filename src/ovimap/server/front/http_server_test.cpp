@@ -172,7 +172,7 @@ TEST_F(HttpServerTest, AnswersWhatChangedWithoutAnEncoder) {
 TEST_F(HttpServerTest, RefusesWhatDoesNotExist) {
   serve();
   for (const char* path :
-       {"/api/instances/2", "/api/instances/0", "/api/instances/x", "/api/instances/-1",
+       {"/api/instances/9", "/api/instances/0", "/api/instances/x", "/api/instances/-1",
         "/api/instances/99999999999999999999", "/api/instances/1/crops/1",
         "/api/instances/1/crops/x", "/api/instances/7/crops/0", "/api/mesh/0/500/0/0",
         "/api/mesh/3/0/0/0", "/api/mesh/0/0/0/x", "/api/nothing", "/../../etc/passwd",
@@ -259,13 +259,19 @@ TEST_F(HttpServerTest, AMapThatWasReplacedUnderneathIsLeftAlone) {
   post("/api/corrections", R"({"kind":"rename","instance":1,"name":"mug"})", 200);
 }
 
+TEST_F(HttpServerTest, FindsObjectsByTheIdsThatTheyHad) {
+  serve();
+  EXPECT_EQ(get("/api/instances/2")["id"], 1);
+  for (const json& instance : get("/api/instances")["instances"]) EXPECT_NE(instance["id"], 2);
+}
+
 TEST_F(HttpServerTest, DrawsWhereAnObjectIs) {
   serve();
   const auto picture = running_->client().get("/api/instances/1/place");
   ASSERT_TRUE(picture);
   EXPECT_EQ(picture->status, 200) << picture->body;
   EXPECT_TRUE(picture->body.starts_with("\xff\xd8")) << "no JPEG";
-  get("/api/instances/2/place", 404);
+  get("/api/instances/9/place", 404);
   get("/api/instances/x/place", 404);
 }
 

@@ -26,6 +26,12 @@ std::set<InstanceId> MapSnapshot::hidden() const {
   return ids;
 }
 
+InstanceId MapSnapshot::current_id(InstanceId id) const {
+  for (auto found = aliases.find(id); found != aliases.end(); found = aliases.find(id))
+    id = found->second;
+  return id;
+}
+
 bool MapSnapshot::knows(InstanceId id) const {
   return index().find(id).has_value() || hidden().contains(id);
 }

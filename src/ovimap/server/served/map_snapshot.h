@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "ovimap/io/corrections/map_corrections.h"
 #include "ovimap/pipeline/search/map_search.h"
 #include "ovimap/semantics/classes/label_set.h"
 #include "ovimap/semantics/classes/object_names.h"
@@ -39,6 +40,7 @@ struct MapSnapshot {
   std::uint64_t version = 1;
   bool live = false;
   std::shared_ptr<const MapRecord> record;
+  InstanceAliases aliases;
   LabelTable instance_of_label;
   std::shared_ptr<const MapSearch> objects;      ///< in the order of record->instances
   std::shared_ptr<const QueryEngine> engine;     ///< of `objects`; null: there is none, or not yet
@@ -51,6 +53,9 @@ struct MapSnapshot {
   const SearchIndex& index() const { return objects->index; }
   std::string name_of(InstanceId id) const;  ///< as given; empty: none
   std::set<InstanceId> hidden() const;
+  /// The id by which an object goes now: that of an older one, where the two turned out to be one
+  /// or were merged; the same for any other.
+  InstanceId current_id(InstanceId id) const;
   /// Whether it is an object, hidden or not.
   bool knows(InstanceId id) const;
 };

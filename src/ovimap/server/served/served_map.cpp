@@ -106,21 +106,20 @@ void ServedMap::open_saved() {
   surface_ = std::move(surface);
 }
 
-MapRecord ServedMap::corrected() const {
-  MapRecord record = found_->record;
+InstanceAliases ServedMap::correct(MapRecord& record) const {
   record.edits = log_;
   std::optional<VoxelMap> place;
-  apply_edits(
+  return apply_edits(
       record, found_->forest,
       voxels_of(found_->live ? std::filesystem::path() : path_, config_.voxel_bytes, place));
-  return record;
 }
 
 /// Makes the snapshot of what is found and corrected by now. `changing_` is held, or nobody else
 /// knows this map yet.
 void ServedMap::rebuild() {
   auto next = std::make_shared<MapSnapshot>();
-  MapRecord record = corrected();
+  MapRecord record = found_->record;
+  next->aliases = correct(record);
   next->live = found_->live;
   next->instance_of_label = label_table(record, found_->forest);
   if (found_->live)

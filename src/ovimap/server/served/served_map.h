@@ -139,7 +139,7 @@ class ServedMap {
   void open_encoder(const MapSnapshot& now);
   void rebuild();
   void open_saved();
-  MapRecord corrected() const;
+  InstanceAliases correct(MapRecord& record) const;
   void set_search(MapSnapshot& next) const;
   void learn_names();
   void follow_file();
