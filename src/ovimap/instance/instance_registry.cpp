@@ -7,6 +7,7 @@
 #include <set>
 
 #include "ovimap/base/config.h"
+#include "ovimap/instance/instance_aliases.h"
 
 namespace ovimap {
 
@@ -330,9 +331,7 @@ std::vector<InstanceId> InstanceRegistry::instance_table(const LabelForest& fore
 }
 
 InstanceId InstanceRegistry::resolve(InstanceId id) const {
-  for (auto found = aliases_.find(id); found != aliases_.end(); found = aliases_.find(id))
-    id = found->second;
-  return id;
+  return resolve_alias(aliases_, id);
 }
 
 void InstanceRegistry::restore(State state) {

@@ -67,11 +67,7 @@ class Ownership {
   const std::map<InstanceId, std::string>& names() const { return names_; }
 
  private:
-  InstanceId resolve(InstanceId id) const {
-    for (auto found = aliases_.find(id); found != aliases_.end(); found = aliases_.find(id))
-      id = found->second;
-    return id;
-  }
+  InstanceId resolve(InstanceId id) const { return resolve_alias(aliases_, id); }
 
   std::set<Label> roots_of(const std::vector<Label>& labels) const {
     std::set<Label> roots;

@@ -4,15 +4,13 @@
 
 #include <functional>
 
+#include "ovimap/instance/instance_aliases.h"
 #include "ovimap/io/map_tables/map_document.h"
 
 namespace ovimap {
 
 /// Gives the voxels when they are needed, which is where an object was taken apart.
 using VoxelSource = std::function<const VoxelMap&()>;
-
-/// Ids that were given up, and those that stand for them.
-using InstanceAliases = std::map<InstanceId, InstanceId>;
 
 /// Turns what mapping found into what people made of it: instances, `hidden`, names, surfaces and
 /// `locked` follow the record's log. `forest`: which labels are merged by now. The log, the

@@ -43,10 +43,8 @@ class EditDesk {
 
  private:
   /// The object that an id stands for by now.
-  const InstanceSummary& object(InstanceId id) const {
-    const InstanceId asked = id;
-    for (auto found = aliases_.find(id); found != aliases_.end(); found = aliases_.find(id))
-      id = found->second;
+  const InstanceSummary& object(InstanceId asked) const {
+    const InstanceId id = resolve_alias(aliases_, asked);
     for (const auto* list : {&corrected_.instances, &corrected_.hidden})
       if (const InstanceSummary* found = find_instance(*list, id)) return *found;
     throw Error(concat("the map has no object ", asked, "; `ovimap info` lists those it has"));

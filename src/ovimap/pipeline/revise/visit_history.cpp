@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "ovimap/base/error.h"
+#include "ovimap/instance/instance_aliases.h"
 #include "ovimap/map/rays/surface_lookup.h"
 #include "ovimap/pipeline/revise/scattered.h"
 #include "ovimap/pipeline/revise/thing_look.h"
@@ -312,23 +313,17 @@ class VisitTeller {
 
 /// Aliases after ids were exchanged: of ids that stand for one thing the oldest stands for all.
 template <class Exchange>
-std::map<InstanceId, InstanceId> oldest_of_each(const std::map<InstanceId, InstanceId>& aliases,
-                                                const Exchange& other) {
-  const auto last = [&](InstanceId id) {
-    for (auto found = aliases.find(id); found != aliases.end(); found = aliases.find(id))
-      id = found->second;
-    return id;
-  };
+InstanceAliases oldest_of_each(const InstanceAliases& aliases, const Exchange& other) {
   std::map<InstanceId, InstanceId> oldest;  // by what stood for them before
   for (const auto& [id, target] : aliases) {
-    const InstanceId all = last(id);
+    const InstanceId all = resolve_alias(aliases, id);
     const InstanceId least = std::min(other(id), other(all));
     const auto [found, first] = oldest.try_emplace(all, least);
     if (!first) found->second = std::min(found->second, least);
   }
-  std::map<InstanceId, InstanceId> result;
+  InstanceAliases result;
   for (const auto& [id, target] : aliases) {
-    const InstanceId all = last(id), least = oldest.at(all);
+    const InstanceId all = resolve_alias(aliases, id), least = oldest.at(all);
     for (const InstanceId one : {other(id), other(all)})
       if (one != least) result[one] = least;
   }
@@ -344,7 +339,7 @@ void swap_instances(MapRecord& record, InstanceId a, InstanceId b) {
     for (const auto& [id, count] : point.votes) votes.emplace(other(id), count);
     point.votes = std::move(votes);
   }
-  const std::map<InstanceId, InstanceId> aliases = oldest_of_each(record.registry.aliases, other);
+  const InstanceAliases aliases = oldest_of_each(record.registry.aliases, other);
   const auto now = [&](InstanceId id) {
     const auto alias = aliases.find(other(id));
     return alias == aliases.end() ? other(id) : alias->second;

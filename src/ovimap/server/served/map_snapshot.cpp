@@ -27,9 +27,7 @@ std::set<InstanceId> MapSnapshot::hidden() const {
 }
 
 InstanceId MapSnapshot::current_id(InstanceId id) const {
-  for (auto found = aliases.find(id); found != aliases.end(); found = aliases.find(id))
-    id = found->second;
-  return id;
+  return resolve_alias(aliases, id);
 }
 
 bool MapSnapshot::knows(InstanceId id) const {
