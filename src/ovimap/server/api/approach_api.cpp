@@ -9,6 +9,7 @@
 #include "ovimap/base/config.h"
 #include "ovimap/pipeline/approach/approach_json.h"
 #include "ovimap/pipeline/search/scene_graph_json.h"
+#include "ovimap/server/api/map_json.h"
 #include "ovimap/server/http/request_body.h"
 
 namespace ovimap {
@@ -80,9 +81,7 @@ HttpReply answer_approach(const ServedMap& map, const HttpRequest& request) {
   const ApproachConfig config = config_of(body);
   const std::vector<float> from = start_of(body);
   const auto now = map.snapshot();
-  const InstanceId id = now->current_id(*given);
-  if (!now->index().find(id))
-    return fault(404, concat("the map has no object ", id, "; GET /api/instances lists them"));
+  const InstanceId id = now->index().object(position_of(*now, *given)).id;
   std::shared_ptr<const StandingSpace> space;
   try {
     space = map.standing_space();

@@ -49,21 +49,17 @@ Number query_number(const HttpRequest& request, const std::string& name, Number 
   return whole_number<Number>(given->second, "'" + name + "'", 400);
 }
 
-InstanceId instance_of(const MapSnapshot& now, const HttpRequest& request) {
-  return now.current_id(whole_number<InstanceId>(request.segments[0], "an object's id", 404));
+InstanceId instance_of(const HttpRequest& request) {
+  return whole_number<InstanceId>(request.segments[0], "an object's id", 404);
 }
 
 HttpReply show_instance(const ServedMap& map, const HttpRequest& request) {
-  const auto now = map.snapshot();
-  const InstanceId id = instance_of(*now, request);
-  if (!now->index().find(id))
-    return fault(404, concat("the map has no object ", id, "; GET /api/instances lists them"));
-  return json_reply(instance_detail_json(map, id));
+  return json_reply(instance_detail_json(map, instance_of(request)));
 }
 
 HttpReply show_crop(const ServedMap& map, const HttpRequest& request) {
   const auto now = map.snapshot();
-  const InstanceId id = instance_of(*now, request);
+  const InstanceId id = now->current_id(instance_of(request));
   const auto ordinal = whole_number<std::size_t>(request.segments[1], "a crop's number", 404);
   const Appearance look = appearance_of(*now->record, id);
   if (ordinal >= look.views.size() || look.views[ordinal]->crop.empty())
@@ -101,9 +97,7 @@ HttpReply answer_query(const ServedMap& map, const HttpRequest& request) {
   if (!question.like) question.past = map.past_of(question.query.text, at, since);
   if (!question.like) return json_reply(answer_json(map.ask(question)));
   const auto now = map.snapshot();
-  question.like = now->current_id(*question.like);
-  if (!now->index().find(*question.like))
-    return fault(404, concat("the map has no object ", *question.like));
+  question.like = now->index().object(position_of(*now, *question.like)).id;
   try {
     return json_reply(answer_json(map.ask(question)));
   } catch (const Error& error) {  // the object is there, but nobody knows what it looks like
@@ -115,17 +109,14 @@ HttpReply show_place(const ServedMap& map, const HttpRequest& request) {
   constexpr int kQuality = 85;
   constexpr float kAround_m = 5.f;  // a room is seen whole, a building is not
   const auto now = map.snapshot();
-  const InstanceId id = instance_of(*now, request);
-  const auto place = now->index().find(id);
-  if (!place)
-    return fault(404, concat("the map has no object ", id, "; GET /api/instances lists them"));
+  const SearchObject& object = now->index().object(position_of(*now, instance_of(request)));
   Bytes jpeg;
   try {
-    Eigen::AlignedBox3f around = now->index().object(*place).box;
+    Eigen::AlignedBox3f around = object.box;
     around.extend(around.min() - Eigen::Vector3f::Constant(kAround_m));
     around.extend(around.max() + Eigen::Vector3f::Constant(kAround_m));
     Mesh surface = labelled_surface(*map.surface(), now->instance_of_label, now->hidden(), around);
-    jpeg = encode_jpeg(place_picture(std::move(surface), id, now->record->up), kQuality);
+    jpeg = encode_jpeg(place_picture(std::move(surface), object.id, now->record->up), kQuality);
   } catch (const Error& error) {  // the object is there, but nothing of it was meshed
     return fault(409, error.what());
   }

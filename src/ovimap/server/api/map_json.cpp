@@ -16,6 +16,7 @@
 #include "ovimap/semantics/words/main_colors.h"
 #include "ovimap/server/api/correction_json.h"
 #include "ovimap/server/api/neighbors.h"
+#include "ovimap/server/http/request_body.h"
 
 namespace ovimap {
 
@@ -122,11 +123,6 @@ json colors_json(const QueryScene& scene, std::size_t position) {
   return list;
 }
 
-std::size_t position_of(const MapSnapshot& now, InstanceId id) {
-  if (const auto position = now.index().find(id)) return *position;
-  throw Error(concat("the map has no object ", id, "; GET /api/instances lists those it has"));
-}
-
 /// Parts that masks tell in an object, by number.
 json parts_json(const MapSnapshot& now, std::size_t position) {
   json list = json::array();
@@ -172,6 +168,11 @@ json camera_json(const PinholeCamera& camera) {
 }
 
 }  // namespace
+
+std::size_t position_of(const MapSnapshot& now, InstanceId id) {
+  if (const auto position = now.index().find(now.current_id(id))) return *position;
+  throw BadRequest(404, concat("the map has no object ", id, "; GET /api/instances lists them"));
+}
 
 json map_json(const ServedMap& map) {
   const std::uint64_t last_event = map.events().last();  // before the rest, which may be newer
