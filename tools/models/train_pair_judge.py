@@ -61,8 +61,9 @@ def samples(programs, work):
             (rendered / "done").touch()
         scene = next(path.parent for path in rendered.glob("*/results"))
         network = asked_for(programs, work, scene, f"{kind}-{seed}", intervals[0])
-        for masks, interval in [(network, n) for n in intervals] + [("gt", 2), ("none", 2)] * ((kind, seed) in OTHER_MASKS):
-            name = f"{kind}-{seed}-{masks if masks in ('gt', 'none') else 'sam'}-{interval}"
+        others = [("gt", "gt", 2), ("none", "none", 2)] if (kind, seed) in OTHER_MASKS else []
+        for source, masks, interval in [("sam", network, n) for n in intervals] + others:
+            name = f"{kind}-{seed}-{source}-{interval}"
             file = work / "pairs" / name
             run(programs / "ovimap_pair_samples", mapped(programs, work, scene, name, masks, interval), scene, file)
             values = np.fromfile(file, np.float32).reshape(-1, INPUTS + 1)
