@@ -24,7 +24,8 @@ constexpr float kPersonsWord = 20.f;   // log likelihood ratio that nothing seen
 constexpr std::size_t kSizedObjectsPerTask = 64;
 
 const std::vector<ThingSize>& builtin_sizes() {
-  static const auto sizes = read_thing_sizes(list_entries(builtin_word_list("thing_sizes")));
+  static const auto sizes = read_thing_sizes(list_entries(builtin_word_list("thing_sizes")),
+                                             list_entries(builtin_word_list("seen_sizes")));
   return sizes;
 }
 
@@ -112,9 +113,9 @@ TextEvidence::TextEvidence(std::span<const ObjectMeasures> objects, const SeenTh
   sizes_.resize(static_cast<Eigen::Index>(objects.size()),
                 objects.empty() ? 0 : static_cast<Eigen::Index>(things.size()));
   parallel_for(objects.size(), kSizedObjectsPerTask, [&](std::size_t i) {
-    for (Eigen::Index k = 0; k < sizes_.cols(); ++k)
-      sizes_(static_cast<Eigen::Index>(i), k) =
-          size_likelihood(objects[i], things[static_cast<std::size_t>(k)]);
+    const std::vector<float> fits = size_likelihoods(objects[i], things);
+    sizes_.row(static_cast<Eigen::Index>(i)) =
+        Eigen::Map<const Eigen::RowVectorXf>(fits.data(), sizes_.cols());
   });
   if (sizes_.cols() > 0) size_means_ = sizes_.rowwise().mean();
 

@@ -30,13 +30,13 @@ struct EvidenceConfig {
   float most_taught_ratio = 6.f;     ///< what it may say at most, in log likelihood
   float taught_name_ratio = 4.f;     ///< log likelihood that shows an example's own name
   float writing_weight = 3.f;        ///< of words that are written on the object; 0: none
-  float competition = 0.5f;  ///< how much other words for an object take from a text; 0: none
-  float odds_scale = 1.f;    ///< probability of a match: sigmoid(scale * log odds + offset)
-  float odds_offset = 2.3f;  ///< fitted on generated rooms (docs/experiments.md)
-  float found_probability = 0.35f;  ///< a match with less does not count as found
-  float name_share = 0.4f;          ///< of all household words, that a name needs to be shown
-  float wide_name_share = 0.6f;     ///< ... a name of more than three kinds ("furniture")
-  int max_objects = 50000;          ///< larger maps are searched by pictures alone
+  float competition = 0.5f;        ///< how much other words for an object take from a text; 0: none
+  float odds_scale = 1.f;          ///< probability of a match: sigmoid(scale * log odds + offset)
+  float odds_offset = 2.3f;        ///< fitted on generated rooms (docs/experiments.md)
+  float found_probability = 0.4f;  ///< a match with less does not count as found
+  float name_share = 0.4f;         ///< of all household words, that a name needs to be shown
+  float wide_name_share = 0.6f;    ///< ... a name of more than three kinds ("furniture")
+  int max_objects = 50000;         ///< larger maps are searched by pictures alone
 };
 void list_fields(EvidenceConfig& config, ConfigFields& fields);
 

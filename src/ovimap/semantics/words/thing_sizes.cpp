@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <sstream>
 
 #include <Eigen/Geometry>
@@ -19,10 +20,15 @@ namespace {
 constexpr float kSmallerDeviation = 0.6f, kLargerDeviation = 0.45f;  // of logarithms
 constexpr float kDepthWeight = 0.5f;  // the side away from the camera is seen least
 constexpr float kBottomDeviation_m = 0.25f;
-constexpr float kMostPenalty = 2.5f;       // of one size in log likelihood: maps merge and cut
-constexpr float kMostBottomPenalty = 3.f;  // ... and anything can be put anywhere
-constexpr float kThinnest_m = 0.02f;       // below it a size is noise
-constexpr float kLeastLogLikelihood = -12.f;
+constexpr float kMostPenalty = 2.5f;      // of one size in log likelihood: maps merge and cut
+constexpr float kMostPlacePenalty = 3.f;  // ... and anything can be put anywhere
+constexpr float kTopDeviation_m = 0.05f, kTopDeviation = 0.15f;  // of maps, and of things' heights
+constexpr float kShareDeviation = 0.12f;                         // of the surface
+// Deviations of logarithms around what maps showed: half as much again as things of a name differ.
+constexpr float kSeenHeight = 0.35f, kSeenLength = 0.45f, kSeenDepth = 0.5f, kSeenTop = 0.3f;
+constexpr float kLowestTop_m = 0.1f;  // below it heights of tops are noise
+constexpr float kThinnest_m = 0.02f;  // below it a size is noise
+constexpr float kColumn_m = 0.04f;    // of surface that may lie above other surface
 constexpr float kFloorShare = 0.02f;
 constexpr float kStrayShare = 0.05f;  // of an object's surface, left out at either end of a side
 
@@ -32,11 +38,84 @@ float log_term(float object_m, float usual_m) {
   return -std::min(0.5f * deviations * deviations, kMostPenalty);
 }
 
+/// How far a height is from a range, in deviations.
+float deviations_from(float height_m, float from_m, float to_m, float deviation_m) {
+  return std::max({0.f, from_m - height_m, height_m - to_m}) / deviation_m;
+}
+
+/// Of the bottom and of the top, half of each.
+float place_term(const ObjectMeasures& object, const ThingSize& thing) {
+  const ObjectMeasures& usual = thing.usual;
+  const float bottom =
+      deviations_from(object.bottom_m, usual.bottom_m, thing.highest_bottom_m, kBottomDeviation_m);
+  const float top =
+      deviations_from(object.top_m(), usual.top_m(), thing.highest_bottom_m + usual.height_m,
+                      std::hypot(kTopDeviation_m, kTopDeviation * usual.height_m));
+  // A thing that may be anywhere says less about where it is.
+  const float spread = std::log(thing.highest_bottom_m - usual.bottom_m + kBottomDeviation_m);
+  return -std::min(0.25f * (bottom * bottom + top * top), kMostPlacePenalty) - spread;
+}
+
+float usual_term(const ObjectMeasures& object, const ThingSize& thing) {
+  const ObjectMeasures& usual = thing.usual;
+  return log_term(object.height_m, usual.height_m) + log_term(object.length_m, usual.length_m) +
+         kDepthWeight * log_term(object.depth_m, usual.depth_m) + place_term(object, thing);
+}
+
+/// Whether it says what is usual, and not alone what maps showed.
+bool is_usual(const ThingSize& thing) {
+  return thing.usual.length_m > 0.f;
+}
+
+float bounded_term(float away, float deviation) {
+  const float deviations = away / deviation;
+  return -std::min(0.5f * deviations * deviations, kMostPenalty);
+}
+
+float spread_term(const ObjectMeasures& object, const ObjectMeasures& seen) {
+  if (object.top_share < 0.f) return 0.f;  // its surface is not known
+  return bounded_term(object.top_share - seen.top_share, kShareDeviation) +
+         bounded_term(object.covered_share - seen.covered_share, kShareDeviation);
+}
+
+/// Of how an object fits one way to see a thing, but for how its surface is spread.
+float seen_term(const ObjectMeasures& object, const ObjectMeasures& seen) {
+  const auto ratio = [](float object_m, float seen_m, float least_m) {
+    return std::log(std::max(object_m, least_m) / std::max(seen_m, least_m));
+  };
+  return bounded_term(ratio(object.height_m, seen.height_m, kThinnest_m), kSeenHeight) +
+         bounded_term(ratio(object.length_m, seen.length_m, kThinnest_m), kSeenLength) +
+         bounded_term(ratio(object.depth_m, seen.depth_m, kThinnest_m), kSeenDepth) +
+         bounded_term(object.bottom_m - seen.bottom_m, kBottomDeviation_m) +
+         bounded_term(ratio(object.top_m(), seen.top_m(), kLowestTop_m), kSeenTop);
+}
+
 float quantile_in_place(std::vector<float>& values, float share) {
   const auto at =
       values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<float>(values.size() - 1));
   std::nth_element(values.begin(), at, values.end());
   return *at;
+}
+
+Error no_size(const std::string& line) {
+  return Error(concat("'", line, "' is no size"));
+}
+
+/// A line "word;number;number", with as many numbers as `names`, parted by ';', has names.
+std::pair<std::string, std::vector<float>> read_numbers(const std::string& line,
+                                                        const std::string& names) {
+  std::istringstream in(line);
+  std::string word;
+  std::getline(in, word, ';');
+  std::vector<float> numbers(1 +
+                             static_cast<std::size_t>(std::count(names.begin(), names.end(), ';')));
+  char separator = ';';
+  for (float& number : numbers) {
+    if (&number != &numbers.front()) in >> separator;
+    in >> number;
+  }
+  if (!in) throw Error(concat("'", line, "' is no size; give word;", names));
+  return {word, numbers};
 }
 
 float floor_height(std::span<const ObjectShape> shapes) {
@@ -72,6 +151,29 @@ Range range_along(const ObjectShape& shape, const Eigen::Vector3f& direction) {
   return {quantile_in_place(places, stray), quantile_in_place(places, 1.f - stray)};
 }
 
+/// `top_m`: of the surface, in its frame.
+void measure_spread(const std::vector<Eigen::Vector3f>& surface, float top_m,
+                    ObjectMeasures& measures) {
+  const auto column = [](const Eigen::Vector3f& point) {
+    const Eigen::Vector2f cell = point.head<2>() / kColumn_m;
+    return std::pair(static_cast<int>(std::floor(cell.x())),
+                     static_cast<int>(std::floor(cell.y())));
+  };
+  std::map<std::pair<int, int>, float> tops;
+  for (const Eigen::Vector3f& point : surface) {
+    float& top = tops.try_emplace(column(point), point.z()).first->second;
+    top = std::max(top, point.z());
+  }
+  int at_top = 0, covered = 0;
+  for (const Eigen::Vector3f& point : surface) {
+    at_top += point.z() > top_m - kSurfaceStep_m;
+    covered += point.z() < tops[column(point)] - kSurfaceStep_m;
+  }
+  const auto points = static_cast<float>(surface.size());
+  measures.top_share = static_cast<float>(at_top) / points;
+  measures.covered_share = static_cast<float>(covered) / points;
+}
+
 }  // namespace
 
 std::vector<ObjectMeasures> measure_objects(std::span<const ObjectShape> shapes) {
@@ -84,39 +186,62 @@ std::vector<ObjectMeasures> measure_objects(std::span<const ObjectShape> shapes)
     const float depth_m = range_along(shape, {-along.y(), along.x(), 0.f}).size();
     measures.push_back({upright.size(), std::max(length_m, depth_m), std::min(length_m, depth_m),
                         upright.low - floor});
+    if (!shape.surface.empty()) measure_spread(shape.surface, upright.high, measures.back());
   }
   return measures;
 }
 
-std::vector<ThingSize> read_thing_sizes(const std::vector<std::string>& lines) {
+std::vector<ThingSize> read_thing_sizes(const std::vector<std::string>& usual,
+                                        const std::vector<std::string>& seen) {
   std::vector<ThingSize> things;
-  for (const std::string& line : lines) {
-    std::istringstream in(line);
-    ThingSize thing;
-    std::getline(in, thing.word, ';');
-    char separator = ';';
-    ObjectMeasures& usual = thing.usual;
-    in >> usual.height_m >> separator >> usual.length_m >> separator >> usual.depth_m >>
-        separator >> usual.bottom_m >> separator >> thing.highest_bottom_m;
-    if (!in || usual.height_m < 0.f || thing.highest_bottom_m < usual.bottom_m)
-      throw Error(concat("'", line, "' is no size; give word;height;length;depth;from;to"));
-    things.push_back(std::move(thing));
+  std::map<std::string, std::size_t> places;
+  const auto thing_of = [&](const std::string& word) -> ThingSize& {
+    const auto [place, is_new] = places.try_emplace(word, things.size());
+    if (is_new) things.push_back({word, {}, 0.f, {}});
+    return things[place->second];
+  };
+  for (const std::string& line : usual) {
+    const auto [word, numbers] = read_numbers(line, "height;length;depth;bottom from;bottom to");
+    if (numbers[0] < 0.f || numbers[4] < numbers[3]) throw no_size(line);
+    ThingSize& thing = thing_of(word);
+    thing.usual = {numbers[0], numbers[1], numbers[2], numbers[3]};
+    thing.highest_bottom_m = numbers[4];
+  }
+  for (const std::string& line : seen) {
+    const auto [word, numbers] =
+        read_numbers(line, "height;length;depth;bottom;top share;covered share;count");
+    if (!(numbers[6] > 0.f)) throw no_size(line);
+    thing_of(word).seen.push_back(
+        {{numbers[0], numbers[1], numbers[2], numbers[3], numbers[4], numbers[5]}, numbers[6]});
+  }
+  for (ThingSize& thing : things) {
+    float count = 0.f;
+    for (const SeenSize& way : thing.seen) count += way.share;
+    for (SeenSize& way : thing.seen) way.share /= count;
   }
   return things;
 }
 
-float size_likelihood(const ObjectMeasures& object, const ThingSize& thing) {
-  const ObjectMeasures& usual = thing.usual;
-  const float away_m =
-      std::max({0.f, usual.bottom_m - object.bottom_m, object.bottom_m - thing.highest_bottom_m}) /
-      kBottomDeviation_m;
-  // A thing that may be anywhere says less about where it is.
-  const float spread = std::log(thing.highest_bottom_m - usual.bottom_m + kBottomDeviation_m);
-  const float log_likelihood = log_term(object.height_m, usual.height_m) +
-                               log_term(object.length_m, usual.length_m) +
-                               kDepthWeight * log_term(object.depth_m, usual.depth_m) -
-                               std::min(0.5f * away_m * away_m, kMostBottomPenalty) - spread;
-  return std::exp(std::max(log_likelihood, kLeastLogLikelihood));
+std::vector<float> size_likelihoods(const ObjectMeasures& object,
+                                    std::span<const ThingSize> things) {
+  std::vector<float> likelihoods(things.size(), 0.f);
+  float spread = 0.f, seen_things = 0.f;
+  for (std::size_t i = 0; i < things.size(); ++i) {
+    for (const SeenSize& way : things[i].seen) {
+      const float of_spread = spread_term(object, way.measures);
+      likelihoods[i] += way.share * std::exp(seen_term(object, way.measures) + of_spread);
+      spread += way.share * std::exp(of_spread);
+    }
+    if (!things[i].seen.empty()) seen_things += 1.f;
+  }
+  if (seen_things > 0.f) spread /= seen_things;
+  for (std::size_t i = 0; i < things.size(); ++i) {
+    const ThingSize& thing = things[i];
+    if (!is_usual(thing)) continue;
+    const float fit = (seen_things > 0.f ? spread : 1.f) * std::exp(usual_term(object, thing));
+    likelihoods[i] += (fit - likelihoods[i]) / static_cast<float>(1 + thing.seen.size());
+  }
+  return likelihoods;
 }
 
 }  // namespace ovimap

@@ -12,30 +12,51 @@
 
 namespace ovimap {
 
-/// How large an object is and where, in metres.
+/// How large an object is and where, in metres, and how its surface is spread.
 struct ObjectMeasures {
   float height_m = 0;
   float length_m = 0, depth_m = 0;  ///< sides of the smallest upright box around it
   float bottom_m = 0;               ///< above the floor
+  /// Shares of its surface: within kSurfaceStep_m of its top, and farther than that below surface
+  /// of its own. A table is mostly top, a cabinet hangs below its own. Negative: not known.
+  float top_share = -1, covered_share = -1;
+
+  float top_m() const { return bottom_m + height_m; }
 };
+inline constexpr float kSurfaceStep_m = 0.05f;
 
 /// Without the 5 % of the surface that lie farthest out at each end, which often are not its own.
 /// The floor is where 2 % of all surface is lower. All shapes in one ground frame.
 std::vector<ObjectMeasures> measure_objects(std::span<const ObjectShape> shapes);
 
-/// How large things of a name usually are, and between which heights their bottoms are.
-struct ThingSize {
-  std::string word;
-  ObjectMeasures usual;  ///< bottom_m: the lowest
-  float highest_bottom_m = 0;
+/// One way that maps showed a thing: whole, or its top alone, or in part.
+struct SeenSize {
+  ObjectMeasures measures;
+  float share = 0;  ///< of all that was seen of the thing
 };
 
-/// Lines "word;height;length;depth;bottom from;bottom to" in metres. Throws Error for others.
-std::vector<ThingSize> read_thing_sizes(const std::vector<std::string>& lines);
+/// How large things of a name are, and between which heights their bottoms are.
+struct ThingSize {
+  std::string word;
+  ObjectMeasures usual;  ///< bottom_m: the lowest; no length: not known
+  float highest_bottom_m = 0;
+  std::vector<SeenSize> seen;  ///< shares sum to 1; empty: none
+};
 
-/// How well an object's measures fit a thing's, up to a factor that is the same for all things: a
-/// normal distribution of each logarithm, wider below than above the usual, since objects are seen
-/// in part, and of the distance to the usual heights. No side alone can rule a thing out.
-float size_likelihood(const ObjectMeasures& object, const ThingSize& thing);
+/// `usual`: lines "word;height;length;depth;bottom from;bottom to"; `seen`: lines
+/// "word;height;length;depth;bottom;top share;covered share;count", of a word as many as there are
+/// ways to see it. Metres. Throws Error for others.
+std::vector<ThingSize> read_thing_sizes(const std::vector<std::string>& usual,
+                                        const std::vector<std::string>& seen);
+
+/// [things] How well an object's measures fit each thing's, up to a factor that is the same for
+/// all: the mean of what fits each way that maps showed it in (a kernel density) and, as one way
+/// more since rooms hold more than was rendered, of what is usual: a normal distribution of each
+/// logarithm, wider below than above, since objects are seen in part, and of the distances to the
+/// usual heights of bottom and top, half of each, since the lower half is often hidden; how its
+/// surface is spread counts there as it does for the mean of all seen. No single measure can rule a
+/// thing out.
+std::vector<float> size_likelihoods(const ObjectMeasures& object,
+                                    std::span<const ThingSize> things);
 
 }  // namespace ovimap

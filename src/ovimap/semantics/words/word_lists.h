@@ -8,7 +8,8 @@
 
 namespace ovimap {
 
-/// The text of data/NAME.txt, compiled in: "vocabulary", "concepts", "thing_sizes", "replica51",
+/// The text of data/NAME.txt, compiled in: "vocabulary", "concepts", "thing_sizes",
+/// "seen_sizes", "replica51",
 /// "scannet200", "scannet20", "scannet200_groups", "room_classes", "room_kinds". Empty for any
 /// other name.
 std::string_view builtin_word_list(std::string_view name);
