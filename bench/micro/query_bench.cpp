@@ -6,6 +6,8 @@
 #include <benchmark/benchmark.h>
 
 #include "ovimap/semantics/query/verdict.h"
+#include "ovimap/semantics/words/thing_sizes.h"
+#include "ovimap/semantics/words/word_lists.h"
 
 namespace ovimap::bench {
 namespace {
@@ -53,6 +55,15 @@ BENCHMARK(answer_query)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime()
     ->ArgsProduct({{100, 1000, 10000, 100000}, {384, 768}});
+
+/// How one object's measures fit all names: what opening a map costs for each object.
+void fit_sizes(benchmark::State& state) {
+  const auto things = read_thing_sizes(list_entries(builtin_word_list("thing_sizes")),
+                                       list_entries(builtin_word_list("seen_sizes")));
+  for (auto _ : state)
+    benchmark::DoNotOptimize(size_likelihoods({0.3f, 0.5f, 0.4f, 0.7f, 0.5f, 0.3f}, things));
+}
+BENCHMARK(fit_sizes)->Unit(benchmark::kMicrosecond);
 
 /// Once per map and encoder.
 void calibrate(benchmark::State& state) {

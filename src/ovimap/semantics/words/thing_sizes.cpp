@@ -26,9 +26,10 @@ constexpr float kTopDeviation_m = 0.05f, kTopDeviation = 0.15f;  // of maps, and
 constexpr float kShareDeviation = 0.12f;                         // of the surface
 // Deviations of logarithms around what maps showed: half as much again as things of a name differ.
 constexpr float kSeenHeight = 0.35f, kSeenLength = 0.45f, kSeenDepth = 0.5f, kSeenTop = 0.3f;
-constexpr float kLowestTop_m = 0.1f;  // below it heights of tops are noise
-constexpr float kThinnest_m = 0.02f;  // below it a size is noise
-constexpr float kColumn_m = 0.04f;    // of surface that may lie above other surface
+constexpr int kSizes = 5, kSpreads = 2;  // of a thing's standard measures
+constexpr float kLowestTop_m = 0.1f;     // below it heights of tops are noise
+constexpr float kThinnest_m = 0.02f;     // below it a size is noise
+constexpr float kColumn_m = 0.04f;       // of surface that may lie above other surface
 constexpr float kFloorShare = 0.02f;
 constexpr float kStrayShare = 0.05f;  // of an object's surface, left out at either end of a side
 
@@ -67,27 +68,10 @@ bool is_usual(const ThingSize& thing) {
   return thing.usual.length_m > 0.f;
 }
 
-float bounded_term(float away, float deviation) {
-  const float deviations = away / deviation;
-  return -std::min(0.5f * deviations * deviations, kMostPenalty);
-}
-
-float spread_term(const ObjectMeasures& object, const ObjectMeasures& seen) {
-  if (object.top_share < 0.f) return 0.f;  // its surface is not known
-  return bounded_term(object.top_share - seen.top_share, kShareDeviation) +
-         bounded_term(object.covered_share - seen.covered_share, kShareDeviation);
-}
-
-/// Of how an object fits one way to see a thing, but for how its surface is spread.
-float seen_term(const ObjectMeasures& object, const ObjectMeasures& seen) {
-  const auto ratio = [](float object_m, float seen_m, float least_m) {
-    return std::log(std::max(object_m, least_m) / std::max(seen_m, least_m));
-  };
-  return bounded_term(ratio(object.height_m, seen.height_m, kThinnest_m), kSeenHeight) +
-         bounded_term(ratio(object.length_m, seen.length_m, kThinnest_m), kSeenLength) +
-         bounded_term(ratio(object.depth_m, seen.depth_m, kThinnest_m), kSeenDepth) +
-         bounded_term(object.bottom_m - seen.bottom_m, kBottomDeviation_m) +
-         bounded_term(ratio(object.top_m(), seen.top_m(), kLowestTop_m), kSeenTop);
+/// Of logarithms of likelihoods, each measure by itself.
+template <int kCount>
+float bounded_sum(const Eigen::Array<float, kCount, 1>& deviations) {
+  return -(0.5f * deviations.square()).min(kMostPenalty).sum();
 }
 
 float quantile_in_place(std::vector<float>& values, float share) {
@@ -191,6 +175,19 @@ std::vector<ObjectMeasures> measure_objects(std::span<const ObjectShape> shapes)
   return measures;
 }
 
+StandardMeasures standard_measures(const ObjectMeasures& measures) {
+  const auto logarithm = [](float size_m, float least_m) {
+    return std::log(std::max(size_m, least_m));
+  };
+  StandardMeasures standard;
+  standard << logarithm(measures.height_m, kThinnest_m) / kSeenHeight,
+      logarithm(measures.length_m, kThinnest_m) / kSeenLength,
+      logarithm(measures.depth_m, kThinnest_m) / kSeenDepth, measures.bottom_m / kBottomDeviation_m,
+      logarithm(measures.top_m(), kLowestTop_m) / kSeenTop, measures.top_share / kShareDeviation,
+      measures.covered_share / kShareDeviation;
+  return standard;
+}
+
 std::vector<ThingSize> read_thing_sizes(const std::vector<std::string>& usual,
                                         const std::vector<std::string>& seen) {
   std::vector<ThingSize> things;
@@ -211,8 +208,9 @@ std::vector<ThingSize> read_thing_sizes(const std::vector<std::string>& usual,
     const auto [word, numbers] =
         read_numbers(line, "height;length;depth;bottom;top share;covered share;count");
     if (!(numbers[6] > 0.f)) throw no_size(line);
-    thing_of(word).seen.push_back(
-        {{numbers[0], numbers[1], numbers[2], numbers[3], numbers[4], numbers[5]}, numbers[6]});
+    thing_of(word).seen.push_back({standard_measures({numbers[0], numbers[1], numbers[2],
+                                                      numbers[3], numbers[4], numbers[5]}),
+                                   numbers[6]});
   }
   for (ThingSize& thing : things) {
     float count = 0.f;
@@ -225,11 +223,15 @@ std::vector<ThingSize> read_thing_sizes(const std::vector<std::string>& usual,
 std::vector<float> size_likelihoods(const ObjectMeasures& object,
                                     std::span<const ThingSize> things) {
   std::vector<float> likelihoods(things.size(), 0.f);
+  const StandardMeasures at = standard_measures(object);
+  const bool spread_known = object.top_share >= 0.f;
   float spread = 0.f, seen_things = 0.f;
   for (std::size_t i = 0; i < things.size(); ++i) {
     for (const SeenSize& way : things[i].seen) {
-      const float of_spread = spread_term(object, way.measures);
-      likelihoods[i] += way.share * std::exp(seen_term(object, way.measures) + of_spread);
+      const StandardMeasures away = at - way.measures;
+      const float of_size = bounded_sum<kSizes>(away.head<kSizes>());
+      const float of_spread = spread_known ? bounded_sum<kSpreads>(away.tail<kSpreads>()) : 0.f;
+      likelihoods[i] += way.share * std::exp(of_size + of_spread);
       spread += way.share * std::exp(of_spread);
     }
     if (!things[i].seen.empty()) seen_things += 1.f;

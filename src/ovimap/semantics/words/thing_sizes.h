@@ -29,9 +29,14 @@ inline constexpr float kSurfaceStep_m = 0.05f;
 /// The floor is where 2 % of all surface is lower. All shapes in one ground frame.
 std::vector<ObjectMeasures> measure_objects(std::span<const ObjectShape> shapes);
 
+/// Measures in units by which things of a name differ: logarithms of height, length and depth, the
+/// heights of bottom and top, then top share and covered share.
+using StandardMeasures = Eigen::Array<float, 7, 1>;
+StandardMeasures standard_measures(const ObjectMeasures& measures);
+
 /// One way that maps showed a thing: whole, or its top alone, or in part.
 struct SeenSize {
-  ObjectMeasures measures;
+  StandardMeasures measures;
   float share = 0;  ///< of all that was seen of the thing
 };
 
