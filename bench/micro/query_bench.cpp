@@ -7,7 +7,6 @@
 
 #include "ovimap/semantics/query/verdict.h"
 #include "ovimap/semantics/words/thing_sizes.h"
-#include "ovimap/semantics/words/word_lists.h"
 
 namespace ovimap::bench {
 namespace {
@@ -58,8 +57,7 @@ BENCHMARK(answer_query)
 
 /// How one object's measures fit all names: what opening a map costs for each object.
 void fit_sizes(benchmark::State& state) {
-  const auto things = read_thing_sizes(list_entries(builtin_word_list("thing_sizes")),
-                                       list_entries(builtin_word_list("seen_sizes")));
+  const std::vector<ThingSize>& things = builtin_thing_sizes();
   for (auto _ : state)
     benchmark::DoNotOptimize(size_likelihoods({0.3f, 0.5f, 0.4f, 0.7f, 0.5f, 0.3f}, things));
 }

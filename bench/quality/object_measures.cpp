@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // How large the things of a name are in a map, where, and how their surface is spread: what
-// tools/make_thing_sizes.py learns from rendered rooms.
+// tools/make_seen_sizes.py learns from rendered rooms.
 //   ovimap_object_measures MAP SCENE
 // For each object that is a true one (IoU of a quarter or more) a line
 // "word;height;length;depth;bottom;top share;covered share".

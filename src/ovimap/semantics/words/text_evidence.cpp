@@ -23,12 +23,6 @@ constexpr float kLeastRivals = 1e-3f;  // share of all words that always compete
 constexpr float kPersonsWord = 20.f;   // log likelihood ratio that nothing seen outweighs
 constexpr std::size_t kSizedObjectsPerTask = 64;
 
-const std::vector<ThingSize>& builtin_sizes() {
-  static const auto sizes = read_thing_sizes(list_entries(builtin_word_list("thing_sizes")),
-                                             list_entries(builtin_word_list("seen_sizes")));
-  return sizes;
-}
-
 /// What a room consists of: encoders of things have seen little of it, and its size and place are
 /// like nothing else's.
 bool is_structure(const ThingSize& thing) {
@@ -87,7 +81,7 @@ void list_fields(EvidenceConfig& config, ConfigFields& fields) {
 std::vector<std::string> TextEvidence::texts() {
   std::vector<std::string> texts;
   for (const auto& [word, kind] : builtin_concepts().household()) texts.push_back(word);
-  for (const ThingSize& thing : builtin_sizes()) texts.push_back(thing.word);
+  for (const ThingSize& thing : builtin_thing_sizes()) texts.push_back(thing.word);
   return texts;
 }
 
@@ -108,7 +102,7 @@ TextEvidence::TextEvidence(std::span<const ObjectMeasures> objects, const SeenTh
   cosine_deviation_ =
       std::sqrt(std::max((apart.sum() - apart.matrix().diagonal().sum()) / pairs, 1e-12f));
 
-  const std::vector<ThingSize>& things = builtin_sizes();
+  const std::vector<ThingSize>& things = builtin_thing_sizes();
   for (const ThingSize& thing : things) structures_.push_back(is_structure(thing));
   sizes_.resize(static_cast<Eigen::Index>(objects.size()),
                 objects.empty() ? 0 : static_cast<Eigen::Index>(things.size()));

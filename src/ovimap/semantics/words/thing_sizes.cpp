@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 
 #include "ovimap/base/error.h"
+#include "ovimap/semantics/words/word_lists.h"
 
 namespace ovimap {
 
@@ -217,6 +218,12 @@ std::vector<ThingSize> read_thing_sizes(const std::vector<std::string>& usual,
     for (const SeenSize& way : thing.seen) count += way.share;
     for (SeenSize& way : thing.seen) way.share /= count;
   }
+  return things;
+}
+
+const std::vector<ThingSize>& builtin_thing_sizes() {
+  static const auto things = read_thing_sizes(list_entries(builtin_word_list("thing_sizes")),
+                                              list_entries(builtin_word_list("seen_sizes")));
   return things;
 }
 

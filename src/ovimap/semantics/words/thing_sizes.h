@@ -54,6 +54,9 @@ struct ThingSize {
 std::vector<ThingSize> read_thing_sizes(const std::vector<std::string>& usual,
                                         const std::vector<std::string>& seen);
 
+/// Those that are compiled in: data/thing_sizes.txt and data/seen_sizes.txt.
+const std::vector<ThingSize>& builtin_thing_sizes();
+
 /// [things] How well an object's measures fit each thing's, up to a factor that is the same for
 /// all: the mean of what fits each way that maps showed it in (a kernel density) and, as one way
 /// more since rooms hold more than was rendered, of what is usual: a normal distribution of each

@@ -9,17 +9,14 @@
 #include <gtest/gtest.h>
 
 #include "ovimap/base/error.h"
-#include "ovimap/semantics/words/word_lists.h"
 
 namespace ovimap {
 namespace {
 
 std::vector<ThingSize> builtin_things(const std::vector<std::string>& words) {
   std::vector<ThingSize> things;
-  for (ThingSize& thing : read_thing_sizes(list_entries(builtin_word_list("thing_sizes")),
-                                           list_entries(builtin_word_list("seen_sizes"))))
-    if (std::find(words.begin(), words.end(), thing.word) != words.end())
-      things.push_back(std::move(thing));
+  for (const ThingSize& thing : builtin_thing_sizes())
+    if (std::find(words.begin(), words.end(), thing.word) != words.end()) things.push_back(thing);
   return things;
 }
 
