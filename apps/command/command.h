@@ -127,12 +127,6 @@ std::shared_ptr<const PeopleFilter> make_people_filter(const MappingOptions& opt
 /// Threads of a network run: what the config says, else what --threads says.
 int network_threads(const ProgramConfig& config, const MappingOptions& options);
 
-/// What there is to say where a map has no surface to draw.
-Error no_surface(const std::filesystem::path& map);
-
-/// The map's mesh with instance ids. Throws Error for a map without voxels, as `embed` makes.
-Mesh mesh_of(const MapDocument& document, const std::filesystem::path& map);
-
 /// --frames, for parse_frame_range.
 void add_frame_range(CLI::App& command, std::string& frames);
 

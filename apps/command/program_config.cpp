@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 #include "command.h"
-#include "ovimap/io/mesh/map_mesh.h"
 #include "ovimap/io/settings/config_file.h"
 #include "ovimap/pipeline/people/people_filter.h"
 
@@ -134,18 +133,6 @@ ProgramConfig read_program_config(const MappingOptions& options) {
   apply_settings(options.settings, fields);
   if (!options.max_memory.empty()) config.memory.max_mb = parse_megabytes(options.max_memory);
   return config;
-}
-
-Error no_surface(const std::filesystem::path& map) {
-  return Error(concat("map '", map.string(),
-                      "' holds objects without a surface, as `ovimap embed` makes them; draw the "
-                      "mesh they were made from"));
-}
-
-Mesh mesh_of(const MapDocument& document, const std::filesystem::path& map) {
-  Mesh mesh = visible_mesh(document);
-  if (mesh.vertices.empty()) throw no_surface(map);
-  return mesh;
 }
 
 CLI::Option* one_value(CLI::Option* option) {

@@ -32,13 +32,13 @@ std::function<void(Mesh&)> coloring_of(const ExportOptions& options) {
     return [](Mesh& mesh) { mesh.colors = instance_colors(mesh.labels); };
   if (options.what == "semantic")
     return [classes = classify(options)](Mesh& mesh) { mesh.colors = class_colors(mesh, classes); };
+  if (options.what == "points") return [](Mesh& mesh) { mesh.triangles.clear(); };
   return [](Mesh&) {};
 }
 
-Mesh colored_mesh(const MapDocument& document, const ExportOptions& options) {
-  Mesh mesh = mesh_of(document, options.map);
-  coloring_of(options)(mesh);
-  return mesh;
+/// The map's surface, never as a whole in memory, colours and labels as --what says.
+MeshParts colored_parts(const MapDocument& document, const ExportOptions& options) {
+  return visible_parts(document, options.map, coloring_of(options));
 }
 
 std::vector<ObjectRelation> relations_of(const MapSearch& search) {
@@ -66,34 +66,25 @@ void export_csv(const ExportOptions& options) {
 }
 
 void export_ply(const ExportOptions& options) {
-  Mesh mesh = mesh_of(load_corrected_map(options.map), options.map);
-  if (options.what == "semantic") label_by_class(mesh, classify(options));
-  if (options.what == "semantic" || options.what == "instances")
-    mesh.colors = instance_colors(mesh.labels);
-  if (options.what == "points") mesh.triangles.clear();
-  write_ply(options.out, mesh);
+  const MapDocument document = load_corrected_map(options.map);
+  if (options.what != "semantic") return write_ply(options.out, colored_parts(document, options));
+  const auto to_classes = [classes = classify(options)](Mesh& part) {
+    label_by_class(part, classes);
+    part.colors = instance_colors(part.labels);
+  };
+  write_ply(options.out, visible_parts(document, options.map, to_classes));
 }
 
 void export_glb(const ExportOptions& options) {
   const MapDocument document = load_corrected_map(options.map);
-  const Mesh mesh = colored_mesh(document, options);
-  write_file(options.out, encode_glb(mesh, document.instances, document.names, document.up));
+  write_glb(options.out, colored_parts(document, options), document.instances, document.names,
+            document.up);
 }
 
 void export_png(const ExportOptions& options) {
   const MapDocument document = load_corrected_map(options.map);
-  const auto color = coloring_of(options);
-  bool any = false;
-  const MeshParts parts = [&](const auto& visit) {
-    for_each_visible_part(document, [&](Mesh part) {
-      any = any || !part.triangles.empty();
-      color(part);
-      visit(part);
-    });
-  };
   constexpr MeshColoring kOwn[] = {MeshColoring::kColors};
-  const std::vector<RgbImage> pictures = top_down(parts, document.up, kOwn);
-  if (!any) throw no_surface(options.map);
+  const auto pictures = top_down(colored_parts(document, options), document.up, kOwn);
   write_file(options.out, encode_png(pictures.front()));
 }
 
@@ -109,10 +100,9 @@ void export_grid(const ExportOptions& options) {
 
 void export_folder(const ExportOptions& options) {
   const MapDocument document = load_corrected_map(options.map);
-  const Mesh mesh = colored_mesh(document, options);
   const MapSearch search = open_map_search(options.map);
   const auto relations = relations_of(search);
-  write_object_folder(options.out, document, mesh, relations,
+  write_object_folder(options.out, document, colored_parts(document, options), relations,
                       scene_json(options.map, search.info, relations) + "\n");
 }
 

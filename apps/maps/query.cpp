@@ -9,6 +9,7 @@
 #include "ovimap/image/codec.h"
 #include "ovimap/instance/instance_mesh.h"
 #include "ovimap/io/map_file/map_edits.h"
+#include "ovimap/io/mesh/map_mesh.h"
 #include "ovimap/io/mesh/ply.h"
 #include "ovimap/io/pictures/pictures.h"
 #include "ovimap/pipeline/approach/approach_json.h"
@@ -138,18 +139,18 @@ std::filesystem::path heat_map_path(const std::filesystem::path& out, std::size_
 void write_heat_maps(const QueryOptions& options, const Eigen::Vector3f& up,
                      const std::vector<Answered>& answers) {
   const MapDocument document = load_corrected_map(options.map);
-  Mesh mesh = mesh_of(document, options.map);
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const QueryAnswer& answer = answers[i].answer;
     const auto path = heat_map_path(options.heat_map, i + 1, answers.size(), answer.query);
-    color_by_relevance(mesh, *answers[i].index, answer.relevance);
+    const MeshParts parts = visible_parts(document, options.map, [&](Mesh& part) {
+      color_by_relevance(part, *answers[i].index, answer.relevance);
+    });
     if (path.extension() == ".ply") {
-      write_ply(path, mesh);
+      write_ply(path, parts);
       continue;
     }
-    PictureConfig picture;
-    picture.coloring = MeshColoring::kColors;
-    write_file(path, encode_png(top_down(mesh, up, picture)));
+    constexpr MeshColoring kOwn[] = {MeshColoring::kColors};
+    write_file(path, encode_png(top_down(parts, up, kOwn).front()));
   }
 }
 

@@ -14,6 +14,7 @@
 #include "ovimap/map/rays/surface_lookup.h"
 #include "ovimap/map/surface/incremental_mesh.h"
 #include "ovimap/map/surface/mesh_extraction.h"
+#include "ovimap/map/surface/plain_mesh.h"
 #include "room_scene.h"
 
 namespace ovimap::bench {
@@ -137,6 +138,12 @@ void extract_whole_mesh(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(extract_mesh(room.map));
 }
 BENCHMARK(extract_whole_mesh)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void extract_whole_mesh_plain(benchmark::State& state) {
+  const MappedRoom room;
+  for (auto _ : state) benchmark::DoNotOptimize(plain::mesh_triangles(room.map));
+}
+BENCHMARK(extract_whole_mesh_plain)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(1);
 
 void update_mesh(benchmark::State& state) {
   MappedRoom room;

@@ -168,9 +168,12 @@ std::string objects_json(const SavedMap& map) {
 void export_map(const SavedMap& map, const std::filesystem::path& out) {
   const std::string ending = out.extension().string();
   const MapInfo& info = map.info();
-  if (ending == ".ply") return write_ply(out, map.mesh());
-  if (ending == ".glb")
-    return write_file(out, encode_glb(map.mesh(), info.instances, info.names, info.up));
+  if (ending == ".ply" || ending == ".glb") {
+    const MapDocument document = load_corrected_map(map.path());
+    const MeshParts parts = visible_parts(document, map.path());
+    if (ending == ".ply") return write_ply(out, parts);
+    return write_glb(out, parts, document.instances, document.names, document.up);
+  }
   if (ending == ".json") return write_text(out, objects_json(map));
   if (ending == ".csv") return write_text(out, instances_csv(info.instances, info.names));
   throw Error(concat("cannot export to '", out.string(),

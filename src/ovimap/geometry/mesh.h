@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -20,5 +21,9 @@ struct Mesh {
   std::vector<std::array<std::uint32_t, 3>>
       triangles;  ///< vertex indices, counter-clockwise from outside
 };
+
+/// A mesh that is never in memory as a whole: calls the function that it gets with one part after
+/// the other, the same whenever it is called.
+using MeshParts = std::function<void(const std::function<void(const Mesh&)>&)>;
 
 }  // namespace ovimap

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <system_error>
@@ -9,6 +10,7 @@
 #include <unistd.h>
 
 #include "ovimap/image/codec.h"
+#include "ovimap/image/scratch_file.h"
 
 namespace ovimap {
 
@@ -80,6 +82,17 @@ bool write_all(int fd, std::span<const std::uint8_t> bytes) {
   return true;
 }
 
+bool copy_all(const ScratchFile& scratch, int fd) {
+  constexpr std::uint64_t kAtOnce = 1 << 20;
+  Bytes piece;
+  for (std::uint64_t done = 0; done < scratch.size(); done += piece.size()) {
+    piece.resize(std::min(kAtOnce, scratch.size() - done));
+    scratch.read(done, piece);
+    if (!write_all(fd, piece)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 Bytes read_file(const std::filesystem::path& path) {
@@ -116,15 +129,52 @@ void check_file_target(const std::filesystem::path& path) {
 }
 
 void write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
+  write_file(path, bytes, {});
+}
+
+void write_file(const std::filesystem::path& path, std::span<const std::uint8_t> head,
+                std::initializer_list<const ScratchFile*> rest) {
   refuse_folder(path);
   const std::filesystem::path temporary = temporary_beside(path);
   Descriptor file(temporary, O_WRONLY | O_CREAT | O_EXCL);
   if (file.get() < 0) fail_to_write(path, errno);
-  const bool complete = write_all(file.get(), bytes) && file.close();
+  bool complete = write_all(file.get(), head);
+  for (const ScratchFile* scratch : rest) complete = complete && copy_all(*scratch, file.get());
+  complete = complete && file.close();
   if (!complete || ::rename(temporary.c_str(), path.c_str()) != 0) {
     const int error = errno;
     ::unlink(temporary.c_str());
     fail_to_write(path, error);
+  }
+}
+
+ScratchFile::ScratchFile(const std::filesystem::path& target) : target_(target) {
+  refuse_folder(target);
+  const std::filesystem::path name = temporary_beside(target);
+  fd_ = ::open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  if (fd_ < 0) fail_to_write(target, errno);
+  ::unlink(name.c_str());
+}
+
+ScratchFile::~ScratchFile() {
+  ::close(fd_);
+}
+
+void ScratchFile::append(std::span<const std::uint8_t> bytes) {
+  if (!write_all(fd_, bytes)) fail_to_write(target_, errno);
+  size_ += bytes.size();
+}
+
+void ScratchFile::read(std::uint64_t offset, std::span<std::uint8_t> bytes) const {
+  OVIMAP_ASSERT(offset + bytes.size() <= size_);
+  while (!bytes.empty()) {
+    const ssize_t got = ::pread(fd_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0)
+      throw Error(concat("cannot read back what is to go into ", target_.string(), ": ",
+                         got < 0 ? reason(errno) : "somebody made it shorter"));
+    offset += static_cast<std::uint64_t>(got);
+    bytes = bytes.subspan(static_cast<std::size_t>(got));
   }
 }
 

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "ovimap/image/codec.h"
+#include "ovimap/image/scratch_file.h"
 
 namespace ovimap {
 namespace {
@@ -55,6 +56,31 @@ TEST_F(FileBytes, MissingFileAndFolderAreNamed) {
   EXPECT_THROW(write_file(folder_, {}), Error);
   EXPECT_THROW(write_file(folder_ / "no-such-folder" / "a", {}), Error);
   EXPECT_EQ(files(), 0);
+}
+
+TEST_F(FileBytes, ScratchFilesBecomePartOfAFile) {
+  Bytes first((1 << 20) + 7), second{1, 2, 3};
+  for (std::size_t i = 0; i < first.size(); ++i) first[i] = static_cast<std::uint8_t>(i * 31);
+  ScratchFile a(folder_ / "out"), b(folder_ / "out");
+  EXPECT_EQ(files(), 0) << "it has no name";
+  a.append(first);
+  a.append(second);
+  b.append(second);
+  EXPECT_EQ(a.size(), first.size() + 3);
+  Bytes back(5);
+  a.read(first.size() - 2, back);
+  EXPECT_EQ(back, (Bytes{first[first.size() - 2], first.back(), 1, 2, 3}));
+  write_file(folder_ / "out", Bytes{9}, {&b, &a});
+  const Bytes whole = read_file(folder_ / "out");
+  ASSERT_EQ(whole.size(), first.size() + 7);
+  EXPECT_EQ(Bytes(whole.begin(), whole.begin() + 5), (Bytes{9, 1, 2, 3, first[0]}));
+  EXPECT_EQ(whole.back(), 3);
+  EXPECT_EQ(files(), 1);
+}
+
+TEST_F(FileBytes, ScratchFilesNeedAFolder) {
+  EXPECT_THROW(ScratchFile(folder_ / "none" / "out"), Error);
+  EXPECT_THROW(ScratchFile scratch(folder_), Error);
 }
 
 TEST_F(FileBytes, FailedWriteLeavesTheOldFile) {

@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include <Eigen/Geometry>
@@ -11,8 +12,9 @@
 
 #include "ovimap/base/error.h"
 #include "ovimap/geometry/pose.h"
+#include "ovimap/image/scratch_file.h"
 #include "ovimap/io/exports/instance_json_value.h"
-#include "ovimap/io/mesh/mesh_pieces.h"
+#include "ovimap/io/mesh/labelled_pieces.h"
 
 namespace ovimap {
 
@@ -48,9 +50,12 @@ Json vector_json(const Eigen::Vector3f& v) {
   return Json::array({v.x(), v.y(), v.z()});
 }
 
-/// Gathers the parts of a document and its one buffer.
+/// Gathers the parts of a document, and hands on what belongs into its one buffer.
 class GlbBuilder {
  public:
+  using Sink = std::function<void(std::span<const std::uint8_t>)>;
+  explicit GlbBuilder(Sink sink) : sink_(std::move(sink)) {}
+
   /// Index of a mesh with one primitive.
   std::size_t add_mesh(const Mesh& mesh) {
     Json attributes;
@@ -61,16 +66,21 @@ class GlbBuilder {
                       {"indices", add_indices(mesh.triangles)},
                       {"material", 0}};
     meshes_.push_back({{"primitives", Json::array({std::move(primitive)})}});
+    sink_(buffer_);
+    handed_on_ += buffer_.size();
+    check_size(handed_on_);
+    buffer_.clear();
     return meshes_.size() - 1;
   }
 
-  void add_node(const std::string& name, const Mesh* mesh, Json extras) {
+  void add_node(const std::string& name, const Mesh& mesh, Json extras) {
     Json node = {{"name", name}};
-    if (mesh != nullptr && !mesh->triangles.empty()) node["mesh"] = add_mesh(*mesh);
+    if (!mesh.triangles.empty()) node["mesh"] = add_mesh(mesh);
     if (!extras.is_null()) node["extras"] = std::move(extras);
     nodes_.push_back(std::move(node));
   }
 
+  /// What stands in the file before the buffer.
   Bytes finish(const Eigen::Vector3f& up) {
     Json document;
     document["asset"] = {{"version", "2.0"}, {"generator", "ovimap"}};
@@ -84,13 +94,13 @@ class GlbBuilder {
       document["meshes"] = std::move(meshes_);
       document["accessors"] = std::move(accessors_);
       document["bufferViews"] = std::move(views_);
-      document["buffers"] = Json::array({{{"byteLength", buffer_.size()}}});
+      document["buffers"] = Json::array({{{"byteLength", handed_on_}}});
       document["materials"] =
           Json::array({{{"name", "surface"},
                         {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 1}}},
                         {"doubleSided", true}}});
     }
-    return assemble(document);
+    return head_of(document);
   }
 
  private:
@@ -100,10 +110,11 @@ class GlbBuilder {
     return Json::array({turn.x(), turn.y(), turn.z(), turn.w()});
   }
 
+  /// `begin`: of its numbers in buffer_, up to the end of which they go.
   std::size_t add_accessor(std::size_t begin, std::size_t count, int component, const char* type,
                            int target) {
     views_.push_back({{"buffer", 0},
-                      {"byteOffset", begin},
+                      {"byteOffset", handed_on_ + begin},
                       {"byteLength", buffer_.size() - begin},
                       {"target", target}});
     accessors_.push_back({{"bufferView", views_.size() - 1},
@@ -158,52 +169,74 @@ class GlbBuilder {
     return add_accessor(begin, 3 * triangles.size(), kUnsignedInt, "SCALAR", kIndices);
   }
 
-  Bytes assemble(const Json& document) {
-    std::string text = document.dump(-1, ' ', false, Json::error_handler_t::replace);
-    text.resize((text.size() + 3) / 4 * 4, ' ');
-    constexpr std::size_t kHeader = 12, kChunkHeader = 8;
-    const std::size_t binary = buffer_.empty() ? 0 : kChunkHeader + buffer_.size();
-    const std::size_t size = kHeader + kChunkHeader + text.size() + binary;
+  static void check_size(std::uint64_t size) {
     if (size > std::numeric_limits<std::uint32_t>::max())
       throw Error(
           "the map is too large for one GLB, which ends at 4 GiB; export .ply or a folder instead");
-    Bytes file;
-    file.reserve(size);
-    for (const std::uint32_t word : {kGlbMagic, std::uint32_t{2}, static_cast<std::uint32_t>(size),
-                                     static_cast<std::uint32_t>(text.size()), kJsonChunk})
-      append(file, word);
-    file.insert(file.end(), text.begin(), text.end());
-    if (binary == 0) return file;
-    append(file, static_cast<std::uint32_t>(buffer_.size()));
-    append(file, kBinaryChunk);
-    file.insert(file.end(), buffer_.begin(), buffer_.end());
-    return file;
   }
 
-  Bytes buffer_;
+  Bytes head_of(const Json& document) const {
+    std::string text = document.dump(-1, ' ', false, Json::error_handler_t::replace);
+    text.resize((text.size() + 3) / 4 * 4, ' ');
+    constexpr std::size_t kHeader = 12, kChunkHeader = 8;
+    const std::uint64_t binary = handed_on_ == 0 ? 0 : kChunkHeader + handed_on_;
+    const std::uint64_t size = kHeader + kChunkHeader + text.size() + binary;
+    check_size(size);
+    Bytes head;
+    for (const std::uint32_t word : {kGlbMagic, std::uint32_t{2}, static_cast<std::uint32_t>(size),
+                                     static_cast<std::uint32_t>(text.size()), kJsonChunk})
+      append(head, word);
+    head.insert(head.end(), text.begin(), text.end());
+    if (binary == 0) return head;
+    append(head, static_cast<std::uint32_t>(handed_on_));
+    append(head, kBinaryChunk);
+    return head;
+  }
+
+  Sink sink_;
+  Bytes buffer_;  ///< of the mesh that is being added
+  std::uint64_t handed_on_ = 0;
   Json nodes_ = Json::array(), meshes_ = Json::array(), accessors_ = Json::array(),
        views_ = Json::array();
 };
 
-}  // namespace
-
-Bytes encode_glb(const Mesh& mesh, std::span<const InstanceSummary> instances,
-                 const std::map<InstanceId, std::string>& names, const Eigen::Vector3f& up) {
-  const std::map<std::uint32_t, Mesh> pieces = split_by_label(mesh);
-  const auto piece = [&](InstanceId id) {
-    const auto found = pieces.find(id);
-    return found == pieces.end() ? nullptr : &found->second;
-  };
-  GlbBuilder builder;
+/// Returns what stands before what `sink` gets.
+Bytes glb_head(const LabelledPieces& pieces, std::span<const InstanceSummary> instances,
+               const std::map<InstanceId, std::string>& names, const Eigen::Vector3f& up,
+               GlbBuilder::Sink sink) {
+  GlbBuilder builder(std::move(sink));
   for (const InstanceSummary& instance : instances) {
     Json extras = instance_json_value(instance, names);
     extras.erase("superpoints");
     const std::string name = extras["name"];
-    builder.add_node(concat(name.empty() ? "object" : name, " ", instance.id), piece(instance.id),
-                     std::move(extras));
+    builder.add_node(concat(name.empty() ? "object" : name, " ", instance.id),
+                     pieces.piece(instance.id), std::move(extras));
   }
-  builder.add_node("background", piece(0), nullptr);
+  builder.add_node("background", pieces.piece(0), nullptr);
   return builder.finish(up);
+}
+
+}  // namespace
+
+std::string encode_glb(const MeshParts& parts, std::span<const InstanceSummary> instances,
+                       const std::map<InstanceId, std::string>& names, const Eigen::Vector3f& up) {
+  const LabelledPieces pieces(parts, std::filesystem::temp_directory_path() / "ovimap.glb");
+  std::string body;
+  const Bytes head = glb_head(
+      pieces, instances, names, up,
+      [&](std::span<const std::uint8_t> bytes) { body.append(bytes.begin(), bytes.end()); });
+  body.insert(body.begin(), head.begin(), head.end());
+  return body;
+}
+
+void write_glb(const std::filesystem::path& path, const MeshParts& parts,
+               std::span<const InstanceSummary> instances,
+               const std::map<InstanceId, std::string>& names, const Eigen::Vector3f& up) {
+  const LabelledPieces pieces(parts, path);
+  ScratchFile body(path);
+  const Bytes head = glb_head(pieces, instances, names, up,
+                              [&](std::span<const std::uint8_t> bytes) { body.append(bytes); });
+  write_file(path, head, {&body});
 }
 
 }  // namespace ovimap

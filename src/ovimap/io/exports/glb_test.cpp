@@ -4,21 +4,26 @@
 
 #include <cstring>
 
+#include <unistd.h>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+
+#include "ovimap/base/error.h"
+#include "ovimap/image/codec.h"
 
 namespace ovimap {
 namespace {
 
 // tests/export_test.py has the files read by other programs; here are the layout and odd cases.
 
-std::uint32_t word(const Bytes& file, std::size_t at) {
+std::uint32_t word(const std::string& file, std::size_t at) {
   std::uint32_t value = 0;
   std::memcpy(&value, file.data() + at, 4);
   return value;
 }
 
-nlohmann::json document_of(const Bytes& file) {
+nlohmann::json document_of(const std::string& file) {
   EXPECT_EQ(word(file, 0), 0x46546C67u);
   EXPECT_EQ(word(file, 8), file.size());
   EXPECT_EQ(word(file, 12) % 4, 0u);
@@ -42,9 +47,13 @@ Mesh two_triangles() {
   return mesh;
 }
 
+MeshParts whole(Mesh mesh) {
+  return [mesh = std::move(mesh)](const auto& visit) { visit(mesh); };
+}
+
 TEST(Glb, HasANodePerObject) {
-  const Bytes file = encode_glb(two_triangles(), std::vector{instance(4), instance(9)},
-                                {{4, "mug"}}, Eigen::Vector3f::UnitZ());
+  const std::string file = encode_glb(whole(two_triangles()), std::vector{instance(4), instance(9)},
+                                      {{4, "mug"}}, Eigen::Vector3f::UnitZ());
   const auto document = document_of(file);
   const auto& nodes = document["nodes"];
   ASSERT_EQ(nodes.size(), 4u);
@@ -59,8 +68,27 @@ TEST(Glb, HasANodePerObject) {
   EXPECT_EQ(document["buffers"][0]["byteLength"], word(file, 20 + word(file, 12)));
 }
 
+TEST(Glb, AFileOfPartsIsThatOfTheWhole) {
+  Mesh first = two_triangles(), second = first;
+  first.triangles.pop_back();
+  second.triangles.erase(second.triangles.begin());
+  const std::vector objects{instance(4), instance(9)};
+  const auto path = std::filesystem::temp_directory_path() / concat("ovimap-", ::getpid(), ".glb");
+  write_glb(
+      path,
+      [&](const auto& visit) {
+        visit(first);
+        visit(second);
+      },
+      objects, {{4, "mug"}}, Eigen::Vector3f::UnitZ());
+  const Bytes written = read_file(path);
+  EXPECT_EQ(std::string(written.begin(), written.end()),
+            encode_glb(whole(two_triangles()), objects, {{4, "mug"}}, Eigen::Vector3f::UnitZ()));
+  std::filesystem::remove(path);
+}
+
 TEST(Glb, AnEmptyMapIsADocument) {
-  const auto document = document_of(encode_glb({}, {}, {}, Eigen::Vector3f(0, -1, 0)));
+  const auto document = document_of(encode_glb(whole({}), {}, {}, Eigen::Vector3f(0, -1, 0)));
   EXPECT_EQ(document["nodes"].size(), 2u);
   EXPECT_FALSE(document.contains("buffers"));
 }

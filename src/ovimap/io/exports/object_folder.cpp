@@ -11,7 +11,7 @@
 #include "ovimap/image/codec.h"
 #include "ovimap/io/exports/instance_json.h"
 #include "ovimap/io/exports/instance_json_value.h"
-#include "ovimap/io/mesh/mesh_pieces.h"
+#include "ovimap/io/mesh/labelled_pieces.h"
 #include "ovimap/io/mesh/ply.h"
 
 namespace ovimap {
@@ -115,16 +115,16 @@ void check_new_folder(const fs::path& folder) {
   check_file_target(fs::path(target) += ".check");
 }
 
-void write_object_folder(const fs::path& folder, const MapRecord& map, const Mesh& mesh,
+void write_object_folder(const fs::path& folder, const MapRecord& map, const MeshParts& parts,
                          std::span<const ObjectRelation> relations, const std::string& scene_text) {
   check_new_folder(folder);
   FolderWriter writer(plain(folder));
-  const std::map<std::uint32_t, Mesh> pieces = split_by_label(mesh);
+  const LabelledPieces pieces(parts, writer.path() / "pieces");
   for (const InstanceSummary& instance : map.instances) {
     const fs::path place = writer.path() / folder_name(instance.id, map.names);
     fs::create_directory(place);
-    if (const auto piece = pieces.find(instance.id); piece != pieces.end())
-      write_ply(place / "mesh.ply", piece->second);
+    if (const Mesh piece = pieces.piece(instance.id); !piece.triangles.empty())
+      write_ply(place / "mesh.ply", piece);
     Json entry = instance_json_value(instance, map.names);
     entry["relations"] = relations_of(instance.id, relations);
     entry["crops"] = write_crops(place, appearance_of(map.semantics.looks, instance.super_points));

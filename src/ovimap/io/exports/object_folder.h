@@ -18,10 +18,10 @@ void check_new_folder(const std::filesystem::path& folder);
 /// Writes a folder per object, named "12" or "12_mug", with mesh.ply (world frame), object.json (as
 /// in instances_json, with its "relations" and its "crops": file, mask, frame, visible_px, box_px)
 /// and the kept crops as crop_1.jpg and crop_1_mask.png (white on the object), largest view first;
-/// and scene.json, `scene_text`, beside them. `mesh` has instance ids as labels. The folder appears
-/// only when complete. Throws Error as check_new_folder, and naming what cannot be written.
+/// and scene.json, `scene_text`, beside them. `parts` have instance ids as labels. The folder
+/// appears only when complete. Throws Error as check_new_folder, and naming what cannot be written.
 void write_object_folder(const std::filesystem::path& folder, const MapRecord& map,
-                         const Mesh& mesh, std::span<const ObjectRelation> relations,
+                         const MeshParts& parts, std::span<const ObjectRelation> relations,
                          const std::string& scene_text);
 
 }  // namespace ovimap

@@ -35,11 +35,12 @@ class ObjectFolder : public MapFolder {
   }
   MapRecord map_;
   Mesh mesh_;
+  const MeshParts parts_ = [this](const auto& visit) { visit(mesh_); };
   const std::vector<ObjectRelation> relations_ = {{4, Relation::kOn, 9, 0.75f, "there"}};
 };
 
 TEST_F(ObjectFolder, HasEverythingOfAnObject) {
-  write_object_folder(root_ / "out", map_, mesh_, relations_, "{}");
+  write_object_folder(root_ / "out", map_, parts_, relations_, "{}");
   const fs::path pot = root_ / "out" / "4_Tea-pot";
   ASSERT_TRUE(fs::is_directory(pot));
   EXPECT_EQ(read_ply(pot / "mesh.ply").vertices.size(), 3u);
@@ -58,7 +59,7 @@ TEST_F(ObjectFolder, HasEverythingOfAnObject) {
 
 TEST_F(ObjectFolder, NeverMixesWithWhatIsThere) {
   fs::create_directories(root_ / "empty");
-  write_object_folder(root_ / "empty/", map_, mesh_, {}, "{}");
+  write_object_folder(root_ / "empty/", map_, parts_, {}, "{}");
   EXPECT_NE(fault_of([&] { check_new_folder(root_ / "empty"); }).find("not empty"),
             std::string::npos);
   std::ofstream(root_ / "file") << "x";

@@ -5,16 +5,16 @@
 #include <set>
 #include <utility>
 
+#include "ovimap/base/error.h"
 #include "ovimap/instance/instance_mesh.h"
 #include "ovimap/io/mesh/mesh_pieces.h"
-#include "ovimap/map/surface/incremental_mesh.h"
 #include "ovimap/map/surface/mesh_extraction.h"
 
 namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kTrianglesOfPart = 500000;  // some 40 MB while it is drawn
+constexpr std::size_t kTrianglesOfPart = 2'000'000;  // some 100 MB; most rooms have fewer
 
 /// What the map shows, and what is hidden in it.
 struct Shown {
@@ -43,21 +43,30 @@ Mesh visible_mesh(const MapDocument& document) {
   return without_hidden(extract_instance_mesh(document.map, shown.all), shown.hidden);
 }
 
-void for_each_visible_part(const MapDocument& document,
-                           const std::function<void(const Mesh&)>& visit) {
+void for_each_visible_part(const MapDocument& document, const std::function<void(Mesh&)>& visit) {
   const Shown shown = shown_in(document);
   const std::vector<InstanceId> instance_of = instances_by_label(document.map, shown.all);
-  Mesh part;
-  const auto finish = [&] {
-    add_normals(part);
-    visit(without_hidden(std::exchange(part, {}), shown.hidden));
-  };
-  for_each_patch(document.map, [&](Mesh& patch) {
-    for (std::uint32_t& label : patch.labels) label = instance_of[label];
-    append(patch, part);
-    if (part.triangles.size() >= kTrianglesOfPart) finish();
+  for_each_mesh_part(document.map, kTrianglesOfPart, [&](Mesh& part) {
+    for (std::uint32_t& label : part.labels) label = instance_of[label];
+    part = without_hidden(std::move(part), shown.hidden);
+    visit(part);
   });
-  if (!part.triangles.empty()) finish();
+}
+
+MeshParts visible_parts(const MapDocument& document, const std::filesystem::path& map,
+                        std::function<void(Mesh&)> change) {
+  return [&document, map, change = std::move(change)](const auto& visit) {
+    bool any = false;
+    for_each_visible_part(document, [&](Mesh& part) {
+      any = any || !part.vertices.empty();
+      change(part);
+      visit(part);
+    });
+    if (!any)
+      throw Error(concat("map '", map.string(),
+                         "' holds objects without a surface, as `ovimap embed` makes them; draw "
+                         "the mesh they were made from"));
+  };
 }
 
 }  // namespace ovimap

@@ -2,7 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/io/mesh/mesh_pieces.h"
 
+#include <unistd.h>
+
 #include <gtest/gtest.h>
+
+#include "ovimap/base/error.h"
+#include "ovimap/io/mesh/labelled_pieces.h"
 
 namespace ovimap {
 namespace {
@@ -38,6 +43,28 @@ TEST(MeshPieces, LabelsCanBeLeftOut) {
   EXPECT_EQ(kept.vertices.size(), 4u);
   EXPECT_EQ(kept.colors.size(), 4u);
   EXPECT_TRUE(without_labels(Mesh{}, [](std::uint32_t) { return false; }).vertices.empty());
+}
+
+TEST(LabelledPieces, AreThoseOfTheWholeMesh) {
+  Mesh above = strip();
+  for (Eigen::Vector3f& vertex : above.vertices) vertex.z() += 1.f;
+  const LabelledPieces pieces(
+      [&](const auto& visit) {
+        visit(strip());
+        visit(above);
+      },
+      std::filesystem::temp_directory_path() / concat("ovimap-pieces-", ::getpid()));
+  Mesh both = strip();
+  append(above, both);
+  const auto expected = split_by_label(both);
+  for (const std::uint32_t label : {0u, 5u, 7u}) {
+    const Mesh piece = pieces.piece(label);
+    EXPECT_EQ(piece.vertices, expected.at(label).vertices) << label;
+    EXPECT_EQ(piece.colors, expected.at(label).colors) << label;
+    EXPECT_EQ(piece.labels, expected.at(label).labels) << label;
+    EXPECT_EQ(piece.triangles, expected.at(label).triangles) << label;
+  }
+  EXPECT_TRUE(pieces.piece(6).vertices.empty());
 }
 
 }  // namespace

@@ -287,60 +287,6 @@ class PlyReader {
   std::vector<std::int32_t> values_;  ///< of face_value_, one a triangle
 };
 
-template <class Number>
-void append_number(Bytes& bytes, Number value) {
-  if constexpr (std::endian::native == std::endian::big) value = swapped(value);
-  const auto* begin = reinterpret_cast<const std::uint8_t*>(&value);
-  bytes.insert(bytes.end(), begin, begin + sizeof(Number));
-}
-
-std::string header_of(const Mesh& mesh) {
-  std::string header =
-      concat("ply\nformat binary_little_endian 1.0\ncomment metres\nelement vertex ",
-             mesh.vertices.size(), "\n");
-  for (const char* name : {"x", "y", "z"}) header += concat("property float ", name, "\n");
-  if (!mesh.normals.empty())
-    for (const char* name : {"nx", "ny", "nz"}) header += concat("property float ", name, "\n");
-  if (!mesh.colors.empty())
-    for (const char* name : {"red", "green", "blue"})
-      header += concat("property uchar ", name, "\n");
-  if (!mesh.labels.empty()) header += "property uint label\n";
-  return header + concat("element face ", mesh.triangles.size(),
-                         "\nproperty list uchar int vertex_indices\nend_header\n");
-}
-
-}  // namespace
-
-Bytes encode_ply(const Mesh& mesh) {
-  OVIMAP_ASSERT(mesh.normals.empty() || mesh.normals.size() == mesh.vertices.size());
-  OVIMAP_ASSERT(mesh.colors.empty() || mesh.colors.size() == mesh.vertices.size());
-  OVIMAP_ASSERT(mesh.labels.empty() || mesh.labels.size() == mesh.vertices.size());
-  const std::string header = header_of(mesh);
-  Bytes bytes(header.begin(), header.end());
-  constexpr std::size_t kMostVertexBytes = 31, kFaceBytes = 13;
-  bytes.reserve(header.size() + mesh.vertices.size() * kMostVertexBytes +
-                mesh.triangles.size() * kFaceBytes);
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    for (const float value : mesh.vertices[i]) append_number(bytes, value);
-    if (!mesh.normals.empty())
-      for (const float value : mesh.normals[i]) append_number(bytes, value);
-    if (!mesh.colors.empty())
-      bytes.insert(bytes.end(), mesh.colors[i].begin(), mesh.colors[i].end());
-    if (!mesh.labels.empty()) append_number(bytes, mesh.labels[i]);
-  }
-  for (const auto& triangle : mesh.triangles) {
-    bytes.push_back(3);
-    for (const std::uint32_t index : triangle) append_number(bytes, index);
-  }
-  return bytes;
-}
-
-void write_ply(const std::filesystem::path& path, const Mesh& mesh) {
-  write_file(path, encode_ply(mesh));
-}
-
-namespace {
-
 ValuedMesh decode_with(std::span<const std::uint8_t> bytes, const std::string& name,
                        const std::string& face_value) {
   try {

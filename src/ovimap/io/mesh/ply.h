@@ -16,6 +16,8 @@ namespace ovimap {
 /// The file appears only when complete. Throws Error naming the path and the system's reason.
 void write_ply(const std::filesystem::path& path, const Mesh& mesh);
 Bytes encode_ply(const Mesh& mesh);
+/// The same of a mesh in parts with the same attributes, none of which stays in memory.
+void write_ply(const std::filesystem::path& path, const MeshParts& parts);
 
 /// Reads ASCII or binary PLY of either byte order. Vertex properties may have any order and number
 /// type: x y z are needed; nx ny nz, red green blue (integers, or floats in [0, 1]) and label (a

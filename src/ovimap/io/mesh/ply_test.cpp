@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "ovimap/base/error.h"
+#include "ovimap/io/mesh/mesh_pieces.h"
 
 namespace ovimap {
 namespace {
@@ -76,6 +77,14 @@ TEST(Ply, ComesBackAsItWasWritten) {
   const Mesh mesh = random_mesh(500, 900);
   write_ply(folder / "full.ply", mesh);
   expect_same(read_ply(folder / "full.ply"), mesh);
+  const Mesh other = random_mesh(70, 20);
+  write_ply(folder / "parts.ply", [&](const auto& visit) {
+    visit(mesh);
+    visit(other);
+  });
+  Mesh both = mesh;
+  append(other, both);
+  expect_same(read_ply(folder / "parts.ply"), both);
   std::filesystem::remove_all(folder);
 }
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -41,10 +40,6 @@ void list_fields(PictureConfig& config, ConfigFields& fields);
 /// empty ground of longest_side_px squared.
 RgbImage top_down(const Mesh& mesh, const Eigen::Vector3f& up, const PictureConfig& config = {},
                   std::optional<float> max_height_m = std::nullopt);
-
-/// A mesh that is never in memory as a whole: calls the function that it gets with one part after
-/// the other, the same whenever it is called.
-using MeshParts = std::function<void(const std::function<void(const Mesh&)>&)>;
 
 /// The same of a mesh in parts, coloured in several ways. config.coloring counts for nothing.
 std::vector<RgbImage> top_down(const MeshParts& parts, const Eigen::Vector3f& up,

@@ -177,9 +177,10 @@ HttpReply export_glb(const ServedMap& map, KeptGlb& kept) {
   const auto now = map.snapshot();
   if (!kept.file || kept.version != now->version || kept.mesh_version != surface->version()) {
     kept.file.reset();  // two never exist at once
-    const Mesh mesh = labelled_surface(*surface, now->instance_of_label, now->hidden());
-    const Bytes glb = encode_glb(mesh, now->record->instances, now->record->names, now->record->up);
-    kept.file = std::make_shared<std::string>(glb.begin(), glb.end());
+    const auto hidden = now->hidden();
+    kept.file = std::make_shared<std::string>(
+        encode_glb(labelled_parts(*surface, now->instance_of_label, hidden), now->record->instances,
+                   now->record->names, now->record->up));
     kept.version = now->version;
     kept.mesh_version = surface->version();
   }

@@ -3,10 +3,8 @@
 #include "ovimap/server/surface/mesh_chunks.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include <meshoptimizer.h>
-#include <tsl/robin_map.h>
 
 namespace ovimap {
 
@@ -19,14 +17,6 @@ void copy_vertex(const Mesh& from, std::uint32_t vertex, Mesh& to) {
   if (!from.colors.empty()) to.colors.push_back(from.colors[vertex]);
   if (!from.labels.empty()) to.labels.push_back(from.labels[vertex]);
 }
-
-struct PositionHash {
-  std::size_t operator()(const Eigen::Vector3f& position) const {
-    std::uint32_t bits[3];
-    std::memcpy(bits, position.data(), sizeof bits);
-    return (bits[0] * 73856093ull) ^ (bits[1] * 19349663ull) ^ (bits[2] * 83492791ull);
-  }
-};
 
 using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 
@@ -60,24 +50,6 @@ ChunkTotals totals_of(const MeshChunk& chunk, std::uint64_t since) {
     totals.triangles += static_cast<std::uint32_t>(patch.mesh->triangles.size());
   }
   return totals;
-}
-
-Mesh welded(std::span<const Mesh> patches) {
-  Mesh mesh;
-  tsl::robin_map<Eigen::Vector3f, std::uint32_t, PositionHash> place;
-  std::vector<std::uint32_t> vertex_of;
-  for (const Mesh& patch : patches) {
-    vertex_of.resize(patch.vertices.size());
-    for (std::uint32_t v = 0; v < vertex_of.size(); ++v) {
-      const auto next = static_cast<std::uint32_t>(mesh.vertices.size());
-      const auto [entry, is_new] = place.try_emplace(patch.vertices[v], next);
-      if (is_new) copy_vertex(patch, v, mesh);
-      vertex_of[v] = entry->second;
-    }
-    for (const auto& [a, b, c] : patch.triangles)
-      mesh.triangles.push_back({vertex_of[a], vertex_of[b], vertex_of[c]});
-  }
-  return mesh;
 }
 
 Mesh in_less_detail(const Mesh& mesh, const LevelOfDetail& level, float voxel_size_m) {

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "ovimap/geometry/mesh.h"
@@ -76,8 +75,5 @@ struct LevelOfDetail {
 
 /// The same surface with fewer triangles, each of which keeps the corners' labels and colours.
 Mesh in_less_detail(const Mesh& mesh, const LevelOfDetail& level, float voxel_size_m);
-
-/// All patches in one mesh; vertices at the same place become one.
-Mesh welded(std::span<const Mesh> patches);
 
 }  // namespace ovimap

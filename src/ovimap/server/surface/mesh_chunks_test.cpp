@@ -38,17 +38,5 @@ TEST(MeshChunksTest, NothingHasNoDetail) {
   EXPECT_TRUE(in_less_detail({}, {}, kVoxel_m).triangles.empty());
 }
 
-TEST(MeshChunksTest, WeldingJoinsPatchesThatMeet) {
-  const Mesh whole = fixture::wavy_sheet(40, 0.01f);
-  Mesh left = whole, right = whole;
-  const auto half = static_cast<std::ptrdiff_t>(whole.triangles.size() / 2);
-  left.triangles.erase(left.triangles.begin() + half, left.triangles.end());
-  right.triangles.erase(right.triangles.begin(), right.triangles.begin() + half);
-  const Mesh joined = welded(std::vector{left, right});
-  EXPECT_EQ(joined.vertices, whole.vertices);
-  EXPECT_EQ(joined.labels, whole.labels);
-  EXPECT_EQ(joined.triangles, whole.triangles);
-}
-
 }  // namespace
 }  // namespace ovimap

@@ -9,6 +9,7 @@
 #include "ovimap/base/parallel.h"
 #include "ovimap/map/surface/incremental_mesh.h"
 #include "ovimap/map/surface/mesh_extraction.h"
+#include "ovimap/map/surface/mesh_welding.h"
 #include "ovimap/map/surface/surface_precision.h"
 #include "ovimap/server/surface/chunk_encoding.h"
 

@@ -3,6 +3,7 @@
 #include "ovimap/server/surface/surface_measure.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "ovimap/instance/object_boxes.h"
 #include "ovimap/io/mesh/mesh_pieces.h"
@@ -19,6 +20,12 @@ std::vector<SurfaceExtent> extents_by_label(const Mesh& mesh) {
     extents[label].add(mesh.vertices[v]);
   }
   return extents;
+}
+
+Mesh labelled(Mesh mesh, const LabelTable& table, const std::set<InstanceId>& hidden) {
+  relabel(mesh, table);
+  if (hidden.empty()) return mesh;
+  return without_labels(mesh, [&](std::uint32_t label) { return hidden.contains(label); });
 }
 
 }  // namespace
@@ -46,10 +53,21 @@ void relabel(Mesh& mesh, const LabelTable& table) {
 
 Mesh labelled_surface(const ServedSurface& surface, const LabelTable& table,
                       const std::set<InstanceId>& hidden, const Eigen::AlignedBox3f& box) {
-  Mesh mesh = joined_surface(surface, box);
-  relabel(mesh, table);
-  if (hidden.empty()) return mesh;
-  return without_labels(mesh, [&](std::uint32_t label) { return hidden.contains(label); });
+  return labelled(joined_surface(surface, box), table, hidden);
+}
+
+MeshParts labelled_parts(const ServedSurface& surface, const LabelTable& table,
+                         const std::set<InstanceId>& hidden) {
+  constexpr std::size_t kTriangles = 500000;  // patches of live maps are small
+  return [&](const auto& visit) {
+    Mesh part;
+    const auto finish = [&] { visit(labelled(std::exchange(part, {}), table, hidden)); };
+    surface.for_each_patch(all_space(), [&](const SurfacePatch& patch) {
+      append(*patch.mesh, part);
+      if (part.triangles.size() >= kTriangles) finish();
+    });
+    finish();
+  };
 }
 
 std::vector<InstanceSummary> find_instances(const Mesh& mesh, const LabelForest& forest,

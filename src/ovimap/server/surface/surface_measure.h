@@ -24,6 +24,10 @@ Mesh labelled_surface(const ServedSurface& surface, const LabelTable& table,
                       const std::set<InstanceId>& hidden,
                       const Eigen::AlignedBox3f& box = all_space());
 
+/// The same for a surface that may be more than memory holds; calling it calls the surface.
+MeshParts labelled_parts(const ServedSurface& surface, const LabelTable& table,
+                         const std::set<InstanceId>& hidden);
+
 /// Replaces every label by its object.
 void relabel(Mesh& mesh, const LabelTable& table);
 
