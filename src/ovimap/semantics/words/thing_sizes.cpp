@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 
 #include "ovimap/base/error.h"
+#include "ovimap/base/parallel.h"
 #include "ovimap/semantics/words/word_lists.h"
 
 namespace ovimap {
@@ -136,43 +137,69 @@ Range range_along(const ObjectShape& shape, const Eigen::Vector3f& direction) {
   return {quantile_in_place(places, stray), quantile_in_place(places, 1.f - stray)};
 }
 
+/// A point of a surface in the upright column that it lies in.
+struct ColumnPoint {
+  std::uint64_t column = 0;
+  float height_m = 0;
+};
+
+/// By column.
+std::vector<ColumnPoint> in_columns(const std::vector<Eigen::Vector3f>& surface) {
+  std::vector<ColumnPoint> points;
+  points.reserve(surface.size());
+  for (const Eigen::Vector3f& point : surface) {
+    const Eigen::Vector2i cell = (point.head<2>() / kColumn_m).array().floor().cast<int>();
+    points.push_back({std::uint64_t{static_cast<std::uint32_t>(cell.x())} << 32 |
+                          static_cast<std::uint32_t>(cell.y()),
+                      point.z()});
+  }
+  std::sort(points.begin(), points.end(),
+            [](const ColumnPoint& a, const ColumnPoint& b) { return a.column < b.column; });
+  return points;
+}
+
 /// `top_m`: of the surface, in its frame.
 void measure_spread(const std::vector<Eigen::Vector3f>& surface, float top_m,
                     ObjectMeasures& measures) {
-  const auto column = [](const Eigen::Vector3f& point) {
-    const Eigen::Vector2f cell = point.head<2>() / kColumn_m;
-    return std::pair(static_cast<int>(std::floor(cell.x())),
-                     static_cast<int>(std::floor(cell.y())));
-  };
-  std::map<std::pair<int, int>, float> tops;
-  for (const Eigen::Vector3f& point : surface) {
-    float& top = tops.try_emplace(column(point), point.z()).first->second;
-    top = std::max(top, point.z());
-  }
+  const std::vector<ColumnPoint> points = in_columns(surface);
   int at_top = 0, covered = 0;
-  for (const Eigen::Vector3f& point : surface) {
-    at_top += point.z() > top_m - kSurfaceStep_m;
-    covered += point.z() < tops[column(point)] - kSurfaceStep_m;
+  for (auto begin = points.begin(); begin != points.end();) {
+    const auto end = std::find_if(begin, points.end(), [&](const ColumnPoint& point) {
+      return point.column != begin->column;
+    });
+    float highest = begin->height_m;
+    for (auto point = begin; point != end; ++point) highest = std::max(highest, point->height_m);
+    for (; begin != end; ++begin) {
+      at_top += begin->height_m > top_m - kSurfaceStep_m;
+      covered += begin->height_m < highest - kSurfaceStep_m;
+    }
   }
-  const auto points = static_cast<float>(surface.size());
-  measures.top_share = static_cast<float>(at_top) / points;
-  measures.covered_share = static_cast<float>(covered) / points;
+  const auto count = static_cast<float>(points.size());
+  measures.top_share = static_cast<float>(at_top) / count;
+  measures.covered_share = static_cast<float>(covered) / count;
+}
+
+/// `floor_m`: its height.
+ObjectMeasures measure_object(const ObjectShape& shape, float floor_m) {
+  const Eigen::Vector2f along = long_direction(shape.footprint);
+  const Range upright = range_along(shape, Eigen::Vector3f::UnitZ());
+  const float length_m = range_along(shape, {along.x(), along.y(), 0.f}).size();
+  const float depth_m = range_along(shape, {-along.y(), along.x(), 0.f}).size();
+  ObjectMeasures measures{upright.size(), std::max(length_m, depth_m), std::min(length_m, depth_m),
+                          upright.low - floor_m};
+  if (!shape.surface.empty()) measure_spread(shape.surface, upright.high, measures);
+  return measures;
 }
 
 }  // namespace
 
 std::vector<ObjectMeasures> measure_objects(std::span<const ObjectShape> shapes) {
-  const float floor = floor_height(shapes);
-  std::vector<ObjectMeasures> measures;
-  for (const ObjectShape& shape : shapes) {
-    const Eigen::Vector2f along = long_direction(shape.footprint);
-    const Range upright = range_along(shape, Eigen::Vector3f::UnitZ());
-    const float length_m = range_along(shape, {along.x(), along.y(), 0.f}).size();
-    const float depth_m = range_along(shape, {-along.y(), along.x(), 0.f}).size();
-    measures.push_back({upright.size(), std::max(length_m, depth_m), std::min(length_m, depth_m),
-                        upright.low - floor});
-    if (!shape.surface.empty()) measure_spread(shape.surface, upright.high, measures.back());
-  }
+  constexpr std::size_t kShapesPerTask = 8;
+  const float floor_m = floor_height(shapes);
+  std::vector<ObjectMeasures> measures(shapes.size());
+  parallel_for_ranges(shapes.size(), kShapesPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) measures[i] = measure_object(shapes[i], floor_m);
+  });
   return measures;
 }
 
