@@ -4,7 +4,6 @@
 
 #include <bit>
 #include <cmath>
-#include <functional>
 #include <limits>
 
 #include <Eigen/Geometry>
@@ -50,11 +49,10 @@ Json vector_json(const Eigen::Vector3f& v) {
   return Json::array({v.x(), v.y(), v.z()});
 }
 
-/// Gathers the parts of a document, and hands on what belongs into its one buffer.
+/// Gathers the parts of a document; its one buffer is `body`.
 class GlbBuilder {
  public:
-  using Sink = std::function<void(std::span<const std::uint8_t>)>;
-  explicit GlbBuilder(Sink sink) : sink_(std::move(sink)) {}
+  explicit GlbBuilder(ScratchFile& body) : body_(body) {}
 
   /// Index of a mesh with one primitive.
   std::size_t add_mesh(const Mesh& mesh) {
@@ -66,9 +64,8 @@ class GlbBuilder {
                       {"indices", add_indices(mesh.triangles)},
                       {"material", 0}};
     meshes_.push_back({{"primitives", Json::array({std::move(primitive)})}});
-    sink_(buffer_);
-    handed_on_ += buffer_.size();
-    check_size(handed_on_);
+    body_.append(buffer_);
+    check_size(body_.size());
     buffer_.clear();
     return meshes_.size() - 1;
   }
@@ -94,7 +91,7 @@ class GlbBuilder {
       document["meshes"] = std::move(meshes_);
       document["accessors"] = std::move(accessors_);
       document["bufferViews"] = std::move(views_);
-      document["buffers"] = Json::array({{{"byteLength", handed_on_}}});
+      document["buffers"] = Json::array({{{"byteLength", body_.size()}}});
       document["materials"] =
           Json::array({{{"name", "surface"},
                         {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 1}}},
@@ -114,7 +111,7 @@ class GlbBuilder {
   std::size_t add_accessor(std::size_t begin, std::size_t count, int component, const char* type,
                            int target) {
     views_.push_back({{"buffer", 0},
-                      {"byteOffset", handed_on_ + begin},
+                      {"byteOffset", body_.size() + begin},
                       {"byteLength", buffer_.size() - begin},
                       {"target", target}});
     accessors_.push_back({{"bufferView", views_.size() - 1},
@@ -179,7 +176,7 @@ class GlbBuilder {
     std::string text = document.dump(-1, ' ', false, Json::error_handler_t::replace);
     text.resize((text.size() + 3) / 4 * 4, ' ');
     constexpr std::size_t kHeader = 12, kChunkHeader = 8;
-    const std::uint64_t binary = handed_on_ == 0 ? 0 : kChunkHeader + handed_on_;
+    const std::uint64_t binary = body_.size() == 0 ? 0 : kChunkHeader + body_.size();
     const std::uint64_t size = kHeader + kChunkHeader + text.size() + binary;
     check_size(size);
     Bytes head;
@@ -188,23 +185,24 @@ class GlbBuilder {
       append(head, word);
     head.insert(head.end(), text.begin(), text.end());
     if (binary == 0) return head;
-    append(head, static_cast<std::uint32_t>(handed_on_));
+    append(head, static_cast<std::uint32_t>(body_.size()));
     append(head, kBinaryChunk);
     return head;
   }
 
-  Sink sink_;
+  ScratchFile& body_;
   Bytes buffer_;  ///< of the mesh that is being added
-  std::uint64_t handed_on_ = 0;
   Json nodes_ = Json::array(), meshes_ = Json::array(), accessors_ = Json::array(),
        views_ = Json::array();
 };
 
-/// Returns what stands before what `sink` gets.
-Bytes glb_head(const LabelledPieces& pieces, std::span<const InstanceSummary> instances,
+/// Fills `body` and returns what stands before it. Pieces of objects wait beside `target`.
+Bytes glb_head(const std::filesystem::path& target, const MeshParts& parts,
+               std::span<const InstanceSummary> instances,
                const std::map<InstanceId, std::string>& names, const Eigen::Vector3f& up,
-               GlbBuilder::Sink sink) {
-  GlbBuilder builder(std::move(sink));
+               ScratchFile& body) {
+  const LabelledPieces pieces(parts, target);
+  GlbBuilder builder(body);
   for (const InstanceSummary& instance : instances) {
     Json extras = instance_json_value(instance, names);
     extras.erase("superpoints");
@@ -220,22 +218,20 @@ Bytes glb_head(const LabelledPieces& pieces, std::span<const InstanceSummary> in
 
 std::string encode_glb(const MeshParts& parts, std::span<const InstanceSummary> instances,
                        const std::map<InstanceId, std::string>& names, const Eigen::Vector3f& up) {
-  const LabelledPieces pieces(parts, std::filesystem::temp_directory_path() / "ovimap.glb");
-  std::string body;
-  const Bytes head = glb_head(
-      pieces, instances, names, up,
-      [&](std::span<const std::uint8_t> bytes) { body.append(bytes.begin(), bytes.end()); });
-  body.insert(body.begin(), head.begin(), head.end());
-  return body;
+  const auto target = std::filesystem::temp_directory_path() / "ovimap.glb";
+  ScratchFile body(target);
+  const Bytes head = glb_head(target, parts, instances, names, up, body);
+  std::string file(head.begin(), head.end());
+  file.resize(head.size() + body.size());
+  body.read(0, {reinterpret_cast<std::uint8_t*>(file.data()) + head.size(), body.size()});
+  return file;
 }
 
 void write_glb(const std::filesystem::path& path, const MeshParts& parts,
                std::span<const InstanceSummary> instances,
                const std::map<InstanceId, std::string>& names, const Eigen::Vector3f& up) {
-  const LabelledPieces pieces(parts, path);
   ScratchFile body(path);
-  const Bytes head = glb_head(pieces, instances, names, up,
-                              [&](std::span<const std::uint8_t> bytes) { body.append(bytes); });
+  const Bytes head = glb_head(path, parts, instances, names, up, body);
   write_file(path, head, {&body});
 }
 
