@@ -22,9 +22,9 @@ struct ServerConfig {
   std::filesystem::path viewer;                    ///< folder of the web page; empty: none
 
   // Half as many where they are encrypted: an unfinished handshake takes 130 kB.
-  int max_connections = 512;           ///< open at once; one that does little goes for a new one
-  int max_connections_of_one = 256;    ///< of these, from one address
-  std::size_t max_event_streams = 64;  ///< of these connections
+  int max_connections = 512;            ///< open at once; one that does little goes for a new one
+  int max_connections_of_one = 256;     ///< of these, from one address
+  std::size_t max_event_streams = 128;  ///< of these connections
   std::size_t max_event_streams_of_one = 32;
   std::size_t max_standing_queries = 4000;  ///< of all clients that watch for something
   std::size_t max_standing_queries_of_one = 2000;
