@@ -14,7 +14,7 @@ namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kTrianglesOfPart = 1'000'000;  // some 50 MB; a room at 1 cm
+constexpr std::size_t kTrianglesOfPart = 2'000'000;  // some 100 MB; a small room at 1 cm
 
 /// What the map shows, and what is hidden in it.
 struct Shown {

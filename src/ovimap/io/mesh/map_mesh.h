@@ -13,7 +13,7 @@ namespace ovimap {
 /// hidden objects.
 Mesh visible_mesh(const MapDocument& document);
 
-/// Calls `visit` with the same mesh in parts of some million triangles, for maps whose mesh, or
+/// Calls `visit` with the same mesh in parts of some two million triangles, for maps whose mesh, or
 /// whose voxels, are more than memory holds: cut as for_each_mesh_part does. `visit` may change the
 /// part.
 void for_each_visible_part(const MapDocument& document, const std::function<void(Mesh&)>& visit);
