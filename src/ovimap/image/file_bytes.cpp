@@ -138,13 +138,14 @@ void write_file(const std::filesystem::path& path, std::span<const std::uint8_t>
   const std::filesystem::path temporary = temporary_beside(path);
   Descriptor file(temporary, O_WRONLY | O_CREAT | O_EXCL);
   if (file.get() < 0) fail_to_write(path, errno);
-  bool complete = write_all(file.get(), head);
-  for (const ScratchFile* scratch : rest) complete = complete && copy_all(*scratch, file.get());
-  complete = complete && file.close();
-  if (!complete || ::rename(temporary.c_str(), path.c_str()) != 0) {
-    const int error = errno;
+  try {
+    bool complete = write_all(file.get(), head);
+    for (const ScratchFile* scratch : rest) complete = complete && copy_all(*scratch, file.get());
+    complete = complete && file.close();
+    if (!complete || ::rename(temporary.c_str(), path.c_str()) != 0) fail_to_write(path, errno);
+  } catch (...) {  // also of a scratch file that cannot be read back
     ::unlink(temporary.c_str());
-    fail_to_write(path, error);
+    throw;
   }
 }
 
