@@ -6,7 +6,7 @@
 #include "ovimap/base/error.h"
 #include "ovimap/io/map_file/map_check.h"
 #include "ovimap/io/map_file/map_edits.h"
-#include "ovimap/io/map_file/map_file.h"
+#include "ovimap/io/map_file/searchable_map.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto path = input_file(".ovimap", {data, size});
@@ -16,7 +16,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     } catch (const ovimap::Error&) {
     }
   };
-  attempt([&] { (void)ovimap::read_searchable_map(path); });
+  attempt([&] { (void)ovimap::read_searchable_map(path).shapes.whole(); });
   attempt([&] { (void)ovimap::load_corrected_map(path); });
   attempt([&] { (void)ovimap::check_map(path); });
   const ovimap::Bytes after = ovimap::read_file(path);

@@ -26,6 +26,8 @@ COLUMNS = {
     "frames": "position, source_index, timestamp_s, name, world_from_camera, labelled",
     "embeddings": "instance, embedding",
     "surfaces": "instance, points",
+    "object_shapes": "instance, bottom, top, centroid_x, centroid_y, centroid_z, footprint, height, length, depth, above_floor, top_share, "
+                     "covered_share",
     "kept_frames": "position, depth, color, segments, labels",
     "super_point_looks": "label, seen_min_x, seen_min_y, seen_min_z, seen_max_x, seen_max_y, seen_max_z, offered, queries",
     "super_point_views": "label, frame, visible_px, center_x, center_y, center_z, bins, embedding, crop_jpeg, crop_mask_png, "
@@ -50,6 +52,7 @@ COLUMNS = {
 }
 for found in ("instances", "surfaces", "embeddings"):
     COLUMNS[f"corrected_{found}"] = COLUMNS[found]
+COLUMNS["corrected_shapes"] = COLUMNS["object_shapes"]
 COLUMNS["corrected_super_points"] = COLUMNS["instance_super_points"]
 COLUMNS["corrected_names"] = COLUMNS["instance_names"]
 COLUMNS["corrected_confidences"] = COLUMNS["instance_confidences"]
@@ -98,6 +101,12 @@ class Map:
 
 
 # ------------------------------------------------------------------------------------------------- voxels
+
+def surface_points(blob):
+    """[points, 3] of a row of `surfaces`."""
+    low, high = np.frombuffer(blob[:24], "<f4").reshape(2, 3)
+    return low + np.frombuffer(blob[24:], "<u2").reshape(-1, 3) / 65535 * (high - low)
+
 
 def unpack_tile(key):
     return [((key >> shift) & 0x1FFFFF) - (1 << 20) for shift in (0, 21, 42)]

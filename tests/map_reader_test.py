@@ -10,7 +10,7 @@ import unittest
 
 try:
     import numpy as np
-    from map_reader import APPLICATION_ID, COLUMNS, Map, content_hash, row_hash, unsigned
+    from map_reader import APPLICATION_ID, COLUMNS, Map, content_hash, row_hash, surface_points, unsigned
 except ImportError as missing:  # set up by tools/setup.sh
     print(f"skipped: {missing}; tools/setup.sh installs what this test needs")
     sys.exit(77)
@@ -66,11 +66,40 @@ class Reader(unittest.TestCase):
     def test_most_of_a_surface_lies_in_its_box(self):
         objects = self.map.objects()
         for id, blob in self.map.rows("surfaces"):
-            low, high = np.frombuffer(blob[:24], "<f4").reshape(2, 3)
-            points = low + np.frombuffer(blob[24:], "<u2").reshape(-1, 3) / 65535 * (high - low)
+            points = surface_points(blob)
             self.assertGreater(len(points), 3)
             inside = (points >= np.array(objects[id][0]) - 0.01) & (points <= np.array(objects[id][1]) + 0.01)
             self.assertGreater(inside.all(axis=1).mean(), 0.8, "the rest are specks")
+
+    def test_shapes_are_what_surfaces_measure(self):
+        up = np.array([float(self.map.meta[f"up.{axis}"]) for axis in "xyz"])
+        x = np.cross(np.eye(3)[np.abs(up).argmin()], up)
+        x /= np.linalg.norm(x)
+        ground = np.array([x, np.cross(up, x), up])
+        surfaces = {id: surface_points(blob) @ ground.T for id, blob in self.map.rows("surfaces")}
+        heights = np.sort(np.concatenate([points[:, 2] for points in surfaces.values()]))
+        floor = heights[int(0.02 * (len(heights) - 1))]
+        shapes = self.map.rows("object_shapes")
+        self.assertEqual([row[0] for row in shapes], sorted(self.map.objects()))
+        for id, bottom, top, *centroid, footprint, height, length, depth, above_floor, top_share, covered_share in shapes:
+            if id not in surfaces:
+                self.assertEqual((top_share, covered_share), (-1, -1))
+                continue
+            points = surfaces[id]
+            corners = np.frombuffer(footprint, "<f4").reshape(-1, 2)
+            self.assertTrue((points[:, :2] >= corners.min(0) - 0.5).all() and (points[:, :2] <= corners.max(0) + 0.5).all())
+            sides, after = corners, np.roll(corners, -1, axis=0)
+            self.assertGreater((sides[:, 0] * after[:, 1] - sides[:, 1] * after[:, 0]).sum(), 0, "counter-clockwise")
+            kept = points[(points[:, 2] > bottom + 0.00499) & (points[:, 2] < top - 0.00499)]
+            self.assertTrue(np.allclose(kept.mean(0), centroid, atol=1e-3))
+            self.assertGreaterEqual(len(kept), 0.985 * len(points))
+            z = np.sort(kept[:, 2])
+            low, high = (z[int(share * (len(z) - 1))] for share in (0.05, 0.95))
+            self.assertAlmostEqual(height, high - low, delta=2e-3)
+            self.assertAlmostEqual(above_floor, low - floor, delta=2e-3)
+            self.assertGreaterEqual(length, depth)
+            self.assertAlmostEqual(top_share, (kept[:, 2] > high - 0.05).mean(), delta=0.02)
+            self.assertTrue(0 <= covered_share < 1)
 
     def test_poses_are_rigid(self):
         for row in self.map.rows("frames"):

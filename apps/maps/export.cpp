@@ -42,7 +42,7 @@ MeshParts colored_parts(const MapDocument& document, const ExportOptions& option
 }
 
 std::vector<ObjectRelation> relations_of(const MapSearch& search) {
-  return find_relations(ids_of(search.index), search.scene.shapes);
+  return find_relations(ids_of(search.index), search.scene.shapes.whole());
 }
 
 /// Rooms, places, objects and relations.

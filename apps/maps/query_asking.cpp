@@ -70,7 +70,7 @@ std::vector<Answered> QueryAsker::ask(const std::vector<AskedText>& texts) {
 }
 
 MapSearch QueryAsker::open_map() const {
-  MapSearch search = open_map_search(options_.map, config_.shapes);
+  MapSearch search = open_map_search(options_.map);
   search.scene.taught = taught_elsewhere(options_.teach.file(), options_.map, search.info.encoder);
   return search;
 }
@@ -118,8 +118,8 @@ Answered QueryAsker::in_present(QueryAnswer answer) const {
 
 Answered QueryAsker::ask_past(const AskedText& asked) {
   if (!record_) record_ = read_corrected_record(options_.map);
-  const auto past = std::make_shared<HistorySearch>(
-      search_history(*record_, search_.info, *asked.past, config_.shapes));
+  const auto past =
+      std::make_shared<HistorySearch>(search_history(*record_, search_.info, *asked.past));
   past->search.scene.taught = search_.scene.taught;
   const SearchIndex& index = past->search.index;
   std::unique_ptr<QueryEngine> engine;

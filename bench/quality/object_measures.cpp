@@ -16,7 +16,7 @@
 #include "ovimap/eval/scenes/overlap.h"
 #include "ovimap/io/truth/truth.h"
 #include "ovimap/pipeline/search/map_search.h"
-#include "ovimap/semantics/words/thing_sizes.h"
+#include "ovimap/semantics/relations/object_measures.h"
 
 namespace {
 
@@ -30,7 +30,7 @@ std::map<InstanceId, std::string> names_of(const MapSearch& search, const Truth&
   std::vector<std::uint32_t> labels;
   const Eigen::Matrix3f world_from_ground = ground_from_world(search.info.up).transpose();
   for (std::size_t i = 0; i < search.scene.shapes.size(); ++i)
-    for (const Eigen::Vector3f& point : search.scene.shapes[i].surface) {
+    for (const Eigen::Vector3f& point : search.scene.shapes.whole()[i].surface) {
       points.push_back(world_from_ground * point);
       labels.push_back(search.info.instances[i].id);
     }
@@ -51,7 +51,7 @@ std::map<InstanceId, std::string> names_of(const MapSearch& search, const Truth&
 void print_measures(const char* map, const char* scene) {
   const MapSearch search = open_map_search(map);
   const std::map<InstanceId, std::string> names = names_of(search, load_truth(scene));
-  const std::vector<ObjectMeasures> measures = measure_objects(search.scene.shapes);
+  const std::vector<ObjectMeasures>& measures = search.scene.shapes.measures();
   for (std::size_t i = 0; i < measures.size(); ++i) {
     const auto name = names.find(search.info.instances[i].id);
     if (name == names.end()) continue;

@@ -155,7 +155,7 @@ std::optional<HistoryPhrase> SavedMap::past_of(const std::string& text, const st
 }
 
 QueryAnswer SavedMap::ask_past(const HistoryPhrase& phrase, const Query& query) {
-  HistorySearch past = search_history(record(), info(), phrase, config_.shapes);
+  HistorySearch past = search_history(record(), info(), phrase);
   past.search.scene.taught = scene().taught;
   const SearchIndex& then = past.search.index;
   std::unique_ptr<QueryEngine> words;

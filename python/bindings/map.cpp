@@ -161,7 +161,7 @@ void bind_mesh(nb::module_& module) {
 }
 
 std::string objects_json(const SavedMap& map) {
-  const auto relations = find_relations(ids_of(map.index()), map.scene().shapes);
+  const auto relations = find_relations(ids_of(map.index()), map.scene().shapes.whole());
   return scene_json(map.path(), map.info(), relations) + "\n";
 }
 
@@ -280,7 +280,7 @@ SavedMap::SavedMap(std::filesystem::path path, const QueryConfig& config,
       encoder_spec_(std::move(encoder_spec)),
       model_dirs_(std::move(model_dirs)),
       taught_(std::move(taught)),
-      search_(open_map_search(path_, config.shapes)),
+      search_(open_map_search(path_)),
       encoder_(std::move(encoder)) {
   search_.scene.taught = taught_elsewhere(taught_, path_, search_.info.encoder);
   if (encoder_) require_encoder_of_map();

@@ -36,7 +36,7 @@ struct ObjectFacts {
 
 ObjectFacts describe(SavedMap& map, InstanceId id) {
   const std::size_t position = map.position(id);
-  const ObjectShape& shape = map.scene().shapes[position];
+  const ObjectShape& shape = map.scene().shapes.outline(position);
   ObjectFacts facts;
   facts.id = id;
   facts.name = map.index().object(position).name;
@@ -64,7 +64,7 @@ Named guess_names(SavedMap& map) {
 }
 
 std::vector<ObjectRelation> relations(const SavedMap& map) {
-  return find_relations(ids_of(map.index()), map.scene().shapes);
+  return find_relations(ids_of(map.index()), map.scene().shapes.whole());
 }
 
 std::vector<nb::bytes> crops(SavedMap& map, InstanceId id) {
@@ -158,7 +158,7 @@ void bind_corrections(nb::class_<SavedMap>& map) {
 
 std::int64_t SavedMap::correct(MapEdit edit) const {
   const std::int64_t line = edit_map(path_, std::move(edit)).id;
-  if (!taught_.empty()) teach(taught_, path_, open_map_search(path_, config_.shapes));
+  if (!taught_.empty()) teach(taught_, path_, open_map_search(path_));
   return line;
 }
 

@@ -33,7 +33,7 @@ void write_corrections(SQLite::Database& database, const MapRecord& found,
                        const LabelForest& forest, const VoxelSource& voxels) {
   for (const MapTable& table :
        {kEdits, kCorrectedInstances, kCorrectedSuperPoints, kCorrectedNames, kCorrectedConfidences,
-        kCorrectedSurfaces, kCorrectedEmbeddings, kCorrectedFlags})
+        kCorrectedSurfaces, kCorrectedShapes, kCorrectedEmbeddings, kCorrectedFlags})
     drop_table(database, table);
   if (found.edits.empty()) return;
   write_edits(database, found.edits);
@@ -42,6 +42,7 @@ void write_corrections(SQLite::Database& database, const MapRecord& found,
   apply_edits(corrected, forest, voxels);
   write_flags(database, corrected);
   write_surfaces(database, corrected.surfaces, kCorrectedSurfaces);
+  write_shapes(database, corrected, kCorrectedShapes);
   write_embeddings(database, corrected.instances, corrected.semantics, kCorrectedEmbeddings);
   std::vector<InstanceSummary>& all = corrected.instances;
   all.insert(all.end(), corrected.hidden.begin(), corrected.hidden.end());

@@ -16,6 +16,7 @@
 #include "ovimap/io/map_file/map_file_access.h"
 #include "ovimap/io/map_file/map_file_change.h"
 #include "ovimap/io/map_file/map_file_fixture.h"
+#include "ovimap/io/map_file/searchable_map.h"
 
 namespace ovimap {
 namespace {
@@ -55,6 +56,12 @@ class MapEditing : public MapFolder {
     EXPECT_EQ(info.locked, document.locked);
     const SearchableMap search = read_searchable_map(path_);
     EXPECT_TRUE(same_instances(search.info.instances, document.instances));
+    const std::vector<ObjectShape>& shapes = search.shapes.whole();
+    ASSERT_EQ(shapes.size(), document.instances.size());
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+      EXPECT_EQ(search.shapes.outline(i).footprint, shapes[i].footprint);
+      EXPECT_EQ(search.shapes.outline(i).top_m, shapes[i].top_m);
+    }
     for (std::size_t i = 0; i < document.instances.size(); ++i) {
       const auto row = search.embeddings.row(static_cast<Eigen::Index>(i));
       const Appearance look = appearance_of(document, document.instances[i].id);

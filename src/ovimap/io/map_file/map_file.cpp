@@ -178,16 +178,7 @@ std::map<InstanceId, Eigen::VectorXf> things_of_instances(
   return result;
 }
 
-/// A row for each of these objects; zeros where none is known.
-Embeddings rows_of(const std::map<InstanceId, Eigen::VectorXf>& known,
-                   std::span<const InstanceSummary> objects, int dimension) {
-  Embeddings rows = Embeddings::Zero(static_cast<Eigen::Index>(objects.size()), dimension);
-  for (std::size_t i = 0; i < objects.size(); ++i)
-    if (const auto found = known.find(objects[i].id);
-        found != known.end() && found->second.size() > 0)
-      rows.row(static_cast<Eigen::Index>(i)) = found->second;
-  return rows;
-}
+}  // namespace
 
 MapInfo read_info(SQLite::Database& database, const OpenMap& file) {
   MapRecord record;
@@ -225,8 +216,6 @@ MapInfo read_info(SQLite::Database& database, const OpenMap& file) {
   info.content_hash = meta.content_hash;
   return info;
 }
-
-}  // namespace
 
 VoxelMap read_voxels(SQLite::Database& database, const MapMeta& meta, const LabelForest& forest) {
   VoxelMap map(meta.map_config);
@@ -279,6 +268,7 @@ void save_map(const std::filesystem::path& path, const VoxelMap& map, const MapR
     write_semantics(database, record);
     write_object_parts(database, record);
     write_surfaces(database, record.surfaces, map_tables::kSurfaces);
+    write_shapes(database, record, map_tables::kObjectShapes);
     write_forest(database, map.labels());
     write_kept_frames(database, record.kept_frames);
     write_blocks(database, map);
@@ -349,31 +339,6 @@ MapIdentity read_map_identity(const std::filesystem::path& path) {
                 meta.content_hash, encoder,     static_cast<std::uint64_t>(revision.sum())};
   });
   return identity;
-}
-
-SearchableMap read_searchable_map(const std::filesystem::path& path) {
-  OpenMap file(path);
-  SearchableMap map;
-  file.read([&](SQLite::Database& database) {
-    map.info = read_info(database, file);
-    std::map<InstanceId, Eigen::VectorXf> embeddings, of_parts;
-    if (file.schema() >= kSchemaWithSemantics) {
-      const bool corrected = has_corrections(database);
-      embeddings =
-          read_embeddings(database, map.info.encoder,
-                          corrected ? map_tables::kCorrectedEmbeddings : map_tables::kEmbeddings);
-      map.surfaces = read_surfaces(
-          database, corrected ? map_tables::kCorrectedSurfaces : map_tables::kSurfaces);
-      of_parts = read_part_embeddings(database, map.info.encoder);
-    }
-    MapRecord record;
-    read_frames(database, record);
-    map.frames = std::move(record.frames);
-    const int dimension = map.info.encoder.dimension;
-    map.embeddings = rows_of(embeddings, map.info.instances, dimension);
-    map.part_embeddings = rows_of(of_parts, map.info.parts, dimension);
-  });
-  return map;
 }
 
 }  // namespace ovimap

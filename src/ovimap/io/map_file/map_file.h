@@ -73,16 +73,4 @@ struct MapIdentity {
 /// Reads it from the tables `meta`, verified, and `checks`.
 MapIdentity read_map_identity(const std::filesystem::path& path);
 
-/// What a search in a map needs.
-struct SearchableMap {
-  MapInfo info;
-  Embeddings embeddings;       ///< row i belongs to info.instances[i]; zeros: it has none
-  Embeddings part_embeddings;  ///< likewise of info.parts
-  InstanceSurfaces surfaces;   ///< of the instances
-  std::vector<FrameLogEntry> frames;
-};
-
-/// Reads it without the voxels, verified likewise.
-SearchableMap read_searchable_map(const std::filesystem::path& path);
-
 }  // namespace ovimap

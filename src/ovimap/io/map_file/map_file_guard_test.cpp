@@ -11,6 +11,7 @@
 #include "ovimap/io/map_file/map_edits.h"
 #include "ovimap/io/map_file/map_file_access.h"
 #include "ovimap/io/map_file/map_file_fixture.h"
+#include "ovimap/io/map_file/searchable_map.h"
 
 namespace ovimap {
 namespace {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "ovimap/io/map_file/map_file.h"
+#include "ovimap/io/map_file/map_file_access.h"
 #include "ovimap/io/map_tables/map_file_record.h"
 
 namespace ovimap {
@@ -13,5 +15,8 @@ MapMeta read_found(SQLite::Database& database, int schema, LabelForest& forest, 
 
 /// The voxels, verified.
 VoxelMap read_voxels(SQLite::Database& database, const MapMeta& meta, const LabelForest& forest);
+
+/// What read_map_info() reads.
+MapInfo read_info(SQLite::Database& database, const OpenMap& file);
 
 }  // namespace ovimap

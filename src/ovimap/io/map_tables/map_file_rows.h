@@ -113,6 +113,14 @@ inline constexpr MapTable kEmbeddings{"embeddings", "instance, embedding",
                                       "instance INTEGER PRIMARY KEY, embedding BLOB NOT NULL"};
 inline constexpr MapTable kSurfaces{"surfaces", "instance, points",
                                     "instance INTEGER PRIMARY KEY, points BLOB NOT NULL"};
+/// What surfaces measure, so that most questions need not read them; not in maps of older programs.
+inline constexpr MapTable kObjectShapes{
+    "object_shapes",
+    "instance, bottom, top, centroid_x, centroid_y, centroid_z, footprint, height, length, depth, "
+    "above_floor, top_share, covered_share",
+    "instance INTEGER PRIMARY KEY, bottom REAL, top REAL, centroid_x REAL, centroid_y REAL, "
+    "centroid_z REAL, footprint BLOB NOT NULL, height REAL, length REAL, depth REAL, above_floor "
+    "REAL, top_share REAL, covered_share REAL"};
 inline constexpr MapTable kBlocks{"blocks", "tile, present, hash, data",
                                   "tile INTEGER PRIMARY KEY, present INTEGER NOT NULL, hash "
                                   "INTEGER NOT NULL, data BLOB NOT NULL"};
@@ -201,6 +209,8 @@ inline constexpr MapTable kCorrectedConfidences{
     "corrected_confidences", kInstanceConfidences.columns, kInstanceConfidences.definition};
 inline constexpr MapTable kCorrectedSurfaces{"corrected_surfaces", kSurfaces.columns,
                                              kSurfaces.definition};
+inline constexpr MapTable kCorrectedShapes{"corrected_shapes", kObjectShapes.columns,
+                                           kObjectShapes.definition};
 inline constexpr MapTable kCorrectedEmbeddings{"corrected_embeddings", kEmbeddings.columns,
                                                kEmbeddings.definition};
 inline constexpr MapTable kCorrectedFlags{
@@ -232,6 +242,7 @@ inline constexpr const MapTable* kAll[] = {&kMeta,
                                            &kRecognized,
                                            &kEmbeddings,
                                            &kSurfaces,
+                                           &kObjectShapes,
                                            &kObjectParts,
                                            &kPartEmbeddings,
                                            &kBlocks,
@@ -253,6 +264,7 @@ inline constexpr const MapTable* kAll[] = {&kMeta,
                                            &kCorrectedNames,
                                            &kCorrectedConfidences,
                                            &kCorrectedSurfaces,
+                                           &kCorrectedShapes,
                                            &kCorrectedEmbeddings,
                                            &kCorrectedFlags,
                                            &kChecks};

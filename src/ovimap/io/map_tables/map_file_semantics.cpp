@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/io/map_tables/map_file_semantics.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <optional>
@@ -93,17 +94,80 @@ void write_things(SQLite::Database& database, const SemanticRecord& semantics) {
 constexpr float kPointSteps = 65535.f;
 constexpr std::size_t kPointBytes = 6;
 
+using PointSteps = std::vector<std::uint16_t>;  // three of a point, in its box
+
+Eigen::AlignedBox3f box_around(const std::vector<Eigen::Vector3f>& points) {
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector3f& point : points) box.extend(point);
+  return box;
+}
+
+PointSteps steps_of(const std::vector<Eigen::Vector3f>& points, const Eigen::AlignedBox3f& box) {
+  const Eigen::Array3f scale = kPointSteps / box.sizes().array().max(1e-6f);
+  PointSteps steps;
+  steps.reserve(3 * points.size());
+  for (const Eigen::Vector3f& point : points)
+    for (const float value : (point - box.min()).array() * scale + 0.5f)
+      steps.push_back(static_cast<std::uint16_t>(value));
+  return steps;
+}
+
+std::vector<Eigen::Vector3f> points_of(const PointSteps& steps, const Eigen::AlignedBox3f& box) {
+  const Eigen::Array3f scale = box.sizes().array().max(1e-6f) / kPointSteps;
+  std::vector<Eigen::Vector3f> points(steps.size() / 3);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Array3f step(steps[3 * i], steps[3 * i + 1], steps[3 * i + 2]);
+    points[i] = box.min() + (step * scale).matrix();
+  }
+  return points;
+}
+
+/// As they are read again.
+InstanceSurfaces as_stored(const InstanceSurfaces& surfaces) {
+  InstanceSurfaces stored;
+  for (const auto& [id, points] : surfaces) {
+    const Eigen::AlignedBox3f box = box_around(points);
+    stored.emplace_hint(stored.end(), id, points_of(steps_of(points, box), box));
+  }
+  return stored;
+}
+
+ObjectShape take_outline(RowReader& rows) {
+  ObjectShape shape;
+  for (float* value : {&shape.bottom_m, &shape.top_m, &shape.centroid.x(), &shape.centroid.y(),
+                       &shape.centroid.z()})
+    *value = static_cast<float>(rows.real());
+  const auto words = words_of<std::uint32_t>(rows.blob(), rows);
+  std::vector<Eigen::Vector2f> corners(words.size() / 2);
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    corners[i] = {std::bit_cast<float>(words[2 * i]), std::bit_cast<float>(words[2 * i + 1])};
+  const bool finite = std::all_of(corners.begin(), corners.end(),
+                                  [](const Eigen::Vector2f& c) { return c.allFinite(); });
+  if (words.size() % 2 != 0 || !finite || !shape.centroid.allFinite() ||
+      !std::isfinite(shape.height_m()))
+    rows.fail("has a shape that is not finite");
+  shape.footprint = convex_hull(std::move(corners));
+  if (shape.footprint.size() < 3) rows.fail("has a footprint of no size");
+  return shape;
+}
+
+ObjectMeasures take_measures(RowReader& rows) {
+  ObjectMeasures measures;
+  for (float* value : {&measures.height_m, &measures.length_m, &measures.depth_m,
+                       &measures.bottom_m, &measures.top_share, &measures.covered_share}) {
+    *value = static_cast<float>(rows.real());
+    if (!std::isfinite(*value)) rows.fail("has a measure that is not finite");
+  }
+  return measures;
+}
+
 }  // namespace
 
 Bytes surface_bytes(const std::vector<Eigen::Vector3f>& points) {
-  Eigen::AlignedBox3f box;
-  for (const Eigen::Vector3f& point : points) box.extend(point);
+  const Eigen::AlignedBox3f box = box_around(points);
   Bytes bytes;
   append_box(bytes, box);
-  const Eigen::Array3f scale = kPointSteps / box.sizes().array().max(1e-6f);
-  for (const Eigen::Vector3f& point : points)
-    for (const float value : (point - box.min()).array() * scale + 0.5f)
-      append_word(bytes, static_cast<std::uint16_t>(value));
+  for (const std::uint16_t step : steps_of(points, box)) append_word(bytes, step);
   return bytes;
 }
 
@@ -114,14 +178,7 @@ std::vector<Eigen::Vector3f> take_surface(RowReader& rows) {
   const Eigen::AlignedBox3f box = box_of_words(bytes.first(kBoxBytes), rows);
   if (!box.min().allFinite() || !box.sizes().allFinite())
     rows.fail("has a surface that is not finite");
-  const auto steps = words_of<std::uint16_t>(bytes.subspan(kBoxBytes), rows);
-  const Eigen::Array3f scale = box.sizes().array().max(1e-6f) / kPointSteps;
-  std::vector<Eigen::Vector3f> points(steps.size() / 3);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Array3f step(steps[3 * i], steps[3 * i + 1], steps[3 * i + 2]);
-    points[i] = box.min() + (step * scale).matrix();
-  }
-  return points;
+  return points_of(words_of<std::uint16_t>(bytes.subspan(kBoxBytes), rows), box);
 }
 
 void write_surfaces(SQLite::Database& database, const InstanceSurfaces& surfaces,
@@ -143,6 +200,40 @@ InstanceSurfaces read_surfaces(SQLite::Database& database, const MapTable& table
     surfaces.emplace(id, take_surface(rows));
   }
   return surfaces;
+}
+
+void write_shapes(SQLite::Database& database, const MapRecord& record, const MapTable& table) {
+  const std::vector<ObjectShape> shapes =
+      shapes_of_instances(record.up, record.instances, as_stored(record.surfaces));
+  const std::vector<ObjectMeasures> measures = measure_objects(shapes);
+  RowWriter rows(database, table);
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    const ObjectShape& shape = shapes[i];
+    const ObjectMeasures& of = measures[i];
+    Bytes footprint;
+    for (const Eigen::Vector2f& corner : shape.footprint)
+      for (const float coordinate : corner) append_float(footprint, coordinate);
+    rows.insert(record.instances[i].id, shape.bottom_m, shape.top_m, shape.centroid.x(),
+                shape.centroid.y(), shape.centroid.z(), std::span<const std::uint8_t>(footprint),
+                of.height_m, of.length_m, of.depth_m, of.bottom_m, of.top_share, of.covered_share);
+  }
+  rows.finish();
+}
+
+ObjectShapes read_shapes(SQLite::Database& database, std::span<const InstanceSummary> instances,
+                         const MapTable& table, ObjectShapes::Reader read_whole) {
+  std::vector<ObjectShape> outlines;
+  std::vector<ObjectMeasures> measures;
+  RowReader rows(database, table);
+  while (rows.next()) {
+    const auto id = rows.integer<InstanceId>();
+    if (outlines.size() == instances.size() || instances[outlines.size()].id != id)
+      rows.fail(concat("has a shape of ", id, ", which is no object or stands elsewhere"));
+    outlines.push_back(take_outline(rows));
+    measures.push_back(take_measures(rows));
+  }
+  if (outlines.size() != instances.size()) rows.fail("lacks the shapes of objects");
+  return ObjectShapes(std::move(outlines), std::move(measures), std::move(read_whole));
 }
 
 void write_semantics(SQLite::Database& database, const MapRecord& record) {

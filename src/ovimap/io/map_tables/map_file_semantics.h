@@ -6,6 +6,7 @@
 
 #include "ovimap/io/map_tables/map_document.h"
 #include "ovimap/io/map_tables/map_file_rows.h"
+#include "ovimap/semantics/relations/object_shapes.h"
 
 namespace SQLite {
 class Database;
@@ -52,5 +53,11 @@ std::vector<Eigen::Vector3f> take_surface(RowReader& rows);
 void write_surfaces(SQLite::Database& database, const InstanceSurfaces& surfaces,
                     const MapTable& table);
 InstanceSurfaces read_surfaces(SQLite::Database& database, const MapTable& table);
+
+/// What the objects' surfaces measure as they are stored, or their boxes where they have none.
+void write_shapes(SQLite::Database& database, const MapRecord& record, const MapTable& table);
+/// `read_whole`: see ObjectShapes. Throws Error with a phrase unless they are of these instances.
+ObjectShapes read_shapes(SQLite::Database& database, std::span<const InstanceSummary> instances,
+                         const MapTable& table, ObjectShapes::Reader read_whole);
 
 }  // namespace ovimap

@@ -4,8 +4,13 @@
 
 #include <limits>
 
-#include "ovimap/io/map_file/map_file.h"
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include "ovimap/io/map_file/map_file_access.h"
 #include "ovimap/io/map_file/map_file_fixture.h"
+#include "ovimap/io/map_file/searchable_map.h"
+#include "ovimap/io/map_tables/row_words.h"
+#include "ovimap/semantics/words/thing_sizes.h"
 
 namespace ovimap {
 namespace {
@@ -87,6 +92,89 @@ TEST_F(MapFileSemantics, MapsWithoutRecognizerHaveNoTablesForIt) {
   save_map(root_ / "a.ovimap", saved);
   EXPECT_EQ(difference(saved, load_map(root_ / "a.ovimap")), "");
   EXPECT_TRUE(read_map_info(root_ / "a.ovimap").things.empty());
+}
+
+/// Outlines say the same as the shapes with their surfaces, of which they have none.
+void expect_agreeing(const ObjectShapes& shapes) {
+  const std::vector<ObjectShape>& whole = shapes.whole();
+  const std::vector<ObjectMeasures> measured = measure_objects(whole);
+  ASSERT_EQ(whole.size(), shapes.size());
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    const ObjectShape& outline = shapes.outline(i);
+    EXPECT_EQ(outline.footprint, whole[i].footprint);
+    EXPECT_EQ(outline.centroid, whole[i].centroid);
+    EXPECT_EQ(outline.bottom_m, whole[i].bottom_m);
+    EXPECT_EQ(outline.top_m, whole[i].top_m);
+    EXPECT_EQ(standard_measures(shapes.measures()[i]).matrix(),
+              standard_measures(measured[i]).matrix());
+  }
+}
+
+TEST_F(MapFileSemantics, KeepsWhatSurfacesMeasure) {
+  const MapDocument saved = random_document(5, 1);
+  const fs::path path = root_ / "a.ovimap";
+  save_map(path, saved);
+  const SearchableMap map = read_searchable_map(path);
+  ASSERT_EQ(map.shapes.size(), 2u);
+  EXPECT_TRUE(map.shapes.outline(0).surface.empty());
+  EXPECT_EQ(map.shapes.whole()[0].surface.size(), saved.surfaces.at(1).size());
+  EXPECT_GT(map.shapes.measures()[0].top_share, 0.f);
+  EXPECT_LT(map.shapes.measures()[1].top_share, 0.f);  // known by its box alone
+  expect_agreeing(map.shapes);
+}
+
+TEST_F(MapFileSemantics, FindsTheShapesOfOlderProgramsMaps) {
+  const fs::path path = root_ / "a.ovimap";
+  save_map(path, random_document(5, 1));
+  const SearchableMap kept = read_searchable_map(path);
+  {
+    SQLite::Database database(path.string(), SQLite::OPEN_READWRITE);
+    drop_table(database, map_tables::kObjectShapes);
+  }
+  const SearchableMap found = read_searchable_map(path);
+  ASSERT_EQ(found.shapes.size(), 2u);
+  expect_agreeing(found.shapes);
+  EXPECT_EQ(found.shapes.outline(0).footprint, kept.shapes.outline(0).footprint);
+}
+
+TEST_F(MapFileSemantics, RefusesShapesThatCannotBe) {
+  const fs::path path = root_ / "a.ovimap";
+  save_map(path, random_document(5, 1));
+  const std::vector<InstanceSummary> instances = read_map_info(path).instances;
+  const auto fault_of_shapes = [&](InstanceId second, float top_m, float length_m,
+                                   const Bytes& footprint) {
+    {
+      SQLite::Database database(path.string(), SQLite::OPEN_READWRITE);
+      drop_table(database, map_tables::kObjectShapes);
+      RowWriter rows(database, map_tables::kObjectShapes);
+      for (const InstanceId id : {instances[0].id, second})
+        rows.insert(id, 0.f, top_m, 0.f, 0.f, 0.f, std::span<const std::uint8_t>(footprint), 1.f,
+                    length_m, 1.f, 0.f, 0.5f, 0.5f);
+      rows.finish();
+    }
+    try {
+      read_searchable_map(path);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  Bytes triangle, line;
+  for (const float coordinate : {0.f, 0.f, 1.f, 0.f, 0.f, 1.f}) append_float(triangle, coordinate);
+  for (const float coordinate : {0.f, 0.f, 1.f, 0.f, 2.f, 0.f}) append_float(line, coordinate);
+  Bytes endless = triangle;
+  append_float(endless, std::numeric_limits<float>::infinity());
+  append_float(endless, 0.f);
+  const float inf = std::numeric_limits<float>::infinity();
+  const InstanceId last = instances[1].id;
+  EXPECT_EQ(fault_of_shapes(last, 1.f, 1.f, triangle), "");
+  EXPECT_NE(fault_of_shapes(last + 1, 1.f, 1.f, triangle).find("is damaged"), std::string::npos);
+  EXPECT_NE(fault_of_shapes(last, inf, 1.f, triangle), "");
+  EXPECT_NE(fault_of_shapes(last, 1.f, inf, triangle), "");
+  EXPECT_NE(fault_of_shapes(last, 1.f, 1.f, line), "");
+  EXPECT_NE(fault_of_shapes(last, 1.f, 1.f, endless), "");
+  EXPECT_NE(fault_of_shapes(last, 1.f, 1.f, {}), "");
+  EXPECT_NE(fault_of_shapes(last, 1.f, 1.f, Bytes(7)), "");
 }
 
 TEST_F(MapFileSemantics, RefusesEmbeddingsThatCannotBe) {

@@ -158,7 +158,7 @@ std::optional<HistoryPhrase> history_of_question(const std::string& text, const 
 }
 
 HistorySearch search_history(const MapRecord& corrected, const MapInfo& info,
-                             const HistoryPhrase& phrase, const ObjectShapeConfig& config) {
+                             const HistoryPhrase& phrase) {
   HistorySearch history;
   history.phrase = phrase;
   HistoryTeller teller(corrected, history.phrase);
@@ -174,7 +174,7 @@ HistorySearch search_history(const MapRecord& corrected, const MapInfo& info,
     if (!state.surface.empty()) then.surfaces[id] = std::move(state.surface);
   }
   history.reading = teller.reading();
-  history.search = make_map_search(then, info, config);
+  history.search = make_map_search(then, info);
   return history;
 }
 
@@ -185,7 +185,7 @@ MapRecord read_corrected_record(const std::filesystem::path& map) {
   record.hidden = std::move(now.info.hidden);
   record.locked = std::move(now.info.locked);
   record.names = std::move(now.info.names);
-  record.surfaces = std::move(now.surfaces);
+  record.surfaces = read_corrected_surfaces(map);
   return record;
 }
 
@@ -214,7 +214,7 @@ WordsOfObjects words_with_gone(const MapRecord& corrected, const MapInfo& info,
   HistoryPhrase all;
   all.text = "anything";
   all.change = AskedChange::kAny;
-  MapSearch past = search_history(corrected, info, all, config.shapes).search;
+  MapSearch past = search_history(corrected, info, all).search;
   past.scene.taught = taught;
   const QueryEngine engine(past.index, &encoder, config, Embeddings{}, past.scene);
   WordsOfObjects words;

@@ -38,7 +38,7 @@ std::optional<HistoryPhrase> history_of_question(const std::string& text, const 
 /// The map as the question means it. `corrected`: as people made it, with looks; `info`: what it
 /// does not tell. Throws MomentUnknown.
 HistorySearch search_history(const MapRecord& corrected, const MapInfo& info,
-                             const HistoryPhrase& phrase, const ObjectShapeConfig& config = {});
+                             const HistoryPhrase& phrase);
 
 /// Such a record of a map file, without voxels. Throws what load_map throws.
 MapRecord read_corrected_record(const std::filesystem::path& map);

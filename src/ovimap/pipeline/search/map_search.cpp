@@ -5,7 +5,6 @@
 #include <unordered_map>
 
 #include "ovimap/base/error.h"
-#include "ovimap/base/parallel.h"
 #include "ovimap/inference/encoders/text_cache.h"
 #include "ovimap/inference/models/model_folder.h"
 #include "ovimap/io/map_file/map_edits.h"
@@ -17,8 +16,6 @@ namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kShapesPerTask = 8;
-
 SearchIndex index_of(const SearchableMap& map) {
   std::vector<SearchObject> objects;
   for (const InstanceSummary& instance : map.info.instances) {
@@ -29,17 +26,9 @@ SearchIndex index_of(const SearchableMap& map) {
   return SearchIndex(std::move(objects), map.embeddings);
 }
 
-QueryScene scene_of(const SearchableMap& map, const SearchIndex& index,
-                    const ObjectShapeConfig& config) {
-  const Eigen::Matrix3f ground = ground_from_world(map.info.up);
-  QueryScene scene = scene_of_boxes(index, map.info.up, config);
-  parallel_for_ranges(index.size(), kShapesPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto surface = map.surfaces.find(index.object(i).id);
-      if (surface != map.surfaces.end() && !surface->second.empty())
-        scene.shapes[i] = shape_of_points(ground, surface->second, config);
-    }
-  });
+QueryScene scene_of(const SearchableMap& map, const SearchIndex& index) {
+  QueryScene scene;
+  scene.shapes = map.shapes;
   if (!map.info.writing_reader.empty()) {
     scene.writing.resize(index.size());
     for (std::size_t i = 0; i < index.size(); ++i)
@@ -58,13 +47,12 @@ QueryScene scene_of(const SearchableMap& map, const SearchIndex& index,
   }
   std::vector<Pose> cameras;
   for (const FrameLogEntry& frame : map.frames) cameras.push_back(frame.world_from_camera);
-  if (!cameras.empty()) scene.viewpoint = mean_viewpoint(ground, cameras);
+  if (!cameras.empty()) scene.viewpoint = mean_viewpoint(ground_from_world(map.info.up), cameras);
   return scene;
 }
 
 /// Null where no object has parts.
-std::shared_ptr<const QueryParts> parts_of(const SearchableMap& map, const SearchIndex& index,
-                                           const ObjectShapeConfig& config) {
+std::shared_ptr<const QueryParts> parts_of(const SearchableMap& map, const SearchIndex& index) {
   auto parts = std::make_shared<QueryParts>();
   std::vector<SearchObject> objects;
   std::vector<Eigen::Index> rows;
@@ -78,7 +66,7 @@ std::shared_ptr<const QueryParts> parts_of(const SearchableMap& map, const Searc
     }
   if (objects.empty()) return nullptr;
   parts->index = SearchIndex(std::move(objects), map.part_embeddings(rows, Eigen::all));
-  parts->scene = scene_of_boxes(parts->index, map.info.up, config);
+  parts->scene = scene_of_boxes(parts->index, map.info.up);
   return parts;
 }
 
@@ -96,11 +84,11 @@ std::vector<StoredCrop> crops_of(const SuperPointLooks& looks,
   return crops;
 }
 
-MapSearch search_in(SearchableMap&& map, const ObjectShapeConfig& config) {
+MapSearch search_in(SearchableMap&& map) {
   MapSearch search;
   search.index = index_of(map);
-  search.scene = scene_of(map, search.index, config);
-  search.scene.parts = parts_of(map, search.index, config);
+  search.scene = scene_of(map, search.index);
+  search.scene.parts = parts_of(map, search.index);
   search.info = std::move(map.info);
   return search;
 }
@@ -132,8 +120,8 @@ std::vector<InstanceId> ids_of(const SearchIndex& index) {
   return ids;
 }
 
-MapSearch open_map_search(const std::filesystem::path& map, const ObjectShapeConfig& config) {
-  MapSearch search = search_in(read_searchable_map(map), config);
+MapSearch open_map_search(const std::filesystem::path& map) {
+  MapSearch search = search_in(read_searchable_map(map));
   search.scene.colors =
       std::make_shared<const ObjectColors>([map, instances = search.info.instances] {
         return crops_of(load_map_without_voxels(map).semantics.looks, instances);
@@ -145,8 +133,7 @@ MapSearch open_map_search(const std::filesystem::path& map, const ObjectShapeCon
   return search;
 }
 
-MapSearch make_map_search(const MapRecord& corrected, MapInfo info,
-                          const ObjectShapeConfig& config) {
+MapSearch make_map_search(const MapRecord& corrected, MapInfo info) {
   SearchableMap map;
   info.instances = corrected.instances;
   info.hidden = corrected.hidden;
@@ -175,10 +162,11 @@ MapSearch make_map_search(const MapRecord& corrected, MapInfo info,
   map.part_embeddings =
       fused_embeddings(corrected.semantics.looks, corrected.parts, corrected.semantics.views.fusion,
                        corrected.semantics.encoder.dimension);
-  map.surfaces = corrected.surfaces;
+  map.shapes =
+      ObjectShapes(shapes_of_instances(corrected.up, corrected.instances, corrected.surfaces));
   map.frames = corrected.frames;
   map.info = std::move(info);
-  MapSearch search = search_in(std::move(map), config);
+  MapSearch search = search_in(std::move(map));
   search.scene.colors = std::make_shared<const ObjectColors>(
       [crops = crops_of(corrected.semantics.looks, corrected.instances)] { return crops; });
   return search;

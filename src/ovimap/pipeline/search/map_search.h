@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "ovimap/geometry/mesh.h"
-#include "ovimap/io/map_file/map_file.h"
+#include "ovimap/io/map_file/searchable_map.h"
 #include "ovimap/semantics/query/query_scene.h"
 
 namespace ovimap {
@@ -25,12 +25,11 @@ std::vector<InstanceId> ids_of(const SearchIndex& index);
 
 /// Reads what a search needs, without the voxels, which are read when a query asks for a room.
 /// Throws what read_searchable_map throws.
-MapSearch open_map_search(const std::filesystem::path& map, const ObjectShapeConfig& config = {});
+MapSearch open_map_search(const std::filesystem::path& map);
 
 /// The same of a corrected map in memory. `info`: what the record does not tell; the rest of it is
 /// filled in.
-MapSearch make_map_search(const MapRecord& corrected, MapInfo info,
-                          const ObjectShapeConfig& config = {});
+MapSearch make_map_search(const MapRecord& corrected, MapInfo info);
 
 /// The encoder that `spec` names, as make_image_text_encoder takes it, or with "auto" the model on
 /// the search path that the map's embeddings are of. Throws Error when there is none, or when its

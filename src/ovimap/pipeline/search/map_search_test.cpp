@@ -39,9 +39,9 @@ TEST_F(MapSearchTest, KeepsTheOrderOfTheInstances) {
 TEST_F(MapSearchTest, TakesSurfacesWhereTheMapHasThem) {
   const MapSearch search = open_map_search(root_ / "a.ovimap");
   ASSERT_EQ(search.scene.shapes.size(), 2u);
-  EXPECT_FALSE(search.scene.shapes[0].surface.empty());
-  EXPECT_TRUE(search.scene.shapes[1].surface.empty());
-  EXPECT_NEAR(search.scene.shapes[0].top_m, 0.1f, 0.02f);
+  EXPECT_FALSE(search.scene.shapes.whole()[0].surface.empty());
+  EXPECT_TRUE(search.scene.shapes.whole()[1].surface.empty());
+  EXPECT_NEAR(search.scene.shapes.whole()[0].top_m, 0.1f, 0.02f);
 }
 
 TEST_F(MapSearchTest, RefusesMissingMaps) {

@@ -41,7 +41,7 @@ SceneGraph make_scene_graph(const StandingSpace& space, const MapSearch& search,
   graph.fits = fit_rooms(graph.room_of, search.index.objects(), evidence);
   graph.fits.resize(graph.plan.rooms.size());
   graph.titles = titles_of(search.index, evidence);
-  graph.relations = find_relations(ids, search.scene.shapes);
+  graph.relations = find_relations(ids, search.scene.shapes.whole());
   graph.grid_from_world = space.grid.grid_from_world;
   graph.floor_m = space.grid.floor_m;
   return graph;

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "ovimap/semantics/query/query_grammar.h"
+#include "ovimap/semantics/relations/object_measures.h"
 #include "ovimap/semantics/words/colors.h"
-#include "ovimap/semantics/words/thing_sizes.h"
 #include "ovimap/semantics/words/written_words.h"
 
 namespace ovimap {

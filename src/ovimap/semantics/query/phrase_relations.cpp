@@ -39,7 +39,8 @@ std::vector<std::size_t> PhraseSearch::anchors_of(const PhraseMatch& match) cons
 PhraseSearch::PairRating PhraseSearch::rate_pairs(const QueryPhrase& phrase, std::size_t object,
                                                   std::span<const BoxedAnchor> near,
                                                   const PhraseMatch& anchors) const {
-  const Eigen::AlignedBox3f box = upright_box(scene_.shapes[object]);
+  const std::vector<ObjectShape>& shapes = scene_.shapes.whole();
+  const Eigen::AlignedBox3f box = upright_box(shapes[object]);
   std::vector<std::pair<float, std::size_t>> bounds;  // no rating is higher, rank in `near`
   for (std::size_t rank = 0; rank < near.size(); ++rank)
     bounds.emplace_back(highest_rating(*phrase.relation, box, near[rank].box, config_.relations),
@@ -59,9 +60,8 @@ PhraseSearch::PairRating PhraseSearch::rate_pairs(const QueryPhrase& phrase, std
     };
     const bool may_hold = !best.holds && anchors.holds[j] && bound >= kRelationHolds;
     if (!beats(bound * anchors.score(j)) && !may_hold) continue;
-    const RelationRating rating =
-        rate_relation(*phrase.relation, scene_.shapes[object], scene_.shapes[j], id_of(j),
-                      scene_.viewpoint, config_.relations);
+    const RelationRating rating = rate_relation(*phrase.relation, shapes[object], shapes[j],
+                                                id_of(j), scene_.viewpoint, config_.relations);
     if (rating.score >= kRelationHolds && anchors.holds[j]) best.holds = true;
     const float score = anchors.score(j) * rating.score;
     if (!beats(score)) continue;
@@ -80,7 +80,8 @@ void PhraseSearch::apply_pairs(const QueryPhrase& phrase, const PhraseMatch& anc
   const std::vector<std::size_t> candidates = result.possible();
   std::vector<BoxedAnchor> near;
   for (const std::size_t j : anchors_of(anchors))
-    near.push_back({j, upright_box(scene_.shapes[j])});
+    near.push_back({j, upright_box(scene_.shapes.outline(j))});
+  (void)scene_.shapes.whole();                // read before the loop, which must not
   std::vector<char> holds(index_.size(), 0);  // vector<bool> cannot be written in parallel
   parallel_for(candidates.size(), kObjectsPerTask, [&](std::size_t k) {
     const std::size_t i = candidates[k];
@@ -95,6 +96,7 @@ void PhraseSearch::apply_pairs(const QueryPhrase& phrase, const PhraseMatch& anc
 
 void PhraseSearch::apply_order(const QueryPhrase& phrase, const PhraseMatch& anchors,
                                PhraseMatch& result) const {
+  const std::vector<ObjectShape>& shapes = scene_.shapes.whole();
   const bool nearest = *phrase.relation == Relation::kNearest;
   const std::vector<std::size_t> candidates = result.possible();
   const Eigen::VectorXf chances = result.scores;
@@ -105,7 +107,7 @@ void PhraseSearch::apply_order(const QueryPhrase& phrase, const PhraseMatch& anc
     std::erase(ordered, j);
     std::vector<float> gaps(index_.size()), centres(index_.size());
     parallel_for(ordered.size(), kObjectsPerTask, [&](std::size_t k) {
-      const ObjectShape &a = scene_.shapes[ordered[k]], &b = scene_.shapes[j];
+      const ObjectShape &a = shapes[ordered[k]], &b = shapes[j];
       const float sign = nearest ? 1.f : -1.f;
       gaps[ordered[k]] = sign * gap_m(a, b);
       centres[ordered[k]] = sign * (a.centroid - b.centroid).norm();
@@ -120,8 +122,8 @@ void PhraseSearch::apply_order(const QueryPhrase& phrase, const PhraseMatch& anc
       if (score <= result.score(i)) continue;
       result.score(i) = score;
       result.holds[i] = things_hold[i] && anchors.holds[j];
-      const auto rating = rate_relation(Relation::kNear, scene_.shapes[i], scene_.shapes[j],
-                                        id_of(j), scene_.viewpoint, config_.relations);
+      const auto rating = rate_relation(Relation::kNear, shapes[i], shapes[j], id_of(j),
+                                        scene_.viewpoint, config_.relations);
       result.evidence[i] = with_anchor(rating.evidence, anchors.evidence[j]);
     }
   }
@@ -129,6 +131,7 @@ void PhraseSearch::apply_order(const QueryPhrase& phrase, const PhraseMatch& anc
 
 void PhraseSearch::apply_between(const PhraseMatch& first, const PhraseMatch& second,
                                  bool same_kind, PhraseMatch& result) const {
+  const std::vector<ObjectShape>& shapes = scene_.shapes.whole();
   const std::vector<std::size_t> left = anchors_of(first), right = anchors_of(second);
   for (const std::size_t i : result.possible()) {
     float best = 0.f;
@@ -136,8 +139,7 @@ void PhraseSearch::apply_between(const PhraseMatch& first, const PhraseMatch& se
     for (const std::size_t j : left)
       for (const std::size_t k : right) {
         if (i == j || i == k || j == k || (same_kind && k < j)) continue;
-        const auto rating =
-            rate_between(scene_.shapes[i], scene_.shapes[j], scene_.shapes[k], id_of(j), id_of(k));
+        const auto rating = rate_between(shapes[i], shapes[j], shapes[k], id_of(j), id_of(k));
         const float score = first.score(j) * second.score(k) * rating.score;
         holds = holds || (rating.score >= kRelationHolds && first.holds[j] && second.holds[k]);
         if (score <= best) continue;
@@ -152,7 +154,7 @@ void PhraseSearch::apply_between(const PhraseMatch& first, const PhraseMatch& se
 void PhraseSearch::apply_superlative(Superlative superlative, PhraseMatch& result) const {
   std::vector<std::size_t> ordered = result.possible();
   std::vector<SuperlativeMeasure> measures(index_.size());
-  for (const std::size_t i : ordered) measures[i] = measure(superlative, scene_.shapes[i]);
+  for (const std::size_t i : ordered) measures[i] = measure(superlative, scene_.shapes.outline(i));
   std::sort(ordered.begin(), ordered.end(), [&](std::size_t a, std::size_t b) {
     return std::tuple(-measures[a].value, id_of(a)) < std::tuple(-measures[b].value, id_of(b));
   });

@@ -32,7 +32,6 @@ void list_fields(QueryConfig& config, ConfigFields& fields) {
   fields.add("max_anchors", config.max_anchors, 1, kMost,
              "objects that an anchor of a relation may be");
   fields.group("relations", [&](ConfigFields& inner) { list_fields(config.relations, inner); });
-  fields.group("shapes", [&](ConfigFields& inner) { list_fields(config.shapes, inner); });
   fields.group("verdict", [&](ConfigFields& inner) { list_fields(config.verdict, inner); });
   fields.group("evidence", [&](ConfigFields& inner) { list_fields(config.evidence, inner); });
 }

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "ovimap/semantics/query/verdict.h"
-#include "ovimap/semantics/relations/object_shape.h"
 #include "ovimap/semantics/relations/relations.h"
 #include "ovimap/semantics/words/text_evidence.h"
 
@@ -34,7 +33,6 @@ struct QueryConfig {
                                  ///< share of the best standard score
   int max_anchors = 16;          ///< objects that an anchor such as "the table" may be
   RelationConfig relations;
-  ObjectShapeConfig shapes;
 };
 void list_fields(QueryConfig& config, ConfigFields& fields);
 

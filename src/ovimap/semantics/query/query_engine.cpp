@@ -82,7 +82,7 @@ QueryEngine::QueryEngine(const SearchIndex& index, ImageTextEncoder* encoder,
     : index_(index),
       encoder_(encoder),
       config_(config),
-      boxes_(scene_of_boxes(index, Eigen::Vector3f::UnitZ(), config.shapes)),
+      boxes_(scene_of_boxes(index, Eigen::Vector3f::UnitZ())),
       scene_(boxes_) {
   prepare(std::move(vocabulary));
 }
@@ -97,15 +97,15 @@ QueryEngine::QueryEngine(const SearchIndex& index, ImageTextEncoder* encoder,
 void QueryEngine::prepare(Embeddings vocabulary) {
   require_embeddings(index_);
   if (encoder_)
-    matcher_.emplace(index_, *encoder_, config_, std::move(vocabulary),
-                     measure_objects(scene_.shapes), scene_.writing, scene_.things, scene_.taught);
+    matcher_.emplace(index_, *encoder_, config_, std::move(vocabulary), scene_.shapes.measures(),
+                     scene_.writing, scene_.things, scene_.taught);
 }
 
 const TextMatcher* QueryEngine::part_matcher() const {
   if (!scene_.parts || scene_.parts->index.embedded() == 0 || !encoder_) return nullptr;
   std::call_once(parts_asked_, [&] {
     part_matcher_.emplace(scene_.parts->index, *encoder_, config_, matcher_->vocabulary(),
-                          measure_objects(scene_.parts->scene.shapes));
+                          scene_.parts->scene.shapes.measures());
   });
   return &*part_matcher_;
 }

@@ -38,12 +38,13 @@ std::vector<std::size_t> QueryScene::parts_of(std::size_t position) const {
   return of_it;
 }
 
-QueryScene scene_of_boxes(const SearchIndex& index, const Eigen::Vector3f& up_in_world,
-                          const ObjectShapeConfig& config) {
+QueryScene scene_of_boxes(const SearchIndex& index, const Eigen::Vector3f& up_in_world) {
   const Eigen::Matrix3f ground = ground_from_world(up_in_world);
-  QueryScene scene;
+  std::vector<ObjectShape> shapes;
   for (const SearchObject& object : index.objects())
-    scene.shapes.push_back(shape_of_box(ground, object.box, object.centroid, config));
+    shapes.push_back(shape_of_box(ground, object.box, object.centroid));
+  QueryScene scene;
+  scene.shapes = ObjectShapes(std::move(shapes));
   return scene;
 }
 
@@ -183,14 +184,12 @@ PhraseMatch PhraseSearch::match_things(const QueryPhrase& phrase,
 
 void PhraseSearch::apply_attributes(const QueryPhrase& phrase, PhraseMatch& result) const {
   const bool colored = phrase.color && scene_.colors;
-  std::vector<ObjectMeasures> measures;
-  if (phrase.size) measures = measure_objects(scene_.shapes);
   const std::vector<std::u32string> written = written_words(phrase.writing);
   if (!phrase.writing.empty()) require_writing(phrase.writing);
   for (const std::size_t i : result.possible()) {
     AttributeRating rating;
     if (colored) rate_color(scene_.colors->shares()[i], *phrase.color, rating);
-    if (phrase.size) rate_size(measures[i], *phrase.size, rating);
+    if (phrase.size) rate_size(scene_.shapes.measures()[i], *phrase.size, rating);
     if (!phrase.writing.empty()) rate_writing(written, scene_.writing[i], rating);
     result.score(i) *= rating.score;
     result.holds[i] = result.holds[i] && rating.score >= kRelationHolds;

@@ -12,6 +12,7 @@
 #include "ovimap/semantics/query/query_grammar.h"
 #include "ovimap/semantics/query/query_matcher.h"
 #include "ovimap/semantics/query/room_kinds.h"
+#include "ovimap/semantics/relations/object_shapes.h"
 
 namespace ovimap {
 
@@ -19,7 +20,7 @@ struct QueryParts;
 
 /// The geometry that relations are judged by.
 struct QueryScene {
-  std::vector<ObjectShape> shapes;                ///< of each object of the index, by position
+  ObjectShapes shapes;                            ///< of each object of the index, by position
   GroundViewpoint viewpoint;                      ///< for left, right, in front and behind
   std::shared_ptr<const ObjectColors> colors;     ///< of each object; null: not known
   std::vector<std::vector<WrittenLine>> writing;  ///< on each object; empty: none was read
@@ -41,8 +42,7 @@ struct QueryParts {
 };
 
 /// A scene of the objects' boxes, exact where an axis of the world is up.
-QueryScene scene_of_boxes(const SearchIndex& index, const Eigen::Vector3f& up_in_world,
-                          const ObjectShapeConfig& config = {});
+QueryScene scene_of_boxes(const SearchIndex& index, const Eigen::Vector3f& up_in_world);
 
 /// The mean of the cameras: where a recording looks from on the whole. At least one pose.
 GroundViewpoint mean_viewpoint(const Eigen::Matrix3f& ground_from_world,

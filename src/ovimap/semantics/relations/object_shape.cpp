@@ -6,14 +6,16 @@
 #include <cmath>
 #include <limits>
 
-#include "ovimap/base/config.h"
 #include "ovimap/base/error.h"
 
 namespace ovimap {
 
 namespace {
 
-/// Never degenerate, since every point has a size.
+constexpr float kNoiseShare = 0.005f;     // of the points, at the top and at the bottom
+constexpr float kPointRadius_m = 0.005f;  // half the size of a surface point
+
+/// Never degenerate, where every point has a size.
 Footprint footprint_of(const std::vector<Eigen::Vector3f>& points, float radius_m) {
   std::vector<Eigen::Vector2f> flat;
   flat.reserve(points.size());
@@ -63,13 +65,6 @@ std::vector<Eigen::AlignedBox3f> runs_of(const ObjectShape& shape) {
 
 }  // namespace
 
-void list_fields(ObjectShapeConfig& config, ConfigFields& fields) {
-  fields.add("noise_share", config.noise_share, 0.f, 0.4f,
-             "share of an object's points cut off at the top and at the bottom");
-  fields.add("point_radius_m", config.point_radius_m, 1e-4f, 1.f,
-             "half the size of a surface point, metres");
-}
-
 std::span<const Eigen::Vector3f> ObjectShape::run_points(std::size_t run) const {
   const std::size_t begin = run * kPointsOfRun;
   return std::span(surface).subspan(begin, std::min(kPointsOfRun, surface.size() - begin));
@@ -86,8 +81,7 @@ Eigen::Matrix3f ground_from_world(const Eigen::Vector3f& up_in_world) {
 }
 
 ObjectShape shape_of_points(const Eigen::Matrix3f& ground_from_world,
-                            std::span<const Eigen::Vector3f> points_in_world,
-                            const ObjectShapeConfig& config) {
+                            std::span<const Eigen::Vector3f> points_in_world) {
   OVIMAP_ASSERT(!points_in_world.empty());
   std::vector<Eigen::Vector3f> points;
   points.reserve(points_in_world.size());
@@ -95,8 +89,7 @@ ObjectShape shape_of_points(const Eigen::Matrix3f& ground_from_world,
   std::vector<float> heights(points.size());
   std::transform(points.begin(), points.end(), heights.begin(),
                  [](const auto& p) { return p.z(); });
-  const auto cut =
-      static_cast<std::ptrdiff_t>(config.noise_share * static_cast<float>(heights.size()));
+  const auto cut = static_cast<std::ptrdiff_t>(kNoiseShare * static_cast<float>(heights.size()));
   const auto lowest = heights.begin() + cut, highest = heights.end() - 1 - cut;
   std::nth_element(heights.begin(), lowest, heights.end());
   const float low = *lowest;  // the next selection moves it
@@ -105,11 +98,11 @@ ObjectShape shape_of_points(const Eigen::Matrix3f& ground_from_world,
   std::erase_if(points, [&](const auto& p) { return p.z() < low || p.z() > high; });
 
   ObjectShape shape;
-  shape.bottom_m = low - config.point_radius_m;
-  shape.top_m = high + config.point_radius_m;
+  shape.bottom_m = low - kPointRadius_m;
+  shape.top_m = high + kPointRadius_m;
   for (const Eigen::Vector3f& point : points) shape.centroid += point;
   shape.centroid /= static_cast<float>(points.size());
-  shape.footprint = footprint_of(points, config.point_radius_m);
+  shape.footprint = footprint_of(points, kPointRadius_m);
   shape.surface = std::move(points);
   shape.runs = runs_of(shape);
   return shape;
@@ -117,20 +110,21 @@ ObjectShape shape_of_points(const Eigen::Matrix3f& ground_from_world,
 
 ObjectShape shape_of_box(const Eigen::Matrix3f& ground_from_world,
                          const Eigen::AlignedBox3f& box_in_world,
-                         const Eigen::Vector3f& centroid_in_world,
-                         const ObjectShapeConfig& config) {
+                         const Eigen::Vector3f& centroid_in_world) {
+  Eigen::AlignedBox3f box = box_in_world;
+  if (box.isEmpty()) box.extend(centroid_in_world);
   std::vector<Eigen::Vector3f> corners;
   for (int corner = 0; corner < 8; ++corner)
     corners.push_back(ground_from_world *
-                      box_in_world.corner(static_cast<Eigen::AlignedBox3f::CornerType>(corner)));
+                      box.corner(static_cast<Eigen::AlignedBox3f::CornerType>(corner)));
   const auto [low, high] = std::minmax_element(
       corners.begin(), corners.end(), [](const auto& a, const auto& b) { return a.z() < b.z(); });
   ObjectShape shape;
   shape.bottom_m = low->z();
-  shape.top_m = std::max(high->z(), low->z() + config.point_radius_m);
+  shape.top_m = std::max(high->z(), low->z() + kPointRadius_m);
   shape.centroid = ground_from_world * centroid_in_world;
   shape.footprint = footprint_of(corners, 0.f);
-  if (shape.footprint.size() < 3) shape.footprint = footprint_of(corners, config.point_radius_m);
+  if (shape.footprint.size() < 3) shape.footprint = footprint_of(corners, kPointRadius_m);
   return shape;
 }
 

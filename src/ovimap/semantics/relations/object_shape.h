@@ -12,14 +12,6 @@
 
 namespace ovimap {
 
-class ConfigFields;
-
-struct ObjectShapeConfig {
-  float noise_share = 0.005f;     ///< of the points, cut off at the top and at the bottom
-  float point_radius_m = 0.005f;  ///< a surface point is a square of twice this size
-};
-void list_fields(ObjectShapeConfig& config, ConfigFields& fields);
-
 /// The ground frame: x and y in the horizontal plane, z up, the world's origin.
 Eigen::Matrix3f ground_from_world(const Eigen::Vector3f& up_in_world);
 
@@ -40,17 +32,16 @@ struct ObjectShape {
   float middle_m() const { return 0.5f * (top_m + bottom_m); }
 };
 
-/// From points of the object's surface in the world: the better way, since boxes along the axes of
-/// a tilted world are too large. At least one point.
+/// From points of the object's surface in the world, without the 0.5 % at the top and at the bottom
+/// that may be noise: the better way, since boxes along the axes of a tilted world are too large.
+/// At least one point.
 ObjectShape shape_of_points(const Eigen::Matrix3f& ground_from_world,
-                            std::span<const Eigen::Vector3f> points_in_world,
-                            const ObjectShapeConfig& config = {});
+                            std::span<const Eigen::Vector3f> points_in_world);
 
-/// From a box in the world and the object's centroid.
+/// From a box in the world and the object's centroid, which is all of it where the box is empty.
 ObjectShape shape_of_box(const Eigen::Matrix3f& ground_from_world,
                          const Eigen::AlignedBox3f& box_in_world,
-                         const Eigen::Vector3f& centroid_in_world,
-                         const ObjectShapeConfig& config = {});
+                         const Eigen::Vector3f& centroid_in_world);
 
 /// What bounds the prism, ground frame.
 Eigen::AlignedBox3f upright_box(const ObjectShape& shape);

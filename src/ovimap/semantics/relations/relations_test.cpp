@@ -221,14 +221,10 @@ TEST(Relations, TrimsStrayPoints) {
 
 TEST(Relations, ConfigListsItsFields) {
   RelationConfig config;
-  ObjectShapeConfig shape;
   ConfigFields fields;
   fields.group("relations", [&](ConfigFields& inner) { list_fields(config, inner); });
-  fields.group("shape", [&](ConfigFields& inner) { list_fields(shape, inner); });
   fields.set("relations.near_m", "2.5");
-  fields.set("shape.noise_share", "0.05");
   EXPECT_FLOAT_EQ(config.near_m, 2.5f);
-  EXPECT_FLOAT_EQ(shape.noise_share, 0.05f);
 }
 
 TEST(Relations, NoneIsRatedHigherThanItsBoxesAllow) {

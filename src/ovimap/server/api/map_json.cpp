@@ -227,7 +227,7 @@ json instance_detail_json(const ServedMap& map, InstanceId id) {
   const std::size_t position = position_of(*now, id);
   const QueryScene& scene = now->objects->scene;
   json detail = instance_json(*now, position);
-  const ObjectShape& shape = scene.shapes[position];
+  const ObjectShape& shape = scene.shapes.outline(position);
   detail["super_points"] = now->record->instances[position].super_points;
   detail["height_m"] = rounded_json(shape.height_m());
   detail["footprint_m2"] = rounded_json(area_m2(shape.footprint));
@@ -264,7 +264,7 @@ json relations_json(const ServedMap& map) {
   const auto now = map.snapshot();
   json list = json::array();
   for (const ObjectRelation& relation :
-       find_relations(ids_of(now->index()), now->objects->scene.shapes, map.relations()))
+       find_relations(ids_of(now->index()), now->objects->scene.shapes.whole(), map.relations()))
     list.push_back({{"object", relation.object},
                     {"relation", relation_name(relation.relation)},
                     {"anchor", relation.anchor},

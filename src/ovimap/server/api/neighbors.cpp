@@ -17,11 +17,12 @@ Neighbor relate(const QueryScene& scene, std::size_t a, std::size_t b, InstanceI
                                                                 {Relation::kUnder, "under"},
                                                                 {Relation::kAbove, "above"},
                                                                 {Relation::kBeside, "beside"}};
-  Neighbor neighbor{id_b, "near", "", gap_m(scene.shapes[a], scene.shapes[b])};
+  const std::vector<ObjectShape>& shapes = scene.shapes.whole();
+  Neighbor neighbor{id_b, "near", "", gap_m(shapes[a], shapes[b])};
   float best = 0.5f;
   for (const auto& [relation, word] : kTried) {
     RelationRating rating =
-        rate_relation(relation, scene.shapes[a], scene.shapes[b], id_b, scene.viewpoint, config);
+        rate_relation(relation, shapes[a], shapes[b], id_b, scene.viewpoint, config);
     if (rating.score <= best) continue;
     best = rating.score;
     neighbor.relation = word;

@@ -125,8 +125,7 @@ void ServedMap::rebuild() {
   if (found_->live)
     measure_on_surface(labelled_surface(*surface(), next->instance_of_label, {}),
                        surface_spacing_m(found_->info.voxel_size_m), record);
-  auto objects =
-      std::make_shared<MapSearch>(make_map_search(record, found_->info, config_.query.shapes));
+  auto objects = std::make_shared<MapSearch>(make_map_search(record, found_->info));
   objects->scene.taught = taught_;
   if (!next->live)
     objects->scene.rooms =

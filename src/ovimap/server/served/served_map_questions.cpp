@@ -29,7 +29,7 @@ std::optional<HistoryPhrase> ServedMap::past_of(const std::string& text, const s
 MapAnswer ServedMap::ask_past(std::shared_ptr<const MapSnapshot> now,
                               const MapQuestion& question) const {
   const auto found = std::make_shared<HistorySearch>(
-      search_history(*now->record, now->objects->info, *question.past, config_.query.shapes));
+      search_history(*now->record, now->objects->info, *question.past));
   found->search.scene.taught = now->objects->scene.taught;
   const std::shared_ptr<const HistorySearch> past = found;
   const bool listing = past->for_anything() && question.query.not_texts.empty();
