@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "apps/command/command.h"
+#include "apps/command/save_again.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/io/map_file/map_file.h"
 #include "ovimap/pipeline/revise/map_correction.h"
@@ -37,7 +38,7 @@ int correct_map(const CorrectOptions& options) {
         correct_poses(document, poses, config_of_map(document.config_text),
                       [&](std::size_t count, std::size_t total) { progress.show(count, total); });
   }
-  save_map(out, document);
+  save_again(options.map, out, document);
   const double widest_deg = done.widest_rad * 180 / std::numbers::pi;
   if (options.json)
     print_json({{"map", out.string()},

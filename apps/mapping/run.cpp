@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
+#include "apps/command/save_again.h"
 #include "camera_run.h"
 #include "mapping_run.h"
 #include "ovimap/base/parallel.h"
@@ -10,7 +11,6 @@
 #include "ovimap/semantics/past/time_words.h"
 #include "run_parts.h"
 #include "run_report.h"
-#include "save_run.h"
 
 namespace ovimap::apps {
 
@@ -69,7 +69,7 @@ int run(RunOptions options) {
   MappingRun mapped = map_source(options, target, camera);
   const double fps = camera ? sent_fps(*mapped.live) : options.fps;
   report_faults(mapped);
-  save_run(target, mapped);
+  save_again(target.continued, target.map, mapped.document);
   mapped.checkpoints->remove();
   if (!mapped.live) mapped.parts = map_parts(options.mapping, options.map, mapped);
   if (!options.trajectory.empty()) write_trajectory(options.trajectory, mapped.document.frames);

@@ -4,9 +4,9 @@
 
 #include <thread>
 
+#include "apps/command/save_again.h"
 #include "ovimap/io/map_file/map_file.h"
 #include "ovimap/server/served/live_feed.h"
-#include "save_run.h"
 
 namespace ovimap::apps {
 
@@ -85,7 +85,7 @@ void LiveService::run(const Announce& announce,
   check_map_target(target.map);
   Service service(*this, announce);
   MappingRun mapped = map_live(mapping, fps, target, &service, intake, camera);
-  save_run(target, mapped);
+  save_again(target.continued, target.map, mapped.document);
   saved(mapped);
   const std::size_t loops = mapped.tracking ? mapped.tracking->loops.closed : 0;
   mapped.document = MapDocument();  // what is served from here on is the file

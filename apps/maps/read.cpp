@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "apps/command/command.h"
+#include "apps/command/save_again.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/io/map_file/map_file.h"
 #include "ovimap/pipeline/revise/read_writing.h"
@@ -59,7 +60,7 @@ int read_map(const ReadOptions& options) {
         read_writing(document.semantics, *reader, reading_config(options),
                      [&](std::size_t done, std::size_t total) { progress.show(done, total); });
   }
-  save_map(out, document);
+  save_again(options.map, out, document);
   const MapInfo info = read_map_info(out);
   if (options.json) {
     nlohmann::json objects = nlohmann::json::array();

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "apps/command/command.h"
+#include "apps/command/save_again.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/io/map_file/map_file.h"
 #include "ovimap/pipeline/revise/reembed.h"
@@ -36,7 +37,7 @@ int reembed_map(const ReembedOptions& options) {
     summary = reembed(document.semantics, *encoder,
                       [&](std::size_t done, std::size_t total) { progress.show(done, total); });
   }
-  save_map(out, document);
+  save_again(options.map, out, document);
   if (options.json)
     print_json({{"map", out.string()},
                 {"encoder", encoder->identity().name},

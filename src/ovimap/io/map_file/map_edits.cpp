@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <optional>
 
 #include "ovimap/base/error.h"
@@ -17,6 +18,50 @@
 #include "ovimap/io/map_file/saved_tiles.h"
 
 namespace ovimap {
+
+namespace {
+
+/// Nobody corrects the map while it is held. Null where nobody can anyway, or somebody does for
+/// ever.
+std::unique_ptr<MapChange> held(const std::filesystem::path& path) {
+  constexpr int kPatience_ms = 60000;
+  try {
+    return std::make_unique<MapChange>(path, kPatience_ms);
+  } catch (const Error&) {
+    return nullptr;
+  }
+}
+
+/// Appends to the document's log what is new in `log`. Returns what makes no sense there.
+std::vector<std::string> carry_later_edits(const MapEdits& log, MapDocument& document) {
+  const auto same = [](const MapEdit& a, const MapEdit& b) {
+    return a.id == b.id && a.action == b.action && a.time_s == b.time_s;
+  };
+  auto later =
+      std::mismatch(log.begin(), log.end(), document.edits.begin(), document.edits.end(), same)
+          .first;
+  std::vector<std::string> lost;
+  std::map<std::int64_t, std::int64_t> ids;    // in the document, by what they are in the file
+  std::map<InstanceId, InstanceId> split_off;  // likewise
+  for (; later != log.end(); ++later) {
+    MapEdit edit = *later;
+    if (const auto found = ids.find(edit.undoes); found != ids.end()) edit.undoes = found->second;
+    for (InstanceId& id : edit.instances)
+      if (const auto found = split_off.find(id); found != split_off.end()) id = found->second;
+    try {
+      const MapEdit carried = append_edit(
+          document, document.map.labels(), [&]() -> const VoxelMap& { return document.map; }, edit);
+      ids[later->id] = carried.id;
+      if (carried.new_instance != 0) split_off[later->new_instance] = carried.new_instance;
+    } catch (const Error& fault) {
+      lost.push_back(
+          concat("edit ", later->id, " (", edit_action_name(edit.action), "): ", fault.what()));
+    }
+  }
+  return lost;
+}
+
+}  // namespace
 
 MapEdit edit_map(const std::filesystem::path& path, MapEdit edit) {
   MapChange change(path);
@@ -47,33 +92,10 @@ MapEdits read_edits(const std::filesystem::path& path) {
   return log;
 }
 
-std::vector<std::string> carry_later_edits(const std::filesystem::path& path,
-                                           MapDocument& document) {
-  const auto same = [](const MapEdit& a, const MapEdit& b) {
-    return a.id == b.id && a.action == b.action && a.time_s == b.time_s;
-  };
-  const MapEdits log = read_edits(path);
-  auto later =
-      std::mismatch(log.begin(), log.end(), document.edits.begin(), document.edits.end(), same)
-          .first;
-  std::vector<std::string> lost;
-  std::map<std::int64_t, std::int64_t> ids;    // in the document, by what they are in the file
-  std::map<InstanceId, InstanceId> split_off;  // likewise
-  for (; later != log.end(); ++later) {
-    MapEdit edit = *later;
-    if (const auto found = ids.find(edit.undoes); found != ids.end()) edit.undoes = found->second;
-    for (InstanceId& id : edit.instances)
-      if (const auto found = split_off.find(id); found != split_off.end()) id = found->second;
-    try {
-      const MapEdit carried = append_edit(
-          document, document.map.labels(), [&]() -> const VoxelMap& { return document.map; }, edit);
-      ids[later->id] = carried.id;
-      if (carried.new_instance != 0) split_off[later->new_instance] = carried.new_instance;
-    } catch (const Error& fault) {
-      lost.push_back(
-          concat("edit ", later->id, " (", edit_action_name(edit.action), "): ", fault.what()));
-    }
-  }
+std::vector<std::string> replace_map(const std::filesystem::path& path, MapDocument& document) {
+  const auto nobody_else = held(path);
+  std::vector<std::string> lost = carry_later_edits(read_edits(path), document);
+  save_map(path, document);
   return lost;
 }
 

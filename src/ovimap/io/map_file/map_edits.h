@@ -22,12 +22,11 @@ MapEdit edit_map(const std::filesystem::path& path, MapEdit edit);
 /// The map's log, oldest first.
 MapEdits read_edits(const std::filesystem::path& path);
 
-/// Before `document`, which goes on with the map at `path`, replaces it: what people corrected
-/// there since `document` was read is corrected in it as well, under ids that are free in it.
-/// Returns what makes no sense any more, a line for each such edit. Throws Error when the map
-/// cannot be read.
-std::vector<std::string> carry_later_edits(const std::filesystem::path& path,
-                                           MapDocument& document);
+/// Saves `document`, which was made of the map at `path`, in its place: what people corrected there
+/// since it was read is corrected in it as well, under ids that are free in it, and nobody corrects
+/// the map while it is replaced. Returns what makes no sense any more, a line for each such edit.
+/// Throws what reading and saving a map throws.
+std::vector<std::string> replace_map(const std::filesystem::path& path, MapDocument& document);
 
 /// The map as people corrected it, for everybody who shows or exports it. It must not be saved:
 /// that would take the corrections for findings. Its voxels are read when they are asked for

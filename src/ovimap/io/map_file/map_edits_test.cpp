@@ -3,8 +3,10 @@
 #include "ovimap/io/map_file/map_edits.h"
 
 #include <atomic>
+#include <chrono>
 #include <csignal>
 #include <fstream>
+#include <memory>
 #include <thread>
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -123,14 +125,11 @@ TEST_F(MapEditing, WhatIsCorrectedMeanwhileIsCarriedOver) {
   edit_map(path_, renamed(3, "table"));
   MapDocument continued = load_map(path_);
   continued.registry.last_id = 9;  // objects that the run found
-  EXPECT_TRUE(carry_later_edits(path_, continued).empty());
-  EXPECT_EQ(continued.edits.size(), 1u);
   const MapEdit part = split(1, {4});
   edit_map(path_, renamed(part.new_instance, "lid"));
   edit_map(path_, simple(EditAction::kDelete, {3}));
   edit_map(path_, simple(EditAction::kUndo));
-  EXPECT_TRUE(carry_later_edits(path_, continued).empty());
-  save_map(path_, continued);
+  EXPECT_TRUE(replace_map(path_, continued).empty());
   const MapInfo info = read_map_info(path_);
   EXPECT_EQ(info.names.at(3), "table");
   EXPECT_EQ(info.names.at(10), "lid");
@@ -143,10 +142,30 @@ TEST_F(MapEditing, WhatMakesNoSenseAnyMoreIsToldAndLeftOut) {
   edit_map(path_, renamed(1, "cup"));
   edit_map(path_, renamed(3, "table"));
   std::erase_if(continued.instances, [](const InstanceSummary& it) { return it.id == 1; });
-  const std::vector<std::string> lost = carry_later_edits(path_, continued);
+  const std::vector<std::string> lost = replace_map(path_, continued);
   ASSERT_EQ(lost.size(), 1u);
   EXPECT_NE(lost[0].find("edit 1 (rename): the map has no object 1"), std::string::npos) << lost[0];
   EXPECT_EQ(continued.edits.size(), 1u);
+}
+
+/// What waits until the map was replaced corrects the new one.
+TEST_F(MapEditing, ACorrectionGoesIntoTheMapThatIsThereWhenItsTurnComes) {
+  auto change = std::make_unique<MapChange>(path_);
+  std::thread editor([&] { edit_map(path_, renamed(1, "cup")); });
+  std::this_thread::sleep_for(
+      std::chrono::milliseconds(100));  // or it comes late, which is as well
+  save_map(path_, saved_);
+  change.reset();
+  editor.join();
+  EXPECT_EQ(read_map_info(path_).names.at(1), "cup");
+}
+
+TEST_F(MapEditing, AMapThatNobodyMayChangeIsReplaced) {
+  MapDocument document = load_map(path_);
+  fs::permissions(path_, fs::perms::owner_read);
+  document.names[1] = "again";
+  EXPECT_TRUE(replace_map(path_, document).empty());
+  EXPECT_EQ(read_map_info(path_).names.at(1), "again");
 }
 
 TEST_F(MapEditing, NothingIsForgotten) {

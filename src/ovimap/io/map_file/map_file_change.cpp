@@ -3,10 +3,13 @@
 #include "ovimap/io/map_file/map_file_change.h"
 
 #include <cerrno>
+#include <optional>
 #include <system_error>
+#include <utility>
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <sqlite3.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "ovimap/base/error.h"
@@ -16,8 +19,6 @@
 namespace ovimap {
 
 namespace {
-
-constexpr int kPatience_ms = 2000;  // for readers and other changes to finish
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
   throw Error(concat("cannot change map '", path.string(), "': ", why));
@@ -33,18 +34,38 @@ std::filesystem::path changeable(const std::filesystem::path& path) {
   return target;
 }
 
+using FileNumber = std::pair<dev_t, ino_t>;
+
+std::optional<FileNumber> number_of(const std::filesystem::path& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) return std::nullopt;
+  return FileNumber(status.st_dev, status.st_ino);
+}
+
 }  // namespace
 
-MapChange::MapChange(const std::filesystem::path& path)
-    : path_(path), schema_(OpenMap(path).schema()) {
-  const std::filesystem::path target = changeable(path);
+MapChange::MapChange(const std::filesystem::path& path, int patience_ms) : path_(path) {
+  constexpr int kMostReplacements = 5;
+  for (int tries = 0; tries < kMostReplacements; ++tries) {
+    schema_ = OpenMap(path).schema();
+    const std::filesystem::path target = changeable(path);
+    const std::optional<FileNumber> opened = number_of(target);
+    begin(target, patience_ms);
+    if (opened && number_of(target) == opened) return;
+  }
+  refuse(path, "it is replaced again and again; try again when that is done");
+}
+
+void MapChange::begin(const std::filesystem::path& target, int patience_ms) {
+  transaction_.reset();
   guarded([&] {
-    database_ = open_guarded(target.string(), SQLite::OPEN_READWRITE, kLongestValue, kPatience_ms);
+    database_ = open_guarded(target.string(), SQLite::OPEN_READWRITE, kLongestValue, patience_ms);
     database_->exec("PRAGMA journal_mode = DELETE; PRAGMA synchronous = EXTRA");
     transaction_ =
         std::make_unique<SQLite::Transaction>(*database_, SQLite::TransactionBehavior::IMMEDIATE);
   });
 }
+
 MapChange::~MapChange() = default;
 
 void MapChange::read(const std::function<void(SQLite::Database&)>& read) {
