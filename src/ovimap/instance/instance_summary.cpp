@@ -13,17 +13,11 @@ namespace ovimap {
 
 namespace {
 
-/// One frame alone showed it, in a mask that its source rates well and of which it is most: no
-/// leftover of something larger.
-bool seen_well_once(std::span<const EntityFit> fits, float least_fit) {
-  return fits.size() == 1 && fits[0].entity.is_rated() && fits[0].rated_overlap() >= least_fit;
-}
-
-bool seen_enough(const InstanceSummary& summary, const EntityFits& fits,
-                 const InstanceSummaryConfig& config) {
-  if (summary.views >= config.min_instance_views) return true;
-  return summary.views == 1 && config.min_instance_views == 2 &&
-         seen_well_once(fits.of(summary.super_points), config.min_only_view_fit);
+/// What masks hardly show as a thing of its own is a leftover of something larger.
+bool is_object(const InstanceSummary& summary, const InstanceSummaryConfig& config) {
+  if (summary.points < static_cast<std::size_t>(config.min_instance_voxels)) return false;
+  if (summary.confidence) return *summary.confidence >= config.min_confidence;
+  return summary.views >= config.min_instance_views;
 }
 
 bool is_any_rated(const EntitySightings& sightings) {
@@ -56,10 +50,10 @@ void list_fields(InstanceSummaryConfig& config, ConfigFields& fields) {
   fields.add("min_instance_voxels", config.min_instance_voxels, 0, 100000000,
              "instances with fewer surface voxels are left out");
   fields.add("min_instance_views", config.min_instance_views, 0, 1000000,
-             "instances seen in fewer frames are left out");
-  fields.add("min_only_view_fit", config.min_only_view_fit, 0.f, 1.f,
-             "but where 2 frames are asked for, one is enough whose mask fits so well, times how "
-             "its source rates it");
+             "instances seen in fewer frames are left out, where nobody rates the masks");
+  fields.add("min_confidence", config.min_confidence, 0.f, 1.f,
+             "instances that rated masks show less surely as one thing are left out; one frame "
+             "whose mask fits by half, times how its source rates it, has 1/6");
   fields.add("min_part_views", config.min_part_views, 1, 1000000,
              "parts of objects that fewer frames tell from the rest of it are left out");
   fields.add("max_part_share", config.max_part_share, 0.f, 1.f,
@@ -91,11 +85,8 @@ std::vector<InstanceSummary> summarize_instances(const SurfaceExtents& extents,
     summary.views = registry.record(id).views;
     summary.super_points = registry.super_points_of(id);
     describe(extent, summary);
-    if (summary.points < static_cast<std::size_t>(config.min_instance_voxels) ||
-        !seen_enough(summary, fits, config))
-      continue;
     if (rated) summary.confidence = fits.confidence(summary.super_points);
-    result.push_back(std::move(summary));
+    if (is_object(summary, config)) result.push_back(std::move(summary));
   }
   return result;
 }

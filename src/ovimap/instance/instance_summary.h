@@ -19,9 +19,9 @@ namespace ovimap {
 
 struct InstanceSummaryConfig {
   int min_instance_voxels = 20;    ///< instances with fewer surface voxels are left out
-  int min_instance_views = 2;      ///< instances seen in fewer frames are left out
-  float min_only_view_fit = 0.5f;  ///< ... but of two, one is enough whose mask fits so well, times
-                                   ///< how its source rates it (EntityFit)
+  int min_instance_views = 2;      ///< seen in fewer frames: left out, where masks are not rated
+  float min_confidence = 1.f / 6;  ///< where they are: instances of which they are less sure are
+                                   ///< left out. So sure is one frame whose mask fits by half
   int min_part_views = 3;          ///< parts of objects told by fewer frames are left out
   float max_part_share = 0.8f;     ///< so are those that are more of their object
 };

@@ -74,6 +74,7 @@ TEST(SummarizeInstances, KeepsWhatWasSeenOnceInAGoodMask) {
   EXPECT_EQ(listed({{1, {{0, 7, 200}}}}, extents).size(), 1u);
   EXPECT_TRUE(listed({{1, {{0, 7, 100}}}}, extents).empty()) << "a doubtful mask";
   EXPECT_TRUE(listed({{1, {{0, 7}}}}, extents).empty()) << "nobody said how good it is";
+  EXPECT_EQ(listed({{1, {{0, 7}, {1, 2}}}}, extents).size(), 1u) << "it was seen twice";
 }
 
 TEST(SummarizeInstances, LeavesOutALeftoverOfWhatAGoodMaskShowed) {
@@ -85,13 +86,24 @@ TEST(SummarizeInstances, LeavesOutALeftoverOfWhatAGoodMaskShowed) {
   EXPECT_EQ(ids(50, 100), 1u);
 }
 
+/// However many frames show it.
+TEST(SummarizeInstances, LeavesOutWhatMasksHardlyShowAsAThing) {
+  const SurfaceExtents extents{{1, surface_of(1000)}, {2, surface_of(100)}};
+  EntitySightings sightings;
+  for (std::uint32_t frame = 0; frame < 20; ++frame)
+    for (const Label root : {1u, 2u}) sightings[root].push_back({frame, 7, 250});
+  const auto objects = listed(sightings, extents);
+  ASSERT_EQ(objects.size(), 1u);
+  EXPECT_EQ(objects[0].points, 1000u);
+}
+
 TEST(SummarizeInstances, TellsHowSureRatedMasksAre) {
   const SurfaceExtents extents{{1, surface_of(100)}, {2, surface_of(100)}};
   const auto rated =
-      listed({{1, {{0, 7, 255}, {1, 2, 255}}}, {2, {{0, 9, 51}, {1, 5, 51}}}}, extents);
+      listed({{1, {{0, 7, 255}, {1, 2, 255}}}, {2, {{0, 9, 102}, {1, 5, 102}}}}, extents);
   ASSERT_EQ(rated.size(), 2u);
   EXPECT_FLOAT_EQ(rated[0].confidence.value(), 0.5f);  // two frames for it, two of doubt
-  EXPECT_FLOAT_EQ(rated[1].confidence.value(), 0.1f);
+  EXPECT_FLOAT_EQ(rated[1].confidence.value(), 0.2f);
   const auto taken_for_true = listed({{1, {{0, 7}, {1, 2}}}}, extents);
   ASSERT_EQ(taken_for_true.size(), 1u);
   EXPECT_FALSE(taken_for_true[0].confidence.has_value());

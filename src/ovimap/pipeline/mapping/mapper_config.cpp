@@ -64,6 +64,7 @@ MapperConfig mapper_preset(const std::string& name) {
   config.mask_fusion.split_core_px = kNeverSoMany;
   config.summary.min_instance_voxels = 1;
   config.summary.min_instance_views = 1;
+  config.summary.min_confidence = 0.f;
   config.mask_motion = 0.f;
   config.view_interval = 1;
   config.semantics.views = view_preset("combine");

@@ -87,6 +87,7 @@ TEST(MapperPreset, ReferenceIsWhatTheReleasedCodeDoes) {
       {"map.pixel_votes", "false"},
       {"summary.min_instance_voxels", "1"},
       {"summary.min_instance_views", "1"},
+      {"summary.min_confidence", "0"},
       {"mask_interval", "0"},
       {"mask_motion", "0"},
       {"view_interval", "1"},
