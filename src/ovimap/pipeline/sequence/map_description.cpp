@@ -2,8 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/pipeline/sequence/map_description.h"
 
+#include <set>
+
+#include "ovimap/instance/instance_aliases.h"
 #include "ovimap/instance/instance_mesh.h"
 #include "ovimap/instance/object_boxes.h"
+#include "ovimap/io/corrections/map_edit_log.h"
 #include "ovimap/io/pictures/scene_axes.h"
 #include "ovimap/map/surface/incremental_mesh.h"
 
@@ -15,10 +19,29 @@ constexpr std::size_t kTriangle = 3;  // points: an object of fewer shows nowher
 
 }  // namespace
 
+std::vector<InstanceSummary> summarize_objects(const SurfaceExtents& extents,
+                                               const LabelForest& forest,
+                                               const InstanceRegistry& registry,
+                                               const InstanceSummaryConfig& config,
+                                               const MapEdits& edits) {
+  std::set<InstanceId> corrected;
+  for (const MapEdit& edit : effective_edits(edits))
+    for (const InstanceId id : edit.instances)
+      corrected.insert(resolve_alias(registry.aliases(), id));
+  InstanceSummaryConfig unsure = config;
+  unsure.min_confidence = 0.f;
+  std::vector<InstanceSummary> objects = summarize_instances(extents, forest, registry, unsure);
+  std::erase_if(objects, [&](const InstanceSummary& object) {
+    return object.confidence && *object.confidence < config.min_confidence &&
+           !corrected.contains(object.id);
+  });
+  return objects;
+}
+
 void describe_map(const VoxelMap& map, const InstanceRegistry& registry,
                   const InstanceSummaryConfig& config, MapRecord& record) {
   const SurfaceExtents extents = surface_extents(map);
-  record.instances = summarize_instances(extents, map.labels(), registry, config);
+  record.instances = summarize_objects(extents, map.labels(), registry, config, record.edits);
   const std::vector<InstanceId> instance_of = instances_by_label(map, record.instances);
   const float spacing_m = surface_spacing_m(map.config().voxel_size_m);
   SurfaceSampler sampler(spacing_m);

@@ -6,6 +6,14 @@
 
 namespace ovimap {
 
+/// What summarize_instances finds, and however unsure masks are of it what people corrected: they
+/// saw that it is something. `edits`: the map's log.
+std::vector<InstanceSummary> summarize_objects(const SurfaceExtents& extents,
+                                               const LabelForest& forest,
+                                               const InstanceRegistry& registry,
+                                               const InstanceSummaryConfig& config,
+                                               const MapEdits& edits);
+
 /// Fills in what a record says of the voxels of a finished map: instances, their surfaces, and
 /// which way is up, by the poses of its frames. Walks over the voxels part by part.
 void describe_map(const VoxelMap& map, const InstanceRegistry& registry,

@@ -27,11 +27,11 @@ Mesh with_normals(Mesh mesh) {
 
 /// Adds the objects, as they are seen on the surface that clients have.
 void name_objects(const ServedSurface& surface, const InstanceSummaryConfig& config,
-                  FoundMap& found) {
+                  const MapEdits& edits, FoundMap& found) {
   const Mesh mesh = joined_surface(surface);
   InstanceRegistry registry(found.record.instance_config);
   registry.restore(found.record.registry);
-  found.record.instances = find_instances(mesh, found.forest, registry, config);
+  found.record.instances = find_instances(mesh, found.forest, registry, config, edits);
   std::vector<Pose> poses;
   for (const FrameLogEntry& frame : found.record.frames) poses.push_back(frame.world_from_camera);
   found.record.up = guess_up(mesh, poses);
@@ -228,7 +228,7 @@ void LiveFeed::publish() {
     if (!patches.empty()) map_.show(std::move(patches));
     const auto start = Clock::now();
     if (found) {
-      name_objects(*map_.surface(), summary, *found);
+      name_objects(*map_.surface(), summary, map_.snapshot()->record->edits, *found);
       map_.show(std::move(*found));
     }
     lock.lock();

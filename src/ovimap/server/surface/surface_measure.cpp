@@ -7,6 +7,7 @@
 
 #include "ovimap/instance/object_boxes.h"
 #include "ovimap/io/mesh/mesh_pieces.h"
+#include "ovimap/pipeline/sequence/map_description.h"
 
 namespace ovimap {
 
@@ -72,12 +73,13 @@ MeshParts labelled_parts(const ServedSurface& surface, const LabelTable& table,
 
 std::vector<InstanceSummary> find_instances(const Mesh& mesh, const LabelForest& forest,
                                             const InstanceRegistry& registry,
-                                            const InstanceSummaryConfig& config) {
+                                            const InstanceSummaryConfig& config,
+                                            const MapEdits& edits) {
   SurfaceExtents by_root;
   const std::vector<SurfaceExtent> by_label = extents_by_label(mesh);
   for (Label label = 1; label < by_label.size(); ++label)
     if (by_label[label].points > 0) by_root[forest.root(label)] += by_label[label];
-  return summarize_instances(by_root, forest, registry, config);
+  return summarize_objects(by_root, forest, registry, config, edits);
 }
 
 void measure_on_surface(const Mesh& mesh, float spacing_m, MapRecord& record) {

@@ -31,11 +31,12 @@ MeshParts labelled_parts(const ServedSurface& surface, const LabelTable& table,
 /// Replaces every label by its object.
 void relabel(Mesh& mesh, const LabelTable& table);
 
-/// Which objects a map has while it is being made, as summarize_instances finds them in voxels,
-/// here from the surface: `points` counts its vertices. `mesh`: joined_surface.
+/// Which objects a map has while it is being made, as summarize_objects finds them in voxels, here
+/// from the surface: `points` counts its vertices. `mesh`: joined_surface; `edits`: its log.
 std::vector<InstanceSummary> find_instances(const Mesh& mesh, const LabelForest& forest,
                                             const InstanceRegistry& registry,
-                                            const InstanceSummaryConfig& config);
+                                            const InstanceSummaryConfig& config,
+                                            const MapEdits& edits);
 
 /// Boxes, centroids, counts and surfaces of all objects of the record. `mesh`: with ids as labels.
 void measure_on_surface(const Mesh& mesh, float spacing_m, MapRecord& record);
