@@ -180,11 +180,11 @@ HistorySearch search_history(const MapRecord& corrected, const MapInfo& info,
 
 MapRecord read_corrected_record(const std::filesystem::path& map) {
   MapRecord record = load_map_without_voxels(map);
-  SearchableMap now = read_searchable_map(map);
-  record.instances = std::move(now.info.instances);
-  record.hidden = std::move(now.info.hidden);
-  record.locked = std::move(now.info.locked);
-  record.names = std::move(now.info.names);
+  MapInfo now = read_map_info(map);
+  record.instances = std::move(now.instances);
+  record.hidden = std::move(now.hidden);
+  record.locked = std::move(now.locked);
+  record.names = std::move(now.names);
   record.surfaces = read_corrected_surfaces(map);
   return record;
 }
