@@ -14,9 +14,11 @@ namespace ovimap {
 namespace {
 
 /// What masks hardly show as a thing of its own is a leftover of something larger.
-bool is_object(const InstanceSummary& summary, const InstanceSummaryConfig& config) {
+bool is_object(const InstanceSummary& summary, const InstanceSummaryConfig& config,
+               const std::set<InstanceId>& corrected) {
   if (summary.points < static_cast<std::size_t>(config.min_instance_voxels)) return false;
-  if (summary.confidence) return *summary.confidence >= config.min_confidence;
+  if (summary.confidence)
+    return *summary.confidence >= config.min_confidence || corrected.contains(summary.id);
   return summary.views >= config.min_instance_views;
 }
 
@@ -69,7 +71,8 @@ std::vector<InstanceSummary> summarize_instances(const VoxelMap& map,
 std::vector<InstanceSummary> summarize_instances(const SurfaceExtents& extents,
                                                  const LabelForest& forest,
                                                  const InstanceRegistry& registry,
-                                                 const InstanceSummaryConfig& config) {
+                                                 const InstanceSummaryConfig& config,
+                                                 const std::set<InstanceId>& corrected) {
   const std::vector<InstanceId> instance_of = registry.instance_table(forest);
   std::map<InstanceId, SurfaceExtent> totals;
   for (const auto& [label, extent] : extents)
@@ -86,7 +89,7 @@ std::vector<InstanceSummary> summarize_instances(const SurfaceExtents& extents,
     summary.super_points = registry.super_points_of(id);
     describe(extent, summary);
     if (rated) summary.confidence = fits.confidence(summary.super_points);
-    if (is_object(summary, config)) result.push_back(std::move(summary));
+    if (is_object(summary, config, corrected)) result.push_back(std::move(summary));
   }
   return result;
 }

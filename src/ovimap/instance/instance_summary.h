@@ -4,6 +4,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -52,11 +53,13 @@ void give_box(const Eigen::AlignedBox3f& box, InstanceSummary& summary);
 std::vector<InstanceSummary> summarize_instances(const VoxelMap& map,
                                                  const InstanceRegistry& registry,
                                                  const InstanceSummaryConfig& config);
-/// The same of a map that is measured already. `forest`: the map's.
+/// The same of a map that is measured already. `forest`: the map's. `corrected`: what people named
+/// or put right, which stays however unsure masks are of it: they saw that it is something.
 std::vector<InstanceSummary> summarize_instances(const SurfaceExtents& extents,
                                                  const LabelForest& forest,
                                                  const InstanceRegistry& registry,
-                                                 const InstanceSummaryConfig& config);
+                                                 const InstanceSummaryConfig& config,
+                                                 const std::set<InstanceId>& corrected = {});
 
 /// Fills box, centroid and points of instances that name their super-points (roots).
 void measure_instances(const VoxelMap& map, std::vector<InstanceSummary>& instances);

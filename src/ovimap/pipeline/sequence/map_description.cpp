@@ -28,14 +28,7 @@ std::vector<InstanceSummary> summarize_objects(const SurfaceExtents& extents,
   for (const MapEdit& edit : effective_edits(edits))
     for (const InstanceId id : edit.instances)
       corrected.insert(resolve_alias(registry.aliases(), id));
-  InstanceSummaryConfig unsure = config;
-  unsure.min_confidence = 0.f;
-  std::vector<InstanceSummary> objects = summarize_instances(extents, forest, registry, unsure);
-  std::erase_if(objects, [&](const InstanceSummary& object) {
-    return object.confidence && *object.confidence < config.min_confidence &&
-           !corrected.contains(object.id);
-  });
-  return objects;
+  return summarize_instances(extents, forest, registry, config, corrected);
 }
 
 void describe_map(const VoxelMap& map, const InstanceRegistry& registry,

@@ -6,8 +6,7 @@
 
 namespace ovimap {
 
-/// What summarize_instances finds, and however unsure masks are of it what people corrected: they
-/// saw that it is something. `edits`: the map's log.
+/// What summarize_instances finds, with what people corrected. `edits`: the map's log.
 std::vector<InstanceSummary> summarize_objects(const SurfaceExtents& extents,
                                                const LabelForest& forest,
                                                const InstanceRegistry& registry,
