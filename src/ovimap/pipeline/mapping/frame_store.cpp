@@ -71,8 +71,16 @@ KeptImages decode_kept(const KeptFrame& frame, const PinholeCamera& depth_camera
   return images;
 }
 
-void FrameStore::add(std::int64_t source_index, const DepthImage& depth, const RgbImage& color,
-                     const IdImage* segment_ids, std::span<const Label> labels) {
+bool is_other_camera(const PinholeCamera& a, const PinholeCamera& b) {
+  if (a.width != b.width || a.height != b.height) return true;
+  const Eigen::Array4f apart(a.fx - b.fx, a.fy - b.fy, a.cx - b.cx, a.cy - b.cy);
+  return (apart.abs() > 0.02f * static_cast<float>(a.width)).any();
+}
+
+void FrameStore::add(std::int64_t source_index, const PinholeCamera& depth_camera,
+                     const DepthImage& depth, const RgbImage& color, const IdImage* segment_ids,
+                     std::span<const Label> labels) {
+  if (is_other_camera(camera_, depth_camera)) restore({}, fused_, depth_camera);
   const std::size_t position = fused_++;
   if (config_.max_mb == 0 || position % stride_ != 0) return;
   auto frame = std::make_shared<KeptFrame>();
@@ -110,13 +118,21 @@ void FrameStore::make_room() {
   }
 }
 
-void FrameStore::restore(KeptFrames frames, std::size_t fused) {
+void FrameStore::restore(KeptFrames frames, std::size_t fused, const PinholeCamera& depth_camera) {
   frames_ = std::move(frames);
   fused_ = fused;
+  camera_ = depth_camera;
   bytes_ = 0;
-  for (const auto& [position, frame] : frames_) bytes_ += size_of(*frame);
+  // Whoever kept every fourth frame kept those at multiples of four, but for a beginning that
+  // nobody kept.
+  std::size_t multiples = 0;
+  for (const auto& [position, frame] : frames_) {
+    bytes_ += size_of(*frame);
+    multiples |= position;
+  }
   stride_ = 1;
-  while (!frames_.empty() && (fused + stride_ - 1) / stride_ > frames_.size()) stride_ *= 2;
+  while (multiples != 0 ? multiples % (2 * stride_) == 0 : !frames_.empty() && stride_ < fused_)
+    stride_ *= 2;
 }
 
 }  // namespace ovimap

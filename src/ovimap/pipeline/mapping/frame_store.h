@@ -21,6 +21,10 @@ struct FrameStoreConfig {
 };
 void list_fields(FrameStoreConfig& config, ConfigFields& fields);
 
+/// Whether frames are of another camera and not of one whose lens breathes: of another size, or
+/// focal lengths or a centre that differ by a fiftieth of the width.
+bool is_other_camera(const PinholeCamera& a, const PinholeCamera& b);
+
 /// The images that a kept frame was compressed from; all have the depth camera's size.
 struct KeptImages {
   DepthImage depth;     ///< metres, 0 = invalid
@@ -35,13 +39,14 @@ DepthImage decode_kept_depth(const KeptFrame& frame, const PinholeCamera& depth_
 /// Keeps fused frames, compressed, so that they can be fused again when their poses turn out to be
 /// wrong. When they grow beyond the budget, every second of them goes, and from there on only
 /// every second, fourth, ... frame is kept: what is kept stays spread over the whole recording.
+/// All are of one camera: those of an earlier one go when another comes.
 class FrameStore {
  public:
   explicit FrameStore(const FrameStoreConfig& config) : config_(config) {}
 
   /// The next fused frame. `segment_ids` may be null; `labels`: of the segments, [id - 1].
-  void add(std::int64_t source_index, const DepthImage& depth, const RgbImage& color,
-           const IdImage* segment_ids, std::span<const Label> labels);
+  void add(std::int64_t source_index, const PinholeCamera& depth_camera, const DepthImage& depth,
+           const RgbImage& color, const IdImage* segment_ids, std::span<const Label> labels);
   /// The labels of a frame that was added without, if it is kept.
   void add_labels(std::int64_t source_index, const IdImage& segment_ids,
                   std::span<const Label> labels);
@@ -49,12 +54,13 @@ class FrameStore {
   /// By their position among the fused frames.
   const KeptFrames& frames() const { return frames_; }
   /// Goes on with what another one kept of so many frames.
-  void restore(KeptFrames frames, std::size_t fused);
+  void restore(KeptFrames frames, std::size_t fused, const PinholeCamera& depth_camera);
 
  private:
   void make_room();
 
   FrameStoreConfig config_;
+  PinholeCamera camera_;  ///< of the frames
   KeptFrames frames_;
   std::map<std::int64_t, std::size_t> positions_;  ///< of kept frames, by source index
   std::size_t bytes_ = 0;

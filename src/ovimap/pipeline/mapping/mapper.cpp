@@ -140,8 +140,9 @@ FrameReport Mapper::fuse(const PreparedFrame& prepared, const FrameSegments* cut
   if (config_.frame_store.max_mb > 0) {
     auto t = timers_.measure("keep_frame");
     DepthImage seen;
-    frame_store_.add(number_of(*prepared.frame), without(moving.ids, prepared.frame->depth, seen),
-                     prepared.color, cut ? &cut->segments.ids : nullptr, labels);
+    frame_store_.add(number_of(*prepared.frame), prepared.frame->depth_camera,
+                     without(moving.ids, prepared.frame->depth, seen), prepared.color,
+                     cut ? &cut->segments.ids : nullptr, labels);
   }
   ++frames_;
   fused_from_.push_back(prepared.frame->world_from_camera);
@@ -297,7 +298,8 @@ void Mapper::restore(MapDocument&& document) {
       for (ObjectView& view : look.views) view.things.resize(0);
   writing_reader_ = std::move(document.semantics.writing_reader);
   builder_->restore(std::move(document.semantics.looks));
-  frame_store_.restore(std::move(document.kept_frames), document.frames.size());
+  frame_store_.restore(std::move(document.kept_frames), document.frames.size(),
+                       document.depth_camera);
   for (const FrameLogEntry& frame : document.frames) {
     fused_from_.push_back(frame.world_from_camera);
     looks_.next(frame.world_from_camera, config_.free_space);

@@ -235,8 +235,9 @@ TEST(FrameStore, ThinsWhatItKeepsEvenly) {
     depth[i] = 1.f + 0.001f * static_cast<float>(i * i % 977);
     color[i] = {static_cast<std::uint8_t>(i * i % 251), static_cast<std::uint8_t>(i % 241), 9};
   }
+  const PinholeCamera camera{320, 240, 300, 300, 160, 120};
   FrameStore store({1, 85});
-  for (int i = 0; i < 40; ++i) store.add(2 * i, depth, color, nullptr, {});
+  for (int i = 0; i < 40; ++i) store.add(2 * i, camera, depth, color, nullptr, {});
   ASSERT_GE(store.frames().size(), 2u);
   ASSERT_LT(store.frames().size(), 40u);
   const std::size_t stride = std::next(store.frames().begin())->first;
@@ -248,11 +249,36 @@ TEST(FrameStore, ThinsWhatItKeepsEvenly) {
   }
   EXPECT_LE(bytes, 1000000u);
   FrameStore again({1, 85});
-  again.restore(store.frames(), 40);
+  again.restore(store.frames(), 40, camera);
   for (FrameStore* one : {&store, &again})
-    for (int i = 40; i < 60; ++i) one->add(2 * i, depth, color, nullptr, {});
+    for (int i = 40; i < 60; ++i) one->add(2 * i, camera, depth, color, nullptr, {});
   ASSERT_EQ(store.frames().size(), again.frames().size());
   EXPECT_EQ(store.frames().rbegin()->first, again.frames().rbegin()->first);
+}
+
+TEST(FrameStoreTest, KeepsOnFromWhereItWasTurnedOn) {
+  const PinholeCamera camera{32, 24, 30, 30, 16, 12};
+  const DepthImage depth(32, 24, 1.f);
+  const RgbImage color(32, 24);
+  FrameStore before({1, 85});
+  before.restore({}, 20, camera);  // of a run that kept none
+  for (int i = 20; i < 25; ++i) before.add(i, camera, depth, color, nullptr, {});
+  FrameStore store({1, 85});
+  store.restore(before.frames(), 25, camera);
+  for (int i = 25; i < 45; ++i) store.add(i, camera, depth, color, nullptr, {});
+  EXPECT_EQ(store.frames().size(), 25u);
+}
+
+TEST(FrameStoreTest, KeepsFramesOfOneCamera) {
+  const PinholeCamera small{32, 24, 30, 30, 16, 12}, breathing{32, 24, 30.3f, 30.3f, 16, 12},
+      large{64, 48, 60, 60, 32, 24};
+  FrameStore store({1, 85});
+  store.add(0, small, DepthImage(32, 24, 1.f), RgbImage(32, 24), nullptr, {});
+  store.add(1, breathing, DepthImage(32, 24, 1.f), RgbImage(32, 24), nullptr, {});
+  EXPECT_EQ(store.frames().size(), 2u);
+  store.add(2, large, DepthImage(64, 48, 1.f), RgbImage(64, 48), nullptr, {});
+  ASSERT_EQ(store.frames().size(), 1u);
+  EXPECT_EQ(store.frames().begin()->first, 2u) << "by its place among all frames";
 }
 
 class PoseMatchTest : public ::testing::Test {

@@ -57,6 +57,9 @@ std::vector<Pose> poses_of(const std::vector<FrameLogEntry>& frames) {
 SequenceResult run_sequence(const FrameSource& source, const std::vector<std::int64_t>& positions,
                             Mapper& mapper, const SequenceProgress& progress, SequenceResult begun,
                             Checkpointer* checkpoints, PoseFinder* finder) {
+  if (positions.empty() && begun.frames.empty())
+    throw Error(concat("no frame is asked for: --frames must leave some of the recording's ",
+                       source.size(), ", which are counted from 0"));
   const auto start = std::chrono::steady_clock::now();
   const auto read = [&source](std::int64_t position) {
     return std::async(std::launch::async, [&source, position] { return source.read(position); });
@@ -77,7 +80,8 @@ SequenceResult run_sequence(const FrameSource& source, const std::vector<std::in
       current.fault = fuse(*current.frame, mapper, !result.frames.empty(), report);
     if (current.fault.empty()) {
       const Frame& frame = *current.frame;
-      if (result.frames.empty()) result.depth_camera = frame.depth_camera;
+      if (result.frames.empty() || is_other_camera(result.depth_camera, frame.depth_camera))
+        result.depth_camera = frame.depth_camera;  // a visit may have one of its own
       result.frames.push_back({mapper.number_of(frame), frame.timestamp_s, frame.name,
                                frame.world_from_camera, report.labelled});
       if (finder) finder->close_loops(mapper, result.frames, result.depth_camera);

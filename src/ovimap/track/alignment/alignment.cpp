@@ -130,6 +130,7 @@ Alignment align(const Reference& reference, const TrackPyramid& frame, const Pos
 std::optional<Alignment> align_best(const Reference& reference, const TrackPyramid& frame,
                                     const std::vector<Pose>& reference_from_frame,
                                     const FrameAlignmentConfig& config) {
+  if (reference.levels.size() != frame.size()) return std::nullopt;  // of a camera unlike this one
   const std::size_t level = std::min(kSurfaceLevel + 1, frame.size() - 1);
   std::vector<std::pair<double, const Pose*>> ranked;
   for (const Pose& start : reference_from_frame) {
