@@ -55,6 +55,18 @@ TEST_F(EditProgramTest, EverythingSeesTheCorrectedMap) {
   expect_complaint("edit room.ovimap undo", {"nothing to undo"});
 }
 
+TEST_F(EditProgramTest, ANewMapDoesNotTakeTheCorrectedOnesPlace) {
+  map_with("none");
+  map_with("none");  // of one that nobody corrected nothing is lost
+  const std::string first = std::to_string(ids().front());
+  edit("rename " + first + " 'tea pot'");
+  expect_complaint("run replica/scene --masks gt --encoder none -o room.ovimap",
+                   {"has 1 correction that a new map in its place would lose", "--continue"});
+  EXPECT_NE(run("info room.ovimap").out.find("tea pot"), std::string::npos);
+  edit("undo");
+  map_with("none");
+}
+
 TEST_F(EditProgramTest, SaysHowToMakeAMapWhole) {
   map_with("none");
   std::ofstream(path("room.ovimap-wal")) << "";  // what a change that was cut short leaves

@@ -8,6 +8,7 @@
 #include "apps/command/same_settings.h"
 #include "find_start.h"
 #include "ovimap/base/thread_priority.h"
+#include "ovimap/io/map_file/map_edits.h"
 #include "ovimap/io/map_file/map_file.h"
 #include "ovimap/map/fusion/past_evidence.h"
 #include "ovimap/pipeline/revise/visit_history.h"
@@ -35,6 +36,18 @@ struct BegunRun {
   bool new_visit = false;             ///< the recording is another than those of the document
 };
 
+/// A new map in the place of one that people corrected would lose what they did.
+void refuse_to_replace_corrections(const RunTarget& target) {
+  if (target.resume || target.map == target.continued || !std::filesystem::exists(target.map))
+    return;
+  const std::size_t corrections = effective_edits(read_edits(target.map)).size();
+  if (corrections > 0)
+    throw Error(concat("'", target.map.string(), "' has ", corrections,
+                       corrections == 1 ? " correction" : " corrections",
+                       " that a new map in its place would lose; go on with it (--continue), write "
+                       "to another file with -o, or delete it"));
+}
+
 BegunRun find_begun(const RunTarget& target, const MemoryConfig& memory) {
   BegunRun begun;
   if (target.map.empty()) {
@@ -42,6 +55,7 @@ BegunRun find_begun(const RunTarget& target, const MemoryConfig& memory) {
       throw Error("memory.max_mb is for `run` and `bench`; leave it away or set it to 0");
     return begun;
   }
+  refuse_to_replace_corrections(target);
   const std::filesystem::path partial = checkpoint_path(target.map);
   const bool unfinished = holds_checkpoint(partial);
   if (unfinished && !target.resume)
@@ -349,6 +363,7 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
                                  &Checkpointer::while_waiting);
   if (audience)
     mapper.after_tracking = [audience](const auto& frame) { audience->after_tracking(frame); };
+  mapper.start();
   if (camera) camera->start();
   LiveRunResult live = target.repeated.empty()
                            ? feed(mapper, inputs, fps, intake)

@@ -181,6 +181,17 @@ void print_tracking(const TrackingRun& tracking) {
         tracking.loops.closed, 100 * tracking.loops.furthest_m, 100 * tracking.loops.fused_share);
 }
 
+/// What a further visit to a place found.
+void print_changes(const std::filesystem::path& map, const MapHistory& history) {
+  if (history.visits.size() < 2) return;
+  std::map<ObjectEventKind, int> counts;
+  for (const ObjectEvent& event : history.events)
+    if (event.visit == static_cast<int>(history.visits.size())) ++counts[event.kind];
+  std::printf("visit %zu: %d moved, %d gone, %d new; `ovimap info %s --history` tells which\n",
+              history.visits.size(), counts[ObjectEventKind::kMoved],
+              counts[ObjectEventKind::kGone], counts[ObjectEventKind::kAppeared], map.c_str());
+}
+
 bool masks_all_absent(const MappingRun& run) {
   return run.masks_wanted && run.document.mask_frames == 0;
 }
@@ -260,6 +271,7 @@ void print_run(const std::filesystem::path& map, const MappingRun& run, double f
   if (tiles.evicted > 0)
     std::printf("%zu tiles left memory on the way, %zu came back; peak memory %.0f MB\n",
                 tiles.evicted, tiles.loaded, peak_rss_mb());
+  print_changes(map, run.document.history);
   if (!run.document.movers.empty())
     std::printf("%zu things moved while they were seen\n", run.document.movers.size());
   if (run.people_frames) std::printf("left out people in %zu frames\n", *run.people_frames);

@@ -5,6 +5,7 @@
 
 #include "apps/command/box_json.h"
 #include "apps/command/command.h"
+#include "apps/command/save_again.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/frames/recording/number_text.h"
 #include "ovimap/image/codec.h"
@@ -231,8 +232,8 @@ int merge(const CompareOptions& options) {
     alignment = find_alignment(options, seen_a, seen_b);
   }
   refuse_contradiction(alignment);
-  const MapMerge merged = merge_maps(load_map(options.a), b, alignment.a_from_b);
-  save_map(options.out, merged.map);
+  MapMerge merged = merge_maps(load_map(options.a), b, alignment.a_from_b);
+  save_again(options.a, options.out, merged.map);
   const std::size_t objects = read_map_info(options.out).instances.size();
   if (options.json) {
     nlohmann::json pairs = nlohmann::json::array(), conflicts = nlohmann::json::array();

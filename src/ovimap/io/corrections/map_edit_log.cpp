@@ -92,6 +92,13 @@ MapEdits effective_edits(const MapEdits& log) {
   return marked;
 }
 
+std::set<InstanceId> corrected_instances(const MapEdits& log, const InstanceAliases& aliases) {
+  std::set<InstanceId> corrected;
+  for (const MapEdit& edit : effective_edits(log))
+    for (const InstanceId id : edit.instances) corrected.insert(resolve_alias(aliases, id));
+  return corrected;
+}
+
 void mark_undone(MapEdits& log) {
   std::map<std::int64_t, std::int64_t> undone_by;
   for (auto edit = log.rbegin(); edit != log.rend(); ++edit) {

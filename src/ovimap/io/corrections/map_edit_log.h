@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <set>
 #include <string>
 
+#include "ovimap/instance/instance_aliases.h"
 #include "ovimap/io/map_tables/map_edit.h"
 
 namespace SQLite {
@@ -21,6 +23,9 @@ std::string edit_arguments_json(const MapEdit& edit);
 
 /// Which edits have an effect, undone ones and undos left out, oldest first.
 MapEdits effective_edits(const MapEdits& log);
+
+/// What effective edits speak of, by the ids that stand for them.
+std::set<InstanceId> corrected_instances(const MapEdits& log, const InstanceAliases& aliases);
 
 /// Sets undone_by throughout.
 void mark_undone(MapEdits& log);

@@ -134,8 +134,10 @@ void replace_taught_things(const fs::path& file, const std::string& map,
   for (const TaughtThing& thing : things) lines.push_back(json_of(thing));
   // A line a thing, so that people can look through it and delete what they like.
   std::string text = concat("{\"format\":", kFormat, ",\"things\":[");
-  for (std::size_t i = 0; i < lines.size(); ++i)
-    text += concat(i == 0 ? "\n" : ",\n", lines[i].dump());
+  constexpr int kOneLine = -1;
+  for (std::size_t i = 0; i < lines.size(); ++i)  // paths need not be UTF-8
+    text += concat(i == 0 ? "\n" : ",\n",
+                   lines[i].dump(kOneLine, ' ', false, json::error_handler_t::replace));
   write_whole(file, text + "\n]}\n");
 }
 

@@ -41,11 +41,15 @@ std::vector<std::string> carry_later_edits(const MapEdits& log, MapDocument& doc
       std::mismatch(log.begin(), log.end(), document.edits.begin(), document.edits.end(), same)
           .first;
   std::vector<std::string> lost;
+  const std::int64_t first_later = later == log.end() ? 0 : later->id;
   std::map<std::int64_t, std::int64_t> ids;    // in the document, by what they are in the file
   std::map<InstanceId, InstanceId> split_off;  // likewise
   for (; later != log.end(); ++later) {
     MapEdit edit = *later;
-    if (const auto found = ids.find(edit.undoes); found != ids.end()) edit.undoes = found->second;
+    if (const auto found = ids.find(edit.undoes); found != ids.end())
+      edit.undoes = found->second;
+    else if (edit.undoes >= first_later)
+      continue;  // undoes what was lost
     for (InstanceId& id : edit.instances)
       if (const auto found = split_off.find(id); found != split_off.end()) id = found->second;
     try {

@@ -50,15 +50,7 @@ LiveMapper::LiveMapper(const MapperConfig& config, const LiveConfig& live,
       incoming_(static_cast<std::size_t>(live.queue)),
       prepared_(1),
       wanted_masks_(1),
-      found_masks_(1),
-      preparing_([this] { run_stage([this] { prepare_frames(); }); }),
-      fusing_([this] {
-        run_stage([this] { fuse_frames(); });
-        const std::lock_guard lock(mutex_);
-        fused_ = true;
-        fusing_ends_.notify_all();
-      }),
-      masking_([this] { run_stage([this] { find_masks(); }); }) {}
+      found_masks_(1) {}
 
 LiveMapper::~LiveMapper() {
   cancel();
@@ -66,7 +58,20 @@ LiveMapper::~LiveMapper() {
 
 // ----------------------------------------------------------------------------------- from outside
 
+void LiveMapper::start() {
+  if (std::exchange(started_, true)) return;
+  preparing_ = std::thread([this] { run_stage([this] { prepare_frames(); }); });
+  masking_ = std::thread([this] { run_stage([this] { find_masks(); }); });
+  fusing_ = std::thread([this] {
+    run_stage([this] { fuse_frames(); });
+    const std::lock_guard lock(mutex_);
+    fused_ = true;
+    fusing_ends_.notify_all();
+  });
+}
+
 bool LiveMapper::push(Frame frame) {
+  start();
   rethrow_failure();
   const bool taken =
       incoming_.try_push({std::make_shared<const Frame>(std::move(frame)), Clock::now()});
@@ -77,6 +82,7 @@ bool LiveMapper::push(Frame frame) {
 }
 
 void LiveMapper::push_and_wait(Frame frame) {
+  start();
   const bool taken =
       incoming_.push({std::make_shared<const Frame>(std::move(frame)), Clock::now()});
   rethrow_failure();
@@ -86,11 +92,13 @@ void LiveMapper::push_and_wait(Frame frame) {
 }
 
 void LiveMapper::move_and_wait(PoseUpdate update) {
+  start();
   incoming_.push({nullptr, Clock::now(), std::make_shared<const PoseUpdate>(std::move(update))});
   rethrow_failure();
 }
 
 void LiveMapper::drain(const std::function<bool()>& go_on) {
+  start();
   incoming_.close();
   const auto ended = [&] {
     std::unique_lock lock(mutex_);

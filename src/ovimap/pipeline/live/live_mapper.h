@@ -76,6 +76,10 @@ class LiveMapper {
   /// Finds the poses of the frames instead of taking theirs. Before the first push only.
   void track_with(std::shared_ptr<PoseFinder> finder) { finder_ = std::move(finder); }
 
+  /// Starts the threads, so that `while_waiting` is called before a frame comes. The first push
+  /// does it otherwise; all that has to be set before is set by then.
+  void start();
+
   /// Takes a frame without waiting; false when it had to be dropped. Throws what a stage threw.
   bool push(Frame frame);
   /// Waits for room instead. Throws what a stage threw.
@@ -211,7 +215,8 @@ class LiveMapper {
   bool fused_ = false;  ///< the fusing thread has ended
   std::condition_variable fusing_ends_;
 
-  std::thread preparing_, fusing_, masking_;  // last: they start when everything else is there
+  bool started_ = false;
+  std::thread preparing_, fusing_, masking_;
 };
 
 }  // namespace ovimap

@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/pipeline/sequence/map_description.h"
 
-#include <set>
-
-#include "ovimap/instance/instance_aliases.h"
 #include "ovimap/instance/instance_mesh.h"
 #include "ovimap/instance/object_boxes.h"
 #include "ovimap/io/corrections/map_edit_log.h"
@@ -24,11 +21,8 @@ std::vector<InstanceSummary> summarize_objects(const SurfaceExtents& extents,
                                                const InstanceRegistry& registry,
                                                const InstanceSummaryConfig& config,
                                                const MapEdits& edits) {
-  std::set<InstanceId> corrected;
-  for (const MapEdit& edit : effective_edits(edits))
-    for (const InstanceId id : edit.instances)
-      corrected.insert(resolve_alias(registry.aliases(), id));
-  return summarize_instances(extents, forest, registry, config, corrected);
+  return summarize_instances(extents, forest, registry, config,
+                             corrected_instances(edits, registry.aliases()));
 }
 
 void describe_map(const VoxelMap& map, const InstanceRegistry& registry,

@@ -255,7 +255,7 @@ void ServedMap::teach_names() {
   try {
     teach(config_.taught, path_, *snapshot()->objects);
     now.fault.clear();
-  } catch (const Error& error) {
+  } catch (const std::exception& error) {
     now.fault = error.what();
   }
   show(now);
@@ -294,11 +294,16 @@ MapEdit ServedMap::correct(MapEdit edit) {
   } else {
     require_same_map(path_, found_->info);
     edit = edit_map(path_, std::move(edit));
-    log_ = read_edits(path_);  // with what other programs wrote
   }
-  learn_names();
-  rebuild();
-  teach_names();
+  try {
+    if (!found_->live) log_ = read_edits(path_);  // with what other programs wrote
+    learn_names();
+    rebuild();
+    teach_names();
+  } catch (const std::exception&) {  // it is kept, and shown when the file is looked at again
+    if (!found_->live) log_.clear();
+    written_ = {};
+  }
   return edit;
 }
 
