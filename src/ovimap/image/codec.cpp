@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/image/codec.h"
+#include "ovimap/image/image_size.h"
 
 #include <cstdlib>
 #include <memory>
@@ -94,18 +95,27 @@ RgbImage decode_png_rgb(std::span<const std::uint8_t> bytes, std::optional<Image
   return image;
 }
 
-RgbImage decode_jpeg(std::span<const std::uint8_t> bytes, std::optional<ImageSize> expected) {
-  const JpegHandle handle(tjInitDecompress(), &tjDestroy);
+JpegHandle open_jpeg(std::span<const std::uint8_t> bytes, ImageSize& found,
+                     std::optional<ImageSize> expected) {
+  JpegHandle handle(tjInitDecompress(), &tjDestroy);
   if (!handle) throw std::bad_alloc();
-  const auto size = static_cast<unsigned long>(bytes.size());
-  int width = 0, height = 0, sampling = 0, colorspace = 0;
-  if (tjDecompressHeader3(handle.get(), bytes.data(), size, &width, &height, &sampling,
-                          &colorspace) != 0)
+  int sampling = 0, colorspace = 0;
+  if (tjDecompressHeader3(handle.get(), bytes.data(), static_cast<unsigned long>(bytes.size()),
+                          &found.width, &found.height, &sampling, &colorspace) != 0)
     throw Error(concat("is a damaged JPEG (", tjGetErrorStr2(handle.get()), ")"));
-  const auto columns = static_cast<std::uint64_t>(width), rows = static_cast<std::uint64_t>(height);
+  const auto columns = static_cast<std::uint64_t>(found.width),
+             rows = static_cast<std::uint64_t>(found.height);
   check_size(columns, rows, expected);
   // Each 8x8 block takes a bit at least.
   if (columns * rows / (64 * 8) > bytes.size()) throw Error("is a truncated JPEG");
+  return handle;
+}
+
+RgbImage decode_jpeg(std::span<const std::uint8_t> bytes, std::optional<ImageSize> expected) {
+  ImageSize found;
+  const JpegHandle handle = open_jpeg(bytes, found, expected);
+  const auto size = static_cast<unsigned long>(bytes.size());
+  const auto [width, height] = found;
   RgbImage image(width, height);
   auto* pixels = reinterpret_cast<unsigned char*>(image.data());
   if (tjDecompress2(handle.get(), bytes.data(), size, pixels, width, 0, height, TJPF_RGB,
@@ -159,6 +169,20 @@ auto read_named(const std::filesystem::path& path, Decode&& decode) {
 }
 
 }  // namespace
+
+ImageSize image_size(std::span<const std::uint8_t> bytes) {
+  ImageSize found;
+  if (is_png(bytes)) {
+    spng_ihdr header{};
+    open_png(bytes, header, std::nullopt);
+    found = {static_cast<int>(header.width), static_cast<int>(header.height)};
+  } else if (is_jpeg(bytes)) {
+    open_jpeg(bytes, found, std::nullopt);
+  } else {
+    throw Error(unknown_format(bytes, "a PNG or JPEG"));
+  }
+  return found;
+}
 
 RgbImage decode_rgb(std::span<const std::uint8_t> bytes, std::optional<ImageSize> expected) {
   if (is_png(bytes)) return decode_png_rgb(bytes, expected);

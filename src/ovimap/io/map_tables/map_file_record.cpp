@@ -215,15 +215,20 @@ void read_instances(SQLite::Database& database, MapRecord& record, const Instanc
     instance.id = rows.integer<InstanceId>();
     for (Eigen::Vector3f* corner : {&instance.box.min(), &instance.box.max(), &instance.centroid})
       for (float& coordinate : *corner) coordinate = static_cast<float>(rows.real());
+    if (!instance.box.min().allFinite() || !instance.box.max().allFinite() ||
+        !instance.centroid.allFinite())
+      rows.fail("has an object whose place is not finite");
     instance.points = rows.integer<std::size_t>();
     instance.views = rows.integer<int>();
     instances.emplace(instance.id, std::move(instance));
   }
+  std::set<Label> owned;
   RowReader super_points(database, tables.super_points);
   while (super_points.next()) {
     const auto found = instances.find(super_points.integer<InstanceId>());
     const auto label = super_points.integer<Label>();
     if (found == instances.end()) super_points.fail("names an instance that is not there");
+    if (!owned.insert(label).second) super_points.fail("gives a super-point to two instances");
     found->second.super_points.push_back(label);
   }
   read_confidences(database, tables.confidences, instances);
@@ -247,6 +252,8 @@ void read_frames(SQLite::Database& database, MapRecord& record) {
     if (pose.size() != pose_bytes(frame.world_from_camera).size())
       rows.fail(concat("has a pose of ", pose.size(), " bytes"));
     frame.world_from_camera = pose_from(pose);
+    if (!(frame.world_from_camera.matrix().cwiseAbs().array() <= double{kFurthest_m}).all())
+      rows.fail("has a pose out of all reach");
     frame.labelled = rows.integer<int>() != 0;
     record.frames.push_back(std::move(frame));
   }

@@ -176,8 +176,9 @@ std::vector<Eigen::Vector3f> take_surface(RowReader& rows) {
   if (bytes.size() <= kBoxBytes || (bytes.size() - kBoxBytes) % kPointBytes != 0)
     rows.fail(concat("has a surface of ", bytes.size(), " bytes"));
   const Eigen::AlignedBox3f box = box_of_words(bytes.first(kBoxBytes), rows);
-  if (!box.min().allFinite() || !box.sizes().allFinite())
-    rows.fail("has a surface that is not finite");
+  if (!((box.min().cwiseAbs().array() <= kFurthest_m).all() &&
+        (box.max().cwiseAbs().array() <= kFurthest_m).all()))
+    rows.fail("has a surface out of all reach");
   return points_of(words_of<std::uint16_t>(bytes.subspan(kBoxBytes), rows), box);
 }
 

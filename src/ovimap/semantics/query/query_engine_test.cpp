@@ -221,6 +221,10 @@ TEST_F(QueryEngineTest, RefusesBadInput) {
   EXPECT_THROW(engine.find({" , ", {}}), Error);
   EXPECT_THROW(engine.find({std::string(10000, 'a'), {}}), Error);
   EXPECT_THROW(engine.find({"mug", {""}}), Error);
+  std::string many = "mug";
+  for (int i = 0; i < 63; ++i) many += ",mug";
+  EXPECT_NO_THROW(engine.find({many, {}}));
+  EXPECT_THROW(engine.find({many, {"chair"}}), Error) << "64 things are enough";
   const SearchIndex bare = map_of({"", ""});
   EXPECT_THROW(QueryEngine(bare, &encoder_), Error);
   EXPECT_THROW(QueryEngine(SearchIndex(), &encoder_), Error);

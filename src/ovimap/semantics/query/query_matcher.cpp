@@ -15,6 +15,8 @@ namespace ovimap {
 
 namespace {
 
+constexpr std::size_t kMostTexts = 64;  // of one question: each is encoded, and held against all
+
 std::vector<std::string> prompts_of(const ImageTextEncoder& encoder, const QueryConfig& config) {
   return split_prompts(config.prompts.empty() ? encoder.prompt_template() : config.prompts);
 }
@@ -150,6 +152,9 @@ MatchScores TextMatcher::match(const std::vector<std::string>& terms,
   OVIMAP_ASSERT(!terms.empty());
   std::vector<std::string> texts = terms;
   texts.insert(texts.end(), negatives.begin(), negatives.end());
+  if (texts.size() > kMostTexts)
+    throw Error(concat("a question of ", texts.size(), " things is too long; ask for at most ",
+                       kMostTexts, " at once, what it must not be included"));
   const Embeddings rows = encode_prompted(encoder_, texts, prompts_);
   for (std::size_t i = 0; i < texts.size(); ++i)
     if (rows.row(static_cast<Eigen::Index>(i)).isZero(0.f))

@@ -24,7 +24,14 @@ Footprint footprint_of(const std::vector<Eigen::Vector3f>& points, float radius_
   for (const Eigen::Vector2f& corner : convex_hull(std::move(flat)))
     for (const float x : {-radius_m, radius_m})
       for (const float y : {-radius_m, radius_m}) corners.push_back(corner + Eigen::Vector2f(x, y));
-  return convex_hull(std::move(corners));
+  Footprint hull = convex_hull(std::move(corners));
+  // Relations take the corners of both for each pair. A thing that maps see has some dozens.
+  constexpr std::size_t kMostCorners = 256;
+  if (hull.size() <= kMostCorners) return hull;
+  Footprint fewer;
+  for (std::size_t i = 0; i < kMostCorners; ++i)
+    fewer.push_back(hull[i * hull.size() / kMostCorners]);
+  return fewer;
 }
 
 /// Distance to the interval [low, high].

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/semantics/relations/object_shapes.h"
 
+#include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
@@ -40,6 +42,20 @@ TEST(ShapesOfInstances, TakeAnObjectWithoutBoxForItsCentroid) {
   EXPECT_NEAR(shapes[0].bottom_m, 3.f, 0.01f);
   EXPECT_NEAR(shapes[0].height_m(), 0.f, 0.02f);
   EXPECT_LT(area_m2(shapes[0].footprint), 0.001f);
+}
+
+TEST(ShapesOfInstances, HaveFewCornersHoweverTheirPointsLie) {
+  constexpr int kPoints = 20000;
+  std::vector<Eigen::Vector3f> circle;
+  for (int i = 0; i < kPoints; ++i) {
+    const float turn = 2.f * std::numbers::pi_v<float> * static_cast<float>(i) / kPoints;
+    circle.emplace_back(3.f * std::cos(turn), 3.f * std::sin(turn), 1.f);
+  }
+  std::vector<InstanceSummary> instances(1);
+  instances[0].id = 1;
+  const auto shapes = shapes_of_instances(Eigen::Vector3f::UnitZ(), instances, {{1, circle}});
+  EXPECT_LE(shapes[0].footprint.size(), 256u);
+  EXPECT_NEAR(area_m2(shapes[0].footprint), 9.f * std::numbers::pi_v<float>, 0.1f);
 }
 
 TEST(ObjectShapes, ReadSurfacesWhenTheyAreAskedForAndOnce) {

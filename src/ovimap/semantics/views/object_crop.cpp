@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "ovimap/base/config.h"
+#include "ovimap/image/image_size.h"
 #include "ovimap/image/resize.h"
 
 namespace ovimap {
@@ -141,8 +142,12 @@ StoredCrop store_crop(const ObjectCrop& crop, const CropConfig& config) {
 }
 
 ObjectCrop restore_crop(const StoredCrop& stored) {
-  ObjectCrop crop{decode_rgb(stored.image_jpeg), {}, stored.object_px};
-  const GrayPng mask = decode_gray(stored.mask_png);
+  constexpr std::int64_t kMostPixels = 1 << 24;  // of a map from anywhere
+  const ImageSize size = image_size(stored.image_jpeg);
+  if (std::int64_t{size.width} * size.height > kMostPixels)
+    throw Error(concat("a stored crop of ", size.width, "x", size.height, " is too large"));
+  ObjectCrop crop{decode_rgb(stored.image_jpeg, size), {}, stored.object_px};
+  const GrayPng mask = decode_gray(stored.mask_png, size);
   const Eigen::AlignedBox2i whole = image_box(crop.image.width(), crop.image.height());
   if (!mask.values.same_size(crop.image) || stored.object_px.isEmpty() ||
       !whole.contains(stored.object_px))
