@@ -56,12 +56,18 @@ std::vector<Candidate> candidates_near(const PassableCells& cells,
     }
   std::vector<Candidate> fewer = near;
   for (int spacing = 2; fewer.size() > kMostCandidates; ++spacing) {
-    fewer.clear();
+    std::vector<Candidate> apart;
     for (const Candidate& candidate : near)
       if (candidate.cell.x() % spacing == 0 && candidate.cell.y() % spacing == 0)
-        fewer.push_back(candidate);
+        apart.push_back(candidate);
+    if (apart.empty()) break;  // a passage that is narrower than that
+    fewer = std::move(apart);
   }
-  return fewer;
+  const std::size_t step = 1 + fewer.size() / (kMostCandidates + 1);
+  if (step == 1) return fewer;
+  std::vector<Candidate> few;
+  for (std::size_t i = 0; i < fewer.size(); i += step) few.push_back(fewer[i]);
+  return few;
 }
 
 /// What a camera over the candidate sees of the samples, turned to their middle.

@@ -208,6 +208,9 @@ Eigen::Vector2f middle_of_cell(const Eigen::Vector2f& origin, float cell_m, int 
 
 GridSlice band_of(const OccupancyGrid& grid, float low_m, float high_m,
                   const OccupancyConfig& config) {
+  if (!(low_m <= high_m))
+    throw Error(
+        concat("a band from ", low_m, " to ", high_m, " m is empty; name the lower height first"));
   GridSlice slice = empty_slice(grid, low_m, high_m);
   const int first = std::clamp(layer_at(grid, low_m), 0, grid.size.z() - 1),
             last = std::clamp(layer_at(grid, high_m), first, grid.size.z() - 1);

@@ -79,6 +79,8 @@ TEST_F(OccupancyGridTest, RefusesWhatCannotBe) {
   config_.cell_m = 0.001f;
   EXPECT_THROW(make_occupancy_grid(document_, config_), Error);
   EXPECT_THROW(make_occupancy_grid(MapDocument()), Error);
+  config_.cell_m = 0.1f;
+  EXPECT_THROW(band_of(make_occupancy_grid(document_, config_), 0.2f, 0.05f, config_), Error);
 }
 
 }  // namespace

@@ -46,6 +46,8 @@ PoseCorrection correct_poses(MapDocument& document, const std::vector<Pose>& pos
   for (std::size_t i = 0; i < poses.size(); ++i)
     document.frames[i].world_from_camera = change.after[i];
   document.live_steps.clear();  // which would make the map as it was
+  document.seen_free.clear();   // by the old poses
+  document.movers.clear();
   const FusedAgain done = fuse_moved(document.map, document.kept_frames, change, config,
                                      document.depth_camera, progress);
   correction.refused = done.frames;

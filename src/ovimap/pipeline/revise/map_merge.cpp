@@ -280,6 +280,7 @@ MapMerge merge_maps(MapDocument a, const MapDocument& b, const Pose& a_from_b,
   append_edits(a.edits, b.edits, by);
   log_pairs(result.pairs, a.edits);
   a.timings.clear();
+  a.live_steps.clear();  // they made a part of it
   result.map = std::move(a);
   return result;
 }

@@ -64,13 +64,13 @@ TimeAsked day_before(double now_s, int days) {
 /// Takes a number of `digits` digits and what must follow it off the front.
 std::optional<int> take_number(std::string_view& text, std::size_t least, std::size_t most,
                                std::string_view mark) {
-  int number = 0;
+  unsigned number = 0;  // which takes no sign
   const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), number);
   const auto length = static_cast<std::size_t>(end - text.data());
   if (fault != std::errc() || length < least || length > most) return std::nullopt;
   if (text.substr(length, mark.size()) != mark) return std::nullopt;
   text.remove_prefix(length + mark.size());
-  return number;
+  return static_cast<int>(number);
 }
 
 /// "9:30" or "09:30:15" into the hours of `local`; how long that lasts, in seconds.

@@ -96,6 +96,7 @@ TEST(TimeWords, OtherWordsAreNoTimes) {
                            "two mugs ago",
                            "evening",
                            "2026-03-14x",
+                           "2026-03-14 -1:30",
                            "visit 99999999999"})
     EXPECT_FALSE(read_time(text)) << text;
 }

@@ -124,7 +124,7 @@ PhraseMatch PhraseSearch::match_parts(const QueryPhrase& phrase,
   const QueryParts& parts = *scene_.parts;
   std::vector<bool> of_anchor(parts.index.size());
   for (std::size_t p = 0; p < parts.index.size(); ++p)
-    of_anchor[p] = anchors.score(parts.owners[p]) > 0.f;
+    of_anchor[p] = anchors.score(parts.owners[p]) > 0.f && may_be(parts.owners[p], Role::kThing);
   QueryPhrase part = phrase;
   part.relation.reset();
   part.anchors.clear();

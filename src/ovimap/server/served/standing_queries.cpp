@@ -160,7 +160,7 @@ StandingQueries::Asked StandingQueries::ask(const std::string& text) const {
       asked.verdict.object = standing_object(answered, answer.matches.front());
   } catch (const SearchUnavailable&) {  // of all texts alike
     throw;
-  } catch (const Error& error) {
+  } catch (const std::exception& error) {  // nobody else is there to tell
     asked.verdict.fault = error.what();
   }
   return asked;
