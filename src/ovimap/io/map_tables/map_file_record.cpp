@@ -252,8 +252,6 @@ void read_frames(SQLite::Database& database, MapRecord& record) {
     if (pose.size() != pose_bytes(frame.world_from_camera).size())
       rows.fail(concat("has a pose of ", pose.size(), " bytes"));
     frame.world_from_camera = pose_from(pose);
-    if (!(frame.world_from_camera.matrix().cwiseAbs().array() <= double{kFurthest_m}).all())
-      rows.fail("has a pose out of all reach");
     frame.labelled = rows.integer<int>() != 0;
     record.frames.push_back(std::move(frame));
   }

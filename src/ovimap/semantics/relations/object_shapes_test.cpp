@@ -55,7 +55,7 @@ TEST(ShapesOfInstances, HaveFewCornersHoweverTheirPointsLie) {
   instances[0].id = 1;
   const auto shapes = shapes_of_instances(Eigen::Vector3f::UnitZ(), instances, {{1, circle}});
   EXPECT_LE(shapes[0].footprint.size(), 256u);
-  EXPECT_NEAR(area_m2(shapes[0].footprint), 9.f * std::numbers::pi_v<float>, 0.1f);
+  EXPECT_NEAR(area_m2(shapes[0].footprint), 9.f * std::numbers::pi_v<float>, 0.2f);
 }
 
 TEST(ObjectShapes, ReadSurfacesWhenTheyAreAskedForAndOnce) {
