@@ -38,8 +38,7 @@ struct BegunRun {
 
 /// A new map in the place of one that people corrected would lose what they did.
 void refuse_to_replace_corrections(const RunTarget& target) {
-  if (target.resume || target.map == target.continued || !std::filesystem::exists(target.map))
-    return;
+  if (target.resume || !replaces_a_map(target)) return;
   const std::size_t corrections = effective_edits(read_edits(target.map)).size();
   if (corrections > 0)
     throw Error(concat("'", target.map.string(), "' has ", corrections,
@@ -281,6 +280,12 @@ LiveRunResult feed(LiveMapper& mapper, const MappingInputs& inputs, double fps,
 }
 
 }  // namespace
+
+bool replaces_a_map(const RunTarget& target) {
+  const bool goes_on = target.map == target.continued ||
+                       (target.resume && !holds_checkpoint(checkpoint_path(target.map)));
+  return !goes_on && std::filesystem::exists(target.map);
+}
 
 MappingRun map_recording(const MappingOptions& options, const std::string& title,
                          const std::filesystem::path& keep_masks, const RunTarget& target) {

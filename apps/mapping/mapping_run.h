@@ -54,6 +54,9 @@ struct RunTarget {
   std::filesystem::path repeated = {};  ///< the map of a live run, to be made again; map_live alone
 };
 
+/// Whether a map lies there that the run makes anew.
+bool replaces_a_map(const RunTarget& target);
+
 /// Opens what the options name and maps it, with progress under `title`; Ctrl-C ends it early with
 /// what was mapped so far. `keep_masks`: folder in which masks are kept and looked for; empty:
 /// nowhere. Throws what the parts throw, and Error when an unfinished run left a checkpoint that

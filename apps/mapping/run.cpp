@@ -45,17 +45,6 @@ void check_for_camera(const RunOptions& options) {
   refuse(!options.pictures.empty(), "--pictures");
 }
 
-bool has_checkpoint(const RunOptions& options) {
-  return holds_checkpoint(checkpoint_path(options.map));
-}
-
-/// Whether a map is there that this run makes anew.
-bool replaces_a_map(const RunOptions& options) {
-  const bool goes_on =
-      options.map == options.continued || (options.resume && !has_checkpoint(options));
-  return !goes_on && std::filesystem::exists(options.map);
-}
-
 MappingRun map_source(const RunOptions& options, const RunTarget& target,
                       std::optional<CameraRun>& camera) {
   if (camera)
@@ -77,11 +66,12 @@ int run(RunOptions options) {
   std::optional<CameraRun> camera;
   if (names_camera(options.mapping.source))
     check_for_camera(options), camera.emplace(options.mapping);
-  const bool replaces = replaces_a_map(options);
+  const bool replaces = replaces_a_map(target);
   MappingRun mapped = map_source(options, target, camera);
   if (interrupted() && replaces && !mapped.live)
-    throw Error(concat("interrupted; '", options.map.string(), "' is the map that was there before",
-                       has_checkpoint(options) ? "; --resume goes on with this run" : ""));
+    throw Error(concat(
+        "interrupted; '", options.map.string(), "' is the map that was there before",
+        holds_checkpoint(checkpoint_path(options.map)) ? "; --resume goes on with this run" : ""));
   const double fps = camera ? sent_fps(*mapped.live) : options.fps;
   report_faults(mapped);
   save_again(target.continued, target.map, mapped.document);

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/image/codec.h"
-#include "ovimap/image/image_size.h"
 
 #include <cstdlib>
 #include <memory>

@@ -24,6 +24,8 @@ struct ImageSize {
 /// size than `expected`, which is found before any pixel is decoded).
 RgbImage read_rgb(const std::filesystem::path& path);
 RgbImage decode_rgb(std::span<const std::uint8_t> bytes, std::optional<ImageSize> expected = {});
+/// Its size, from its head alone.
+ImageSize image_size(std::span<const std::uint8_t> bytes);
 
 /// A single-channel PNG with its values as stored, 8 or 16 bits.
 struct GrayPng {

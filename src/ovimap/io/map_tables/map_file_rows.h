@@ -27,9 +27,6 @@ struct MapTable {
   const char* options = "";
 };
 
-/// Poses lie within 10 km (pose_fault): what lies farther off than this is damage.
-constexpr float kFurthest_m = 1e5f;
-
 namespace map_tables {
 inline constexpr MapTable kMeta{"meta", "key, value", "key TEXT PRIMARY KEY, value TEXT NOT NULL",
                                 "WITHOUT ROWID"};

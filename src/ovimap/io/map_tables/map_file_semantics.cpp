@@ -172,6 +172,7 @@ Bytes surface_bytes(const std::vector<Eigen::Vector3f>& points) {
 }
 
 std::vector<Eigen::Vector3f> take_surface(RowReader& rows) {
+  constexpr float kFurthest_m = 1e5f;  // poses lie within 10 km (pose_fault)
   const std::span<const std::uint8_t> bytes = rows.blob();
   if (bytes.size() <= kBoxBytes || (bytes.size() - kBoxBytes) % kPointBytes != 0)
     rows.fail(concat("has a surface of ", bytes.size(), " bytes"));

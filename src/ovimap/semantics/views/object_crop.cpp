@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "ovimap/base/config.h"
-#include "ovimap/image/image_size.h"
+#include "ovimap/image/codec.h"
 #include "ovimap/image/resize.h"
 
 namespace ovimap {
@@ -149,9 +149,8 @@ ObjectCrop restore_crop(const StoredCrop& stored) {
   ObjectCrop crop{decode_rgb(stored.image_jpeg, size), {}, stored.object_px};
   const GrayPng mask = decode_gray(stored.mask_png, size);
   const Eigen::AlignedBox2i whole = image_box(crop.image.width(), crop.image.height());
-  if (!mask.values.same_size(crop.image) || stored.object_px.isEmpty() ||
-      !whole.contains(stored.object_px))
-    throw Error("the mask or box of a stored crop does not fit its image");
+  if (stored.object_px.isEmpty() || !whole.contains(stored.object_px))
+    throw Error("the box of a stored crop does not fit its image");
   crop.mask = Image<std::uint8_t>(crop.image.width(), crop.image.height());
   std::transform(mask.values.begin(), mask.values.end(), crop.mask.begin(),
                  [](std::uint16_t value) { return static_cast<std::uint8_t>(value != 0); });

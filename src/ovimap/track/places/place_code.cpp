@@ -123,7 +123,7 @@ std::vector<std::size_t> most_similar(const PlaceCode& code, const std::vector<P
 
 Pose turn_between(const TrackPyramid& reference, const TrackPyramid& frame) {
   const TrackLevel &a = reference.back(), &b = frame.back();
-  if (a.intensity.width() != b.intensity.width() || a.intensity.height() != b.intensity.height())
+  if (!a.intensity.same_size(b.intensity))
     return Pose::Identity();  // of two cameras: nothing is known of the turn
   const Image<float> small_a = halved_intensity(a.intensity),
                      small_b = halved_intensity(b.intensity);
