@@ -215,6 +215,10 @@ TEST_F(ProgramTest, SaysWhatIsWrongWithTheCommandLine) {
                    {"'--weather' is no option of check; `ovimap check --help` lists them"});
   expect_complaint("run recording a.ovimap",
                    {"'a.ovimap' is one argument too many", "-o a.ovimap"});
+  expect_complaint("edit room.ovimap rename 1 tea pot",
+                   {"'pot' is one argument too many", "quotes"});
+  expect_complaint("query room.ovimap --like foo", {"--like = foo is no number"});
+  expect_complaint("rnu recording", {"did you mean 'run'?"});
   expect_complaint("edit room.ovimap renam 1 cup", {"'renam'", "edit", "did you mean 'rename'"});
   expect_complaint("models verfy x", {"'verfy'", "did you mean 'verify'"});
   expect_complaint("models", {"say what models is to do: list, fetch, try, hub, verify, path;"});

@@ -3,6 +3,7 @@
 #include "usage_fault.h"
 
 #include <algorithm>
+#include <string_view>
 
 #include "ovimap/base/edit_distance.h"
 #include "ovimap/base/error.h"
@@ -92,17 +93,31 @@ std::string action_fault(const CLI::App& command, const CLI::ParseError& error,
                 " --help` explains each");
 }
 
-/// A file to write without the -o that says so; empty when it is something else.
-std::string output_fault(const CLI::App& command, const CLI::ParseError& error) {
-  const std::vector<std::string> extra = command.remaining();
+bool writes_a_file(const CLI::App& command) {
   const std::vector<const CLI::Option*> options = command.get_options();
-  const bool writes = std::any_of(options.begin(), options.end(),
-                                  [](const auto* option) { return option->check_sname("o"); });
-  if (extra.empty() || !writes || dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr)
-    return {};
-  return concat("'", extra.front(), "' is one argument too many; if ", command.get_name(),
-                " shall write it, say -o ", extra.front(), "; see `ovimap ", command.get_name(),
+  return std::any_of(options.begin(), options.end(),
+                     [](const auto* option) { return option->check_sname("o"); });
+}
+
+/// Arguments that nothing takes: a file to write without the -o that says so, or words without
+/// quotes around them; empty when it is something else.
+std::string extra_fault(const CLI::App& command, const CLI::ParseError& error) {
+  const std::vector<std::string> extra = command.remaining(true);
+  if (extra.empty() || dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr) return {};
+  const std::string& name = command.get_name();
+  const std::string remedy = writes_a_file(command)
+                                 ? concat("if ", name, " shall write it, say -o ", extra.front())
+                                 : std::string("words that belong together stand in quotes");
+  return concat("'", extra.front(), "' is one argument too many; ", remedy, "; see `ovimap ", name,
                 " --help`");
+}
+
+/// What the parser says, in our words where its own are hard to read.
+std::string parser_fault(const CLI::ParseError& error) {
+  constexpr std::string_view kUnread = "Could not convert: ";
+  const std::string said = error.what();
+  if (!said.starts_with(kUnread)) return said;
+  return concat(said.substr(kUnread.size()), " is no number");
 }
 
 }  // namespace
@@ -118,8 +133,8 @@ std::string usage_fault(const CLI::App& app, const CLI::ParseError& error,
   if (const std::string fault = option_fault(command, arguments); !fault.empty()) return fault;
   if (const std::string fault = action_fault(command, error, arguments); !fault.empty())
     return fault;
-  if (const std::string fault = output_fault(command, error); !fault.empty()) return fault;
-  return concat(error.what(), "; see `ovimap ", first, " --help`");
+  if (const std::string fault = extra_fault(command, error); !fault.empty()) return fault;
+  return concat(parser_fault(error), "; see `ovimap ", first, " --help`");
 }
 
 }  // namespace ovimap::apps

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "ovimap/base/config.h"
+#include "ovimap/base/text/ascii.h"
 
 namespace ovimap {
 
@@ -13,15 +14,18 @@ namespace {
 
 template <class Text>
 std::size_t distance_between(Text a, Text b) {
-  std::vector<std::size_t> row(b.size() + 1);
+  std::vector<std::size_t> last(b.size() + 1), row(b.size() + 1), next(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0]++;
+    next[0] = i + 1;
     for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
+      const std::size_t replaced = row[j] + (a[i] == b[j] ? 0 : 1);
+      next[j + 1] = std::min({replaced, row[j + 1] + 1, next[j] + 1});
+      const bool swapped = i > 0 && j > 0 && a[i] == b[j - 1] && a[i - 1] == b[j];
+      if (swapped) next[j + 1] = std::min(next[j + 1], last[j - 1] + 1);
     }
+    last.swap(row);
+    row.swap(next);
   }
   return row.back();
 }
@@ -36,8 +40,9 @@ std::size_t edit_distance(std::u32string_view a, std::u32string_view b) {
   return distance_between(a, b);
 }
 
-std::string likely_word(std::string_view word, const std::vector<std::string>& candidates) {
+std::string likely_word(std::string_view written, const std::vector<std::string>& candidates) {
   constexpr std::size_t kLettersAMistake = 4, kShortestStart = 3;
+  const std::string word = lower_case(written);
   const std::string nearest = nearest_word(word, candidates);
   if (edit_distance(word, nearest) <= 1 + word.size() / kLettersAMistake) return nearest;
   const auto begun =

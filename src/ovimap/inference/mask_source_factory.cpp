@@ -56,7 +56,7 @@ std::unique_ptr<MaskSource> make_mask_source(const std::string& spec,
   const fs::path path(spec);
   if (fs::is_regular_file(path / "model.yaml")) return open_model(path, config);
   if (fs::is_directory(path)) return std::make_unique<DirMaskSource>(path, context.frames);
-  return open_model(find_model(spec, search_path), config);
+  return open_model(find_model(spec, search_path, {"none", "gt", "sam"}), config);
 }
 
 }  // namespace ovimap

@@ -104,8 +104,9 @@ std::filesystem::path named_model(const std::string& name,
                                   const std::vector<std::filesystem::path>& search_path);
 
 /// The folder of the model called `name`. Throws Error with the folders searched when there is
-/// none.
+/// none, and the model or word of `known` (what else is accepted in its place) that was meant.
 std::filesystem::path find_model(const std::string& name,
-                                 const std::vector<std::filesystem::path>& search_path);
+                                 const std::vector<std::filesystem::path>& search_path,
+                                 std::vector<std::string> known = {});
 
 }  // namespace ovimap

@@ -5,7 +5,9 @@
 #include <cstdlib>
 #include <set>
 #include <sstream>
+#include <utility>
 
+#include "ovimap/base/edit_distance.h"
 #include "ovimap/base/error.h"
 #include "ovimap/base/installation/installed_data.h"
 #include "ovimap/base/listed.h"
@@ -102,13 +104,17 @@ fs::path named_model(const std::string& name, const std::vector<fs::path>& searc
                                                             : find_model(name, search_path);
 }
 
-fs::path find_model(const std::string& name, const std::vector<fs::path>& search_path) {
+fs::path find_model(const std::string& name, const std::vector<fs::path>& search_path,
+                    std::vector<std::string> known) {
   for (const fs::path& place : search_path)
     if (fs::is_regular_file(place / name / "model.yaml")) return place / name;
   const std::string searched =
       listed(search_path, [](const fs::path& place) { return place.string(); });
+  for (ModelListing& model : list_models(search_path)) known.push_back(std::move(model.name));
+  const std::string likely = likely_word(name, known);
   throw Error(
       concat("model '", name, "' was not found in ", searched.empty() ? "any folder" : searched,
+             likely.empty() ? "" : concat(", did you mean '", likely, "'?"),
              "; `ovimap models list` says what is there and what `ovimap models fetch NAME` "
              "gets (in a checkout tools/setup.sh gets the small ones), and --model-dir or "
              "OVIMAP_MODELS name other folders"));
