@@ -66,7 +66,7 @@ class Exports(unittest.TestCase):
                 self.assertEqual(node, "background")
                 continue
             found += 1
-            self.assertEqual(node, f"object {identifier}")
+            self.assertEqual(node, f"{self.objects[identifier]['label'] or 'object'} {identifier}")
             self.assertEqual(extras["box"], self.objects[identifier]["box"])
             world_from_gltf = np.linalg.inv(transform)
             # Geometry keeps world coordinates below the node that turns the world upright.

@@ -19,6 +19,7 @@
 #include "ovimap/io/pictures/pictures.h"
 #include "ovimap/pipeline/grids/grid_files.h"
 #include "ovimap/pipeline/report/map_pictures.h"
+#include "ovimap/pipeline/search/object_labels.h"
 #include "ovimap/pipeline/search/scene_graph.h"
 #include "ovimap/pipeline/search/scene_graph_json.h"
 
@@ -45,6 +46,10 @@ std::vector<ObjectRelation> relations_of(const MapSearch& search) {
   return find_relations(ids_of(search.index), search.scene.shapes.whole());
 }
 
+ObjectLabels labels_in(const MapSearch& search, const ExportOptions& options) {
+  return read_labels(search, options.encoder, options.model_dirs);
+}
+
 /// Rooms, places, objects and relations.
 void export_scene_graph(const ExportOptions& options) {
   const MapSearch search = open_map_search(options.map);
@@ -57,12 +62,15 @@ void export_json(const ExportOptions& options) {
   if (options.what == "semantic") return export_class_json(options);
   if (options.what == "rooms") return export_scene_graph(options);
   const MapSearch search = open_map_search(options.map);
-  write_text(options.out, scene_json(options.map, search.info, relations_of(search)) + "\n");
+  write_text(options.out, scene_json(options.map, search.info, labels_in(search, options),
+                                     relations_of(search)) +
+                              "\n");
 }
 
 void export_csv(const ExportOptions& options) {
-  const MapInfo info = read_map_info(options.map);
-  write_text(options.out, instances_csv(info.instances, info.names));
+  const MapSearch search = open_map_search(options.map);
+  write_text(options.out,
+             instances_csv(search.info.instances, {search.info.names, labels_in(search, options)}));
 }
 
 void export_ply(const ExportOptions& options) {
@@ -76,9 +84,10 @@ void export_ply(const ExportOptions& options) {
 }
 
 void export_glb(const ExportOptions& options) {
+  const ObjectLabels labels = labels_in(open_map_search(options.map), options);
   const MapDocument document = load_corrected_map(options.map);
-  write_glb(options.out, colored_parts(document, options), document.instances, document.names,
-            document.up);
+  write_glb(options.out, colored_parts(document, options), document.instances,
+            {document.names, labels}, document.up);
 }
 
 void export_png(const ExportOptions& options) {
@@ -102,8 +111,9 @@ void export_folder(const ExportOptions& options) {
   const MapDocument document = load_corrected_map(options.map);
   const MapSearch search = open_map_search(options.map);
   const auto relations = relations_of(search);
-  write_object_folder(options.out, document, colored_parts(document, options), relations,
-                      scene_json(options.map, search.info, relations) + "\n");
+  const ObjectLabels labels = labels_in(search, options);
+  write_object_folder(options.out, document, labels, colored_parts(document, options), relations,
+                      scene_json(options.map, search.info, labels, relations) + "\n");
 }
 
 struct Format {

@@ -10,6 +10,7 @@
 #include "ovimap/io/map_file/searchable_map.h"
 #include "ovimap/pipeline/revise/percent_text.h"
 #include "ovimap/pipeline/search/history_dates.h"
+#include "ovimap/pipeline/search/object_labels.h"
 #include "ovimap/pipeline/search/scene_graph.h"
 #include "ovimap/pipeline/sequence/timings_text.h"
 
@@ -48,8 +49,14 @@ HistoryDates dates_of(const std::filesystem::path& path, const MapInfo& map) {
   return {map.history, read_searchable_map(path).frames};
 }
 
+/// The name that people gave, or in brackets what the object looks like.
+std::string shown_title(const ObjectTitles& titles, InstanceId id) {
+  const std::string name = titles.name_of(id), label = titles.label_of(id);
+  return !name.empty() || label.empty() ? name : concat("(", label, ")");
+}
+
 /// A line for each visit, and below it one for each thing that it found changed.
-void print_history(const MapInfo& map, const HistoryDates& dates) {
+void print_history(const MapInfo& map, const ObjectTitles& titles, const HistoryDates& dates) {
   std::vector<MapVisit> visits = map.history.visits;
   if (visits.empty()) visits.push_back({map.source, 0, 0});
   for (std::size_t i = 0; i < visits.size(); ++i) {
@@ -59,9 +66,8 @@ void print_history(const MapInfo& map, const HistoryDates& dates) {
                 static_cast<long long>(end - visits[i].first_frame), visits[i].source.c_str());
     for (const ObjectEvent& event : map.history.events) {
       if (event.visit != visit) continue;
-      const auto name = map.names.find(event.instance);
-      std::printf("%6u  %-24s %s\n", event.instance,
-                  name == map.names.end() ? "" : name->second.c_str(), event_text(event).c_str());
+      std::printf("%6u  %-24s %s\n", event.instance, shown_title(titles, event.instance).c_str(),
+                  event_text(event).c_str());
     }
   }
 }
@@ -112,8 +118,10 @@ int info(const InfoOptions& options) {
   if (options.check || options.recover) return check_file(options);
   const MapInfo map = read_map_info(options.map);
   const TileTraffic tiles = tile_traffic(parse_timings(map.timings));
+  ObjectTitles titles{map.names, {}};
+  if (!map.encoder.name.empty()) titles.labels = read_labels(open_map_search(options.map), "auto");
   if (options.json) {
-    auto document = nlohmann::json::parse(info_json(options.map, map));
+    auto document = nlohmann::json::parse(info_json(options.map, map, titles.labels));
     document["tiles_evicted"] = tiles.evicted;
     document["tiles_loaded"] = tiles.loaded;
     if (!map.history.visits.empty()) add_dates(dates_of(options.map, map), document["history"]);
@@ -121,7 +129,7 @@ int info(const InfoOptions& options) {
     return kDone;
   }
   if (options.history) {
-    print_history(map, dates_of(options.map, map));
+    print_history(map, titles, dates_of(options.map, map));
     return kDone;
   }
   if (options.rooms) {
@@ -144,11 +152,10 @@ int info(const InfoOptions& options) {
   const auto parts = parts_by_object(map.parts, map.instances);
   for (const InstanceSummary& instance : map.instances) {
     const Eigen::Vector3f center = instance.centroid, size = instance.box.sizes();
-    const auto name = map.names.find(instance.id);
     std::printf("%6u  %-24s %8.2f%8.2f%8.2f %8.2f%8.2f%8.2f %8zu %6d %6s\n", instance.id,
-                name == map.names.end() ? "" : name->second.c_str(), double{center.x()},
-                double{center.y()}, double{center.z()}, double{size.x()}, double{size.y()},
-                double{size.z()}, instance.points, instance.views,
+                shown_title(titles, instance.id).c_str(), double{center.x()}, double{center.y()},
+                double{center.z()}, double{size.x()}, double{size.y()}, double{size.z()},
+                instance.points, instance.views,
                 instance.confidence ? percent_text(*instance.confidence).c_str() : "");
     if (const auto of_it = parts.find(instance.id); options.parts && of_it != parts.end())
       print_parts(of_it->second);

@@ -20,6 +20,7 @@
 #include "ovimap/io/map_tables/map_file_record.h"
 #include "ovimap/io/mesh/map_mesh.h"
 #include "ovimap/io/mesh/ply.h"
+#include "ovimap/pipeline/search/object_labels.h"
 #include "ovimap/pipeline/search/teaching.h"
 #include "saved_map.h"
 #include "settings.h"
@@ -160,22 +161,26 @@ void bind_mesh(nb::module_& module) {
       });
 }
 
-std::string objects_json(const SavedMap& map) {
-  const auto relations = find_relations(ids_of(map.index()), map.scene().shapes.whole());
-  return scene_json(map.path(), map.info(), relations) + "\n";
+ObjectTitles titles_of(SavedMap& map) {
+  return {map.info().names, labels_of(map.index(), map.guessed_names())};
 }
 
-void export_map(const SavedMap& map, const std::filesystem::path& out) {
+std::string objects_json(SavedMap& map) {
+  const auto relations = find_relations(ids_of(map.index()), map.scene().shapes.whole());
+  return scene_json(map.path(), map.info(), titles_of(map).labels, relations) + "\n";
+}
+
+void export_map(SavedMap& map, const std::filesystem::path& out) {
   const std::string ending = out.extension().string();
   const MapInfo& info = map.info();
   if (ending == ".ply" || ending == ".glb") {
     const MapDocument document = load_corrected_map(map.path());
     const MeshParts parts = visible_parts(document, map.path());
     if (ending == ".ply") return write_ply(out, parts);
-    return write_glb(out, parts, document.instances, document.names, document.up);
+    return write_glb(out, parts, document.instances, titles_of(map), document.up);
   }
   if (ending == ".json") return write_text(out, objects_json(map));
-  if (ending == ".csv") return write_text(out, instances_csv(info.instances, info.names));
+  if (ending == ".csv") return write_text(out, instances_csv(info.instances, titles_of(map)));
   throw Error(concat("cannot export to '", out.string(),
                      "'; the name must end in .ply, .glb, .json or .csv (`ovimap export` knows "
                      "more)"));
@@ -360,7 +365,7 @@ void bind_map(nb::module_& module) {
            "for a map without voxels.")
       .def(
           "export",
-          [](const SavedMap& self, const nb::object& path) {
+          [](SavedMap& self, const nb::object& path) {
             const std::filesystem::path out = to_path(path, "path");
             const WithoutGil release;
             export_map(self, out);

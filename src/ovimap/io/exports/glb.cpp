@@ -198,16 +198,15 @@ class GlbBuilder {
 
 /// Fills `body` and returns what stands before it. Pieces of objects wait beside `target`.
 Bytes glb_head(const std::filesystem::path& target, const MeshParts& parts,
-               std::span<const InstanceSummary> instances,
-               const std::map<InstanceId, std::string>& names, const Eigen::Vector3f& up,
-               ScratchFile& body) {
+               std::span<const InstanceSummary> instances, const ObjectTitles& titles,
+               const Eigen::Vector3f& up, ScratchFile& body) {
   const LabelledPieces pieces(parts, target);
   GlbBuilder builder(body);
   for (const InstanceSummary& instance : instances) {
-    Json extras = instance_json_value(instance, names);
+    Json extras = instance_json_value(instance, titles);
     extras.erase("superpoints");
-    const std::string name = extras["name"];
-    builder.add_node(concat(name.empty() ? "object" : name, " ", instance.id),
+    const std::string title = titles.title_of(instance.id);
+    builder.add_node(concat(title.empty() ? "object" : title, " ", instance.id),
                      pieces.piece(instance.id), std::move(extras));
   }
   builder.add_node("background", pieces.piece(0), nullptr);
@@ -217,10 +216,10 @@ Bytes glb_head(const std::filesystem::path& target, const MeshParts& parts,
 }  // namespace
 
 std::string encode_glb(const MeshParts& parts, std::span<const InstanceSummary> instances,
-                       const std::map<InstanceId, std::string>& names, const Eigen::Vector3f& up) {
+                       const ObjectTitles& titles, const Eigen::Vector3f& up) {
   const auto target = std::filesystem::temp_directory_path() / "ovimap.glb";
   ScratchFile body(target);
-  const Bytes head = glb_head(target, parts, instances, names, up, body);
+  const Bytes head = glb_head(target, parts, instances, titles, up, body);
   std::string file(head.begin(), head.end());
   file.resize(head.size() + body.size());
   body.read(0, {reinterpret_cast<std::uint8_t*>(file.data()) + head.size(), body.size()});
@@ -228,10 +227,10 @@ std::string encode_glb(const MeshParts& parts, std::span<const InstanceSummary> 
 }
 
 void write_glb(const std::filesystem::path& path, const MeshParts& parts,
-               std::span<const InstanceSummary> instances,
-               const std::map<InstanceId, std::string>& names, const Eigen::Vector3f& up) {
+               std::span<const InstanceSummary> instances, const ObjectTitles& titles,
+               const Eigen::Vector3f& up) {
   ScratchFile body(path);
-  const Bytes head = glb_head(path, parts, instances, names, up, body);
+  const Bytes head = glb_head(path, parts, instances, titles, up, body);
   write_file(path, head, {&body});
 }
 

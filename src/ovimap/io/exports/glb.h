@@ -3,12 +3,11 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <span>
 #include <string>
 
 #include "ovimap/geometry/mesh.h"
-#include "ovimap/instance/instance_summary.h"
+#include "ovimap/io/exports/object_titles.h"
 
 namespace ovimap {
 
@@ -21,11 +20,11 @@ namespace ovimap {
 /// part and one object's mesh is in memory. The file appears only when complete. Throws Error when
 /// it would pass the 4 GiB that the format allows, and where write_file does.
 void write_glb(const std::filesystem::path& path, const MeshParts& parts,
-               std::span<const InstanceSummary> instances,
-               const std::map<InstanceId, std::string>& names, const Eigen::Vector3f& up);
+               std::span<const InstanceSummary> instances, const ObjectTitles& titles,
+               const Eigen::Vector3f& up);
 
 /// The same file in memory. Pieces of objects wait in the folder for temporary files.
 std::string encode_glb(const MeshParts& parts, std::span<const InstanceSummary> instances,
-                       const std::map<InstanceId, std::string>& names, const Eigen::Vector3f& up);
+                       const ObjectTitles& titles, const Eigen::Vector3f& up);
 
 }  // namespace ovimap

@@ -52,15 +52,17 @@ MeshParts whole(Mesh mesh) {
 }
 
 TEST(Glb, HasANodePerObject) {
-  const std::string file = encode_glb(whole(two_triangles()), std::vector{instance(4), instance(9)},
-                                      {{4, "mug"}}, Eigen::Vector3f::UnitZ());
+  const std::string file =
+      encode_glb(whole(two_triangles()), std::vector{instance(4), instance(9)},
+                 {{{4, "mug"}}, {{4, "cup"}, {9, "chair"}}}, Eigen::Vector3f::UnitZ());
   const auto document = document_of(file);
   const auto& nodes = document["nodes"];
   ASSERT_EQ(nodes.size(), 4u);
   EXPECT_EQ(nodes[0]["name"], "mug 4");
   EXPECT_EQ(nodes[0]["extras"]["id"], 4);
   EXPECT_EQ(nodes[0]["extras"]["box"]["max"][0], 1);
-  EXPECT_EQ(nodes[1]["name"], "object 9");
+  EXPECT_EQ(nodes[0]["extras"]["label"], "cup");
+  EXPECT_EQ(nodes[1]["name"], "chair 9");
   EXPECT_FALSE(nodes[1].contains("mesh"));  // it has no surface
   EXPECT_EQ(nodes[2]["name"], "background");
   EXPECT_EQ(nodes[3]["name"], "map");
@@ -80,10 +82,11 @@ TEST(Glb, AFileOfPartsIsThatOfTheWhole) {
         visit(first);
         visit(second);
       },
-      objects, {{4, "mug"}}, Eigen::Vector3f::UnitZ());
+      objects, {{{4, "mug"}}, {}}, Eigen::Vector3f::UnitZ());
   const Bytes written = read_file(path);
-  EXPECT_EQ(std::string(written.begin(), written.end()),
-            encode_glb(whole(two_triangles()), objects, {{4, "mug"}}, Eigen::Vector3f::UnitZ()));
+  EXPECT_EQ(
+      std::string(written.begin(), written.end()),
+      encode_glb(whole(two_triangles()), objects, {{{4, "mug"}}, {}}, Eigen::Vector3f::UnitZ()));
   std::filesystem::remove(path);
 }
 

@@ -32,20 +32,18 @@ std::string number(float value) {
 
 }  // namespace
 
-std::string instances_csv(std::span<const InstanceSummary> instances,
-                          const std::map<InstanceId, std::string>& names) {
+std::string instances_csv(std::span<const InstanceSummary> instances, const ObjectTitles& titles) {
   std::string csv =
       "id,name,min_x,min_y,min_z,max_x,max_y,max_z,centroid_x,centroid_y,centroid_z,points,"
-      "views,confidence\r\n";
+      "views,confidence,label\r\n";
   for (const InstanceSummary& instance : instances) {
-    const auto name = names.find(instance.id);
-    csv += std::to_string(instance.id) + ',' +
-           (name == names.end() ? "" : quoted(no_formula(name->second)));
+    csv += std::to_string(instance.id) + ',' + quoted(no_formula(titles.name_of(instance.id)));
     for (const Eigen::Vector3f& point : {Eigen::Vector3f(instance.box.min()),
                                          Eigen::Vector3f(instance.box.max()), instance.centroid})
       for (const float value : point) csv += ',' + number(value);
     csv += ',' + std::to_string(instance.points) + ',' + std::to_string(instance.views) + ',' +
-           (instance.confidence ? number(*instance.confidence) : "") + "\r\n";
+           (instance.confidence ? number(*instance.confidence) : "") + ',' +
+           quoted(titles.label_of(instance.id)) + "\r\n";
   }
   return csv;
 }

@@ -18,25 +18,26 @@ TEST(InstanceCsv, QuotesWhatNeedsIt) {
   cup.views = 3;
   cup.confidence = 0.75f;
   nothing.id = 8;
-  const std::string csv =
-      instances_csv(std::vector{cup, nothing}, {{7, "cup, \"old\"\nblue"}, {9, "elsewhere"}});
+  const std::string csv = instances_csv(
+      std::vector{cup, nothing}, {{{7, "cup, \"old\"\nblue"}, {9, "elsewhere"}}, {{8, "chair"}}});
   EXPECT_EQ(csv.substr(0, 9), "id,name,m");
   EXPECT_NE(csv.find("7,\"cup, \"\"old\"\"\nblue\",0.1,-2,0,0.2,-1.5,0.001,0.15,-1.75,0,5000000000,"
-                     "3,0.75\r\n"),
+                     "3,0.75,\r\n"),
             std::string::npos)
       << csv;
   EXPECT_NE(csv.find("\r\n8,,"), std::string::npos);
-  EXPECT_TRUE(csv.ends_with(",0,\r\n")) << csv;  // nobody said how sure
+  EXPECT_TRUE(csv.ends_with(",0,,chair\r\n")) << csv;  // nobody said how sure
 }
 
 TEST(InstanceCsv, NamesAreNoFormulas) {
   InstanceSummary thing;
   thing.id = 1;
   for (const char* name : {"=1+1", "+1", "-1+1|cmd", "@SUM(1)"})
-    EXPECT_NE(instances_csv(std::vector{thing}, {{1, name}}).find(concat("\r\n1,'", name, ",")),
-              std::string::npos)
+    EXPECT_NE(
+        instances_csv(std::vector{thing}, {{{1, name}}, {}}).find(concat("\r\n1,'", name, ",")),
+        std::string::npos)
         << name;
-  EXPECT_NE(instances_csv(std::vector{thing}, {{1, "=\"a\""}}).find("1,\"'=\"\"a\"\"\","),
+  EXPECT_NE(instances_csv(std::vector{thing}, {{{1, "=\"a\""}}, {}}).find("1,\"'=\"\"a\"\"\","),
             std::string::npos);
 }
 

@@ -29,12 +29,11 @@ Json json_vector(const Eigen::Vector3f& v) {
   return Json::array({json_number(v.x()), json_number(v.y()), json_number(v.z())});
 }
 
-Json instance_json_value(const InstanceSummary& instance,
-                         const std::map<InstanceId, std::string>& names) {
-  const auto name = names.find(instance.id);
+Json instance_json_value(const InstanceSummary& instance, const ObjectTitles& titles) {
   Json entry;
   entry["id"] = instance.id;
-  entry["name"] = name == names.end() ? std::string() : name->second;
+  entry["name"] = titles.name_of(instance.id);
+  entry["label"] = titles.label_of(instance.id);
   entry["box"]["min"] = json_vector(instance.box.min());
   entry["box"]["max"] = json_vector(instance.box.max());
   entry["centroid"] = json_vector(instance.centroid);
@@ -55,11 +54,10 @@ Json relation_json_value(const ObjectRelation& relation) {
 
 namespace {
 
-Json instance_list(std::span<const InstanceSummary> instances,
-                   const std::map<InstanceId, std::string>& names) {
+Json instance_list(std::span<const InstanceSummary> instances, const ObjectTitles& titles) {
   Json list = Json::array();
   for (const InstanceSummary& instance : instances)
-    list.push_back(instance_json_value(instance, names));
+    list.push_back(instance_json_value(instance, titles));
   return list;
 }
 
@@ -117,13 +115,14 @@ Json history_value(const MapHistory& history) {
   return {{"visits", visits}, {"events", events}};
 }
 
-Json info_value(const std::filesystem::path& path, const MapInfo& info) {
+Json info_value(const std::filesystem::path& path, const MapInfo& info,
+                const ObjectLabels& labels) {
   Json document;
   document["map"] = path.string();
   document["schema"] = info.schema;
   document["frames"] = info.frames;
   document["mask_frames"] = info.mask_frames;
-  document["instances"] = instance_list(info.instances, info.names);
+  document["instances"] = instance_list(info.instances, {info.names, labels});
   add_parts(info, document["instances"]);
   document["hidden"] = Json::array();
   for (const InstanceSummary& instance : info.hidden) document["hidden"].push_back(instance.id);
@@ -147,20 +146,14 @@ std::string text_of(const Json& document) {
 
 }  // namespace
 
-std::string instances_json(std::span<const InstanceSummary> instances,
-                           const std::map<InstanceId, std::string>& names) {
-  Json document;
-  document["instances"] = instance_list(instances, names);
-  return text_of(document);
-}
-
-std::string info_json(const std::filesystem::path& path, const MapInfo& info) {
-  return text_of(info_value(path, info));
+std::string info_json(const std::filesystem::path& path, const MapInfo& info,
+                      const ObjectLabels& labels) {
+  return text_of(info_value(path, info, labels));
 }
 
 std::string scene_json(const std::filesystem::path& path, const MapInfo& info,
-                       std::span<const ObjectRelation> relations) {
-  Json document = info_value(path, info);
+                       const ObjectLabels& labels, std::span<const ObjectRelation> relations) {
+  Json document = info_value(path, info, labels);
   document["up"] = json_vector(info.up);
   document["relations"] = relation_list(relations);
   return text_of(document);

@@ -20,36 +20,41 @@ InstanceSummary cup() {
   return instance;
 }
 
+/// The one instance in a map's JSON, as it is written.
+nlohmann::ordered_json written(const InstanceSummary& instance, const ObjectTitles& titles = {}) {
+  MapInfo info;
+  info.instances = {instance};
+  info.names = titles.names;
+  return nlohmann::ordered_json::parse(info_json("a.ovimap", info, titles.labels))
+      .at("instances")
+      .at(0);
+}
+
 TEST(InstanceJson, WritesAnInstance) {
   EXPECT_EQ(
-      instances_json(std::vector{cup()}, {{7, "cup"}}),
-      R"({"instances":[{"id":7,"name":"cup","box":{"min":[-0.1,0.2,0.0],"max":[0.3,0.4,0.5]},)"
-      R"("centroid":[0.1,0.3,0.25],"points":1234,"views":9,"superpoints":[2,5]}]})");
+      written(cup(), {{{7, "cup"}}, {{7, "mug"}}}).dump(),
+      R"({"id":7,"name":"cup","label":"mug","box":{"min":[-0.1,0.2,0.0],"max":[0.3,0.4,0.5]},)"
+      R"("centroid":[0.1,0.3,0.25],"points":1234,"views":9,"superpoints":[2,5]})");
 }
 
 TEST(InstanceJson, WritesWhatIsMissing) {
   InstanceSummary empty;
   empty.id = 1;
-  const auto entry = nlohmann::json::parse(instances_json(std::vector{empty}, {{2, "other"}}))
-                         .at("instances")
-                         .at(0);
+  const auto entry = written(empty, {{{2, "other"}}, {{2, "chair"}}});
   EXPECT_EQ(entry.at("name"), "");
+  EXPECT_EQ(entry.at("label"), "");
   EXPECT_TRUE(entry.at("superpoints").is_array() && entry.at("superpoints").empty());
-  EXPECT_EQ(instances_json({}, {}), R"({"instances":[]})");
 }
 
 TEST(InstanceJson, AnyNameMakesValidJson) {
-  const std::string text = instances_json(std::vector{cup()}, {{7, "a\"\n\x01\xff\\"}});
-  EXPECT_EQ(nlohmann::json::parse(text).at("instances").at(0).at("name"),
-            "a\"\n\x01\xef\xbf\xbd\\");
+  EXPECT_EQ(written(cup(), {{{7, "a\"\n\x01\xff\\"}}, {}}).at("name"), "a\"\n\x01\xef\xbf\xbd\\");
 }
 
 TEST(InstanceJson, NumbersThatAreNoneAreNull) {
   InstanceSummary instance = cup();
   instance.box.setEmpty();
   instance.centroid.x() = std::numeric_limits<float>::infinity();
-  const auto entry =
-      nlohmann::json::parse(instances_json(std::vector{instance}, {})).at("instances").at(0);
+  const auto entry = written(instance);
   EXPECT_TRUE(entry.at("centroid").at(0).is_null());
   EXPECT_EQ(entry.at("centroid").at(1), 0.3);
 }

@@ -2,12 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <map>
-#include <string>
-
 #include <nlohmann/json.hpp>
 
-#include "ovimap/instance/instance_summary.h"
+#include "ovimap/io/exports/object_titles.h"
 #include "ovimap/semantics/relations/scene_relations.h"
 
 namespace ovimap {
@@ -17,11 +14,11 @@ namespace ovimap {
 nlohmann::ordered_json json_number(float value);
 nlohmann::ordered_json json_vector(const Eigen::Vector3f& v);
 
-/// An instance as every JSON of ours shows it: {"id", "name", "box": {"min", "max"}, "centroid",
-/// "points", "views", "confidence" where masks are rated, "superpoints"}. For sources that build
-/// documents; kept out of other headers, which spares their readers the JSON library.
+/// An instance as every JSON of ours shows it: {"id", "name", "label", "box": {"min", "max"},
+/// "centroid", "points", "views", "confidence" where masks are rated, "superpoints"}. For sources
+/// that build documents; kept out of other headers, which spares their readers the JSON library.
 nlohmann::ordered_json instance_json_value(const InstanceSummary& instance,
-                                           const std::map<InstanceId, std::string>& names);
+                                           const ObjectTitles& titles);
 
 /// {"object", "relation", "anchor", "score", "evidence"}
 nlohmann::ordered_json relation_json_value(const ObjectRelation& relation);

@@ -25,16 +25,15 @@ fs::path plain(const fs::path& folder) {
   return folder.has_filename() ? fs::absolute(folder) : fs::absolute(folder).parent_path();
 }
 
-/// "12" or, with a name, "12_tea-pot": safe on every file system.
-std::string folder_name(InstanceId id, const std::map<InstanceId, std::string>& names) {
+/// "12" or, with a title, "12_tea-pot": safe on every file system.
+std::string folder_name(InstanceId id, const std::string& title) {
   constexpr std::size_t kLongest = 40;
   std::string slug;
-  if (const auto name = names.find(id); name != names.end())
-    for (const char c : name->second) {
-      const bool kept = std::isalnum(static_cast<unsigned char>(c)) != 0;
-      if (kept || (!slug.empty() && slug.back() != '-')) slug += kept ? c : '-';
-      if (slug.size() == kLongest) break;
-    }
+  for (const char c : title) {
+    const bool kept = std::isalnum(static_cast<unsigned char>(c)) != 0;
+    if (kept || (!slug.empty() && slug.back() != '-')) slug += kept ? c : '-';
+    if (slug.size() == kLongest) break;
+  }
   while (!slug.empty() && slug.back() == '-') slug.pop_back();
   return concat(id, slug.empty() ? "" : "_", slug);
 }
@@ -115,17 +114,19 @@ void check_new_folder(const fs::path& folder) {
   check_file_target(fs::path(target) += ".check");
 }
 
-void write_object_folder(const fs::path& folder, const MapRecord& map, const MeshParts& parts,
-                         std::span<const ObjectRelation> relations, const std::string& scene_text) {
+void write_object_folder(const fs::path& folder, const MapRecord& map, const ObjectLabels& labels,
+                         const MeshParts& parts, std::span<const ObjectRelation> relations,
+                         const std::string& scene_text) {
   check_new_folder(folder);
   FolderWriter writer(plain(folder));
+  const ObjectTitles titles{map.names, labels};
   const LabelledPieces pieces(parts, writer.path() / "pieces");
   for (const InstanceSummary& instance : map.instances) {
-    const fs::path place = writer.path() / folder_name(instance.id, map.names);
+    const fs::path place = writer.path() / folder_name(instance.id, titles.title_of(instance.id));
     fs::create_directory(place);
     if (const Mesh piece = pieces.piece(instance.id); !piece.triangles.empty())
       write_ply(place / "mesh.ply", piece);
-    Json entry = instance_json_value(instance, map.names);
+    Json entry = instance_json_value(instance, titles);
     entry["relations"] = relations_of(instance.id, relations);
     entry["crops"] = write_crops(place, appearance_of(map.semantics.looks, instance.super_points));
     write_text(place / "object.json",

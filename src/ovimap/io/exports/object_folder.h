@@ -7,6 +7,7 @@
 #include <string>
 
 #include "ovimap/geometry/mesh.h"
+#include "ovimap/io/exports/object_titles.h"
 #include "ovimap/io/map_tables/map_document.h"
 #include "ovimap/semantics/relations/scene_relations.h"
 
@@ -21,7 +22,7 @@ void check_new_folder(const std::filesystem::path& folder);
 /// and scene.json, `scene_text`, beside them. `parts` have instance ids as labels. The folder
 /// appears only when complete. Throws Error as check_new_folder, and naming what cannot be written.
 void write_object_folder(const std::filesystem::path& folder, const MapRecord& map,
-                         const MeshParts& parts, std::span<const ObjectRelation> relations,
-                         const std::string& scene_text);
+                         const ObjectLabels& labels, const MeshParts& parts,
+                         std::span<const ObjectRelation> relations, const std::string& scene_text);
 
 }  // namespace ovimap

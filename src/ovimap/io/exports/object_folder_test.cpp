@@ -40,7 +40,7 @@ class ObjectFolder : public MapFolder {
 };
 
 TEST_F(ObjectFolder, HasEverythingOfAnObject) {
-  write_object_folder(root_ / "out", map_, parts_, relations_, "{}");
+  write_object_folder(root_ / "out", map_, {}, parts_, relations_, "{}");
   const fs::path pot = root_ / "out" / "4_Tea-pot";
   ASSERT_TRUE(fs::is_directory(pot));
   EXPECT_EQ(read_ply(pot / "mesh.ply").vertices.size(), 3u);
@@ -59,7 +59,7 @@ TEST_F(ObjectFolder, HasEverythingOfAnObject) {
 
 TEST_F(ObjectFolder, NeverMixesWithWhatIsThere) {
   fs::create_directories(root_ / "empty");
-  write_object_folder(root_ / "empty/", map_, parts_, {}, "{}");
+  write_object_folder(root_ / "empty/", map_, {}, parts_, {}, "{}");
   EXPECT_NE(fault_of([&] { check_new_folder(root_ / "empty"); }).find("not empty"),
             std::string::npos);
   std::ofstream(root_ / "file") << "x";

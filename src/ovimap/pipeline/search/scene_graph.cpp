@@ -5,8 +5,7 @@
 #include "ovimap/base/error.h"
 #include "ovimap/io/map_file/map_edits.h"
 #include "ovimap/pipeline/rooms/map_rooms.h"
-#include "ovimap/semantics/classes/object_names.h"
-#include "ovimap/semantics/query/query_engine.h"
+#include "ovimap/pipeline/search/object_labels.h"
 
 namespace ovimap {
 
@@ -50,17 +49,8 @@ SceneGraph make_scene_graph(const StandingSpace& space, const MapSearch& search,
 SceneGraph read_scene_graph(const std::filesystem::path& map, const MapSearch& search,
                             const std::string& spec,
                             const std::vector<std::filesystem::path>& model_dirs) {
-  std::unique_ptr<ImageTextEncoder> encoder;
-  std::optional<QueryEngine> engine;
-  try {
-    if (search.index.embedded() > 0)
-      encoder = encoder_of_map(search.info.encoder, spec, {}, model_dirs);
-    if (encoder)
-      engine.emplace(search.index, encoder.get(), QueryConfig{}, Embeddings(), search.scene);
-  } catch (const Error&) {  // a search in words says why; kinds of things are an extra
-  }
-  return make_scene_graph(make_standing_space(load_corrected_map(map)), search,
-                          engine ? engine->matcher()->evidence() : nullptr);
+  const auto judge = open_word_judge(search, spec, model_dirs);
+  return make_scene_graph(make_standing_space(load_corrected_map(map)), search, judge->evidence());
 }
 
 }  // namespace ovimap

@@ -11,6 +11,7 @@
 #include "ovimap/image/codec.h"
 #include "ovimap/io/exports/glb.h"
 #include "ovimap/io/pictures/place_picture.h"
+#include "ovimap/pipeline/search/object_labels.h"
 #include "ovimap/server/api/approach_api.h"
 #include "ovimap/server/api/correction_json.h"
 #include "ovimap/server/api/event_stream.h"
@@ -180,7 +181,7 @@ HttpReply export_glb(const ServedMap& map, KeptGlb& kept) {
     const auto hidden = now->hidden();
     kept.file = std::make_shared<std::string>(
         encode_glb(labelled_parts(*surface, now->instance_of_label, hidden), now->record->instances,
-                   now->record->names, now->record->up));
+                   {now->record->names, labels_of(now->index(), now->names)}, now->record->up));
     kept.version = now->version;
     kept.mesh_version = surface->version();
   }
