@@ -137,6 +137,13 @@ TEST_F(QueryProgramTest, SaysWhatIsWrong) {
   ASSERT_EQ(run("run recording -o bare.ovimap").code, 0);
   expect_complaint("query bare.ovimap mug", {"embedding", "reembed"});
   expect_complaint("query bare.ovimap", {"nothing is asked"});
+  const auto known = nlohmann::json::parse(run("info bare.ovimap --json").out);
+  const int id = known["instances"][0]["id"];
+  ASSERT_EQ(run(concat("edit bare.ovimap rename ", id, " \"Anna's mug\"")).code, 0);
+  const ProgramResult named = run("query bare.ovimap mug --json");
+  EXPECT_EQ(named.code, 0) << named.err;
+  EXPECT_EQ(nlohmann::json::parse(named.out)["results"][0]["instances"][0]["id"], id);
+  expect_complaint("query bare.ovimap sofa", {"embedding", "reembed"});
   expect_complaint("query none.ovimap mug", {"none.ovimap"});
   expect_complaint("query bare.ovimap mug --set query.top=3", {"query.top", "query.top_k"});
   map_with(golden_model("minilm"));

@@ -7,6 +7,7 @@
 
 #include "ovimap/image/codec.h"
 #include "ovimap/pipeline/search/teaching.h"
+#include "ovimap/semantics/classes/name_search.h"
 #include "ovimap/semantics/classes/object_names.h"
 #include "ovimap/semantics/query/query_grammar.h"
 #include "ovimap/semantics/query/query_text.h"
@@ -58,6 +59,8 @@ std::vector<Answered> QueryAsker::ask(const std::vector<AskedText>& texts) {
   for (const AskedText& asked : texts) {
     if (asked.past)
       answers.push_back(ask_past(asked));
+    else if (search_.index.embedded() == 0)
+      answers.push_back(ask_names(asked.text));
     else
       answers.push_back(in_present(present().find({asked.text, options_.negatives, relevance()})));
   }
@@ -76,7 +79,7 @@ MapSearch QueryAsker::open_map() const {
 }
 
 /// The map and its encoder take about as long, so both are opened at once. Of a map without
-/// embeddings one can ask what changed, and nothing else.
+/// embeddings one can ask what changed, and what people gave names to.
 void QueryAsker::open(const std::vector<AskedText>& texts) {
   const auto is_listing = [&](const AskedText& asked) {
     return asked.past && asked.past->text == "anything" && options_.negatives.empty();
@@ -92,6 +95,7 @@ void QueryAsker::open(const std::vector<AskedText>& texts) {
   }
   search_ = opening.get();  // what is wrong with the map comes first
   if (listing) return;      // things are told without guessed names, if need be
+  if (search_.index.embedded() == 0 && options_.images.empty()) return;
   require_embeddings(search_.index);
   if (fault) std::rethrow_exception(fault);
 }
@@ -110,6 +114,16 @@ const QueryEngine& QueryAsker::present() {
     titles_ = std::make_shared<std::vector<std::string>>(titles_of(search_.index, engine_.get()));
   }
   return *engine_;
+}
+
+Answered QueryAsker::ask_names(const std::string& text) {
+  QueryAnswer answer = find_by_name(
+      search_.index,
+      {checked_query_text(text, config_.max_text_chars), options_.negatives, relevance()});
+  if (answer.matches.empty()) require_embeddings(search_.index);
+  if (!titles_)
+    titles_ = std::make_shared<std::vector<std::string>>(titles_of(search_.index, nullptr));
+  return in_present(std::move(answer));
 }
 
 Answered QueryAsker::in_present(QueryAnswer answer) const {

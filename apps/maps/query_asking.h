@@ -65,6 +65,7 @@ class QueryAsker {
   MapSearch open_map() const;
   void open_encoder();
   const QueryEngine& present();
+  Answered ask_names(const std::string& text);
   Answered in_present(QueryAnswer answer) const;
   Answered ask_past(const AskedText& asked);
 

@@ -7,6 +7,7 @@
 #include "arrays.h"
 #include "bindings.h"
 #include "ovimap/base/error.h"
+#include "ovimap/semantics/classes/name_search.h"
 #include "saved_map.h"
 #include "without_gil.h"
 
@@ -20,6 +21,10 @@ QueryAnswer query(SavedMap& map, const std::string& text, const std::vector<std:
                   bool relevance, const std::string& at, const std::string& since) {
   const auto past = map.past_of(text, at, since);
   if (past) return map.ask_past(*past, {text, negatives, relevance});
+  if (map.index().embedded() == 0) {
+    QueryAnswer named = find_by_name(map.index(), {text, negatives, relevance});
+    if (named.verdict == Verdict::kFound) return named;
+  }
   return map.engine(true).find({text, negatives, relevance});
 }
 

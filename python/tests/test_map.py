@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
 """A saved map: objects and surface as arrays, questions, exports, scores."""
+import csv
 import io
 import json
 import shutil
@@ -151,6 +152,16 @@ def test_names_teach_other_maps(saved_map, tmp_path):
         ovimap.Map.open(saved_map, teach=taught)
 
 
+def test_names_are_found_without_embeddings(room, tmp_path):
+    made = ovimap.run(room, tmp_path / "shapes.ovimap", frames="::10", masks="none")
+    given = int(made.instances.ids[0])
+    made.rename(given, "Anna's mug")
+    opened = made.reopened()
+    assert [match.id for match in opened.query("mug").matches] == [given]
+    with pytest.raises(ovimap.Error, match="embedding"):
+        opened.query("sofa")
+
+
 def test_a_map_without_encoder_names_nothing(saved_map):
     opened = ovimap.Map.open(saved_map, encoder="none")
     assert opened.guess_names() == [] and opened.describe(int(opened.instances.ids[0])).label == ""
@@ -190,7 +201,10 @@ def test_exports_are_what_others_read(opened, tmp_path):
     assert len(trimesh.load(tmp_path / "a.glb").geometry) >= len(opened)
     listed = json.loads((tmp_path / "a.json").read_text())["instances"]
     assert [entry["id"] for entry in listed] == opened.instances.ids.tolist()
-    assert len((tmp_path / "a.csv").read_text().splitlines()) == len(opened) + 1
+    labels = [entry["label"] for entry in listed]
+    assert any(labels) and labels == [word if share > 0 else "" for word, share in opened.guess_names()]
+    with open(tmp_path / "a.csv", newline="") as table:
+        assert [row["label"] for row in csv.DictReader(table)] == labels
     with pytest.raises(ovimap.Error, match="must end in .ply"):
         opened.export(tmp_path / "a.stl")
 

@@ -76,9 +76,9 @@ export class SearchPanel {
     if (!info.live) this.frames = 0;
     this.setFrames(info.frames);
     const { state, reason } = info.search;
-    this.box.input.disabled = state === 'unavailable';
     this.verdict.className = 'verdict note';
-    if (state === 'unavailable') this.verdict.textContent = `No search in words: ${reason}`;
+    if (state === 'unavailable')
+      this.verdict.textContent = `No search but for names that people gave: ${reason}`;
     else if (this.verdict.dataset.kind === 'note') this.verdict.textContent = '';
     this.verdict.dataset.kind = 'note';
   }

@@ -12,6 +12,7 @@
 #include "ovimap/base/text/ascii.h"
 #include "ovimap/semantics/query/query_text.h"
 #include "ovimap/semantics/words/materials.h"
+#include "ovimap/semantics/words/spelling.h"
 
 namespace ovimap {
 
@@ -43,12 +44,24 @@ void collect_materials(const QueryPhrase& phrase, std::vector<std::string>& word
   for (const QueryPhrase& anchor : phrase.anchors) collect_materials(anchor, words);
 }
 
+void add_reason(QueryAnswer& answer, const std::string& reason) {
+  answer.reason += concat(answer.reason.empty() ? "" : "; ", reason);
+}
+
+/// What is not found may be misspelt.
+void suggest_words(const QueryPhrase& phrase, QueryAnswer& answer) {
+  for (const std::string& term : split_terms(phrase.things))
+    if (const std::string meant = meant_word(term, builtin_concepts()); !meant.empty())
+      add_reason(answer, concat("did you mean '", meant, "'?"));
+  for (const QueryPhrase& anchor : phrase.anchors) suggest_words(anchor, answer);
+}
+
 /// An answer must not look as if it had judged what nothing in it tells.
 void admit_unjudged(const QueryPhrase& phrase, QueryAnswer& answer) {
   std::vector<std::string> words;
   collect_materials(phrase, words);
   if (words.empty()) return;
-  answer.reason += concat(answer.reason.empty() ? "" : "; ", "not judged: ", listed(words));
+  add_reason(answer, concat("not judged: ", listed(words)));
 }
 
 bool asks_for_parts(const QueryPhrase& phrase) {
@@ -125,6 +138,7 @@ QueryAnswer QueryEngine::find(const Query& query) const {
                                           : find_phrase(phrase, negatives, query);
   result.query = text;
   admit_unjudged(phrase, result);
+  if (result.verdict != Verdict::kFound) suggest_words(phrase, result);
   return result;
 }
 

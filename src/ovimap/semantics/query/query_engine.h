@@ -44,8 +44,8 @@ struct CountEstimate {
 struct QueryAnswer {
   std::string query;
   std::string reading;  ///< how a phrase was understood: "[mug] on [table]"; empty for free text
-  std::string reason;   ///< why a phrase was not found: "no [table] in the map"; and what of it was
-                        ///< not judged: "not judged: wooden"
+  std::string reason;   ///< why it was not found: "no [table] in the map", "did you mean 'chair'?";
+                        ///< and what of it was not judged: "not judged: wooden"
   bool like_object =
       false;  ///< asked was what looks like an object, which is not among the matches
   Verdict verdict = Verdict::kNotInMap;

@@ -203,6 +203,10 @@ TEST_F(HttpServerTest, SaysWhyItCannotSearch) {
       post("/api/query", "{\"text\":\"mug\"}", 409)["error"].get<std::string>().find("encoder"),
       std::string::npos);
   EXPECT_EQ(get("/api/map")["search"]["state"], "unavailable");
+  post("/api/corrections", R"({"kind":"rename","instance":3,"name":"blue mug"})", 200);
+  const auto named = post("/api/query", "{\"text\":\"mug\"}", 200);  // that needs no encoder
+  EXPECT_EQ(named["verdict"], "found");
+  EXPECT_EQ(named["matches"][0]["id"], 3);
 }
 
 TEST_F(HttpServerTest, HandsOutTheSurfaceAsGlb) {

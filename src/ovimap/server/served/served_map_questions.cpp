@@ -2,15 +2,28 @@
 // SPDX-License-Identifier: Apache-2.0
 // What clients ask of a served map.
 #include "ovimap/map/surface/surface_precision.h"
+#include "ovimap/semantics/classes/name_search.h"
 #include "ovimap/semantics/query/query_text.h"
 #include "ovimap/server/served/served_map.h"
 
 namespace ovimap {
 
+namespace {
+
+/// Names that people gave need no encoder.
+QueryAnswer answer_by_name(const MapSnapshot& now, const MapQuestion& question) {
+  QueryAnswer answer;
+  if (!question.like) answer = find_by_name(now.index(), question.query);
+  if (answer.matches.empty()) throw SearchUnavailable(now.why_no_search);
+  return answer;
+}
+
+}  // namespace
+
 MapAnswer ServedMap::ask(const MapQuestion& question) const {
   std::shared_ptr<const MapSnapshot> now = prepared_snapshot();
   if (question.past) return ask_past(std::move(now), question);
-  if (!now->engine) throw SearchUnavailable(now->why_no_search);
+  if (!now->engine) return {answer_by_name(*now, question), now};
   const bool relevance = question.query.relevance;
   return {question.like ? now->engine->find_like(*question.like, relevance)
                         : now->engine->find(question.query),
