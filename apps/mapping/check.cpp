@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "apps/command/command.h"
-#include "ovimap/frames/check/source_check.h"
+#include "ovimap/pipeline/sequence/recording_check.h"
 
 namespace ovimap::apps {
 
@@ -14,7 +14,8 @@ const char* word(Severity severity) {
 }
 
 nlohmann::json json_of(const CheckReport& report) {
-  nlohmann::json findings = nlohmann::json::array(), faults = nlohmann::json::array();
+  nlohmann::json findings = nlohmann::json::array(), faults = nlohmann::json::array(),
+                 errors = nlohmann::json::array();
   for (const Finding& finding : report.findings)
     findings.push_back({{"severity", word(finding.severity)},
                         {"name", finding.name},
@@ -23,6 +24,10 @@ nlohmann::json json_of(const CheckReport& report) {
   for (const FaultCount& fault : report.faults)
     faults.push_back(
         {{"fault", fault.phrase}, {"example", fault.example}, {"frames", fault.frames}});
+  for (const DepthError& error : report.depth_errors)
+    errors.push_back({{"distance_m", error.distance_m},
+                      {"pixel_m", error.pixel_m},
+                      {"surface_m", error.surface_m}});
   return {{"kind", report.kind},
           {"frames", report.frames},
           {"checked", report.checked},
@@ -31,6 +36,7 @@ nlohmann::json json_of(const CheckReport& report) {
           {"valid_share", report.valid_share},
           {"overlap", report.overlap},
           {"depth_agreement", report.depth_agreement},
+          {"depth_errors", errors},
           {"verdict", report.ok() ? "ok" : "fault"},
           {"findings", findings},
           {"faults", faults}};
@@ -58,8 +64,7 @@ Action add_check(CLI::App& command) {
   add_frame_range(command, *frames);
   command.add_flag("--json", *json, "print one JSON object");
   return [source, frames, json] {
-    const CheckReport report =
-        check_source(std::filesystem::path(*source), {}, parse_frame_range(*frames));
+    const CheckReport report = check_recording(*source, {}, parse_frame_range(*frames));
     if (*json)
       print_json(json_of(report));
     else

@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include "bindings.h"
-#include "ovimap/frames/check/source_check.h"
+#include "ovimap/pipeline/sequence/recording_check.h"
 #include "settings.h"
 #include "without_gil.h"
 
@@ -47,14 +48,32 @@ void bind_check(nb::module_& module) {
       .def_ro("valid_share", &CheckReport::valid_share, "of the depth pixels in usable frames")
       .def_ro("overlap", &CheckReport::overlap, "share of depth that neighbouring frames both see")
       .def_ro("depth_agreement", &CheckReport::depth_agreement, "share of that which agrees")
-      .def_ro("findings", &CheckReport::findings);
+      .def_prop_ro(
+          "depth_errors",
+          [](const CheckReport& report) {
+            std::vector<std::tuple<float, float, float>> errors;
+            for (const DepthError& error : report.depth_errors)
+              errors.emplace_back(error.distance_m, error.pixel_m, error.surface_m);
+            return errors;
+          },
+          "how much depth errs, standard deviations: (distance, of a pixel, of the surface through "
+          "a window of pixels), metres; nearest first")
+      .def_ro("findings", &CheckReport::findings)
+      .def("__repr__", [](const CheckReport& report) {
+        std::string faults;
+        for (const Finding& finding : report.findings)
+          if (finding.severity == Severity::kFault)
+            faults += concat(faults.empty() ? ", faults: " : ", ", finding.name);
+        return concat("CheckReport(", report.kind, ", ", report.usable, " of ", report.checked,
+                      " frames usable", faults.empty() ? ", ok" : faults, ")");
+      });
   module.def(
       "check",
       [](const nb::object& path, const std::string& frames, const Settings& settings) {
         const std::filesystem::path folder = to_path(path, "path");
         const auto config = configured<SourceCheckConfig>(settings);
         const WithoutGil release;
-        return check_source(folder, config, parse_frame_range(frames));
+        return check_recording(folder, config, parse_frame_range(frames));
       },
       nb::arg("path"), nb::kw_only(), nb::arg("frames") = ":", nb::arg("settings") = nb::none(),
       nb::sig("def check(path: str | os.PathLike[str], *, frames: str = ':', settings: dict[str, "

@@ -135,6 +135,7 @@ def test_the_good_recording_and_the_room_pass(good, room):
     for path in (good, room):
         report = ovimap.check(path)
         assert report.ok and all(finding.severity == "ok" for finding in report.findings), report.findings
+        assert repr(report) == f"CheckReport({report.kind}, {report.usable} of {report.checked} frames usable, ok)"
 
 
 @pytest.mark.parametrize("name", CORRUPTIONS)

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
-#include <limits>
 #include <sstream>
 
 #include "ovimap/base/config.h"
@@ -246,6 +245,13 @@ void check_agreement(const FrameSource& source, const CheckSample& sample,
 
 void check_poses(const FrameSource& source, const CheckSample& sample,
                  const SourceCheckConfig& config, CheckReport& report) {
+  if (!source.posed()) {
+    check_scale(config, report);
+    return add(report, Severity::kOk, "poses",
+               "there are none, `ovimap run` finds them itself (docs/tracking.md); whether frames "
+               "agree with each other can be told with poses alone");
+  }
+  if (report.usable < 2) return;
   if (!all_poses_equal(sample)) return check_agreement(source, sample, config, report);
   report.depth_agreement = measure_agreement(sample.neighbours, {}, config.depth_tolerance).share();
   const bool still = report.depth_agreement >= config.good_agreement;
@@ -364,18 +370,11 @@ CheckReport check_source(const FrameSource& source, const SourceCheckConfig& con
   const CheckSample sample = draw_sample(source, config);
   check_frames(sample, config, report);
   check_depth(sample, config, report);
-  if (report.usable > 1) check_poses(source, sample, config, report);
+  if (report.usable == 0) return report;
+  check_poses(source, sample, config, report);
   check_registration(sample, config, report);
   check_lens(source, sample, config, report);
   return report;
-}
-
-CheckReport check_source(const std::filesystem::path& path, const SourceCheckConfig& config,
-                         const FrameRange& range) {
-  FrameSourceConfig unlimited;
-  unlimited.min_depth_m = 0;
-  unlimited.max_depth_m = std::numeric_limits<float>::max();
-  return check_source(*choose_frames(open_frame_source(path, unlimited), range), config);
 }
 
 }  // namespace ovimap

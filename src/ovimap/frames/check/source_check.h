@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -38,13 +37,21 @@ void list_fields(SourceCheckConfig& config, ConfigFields& fields);
 enum class Severity { kOk, kWarning, kFault };
 
 /// One result of a check. `name` is stable, for programs: "frames", "bad_frames", "depth_valid",
-/// "depth_scale", "still_poses", "pose_convention", "pose_unit", "intrinsics", "time_offset",
-/// "agreement", "registration", "lens".
+/// "depth_scale", "poses" (there are none), "still_poses", "pose_convention", "pose_unit",
+/// "intrinsics", "time_offset", "agreement", "registration", "lens", "noise".
 struct Finding {
   Severity severity = Severity::kOk;
   std::string name;
   std::string message;  ///< one line, with the figures
   std::string remedy;   ///< what to do; empty when ok
+};
+
+/// How much depth errs at one distance, standard deviations along the optical axis.
+struct DepthError {
+  float distance_m = 0;
+  float pixel_m = 0;    ///< of a pixel
+  float surface_m = 0;  ///< of the surface through a window of pixels: what averages leave of it,
+                        ///< since neighbours err alike
 };
 
 struct CheckReport {
@@ -57,6 +64,7 @@ struct CheckReport {
   double valid_share = 0;      ///< of the depth pixels in usable frames
   double overlap = 0;          ///< share of depth pixels that neighbouring frames both see
   double depth_agreement = 0;  ///< share of those that agree, as read
+  std::vector<DepthError> depth_errors;  ///< check_recording measures them
   std::vector<Finding> findings;
 
   /// No finding is a fault.
@@ -66,15 +74,11 @@ struct CheckReport {
 /// Reads up to `max_frames` frames and says what is wrong with the recording: unusable frames,
 /// depth in another unit, poses inverted or in other axes, poses that never change or belong to
 /// other images, a wrong focal length, colour that does not lie where depth says, or whose lens
-/// was left out. Depth of
-/// neighbouring frames is projected into each other; when the frames disagree, the usual mistakes
-/// are tried and the one that fits clearly better is named with its remedy.
+/// was left out. Depth of neighbouring frames is projected into each other; when the frames
+/// disagree, the usual mistakes are tried and the one that fits clearly better is named with its
+/// remedy. Without poses the rest is checked. Of no usable frame nothing more is said.
+///
+/// The source must not limit depth (check_recording).
 CheckReport check_source(const FrameSource& source, const SourceCheckConfig& config = {});
-
-/// The same for a path, opened without limits of depth, so that depth in a wrong unit is seen as
-/// such. Only the frames of `range` are looked at, as if there were no others. Throws Error when it
-/// cannot be opened or the range is empty.
-CheckReport check_source(const std::filesystem::path& path, const SourceCheckConfig& config = {},
-                         const FrameRange& range = {});
 
 }  // namespace ovimap

@@ -3,6 +3,7 @@
 #include "ovimap/frames/check/source_check.h"
 
 #include <algorithm>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -14,6 +15,14 @@ namespace ovimap {
 namespace {
 
 namespace fs = std::filesystem;
+
+CheckReport check(const fs::path& path) {
+  FrameSourceConfig unlimited;
+  unlimited.min_depth_m = 0;
+  unlimited.max_depth_m = std::numeric_limits<float>::max();
+  unlimited.poses = PoseNeed::kAllOrNone;
+  return check_source(*open_frame_source(path, unlimited));
+}
 
 const Finding* find(const CheckReport& report, const std::string& name) {
   for (const Finding& finding : report.findings)
@@ -38,7 +47,7 @@ fixture::Sequence two_camera_sequence() {
 CheckReport check_written(const fixture::Sequence& sequence) {
   const fixture::TemporaryFolder folder;
   fixture::write_seven_scenes(folder.path(), sequence);
-  return check_source(folder.path());
+  return check(folder.path());
 }
 
 void expect_single_fault(const CheckReport& report, const std::string& name,
@@ -68,7 +77,7 @@ TEST(SourceCheck, GoodSequenceIsFineInEveryLayout) {
   for (int i = 0; i < sequence.frames; ++i) poses += fixture::matrix_text(sequence.pose(i), ' ', 3);
   write_text(plain / "poses.txt", poses);
   for (const fs::path& path : {fixture::write_replica(root.path(), sequence), scenes, tum, plain}) {
-    const CheckReport report = check_source(path);
+    const CheckReport report = check(path);
     EXPECT_TRUE(report.ok()) << path << "\n" << faults_of(report);
     EXPECT_EQ(report.usable, 24) << path;
     EXPECT_GT(report.depth_agreement, 0.9) << path;
@@ -84,11 +93,10 @@ TEST(SourceCheck, InvertedPosesAreNamedAndTheRemedyHelps) {
   sequence.stored_pose = [](const Pose& pose) { return pose.inverse().matrix(); };
   const fixture::TemporaryFolder folder;
   fixture::write_seven_scenes(folder.path(), sequence);
-  expect_single_fault(check_source(folder.path()), "pose_convention",
-                      "direction: camera_from_world");
+  expect_single_fault(check(folder.path()), "pose_convention", "direction: camera_from_world");
   write_text(folder.path() / "calibration.yaml",
              fixture::calibration_yaml(sequence) + "poses: {direction: camera_from_world}\n");
-  EXPECT_TRUE(check_source(folder.path()).ok());
+  EXPECT_TRUE(check(folder.path()).ok());
 }
 
 TEST(SourceCheck, AxisConventionsAreNamed) {
@@ -127,7 +135,7 @@ TEST(SourceCheck, DepthScalesAreNamed) {
     fixture::write_seven_scenes(folder.path(), sequence);
     sequence.depth_units_per_m = c.said;
     write_text(folder.path() / "calibration.yaml", fixture::calibration_yaml(sequence));
-    expect_single_fault(check_source(folder.path()), "depth_scale", c.remedy);
+    expect_single_fault(check(folder.path()), "depth_scale", c.remedy);
   }
 }
 
@@ -167,7 +175,7 @@ TEST(SourceCheck, BadFramesAreCountedByFault) {
   };
   for (const int frame : {3, 9}) fs::remove(file(frame, ".depth.png"));
   write_text(file(5, ".pose.txt"), "nan 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1");
-  CheckReport report = check_source(folder.path());
+  CheckReport report = check(folder.path());
   EXPECT_TRUE(report.ok()) << faults_of(report);
   EXPECT_EQ(report.checked, 24);
   EXPECT_EQ(report.usable, 21);
@@ -178,9 +186,34 @@ TEST(SourceCheck, BadFramesAreCountedByFault) {
   EXPECT_EQ(report.faults[1].phrase, "has a bad pose (not finite)");
   EXPECT_EQ(find(report, "frames")->severity, Severity::kWarning);
   for (int frame = 0; frame < 20; ++frame) fs::remove(file(frame, ".color.png"));
-  report = check_source(folder.path());
+  report = check(folder.path());
   EXPECT_FALSE(report.ok());
   EXPECT_EQ(find(report, "frames")->severity, Severity::kFault);
+}
+
+TEST(SourceCheck, WithoutPosesTheRestIsChecked) {
+  fixture::Sequence sequence;
+  sequence.frames = 24;
+  const fixture::TemporaryFolder folder;
+  fixture::write_folder(folder.path(), sequence);
+  const CheckReport report = check(folder.path());
+  EXPECT_TRUE(report.ok()) << faults_of(report);
+  EXPECT_EQ(report.usable, 24);
+  ASSERT_NE(find(report, "poses"), nullptr);
+  EXPECT_NE(find(report, "registration"), nullptr);
+  EXPECT_EQ(find(report, "agreement"), nullptr);
+  EXPECT_EQ(find(report, "depth_scale")->severity, Severity::kOk);
+}
+
+TEST(SourceCheck, NothingIsCalledFineWhereNoFrameIsUsable) {
+  const fixture::Sequence sequence = two_camera_sequence();
+  const fixture::TemporaryFolder folder;
+  fixture::write_seven_scenes(folder.path(), sequence);
+  for (int frame = 0; frame < sequence.frames; ++frame)
+    write_text(folder.path() / ("frame-" + fixture::padded(frame, 6) + ".depth.png"), "no image");
+  const CheckReport report = check(folder.path());
+  EXPECT_FALSE(report.ok());
+  for (const Finding& finding : report.findings) EXPECT_EQ(finding.severity, Severity::kFault);
 }
 
 TEST(SourceCheck, UnregisteredLayoutTakenAsOneCameraIsAWarning) {
@@ -221,7 +254,7 @@ TEST(SourceCheck, ListsItsFields) {
 TEST(SourceCheck, KitchenPasses) {
   const fs::path kitchen = OVIMAP_SOURCE_DIR "/../shared/data/kitchen";
   if (!fs::exists(kitchen)) GTEST_SKIP() << "no kitchen recording at " << kitchen;
-  const CheckReport report = check_source(kitchen);
+  const CheckReport report = check(kitchen);
   EXPECT_TRUE(report.ok()) << faults_of(report);
   EXPECT_LE(report.checked, 80);
   EXPECT_GT(report.depth_agreement, 0.8);
@@ -251,7 +284,7 @@ TEST(SourceCheck, MistakesInTheKitchenAreNamed) {
         Case{"depth_camera: {depth_scale: 5000}", "depth_scale", "divide depth_scale by 5"},
         Case{"depth_camera: {depth_scale: 100}", "depth_scale", "multiply depth_scale by 10"}}) {
     write_text(folder.path() / "calibration.yaml", color_camera + c.mistake + "\n");
-    expect_single_fault(check_source(folder.path()), c.name, c.remedy);
+    expect_single_fault(check(folder.path()), c.name, c.remedy);
   }
 }
 

@@ -160,5 +160,16 @@ TEST_F(Folder, WhatIsMissingIsSaidWithAnExample) {
   EXPECT_NE(error().find("holds no .jpg or .png image"), std::string::npos);
 }
 
+TEST_F(Folder, OfABagTheToolForItIsNamed) {
+  write_text(path() / "lab.mcap", "");
+  try {
+    open_frame_source(path() / "lab.mcap");
+    FAIL();
+  } catch (const Error& fault) {
+    EXPECT_NE(std::string(fault.what()).find("`ovimap-bag lab.mcap FOLDER`"), std::string::npos)
+        << fault.what();
+  }
+}
+
 }  // namespace
 }  // namespace ovimap

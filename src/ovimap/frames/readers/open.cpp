@@ -30,6 +30,12 @@ const Reader* reader_of_file(const std::filesystem::path& file) {
   return found == std::end(kFileReaders) ? nullptr : *found;
 }
 
+/// Of ROS 1, ROS 2 or MCAP.
+bool is_bag(const std::filesystem::path& file) {
+  const std::string ending = file.extension().string();
+  return ending == ".bag" || ending == ".mcap" || ending == ".db3";
+}
+
 /// The first folder in this one that holds a recording, by name; empty when there is none.
 std::filesystem::path recording_in(const std::filesystem::path& folder) {
   std::filesystem::path first;
@@ -89,6 +95,9 @@ std::unique_ptr<FrameSource> open_frame_source(const std::filesystem::path& path
   if (path.extension() == ".r3d" && !is_folder)
     throw Error(concat(path.string(), " is a zip file; unzip it, and give the folder"));
   const Reader* file_reader = is_folder ? nullptr : reader_of_file(path);
+  if (!is_folder && is_bag(path))
+    throw Error(concat(path.string(), " is a bag; `ovimap-bag ", path.filename().string(),
+                       " FOLDER` makes a recording of it"));
   if (!is_folder && !file_reader)
     throw Error(concat(path.string(),
                        " is a file; give the folder that holds the frames, or a .sens "
