@@ -91,6 +91,15 @@ std::vector<std::int64_t> take_done(std::vector<std::int64_t>& left, const MapRe
   return done;
 }
 
+/// Who looks in vain for what changed may have given the recording of before.
+void warn_of_known_recording(const MapRecord& begun, const std::string& source) {
+  const auto& visits = begun.history.visits;
+  const bool known = begun.source == source ||
+                     std::any_of(visits.begin(), visits.end(),
+                                 [&](const MapVisit& visit) { return visit.source == source; });
+  if (known) warn(concat("'", source, "' is in the map already; it is taken for another visit"));
+}
+
 /// Gives `mapper`, a Mapper or a LiveMapper, what an earlier run had, and `header` what people told
 /// that run's map, which no run finds anew; returns its frames. `intake`: where frames are pushed.
 template <class AnyMapper>
@@ -102,6 +111,7 @@ SequenceResult resume(BegunRun& begun, MapHeader& header, MappingInputs& inputs,
     require_fit(*begun.document, inputs, intake);
     discount_past(begun.document->map, inputs.config.visit.past);
     begun.document->seen_free.clear();  // between two visits anything may have come
+    if (!intake) warn_of_known_recording(*begun.document, header.source);
     begin_visit(*begun.document, header);
   } else {
     require_same_source(*begun.document, header.source);

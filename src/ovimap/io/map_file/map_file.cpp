@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <bit>
+#include <iterator>
 #include <limits>
+#include <string_view>
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
 #include "ovimap/base/error.h"
 #include "ovimap/base/parallel.h"
+#include "ovimap/base/text/ascii.h"
 #include "ovimap/io/corrections/map_edit_log.h"
 #include "ovimap/io/corrections/map_file_corrections.h"
 #include "ovimap/io/map_file/map_file_access.h"
@@ -282,6 +285,15 @@ void save_map(const std::filesystem::path& path, const MapDocument& document) {
 }
 
 void check_map_target(const std::filesystem::path& path) {
+  constexpr std::string_view kOthers[] = {".ply", ".glb",  ".obj", ".pcd", ".png",
+                                          ".jpg", ".json", ".csv", ".yaml"};
+  const std::string ending = lower_case(path.extension().string());
+  if (std::find(std::begin(kOthers), std::end(kOthers), ending) != std::end(kOthers)) {
+    std::filesystem::path map = path;
+    throw Error(concat("'", path.string(), "' is to be a map, but its name says ", ending,
+                       "; call it ", map.replace_extension(".ovimap").string(),
+                       ", `ovimap export` writes other formats"));
+  }
   PendingMap pending(path);
 }
 

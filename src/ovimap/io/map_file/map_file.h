@@ -44,7 +44,8 @@ void save_map(const std::filesystem::path& path, const VoxelMap& map, const MapR
 void save_map(const std::filesystem::path& path, const MapDocument& document);
 
 /// Throws what save_map would throw for a target that cannot be written (missing folder, a folder
-/// itself, no permission), so that a long run learns of it before it starts. Changes nothing.
+/// itself, no permission), so that a long run learns of it before it starts, and refuses names that
+/// say that the file is something else ("room.ply"). Changes nothing.
 void check_map_target(const std::filesystem::path& path);
 
 /// Reads a whole map as mapping found it, with the log of corrections (map_edits.h has the

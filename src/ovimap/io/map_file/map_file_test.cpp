@@ -152,6 +152,9 @@ TEST_F(MapFile, SaysWhyItCannotBeWritten) {
   for (const fs::path& path : {root_ / "no" / "a.ovimap", root_, fs::path("/proc/a.ovimap")})
     EXPECT_NE(fault_of([&] { check_map_target(path); }), "");
   EXPECT_EQ(fault_of([&] { check_map_target(root_ / "a.ovimap"); }), "");
+  EXPECT_EQ(fault_of([&] { check_map_target(root_ / "a"); }), "");
+  const std::string mesh = fault_of([&] { check_map_target(root_ / "a.PLY"); });
+  EXPECT_NE(mesh.find("a.ovimap, `ovimap export`"), std::string::npos) << mesh;
   EXPECT_EQ(files_in_root(), 0u);
 }
 
