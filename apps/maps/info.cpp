@@ -116,6 +116,10 @@ int info(const InfoOptions& options) {
   if (options.recover && !recover_map(options.map))
     std::fprintf(stderr, "%s: nothing to recover\n", options.map.c_str());
   if (options.check || options.recover) return check_file(options);
+  if (options.rooms && !options.json && !options.history) {
+    print_rooms(options);
+    return kDone;
+  }
   const MapInfo map = read_map_info(options.map);
   const TileTraffic tiles = tile_traffic(parse_timings(map.timings));
   ObjectTitles titles{map.names, {}};
@@ -130,10 +134,6 @@ int info(const InfoOptions& options) {
   }
   if (options.history) {
     print_history(map, titles, dates_of(options.map, map));
-    return kDone;
-  }
-  if (options.rooms) {
-    print_rooms(options);
     return kDone;
   }
   std::printf(

@@ -102,6 +102,7 @@ void QueryAsker::open(const std::vector<AskedText>& texts) {
 
 void QueryAsker::open_encoder() {
   const EncoderIdentity of_map = read_map_identity(options_.map).encoder;
+  if (of_map.name.empty()) return;  // there is nothing to compare with
   RuntimeConfig runtime;
   runtime.threads = options_.threads;
   encoder_ = encoder_of_map(of_map, options_.encoder, runtime, options_.model_dirs);

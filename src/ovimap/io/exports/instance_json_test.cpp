@@ -44,6 +44,8 @@ TEST(InstanceJson, WritesWhatIsMissing) {
   EXPECT_EQ(entry.at("name"), "");
   EXPECT_EQ(entry.at("label"), "");
   EXPECT_TRUE(entry.at("superpoints").is_array() && entry.at("superpoints").empty());
+  const auto nothing = nlohmann::json::parse(info_json("a.ovimap", MapInfo()));
+  EXPECT_EQ(nothing.at("instances").dump(), "[]");
 }
 
 TEST(InstanceJson, AnyNameMakesValidJson) {
