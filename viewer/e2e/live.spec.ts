@@ -22,9 +22,13 @@ test('shows, searches and corrects a map while it is made', async ({ page }) => 
   await page.screenshot({ path: `${PICTURES}/live.png` });
 
   await expect(page.getByRole('combobox')).toBeEnabled({ timeout: 90_000 });
-  await page.getByRole('combobox').fill('sofa');
-  await page.keyboard.press('Enter');
-  await expect(page.locator('.verdict')).toHaveText(/^(Found|Not in the map)/);
+  await expect(async () => {
+    await page.getByRole('combobox').fill('sofa'); // until an object has been looked at in words
+    await page.keyboard.press('Enter');
+    await expect(page.locator('.verdict')).toHaveText(/^(Found|Not in the map)/, {
+      timeout: 5_000,
+    });
+  }).toPass({ timeout: 90_000 });
   await page.getByRole('button', { name: 'Clear the query' }).click();
 
   await page.locator('.row').first().click();

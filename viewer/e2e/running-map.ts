@@ -44,13 +44,13 @@ export class RunningMap {
     return RunningMap.run([file], folder, file);
   }
 
-  /** The map while it is made from its recording, with a camera of two frames a second. */
+  /** The map while it is made from its recording, with a camera of one frame a second. */
   static async live(): Promise<RunningMap> {
     const { folder, file } = place();
     const options = [
       '--live',
       '--fps',
-      '2',
+      '1',
       '--masks',
       'gt',
       '--encoder',

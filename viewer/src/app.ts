@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { api } from './api/client';
 import { listen } from './api/events';
-import type { Box, FrameEvent, Instance, MapInfo, Question } from './api/types';
+import type { FrameEvent, Instance, MapInfo, Question } from './api/types';
 import { CameraState } from './camera-state';
 import { Commands } from './commands';
 import { Corrections } from './corrections';
@@ -15,17 +15,17 @@ import { Past } from './past';
 import { RoomsView } from './rooms-view';
 import { Rounds } from './rounds';
 import type { Mode } from './scene/coloring';
-import { boxOf } from './scene/ghosts';
 import { MapView } from './scene/map-view';
+import { Selection } from './selection';
 import { SurfaceLoader } from './surface-loader';
 import { Tools } from './tools';
 import { h } from './ui/dom';
 import { Legend } from './ui/legend';
-import { type CardContext, ObjectCard } from './ui/object-card';
+import { ObjectCard } from './ui/object-card';
 import { SearchPanel } from './ui/search-panel';
 import { Status } from './ui/status';
 import { Toolbar } from './ui/toolbar';
-import { approachText, faultText } from './ui/words';
+import { faultText } from './ui/words';
 
 const LIVE_PAUSE_MS = 1500; // between two looks at what objects there are by now
 
@@ -52,7 +52,7 @@ export class App {
     onClear: () => this.clearQuery(),
     onSelect: (id, part) => {
       this.select(id, part === null);
-      if (part) this.showPart(part);
+      if (part) this.selection.showPart(part);
     },
     onEvent: (event) => void this.past.choose(event),
     onRoom: (room) => this.rooms.choose(room),
@@ -61,13 +61,13 @@ export class App {
   });
   private readonly corrections = new Corrections(this.state, this.status, {
     refresh: () => this.refresh(),
-    show: (id) => this.showCard(id),
+    renamed: (id) => this.selection.renamed(id),
     select: (id) => this.select(id, false),
   });
   private readonly card = new ObjectCard({
-    onFocus: (id) => this.focus(id),
+    onFocus: (id) => this.selection.focus(id),
     onAlike: (id) => void this.ask({ like: id }, `like ${this.state.titleOf(id)} #${id}`),
-    onStand: (id) => void this.stand(id),
+    onStand: (id) => void this.selection.stand(id),
     onRename: (id, name) => void this.corrections.rename(id, name),
     onMerge: (id) => this.corrections.startMerge(id),
     onSplit: (id) => this.corrections.startSplit(id),
@@ -75,9 +75,10 @@ export class App {
     onLock: (id) => void this.corrections.toggleLock(id),
     onDelete: (id) => void this.corrections.remove(id),
     onSelect: (id) => this.select(id, true),
-    onPart: (box) => this.showPart(box),
+    onPart: (box) => this.selection.showPart(box),
     onClose: () => this.select(0, false),
   });
+  private readonly selection = new Selection(this.state, this.card, this.search, this.status);
   private readonly toolbar = new Toolbar({
     onMode: (mode) => this.setMode(mode),
     onTool: (tool) => this.tools.toggle(tool),
@@ -167,10 +168,7 @@ export class App {
     this.showList();
     this.repaint();
     await Promise.all([this.past.changed(), this.rooms.changed(), this.gaps.changed()]);
-    const editing = this.card.element.querySelector('form') !== null;
-    const { selected } = this.state;
-    if (selected !== 0 && !instances.some(({ id }) => id === selected)) this.select(0, false);
-    else if (selected !== 0 && !editing) this.showCard(selected);
+    await this.selection.follow();
   }
 
   private makeView(info: MapInfo): void {
@@ -187,7 +185,7 @@ export class App {
     }
     this.tools.view = this.commands.view = this.past.view = this.view;
     this.rooms.view = this.gaps.view = this.view;
-    this.camera.view = this.view;
+    this.camera.view = this.selection.view = this.view;
     this.canvas.after(this.view.measure.label);
     tellWhatPanelsCover(this.view, this.search.element, this.card.element);
   }
@@ -246,51 +244,7 @@ export class App {
   // ------------------------------------------------------------------------------------ selection
 
   private select(id: number, fly: boolean, label = 0): void {
-    if (this.corrections.takeSelection(id, label)) return;
-    const instance = this.state.instances.get(id) ?? null;
-    this.state.selected = instance ? id : 0;
-    document.body.classList.toggle('has-selection', instance !== null);
-    this.view?.select(instance);
-    this.search.mark(this.state.selected);
-    if (!instance) return this.card.close();
-    this.showCard(id);
-    if (fly) this.view?.focus(instance);
-  }
-
-  /** Outlines a part of the selected object. */
-  private showPart(part: Box): void {
-    this.view?.outline(boxOf(part));
-    this.view?.focusBox(boxOf(part));
-  }
-
-  private focus(id: number): void {
-    const instance = this.state.instances.get(id);
-    if (instance) this.view?.focus(instance);
-  }
-
-  /** Draws from where a robot sees the object, and its way there from where the recording ended. */
-  private async stand(id: number): Promise<void> {
-    try {
-      const approach = await api.approach(id, this.view?.lastCamera() ?? null);
-      if (this.state.selected !== id) return;
-      this.view?.showApproach(approach);
-      this.status.toast(approachText(approach));
-    } catch (error) {
-      this.status.toast(faultText(error));
-    }
-  }
-
-  private showCard(id: number): void {
-    const instance = this.state.instances.get(id);
-    if (!instance) return;
-    const context: CardContext = { find: (other) => this.state.instances.get(other) };
-    this.card.show(instance);
-    api.instance(id).then(
-      (detail) => {
-        if (this.state.selected === id) this.card.showDetail(detail, context);
-      },
-      (error: unknown) => this.status.toast(faultText(error)),
-    );
+    if (!this.corrections.takeSelection(id, label)) this.selection.select(id, fly);
   }
 
   // --------------------------------------------------------------------------------------- search
@@ -377,7 +331,7 @@ export class App {
       '3': () => this.setMode('classes'),
       '4': () => this.setMode('heat'),
       '5': () => this.setMode('evidence'),
-      f: selected((id) => this.focus(id)),
+      f: selected((id) => this.selection.focus(id)),
       h: selected((id) => void this.corrections.hide(id)),
       u: () => void this.corrections.undo(),
       n: selected(() => this.card.startRename()),

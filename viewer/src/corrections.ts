@@ -10,8 +10,8 @@ import { faultText } from './ui/words';
 export interface CorrectionHooks {
   /** Loads names and objects anew. */
   refresh: () => Promise<void>;
-  /** Shows the object's card as it is now. */
-  show: (id: number) => void;
+  /** What was asked of this object's name is done. */
+  renamed: (id: number) => void;
   select: (id: number) => void;
 }
 
@@ -36,7 +36,7 @@ export class Corrections {
   async rename(id: number, name: string): Promise<void> {
     if (!(await this.send({ kind: 'rename', instance: id, name }))) return;
     this.status.toast(name === '' ? 'The name is gone' : `Named “${name}”; it is kept in the map`);
-    if (this.state.selected === id) this.hooks.show(id);
+    this.hooks.renamed(id);
   }
 
   /** Locks, or takes the lock back. */

@@ -3,30 +3,31 @@
 
 /** Does work again and again as it is asked for, never twice at once, and not more often than a pause allows. */
 export class Rounds {
-  private wanted = false;
-  private running: Promise<void> | null = null;
+  private current: Promise<void> = Promise.resolve();
+  private next: Promise<void> | null = null; // asked for, not begun
+  private ended = -Infinity; // when the latest round was done
 
   constructor(
     private readonly work: () => Promise<void>,
     private readonly pauseMs: () => number,
   ) {}
 
-  /** Resolves when work that began after this call is done; requests meanwhile share it. */
+  /** Resolves when a round that began after this call is done; requests meanwhile share it. */
   request(): Promise<void> {
-    this.wanted = true;
-    this.running ??= this.run();
-    return this.running;
+    this.next ??= this.round(this.current);
+    return this.next;
   }
 
-  private async run(): Promise<void> {
+  private async round(before: Promise<void>): Promise<void> {
+    await before.catch(() => undefined); // who asked for it was told
+    const pause = this.ended + this.pauseMs() - performance.now();
+    if (pause > 0) await new Promise((resolve) => setTimeout(resolve, pause));
+    this.current = this.next ?? Promise.resolve();
+    this.next = null;
     try {
-      while (this.wanted) {
-        this.wanted = false;
-        await this.work();
-        if (this.wanted) await new Promise((resolve) => setTimeout(resolve, this.pauseMs()));
-      }
+      await this.work();
     } finally {
-      this.running = null;
+      this.ended = performance.now();
     }
   }
 }

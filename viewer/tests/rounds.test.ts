@@ -3,6 +3,8 @@
 import { expect, test } from 'vitest';
 import { Rounds } from '../src/rounds';
 
+const begun = (): Promise<void> => new Promise((resolve) => setTimeout(resolve, 20));
+
 test('requests during a round share the next one', async () => {
   let began = 0;
   let release = (): void => undefined;
@@ -14,13 +16,16 @@ test('requests during a round share the next one', async () => {
     () => 0,
   );
   const first = rounds.request();
-  for (let i = 0; i < 5; ++i) void rounds.request();
+  await begun();
+  const later = [rounds.request(), rounds.request(), rounds.request()];
+  await begun();
   expect(began).toBe(1);
   release();
-  await new Promise((resolve) => setTimeout(resolve, 20));
+  await first;
+  await begun();
   expect(began).toBe(2);
   release();
-  await first;
+  await Promise.all(later);
   expect(began).toBe(2);
 });
 
@@ -38,4 +43,22 @@ test('a round that fails does not end them', async () => {
   fails = false;
   await rounds.request();
   expect(done).toBe(1);
+});
+
+test('a request is done after its own round, however many follow', async () => {
+  let began = 0;
+  const rounds: Rounds = new Rounds(
+    async () => {
+      ++began;
+      if (began < 9) void rounds.request(); // as a map that grows does all the time
+      await begun();
+    },
+    () => 40,
+  );
+  await rounds.request();
+  expect(began).toBe(1);
+  const since = performance.now();
+  await rounds.request();
+  expect(began).toBe(2);
+  expect(performance.now() - since).toBeGreaterThan(35);
 });

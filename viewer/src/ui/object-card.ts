@@ -55,6 +55,12 @@ export class ObjectCard {
     this.element.querySelector<HTMLButtonElement>('[data-action="rename"]')?.click();
   }
 
+  /** Whether a person is giving something a new name; with an id, whether it is that object. */
+  renames(id?: number): boolean {
+    const form = this.element.querySelector<HTMLFormElement>('form.rename');
+    return form !== null && (id === undefined || form.dataset.id === String(id));
+  }
+
   /** The parts that come with a second reply. */
   showDetail(detail: InstanceDetail, context: CardContext): void {
     this.element.querySelector('.facts-table')?.replaceWith(facts(detail, detail));
@@ -133,7 +139,7 @@ export class ObjectCard {
     });
     const form = h(
       'form',
-      { class: 'rename' },
+      { class: 'rename', 'data-id': instance.id },
       h('label', { for: 'new-name' }, 'New name'),
       field,
       h('button', { class: 'primary', type: 'submit' }, 'Save'),

@@ -156,7 +156,8 @@ HttpReply show_chunk(const ServedMap& map, const HttpRequest& request) {
 HttpReply correct(ServedMap& map, const HttpRequest& request) {
   const MapEdit edit = edit_of(body_of(request));
   for (const InstanceId id : edit.instances)
-    if (!map.snapshot()->knows(id)) return fault(404, concat("the map has no object ", id));
+    if (const auto now = map.snapshot(); !now->knows(now->current_id(id)))
+      return fault(404, concat("the map has no object ", id));
   try {
     const MapEdit kept = map.correct(edit);
     return json_reply({{"version", map.snapshot()->version}, {"edit", kept.id}});

@@ -152,6 +152,14 @@ TEST_F(HttpServerTest, MergesHidesDeletesLocksAndUndoes) {
   EXPECT_EQ(get("/api/corrections")["corrections"], log);
 }
 
+TEST_F(HttpServerTest, CorrectsWhatIsKnownByAnotherIdNow) {
+  serve();
+  post("/api/corrections", R"({"kind":"merge","instance":3,"into":1})", 200);
+  post("/api/corrections", R"({"kind":"rename","instance":3,"name":"table"})", 200);
+  EXPECT_EQ(get("/api/instances/1")["name"], "table");
+  post("/api/corrections", R"({"kind":"rename","instance":99,"name":"table"})", 404);
+}
+
 TEST_F(HttpServerTest, TakesObjectsApart) {
   serve();
   const json parts = get("/api/instances/3")["super_points"];
