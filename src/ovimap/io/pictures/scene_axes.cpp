@@ -49,6 +49,16 @@ std::pair<Eigen::Vector3f, Eigen::Vector3f> axes_across(const Eigen::Vector3f& d
   return {first, direction.cross(first)};
 }
 
+/// Horizontal axes that do not turn when `up` changes a little: the first is the next of the
+/// world's axes after the one that is most upright.
+std::pair<Eigen::Vector3f, Eigen::Vector3f> level_axes(const Eigen::Vector3f& up) {
+  Eigen::Index upright = 0;
+  up.cwiseAbs().maxCoeff(&upright);
+  const Eigen::Vector3f axis = Eigen::Vector3f::Unit((upright + 1) % 3);
+  const Eigen::Vector3f first = (axis - axis.dot(up) * up).normalized();
+  return {first, up.cross(first)};
+}
+
 /// A map of directions around one of them: its plane, cut into square cells that collect area.
 class DirectionHistogram {
  public:
@@ -182,7 +192,7 @@ Eigen::Vector3f guess_up(SurfaceDirections& directions, std::span<const Pose> wo
 }
 
 Eigen::Vector3f guess_wall_direction(SurfaceDirections& directions, const Eigen::Vector3f& up) {
-  const auto [right, forward] = axes_across(up);
+  const auto [right, forward] = level_axes(up);
   std::array<QuarterBin, kQuarterBins> bins{};
   for (const Eigen::Vector3f& normal : directions.area_normals()) {
     const float area = normal.norm();
@@ -193,7 +203,8 @@ Eigen::Vector3f guess_wall_direction(SurfaceDirections& directions, const Eigen:
     bin.area += area;
     bin.moment += static_cast<double>(area) * degrees;
   }
-  const float angle = static_cast<float>(peak_of(bins)) * kQuarterTurn / kQuarterBins;
+  float angle = static_cast<float>(peak_of(bins)) * kQuarterTurn / kQuarterBins;
+  if (angle > kQuarterTurn / 2) angle -= kQuarterTurn;
   return std::cos(angle) * right + std::sin(angle) * forward;
 }
 

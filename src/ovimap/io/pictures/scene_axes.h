@@ -43,7 +43,8 @@ Eigen::Vector3f guess_up(SurfaceDirections& directions, std::span<const Pose> wo
                          const SceneAxesConfig& config = {});
 
 /// A horizontal direction along most walls: the commonest normal of upright
-/// surface, by area and modulo 90 degrees. Some horizontal direction where there are no walls.
+/// surface, by area and modulo 90 degrees. Of the four, the one next to a fixed axis of the world,
+/// so that maps of one place are drawn alike. Some horizontal direction where there are no walls.
 /// Unit length.
 Eigen::Vector3f guess_wall_direction(SurfaceDirections& directions, const Eigen::Vector3f& up);
 

@@ -109,6 +109,19 @@ TEST(GuessWallDirection, LiesAlongTheWalls) {
   EXPECT_NEAR(guess_wall_direction(none, Vector3f::UnitY()).norm(), 1, 1e-6);
 }
 
+TEST(GuessWallDirection, DoesNotTurnWithALittleLean) {
+  SurfaceDirections directions;
+  for (const Vector3f& up : {Vector3f(0, 0, 1), Vector3f(0, 1, 0), Vector3f(-1, 0, 0)})
+    for (const float x : {-0.01f, 0.01f})
+      for (const float y : {-0.01f, 0.01f}) {
+        const Vector3f leaning = (up + Vector3f(x, y, x + y)).normalized();
+        EXPECT_GT(
+            guess_wall_direction(directions, leaning).dot(guess_wall_direction(directions, up)),
+            0.99f)
+            << up.transpose() << ", " << x << " " << y;
+      }
+}
+
 TEST(SceneAxesConfig, ListsItsFields) {
   SceneAxesConfig config;
   ConfigFields fields;
