@@ -40,7 +40,7 @@ class Place:
         parts = [self.folder / f"{name}.png" for name in ("evening", "morning", "changes")]
         self.run("export", self.evening, parts[0])
         self.run("export", self.morning, parts[1])
-        self.run("diff", self.evening, self.morning, "-o", parts[2])
+        self.run("diff", self.morning, "--since", "visit 1", "-o", parts[2])
         width = PICTURE_WIDTH // len(parts)
         views = [Image.open(part).convert("RGB") for part in parts]
         views = [view.resize((width, view.height * width // view.width), Image.LANCZOS) for view in views]

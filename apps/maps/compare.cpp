@@ -14,6 +14,7 @@
 #include "ovimap/io/mesh/ply.h"
 #include "ovimap/io/pictures/pictures.h"
 #include "ovimap/pipeline/alignment/map_alignment.h"
+#include "ovimap/pipeline/report/change_mesh.h"
 #include "ovimap/pipeline/revise/map_diff.h"
 #include "ovimap/pipeline/revise/map_merge.h"
 #include "ovimap/pipeline/search/history_search.h"
@@ -84,13 +85,19 @@ nlohmann::json change_json(const ObjectChange& change) {
   return result;
 }
 
-void draw_changes(const std::filesystem::path& path, const MapDocument& a, const MapDocument& b,
-                  const Pose& a_from_b, const std::vector<ObjectChange>& changes) {
-  const Mesh mesh = diff_mesh(a, b, a_from_b, changes);
-  if (path.extension() == ".ply") return write_ply(path, mesh);
+void check_drawing(const std::filesystem::path& path) {
+  if (path.empty()) return;
+  if (path.extension() != ".png" && path.extension() != ".ply")
+    throw Error(
+        concat("cannot draw into '", path.string(), "'; the name must end in .png or .ply"));
+  check_file_target(path);
+}
+
+void draw(const std::filesystem::path& path, const Mesh& changes, const Eigen::Vector3f& up) {
+  if (path.extension() == ".ply") return write_ply(path, changes);
   PictureConfig config;
   config.coloring = MeshColoring::kColors;
-  write_file(path, encode_png(top_down(mesh, a.up, config)));
+  write_file(path, encode_png(top_down(changes, up, config)));
 }
 
 void print_changes(const std::vector<ObjectChange>& changes, const MapDocument& a,
@@ -133,13 +140,17 @@ nlohmann::json change_json(const HistoryChange& change, const MapHistory& histor
 
 /// One map at two times, by what its visits found. Exit code 1: something changed.
 int diff_times(const CompareOptions& options) {
-  if (!options.out.empty() || !options.transform.empty() || options.align)
+  if (!options.transform.empty() || options.align)
     throw Error(
-        "--since and --until compare one map with itself; leave -o, --transform and --align out");
+        "--since and --until compare one map with itself; leave --transform and --align out");
   const MapRecord map = read_corrected_record(options.a);
   const HistoryDates dates(map.history, map.frames);
   const auto [since, until, changes] =
       changes_between(map.history, dates, options.since, options.until, seconds_now());
+  if (!options.out.empty()) {
+    const MapDocument whole = load_corrected_map(options.a);
+    draw(options.out, change_mesh(whole, changes), whole.up);
+  }
   if (options.json) {
     nlohmann::json list = nlohmann::json::array();
     for (const HistoryChange& change : changes)
@@ -167,17 +178,12 @@ int diff(const CompareOptions& options) {
   const bool times = !options.since.empty() || !options.until.empty();
   if (times == !options.b.empty())
     throw Error("say what to compare the map with: another map, or with --since TIME its own past");
+  check_drawing(options.out);
   if (times) return diff_times(options);
-  if (!options.out.empty()) {
-    if (options.out.extension() != ".png" && options.out.extension() != ".ply")
-      throw Error(concat("cannot draw into '", options.out.string(),
-                         "'; the name must end in .png or .ply"));
-    check_file_target(options.out);
-  }
   const MapDocument a = load_corrected_map(options.a), b = load_corrected_map(options.b);
   const MapAlignment alignment = find_alignment(options, a, b);
   const auto changes = diff_maps(a, b, alignment.a_from_b);
-  if (!options.out.empty()) draw_changes(options.out, a, b, alignment.a_from_b, changes);
+  if (!options.out.empty()) draw(options.out, change_mesh(a, b, alignment.a_from_b, changes), a.up);
   const bool changed = std::any_of(changes.begin(), changes.end(), [](const ObjectChange& change) {
     return change.kind != ChangeKind::kSame && change.kind != ChangeKind::kUnseen;
   });

@@ -9,8 +9,6 @@
 
 #include "ovimap/base/config.h"
 #include "ovimap/base/parallel.h"
-#include "ovimap/io/mesh/map_mesh.h"
-#include "ovimap/io/mesh/mesh_pieces.h"
 #include "ovimap/map/rays/surface_lookup.h"
 #include "ovimap/pipeline/alignment/object_layout.h"
 #include "ovimap/pipeline/revise/object_overlap.h"
@@ -293,23 +291,6 @@ class MapComparison {
   std::vector<ObjectChange> changes_;
 };
 
-using ChangeColor = std::array<std::uint8_t, 3>;
-constexpr ChangeColor kNewColor{40, 170, 70}, kMovedColor{40, 90, 220},
-    kOldPlaceColor{140, 190, 250}, kRemovedColor{215, 45, 45};
-
-void append(Mesh& mesh, Mesh piece, const ChangeColor& color) {
-  piece.colors.assign(piece.vertices.size(), color);
-  piece.labels.assign(piece.vertices.size(), 0);
-  append(piece, mesh);
-}
-
-/// Half-way to a light grey, so that changes stand out.
-ChangeColor faded(const ChangeColor& color) {
-  const int grey = (2 * color[0] + 5 * color[1] + color[2]) / 8;
-  const auto level = static_cast<std::uint8_t>(110 + grey / 2);
-  return {level, level, level};
-}
-
 }  // namespace
 
 void list_fields(MapDiffConfig& config, ConfigFields& fields) {
@@ -346,31 +327,6 @@ ObjectChange part_arrival(ObjectChange& change) {
 std::vector<ObjectChange> diff_maps(const MapDocument& before, const MapDocument& after,
                                     const Pose& before_from_after, const MapDiffConfig& config) {
   return MapComparison(before, after, before_from_after, config).changes();
-}
-
-Mesh diff_mesh(const MapDocument& before, const MapDocument& after, const Pose& before_from_after,
-               const std::vector<ObjectChange>& changes) {
-  std::map<InstanceId, ChangeColor> in_before, in_after;
-  for (const ObjectChange& change : changes) {
-    if (change.kind == ChangeKind::kNew) in_after[change.after] = kNewColor;
-    if (change.kind == ChangeKind::kRemoved) in_before[change.before] = kRemovedColor;
-    if (change.kind != ChangeKind::kMoved) continue;
-    in_after[change.after] = kMovedColor;
-    in_before[change.before] = kOldPlaceColor;
-  }
-  Mesh mesh = visible_mesh(after);
-  const Eigen::Isometry3f pose = before_from_after.cast<float>();
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    mesh.vertices[i] = pose * mesh.vertices[i];
-    mesh.normals[i] = pose.linear() * mesh.normals[i];
-    const auto color = in_after.find(mesh.labels[i]);
-    mesh.colors[i] = color == in_after.end() ? faded(mesh.colors[i]) : color->second;
-  }
-  const auto pieces = split_by_label(visible_mesh(before));
-  for (const auto& [id, color] : in_before)
-    if (const auto piece = pieces.find(id); piece != pieces.end())
-      append(mesh, piece->second, color);
-  return mesh;
 }
 
 }  // namespace ovimap

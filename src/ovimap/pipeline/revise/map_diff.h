@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "ovimap/geometry/mesh.h"
 #include "ovimap/io/map_tables/map_document.h"
 #include "ovimap/map/rays/observed_space.h"
 
@@ -62,10 +61,5 @@ ObjectChange part_arrival(ObjectChange& change);
 std::vector<ObjectChange> diff_maps(const MapDocument& before, const MapDocument& after,
                                     const Pose& before_from_after,
                                     const MapDiffConfig& config = {});
-
-/// The later map in grey in the frame of the earlier one, with changes in colour: new things green,
-/// moved ones blue and where they were light blue, removed ones red.
-Mesh diff_mesh(const MapDocument& before, const MapDocument& after, const Pose& before_from_after,
-               const std::vector<ObjectChange>& changes);
 
 }  // namespace ovimap

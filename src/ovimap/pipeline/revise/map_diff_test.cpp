@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "ovimap/pipeline/mapping/furnished_fixture.h"
+#include "ovimap/pipeline/report/change_mesh.h"
 
 namespace ovimap {
 namespace {
@@ -76,7 +77,7 @@ TEST_F(MapDiffTest, TellsWhatMovedWentAndCame) {
     EXPECT_EQ(change.kind, ChangeKind::kSame)
         << change.before << " " << change.after << ": " << change.evidence;
   }
-  const Mesh picture = diff_mesh(before, after, after_from_room.inverse(), changes);
+  const Mesh picture = change_mesh(before, after, after_from_room.inverse(), changes);
   std::set<std::array<std::uint8_t, 3>> bright;
   for (const auto& color : picture.colors)
     if (color[0] != color[1] || color[1] != color[2]) bright.insert(color);

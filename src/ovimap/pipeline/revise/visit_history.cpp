@@ -271,7 +271,7 @@ class VisitTeller {
       const bool trades = change.kind == ChangeKind::kMoved  ? new_id || is_alone(change)
                           : change.kind == ChangeKind::kSame ? new_id && nothing_left
                                                              : false;
-      if (trades) trade_ids(change.before, change.after);
+      if (trades) trade_ids(change.before, change.after, new_id);
     }
   }
 
@@ -282,8 +282,11 @@ class VisitTeller {
            }) == 1;
   }
 
-  void trade_ids(InstanceId a, InstanceId b) {
-    swap_instances(after_, a, b);
+  void trade_ids(InstanceId a, InstanceId b, bool new_id) {
+    if (new_id)
+      swap_instances(after_, a, b);
+    else
+      take_place(after_, a, b);
     pass_corrections(b, a);
     const auto other = [a, b](InstanceId id) { return id == a ? b : id == b ? a : id; };
     for (ObjectChange& change : changes_) change.after = other(change.after);
@@ -351,6 +354,26 @@ void swap_instances(MapRecord& record, InstanceId a, InstanceId b) {
   for (auto& [id, points] : record.surfaces) surfaces.emplace(now(id), std::move(points));
   record.surfaces = std::move(surfaces);
   record.registry.aliases = aliases;
+}
+
+void take_place(MapRecord& record, InstanceId known, InstanceId gone) {
+  std::map<InstanceId, InstanceId> fresh;  // by the ids that it gives back
+  InstanceId last = last_instance(record);
+  for (const auto& [id, target] : record.registry.aliases)
+    if (id < known && resolve_alias(record.registry.aliases, id) == gone) fresh[id] = ++last;
+  for (auto& [label, point] : record.registry.super_points)
+    for (const auto& [id, instead] : fresh)
+      if (auto votes = point.votes.extract(id)) {
+        votes.key() = instead;
+        point.votes.insert(std::move(votes));
+      }
+  for (const auto& [id, instead] : fresh) {
+    record.registry.aliases.erase(id);
+    record.registry.aliases[instead] = gone;
+    record.registry.last_id = instead;
+  }
+  swap_instances(record, known, gone);
+  for (const auto& [id, instead] : fresh) record.registry.aliases[id] = gone;
 }
 
 void begin_visit(const MapRecord& begun, MapHeader& header) {

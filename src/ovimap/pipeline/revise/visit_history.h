@@ -43,4 +43,9 @@ void tell_visit(const MapDocument& before, MapDocument& after,
 /// corrections stay with the ids.
 void swap_instances(MapRecord& record, InstanceId a, InstanceId b);
 
+/// What is found where `gone` was, and goes by its id, is `known`, which is elsewhere no more: they
+/// trade their ids. Older ids than that of `known` which still name its super-points are those of
+/// `gone`: they stay with that one, and the super-points get ids that nothing had.
+void take_place(MapRecord& record, InstanceId known, InstanceId gone);
+
 }  // namespace ovimap

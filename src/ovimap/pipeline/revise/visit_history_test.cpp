@@ -288,5 +288,24 @@ TEST(VisitHistory, InstancesTradeIdsEverywhere) {
   EXPECT_EQ(record.registry.aliases, (std::map<InstanceId, InstanceId>{{4, 3}, {5, 3}, {6, 2}}));
 }
 
+TEST(VisitHistory, WhatTakesAnothersPlaceGoesByNoneOfItsIds) {
+  MapRecord record;
+  record.registry.last_id = 80;
+  record.instances.resize(1);
+  record.instances[0].id = 24;
+  record.registry.super_points[7].votes = {{24, 3}};
+  record.registry.super_points[8].votes = {{33, 5}};  // of what was there before as well
+  record.registry.super_points[9].votes = {{70, 6}};
+  record.registry.aliases = {{33, 24}, {70, 24}};
+  take_place(record, 61, 24);
+  EXPECT_EQ(record.instances[0].id, 61u);
+  EXPECT_EQ(record.registry.super_points[7].votes, (std::map<InstanceId, int>{{61, 3}}));
+  EXPECT_EQ(record.registry.super_points[8].votes, (std::map<InstanceId, int>{{81, 5}}));
+  EXPECT_EQ(record.registry.super_points[9].votes, (std::map<InstanceId, int>{{70, 6}}));
+  EXPECT_EQ(record.registry.aliases,
+            (std::map<InstanceId, InstanceId>{{33, 24}, {70, 61}, {81, 61}}));
+  EXPECT_EQ(record.registry.last_id, 81u);
+}
+
 }  // namespace
 }  // namespace ovimap
