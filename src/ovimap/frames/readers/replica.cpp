@@ -17,21 +17,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The N of "frameN.jpg" (or .png); nullopt for any other file.
-std::optional<std::int64_t> color_number(const fs::path& file) {
+constexpr std::string_view kColor = "frame", kDepth = "depth";
+
+/// The N of an image "frameN" or "depthN"; nullopt for any other file.
+std::optional<std::int64_t> number_of(const fs::path& file, std::string_view prefix) {
   const std::string stem = file.stem().string();
-  if (!stem.starts_with("frame") || (file.extension() != ".jpg" && file.extension() != ".png"))
+  if (!stem.starts_with(prefix) || (file.extension() != ".jpg" && file.extension() != ".png"))
     return std::nullopt;
   std::int64_t number = 0;
   const char* end = stem.data() + stem.size();
-  const auto [rest, error] = std::from_chars(stem.data() + 5, end, number);
+  const auto [rest, error] = std::from_chars(stem.data() + prefix.size(), end, number);
   return error == std::errc() && rest == end && number >= 0 ? std::optional(number) : std::nullopt;
 }
 
 bool is_replica(const fs::path& folder) {
   if (!fs::is_directory(folder / "results")) return false;
   for (const auto& entry : fs::directory_iterator(folder / "results"))
-    if (color_number(entry.path())) return true;
+    if (number_of(entry.path(), kColor)) return true;
   return false;
 }
 
@@ -86,18 +88,25 @@ Recording list_replica(const fs::path& folder, const FrameSourceConfig& config) 
   recording.rig = read_rig(find_camera_file(folder));
 
   std::map<std::int64_t, fs::path> colors;
-  for (const auto& entry : fs::directory_iterator(folder / "results"))
-    if (const auto number = color_number(entry.path())) colors[*number] = entry.path();
+  std::map<std::int64_t, std::string> digits_of;  // of either image: one may be lost
+  for (const auto& entry : fs::directory_iterator(folder / "results")) {
+    const fs::path& file = entry.path();
+    for (const std::string_view prefix : {kColor, kDepth})
+      if (const auto number = number_of(file, prefix))
+        digits_of[*number] = file.stem().string().substr(prefix.size());
+    if (const auto number = number_of(file, kColor)) colors[*number] = file;
+  }
   const std::vector<double> times = read_times(folder / "timestamps.txt");
   std::vector<std::int64_t> numbers;
-  for (const auto& [number, color] : colors) {
-    const std::string digits = color.stem().string().substr(5);
+  for (const auto& [number, digits] : digits_of) {
     RecordedFrame frame;
-    frame.name = color.stem().string();
+    frame.name = concat(kColor, digits);
     frame.timestamp_s = number < std::ssize(times)
                             ? times[static_cast<std::size_t>(number)]
                             : static_cast<double>(number) / kAssumedFramesPerSecond;
-    frame.color = color;
+    const auto color = colors.find(number);
+    frame.color =
+        color != colors.end() ? color->second : folder / "results" / (frame.name + ".jpg");
     frame.depth = folder / "results" / ("depth" + digits + ".png");
     const fs::path truth = folder / "results" / ("instance" + digits + ".png");
     if (fs::exists(truth)) frame.truth = truth;

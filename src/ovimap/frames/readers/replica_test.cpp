@@ -71,6 +71,16 @@ TEST_F(Replica, NumbersBelowZeroAreNoFrames) {
   EXPECT_EQ(open_frame_source(scene_)->size(), 3);
 }
 
+TEST_F(Replica, AnImageThatIsLostIsAFaultOfItsFrame) {
+  std::filesystem::remove(scene_ / "results/frame000001.jpg");
+  std::filesystem::remove(scene_ / "results/depth000002.png");
+  const auto source = open_frame_source(scene_);
+  ASSERT_EQ(source->size(), 3);
+  EXPECT_TRUE(source->read(0).frame.has_value());
+  EXPECT_EQ(source->read(1).fault, "frame000001.jpg: is missing");
+  EXPECT_EQ(source->read(2).fault, "depth000002.png: is missing");
+}
+
 TEST_F(Replica, CameraFileMayStandInTheScene) {
   std::filesystem::rename(folder_.path() / "cam_params.json", scene_ / "cam_params.json");
   EXPECT_EQ(open_frame_source(scene_)->size(), 3);
