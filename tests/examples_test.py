@@ -29,7 +29,7 @@ class Place:
         return subprocess.run([self.program, *arguments], cwd=self.folder, capture_output=True, text=True)
 
     def prepare(self):
-        made = self.run("demo")
+        made = self.run("demo", "--masks", "gt")  # a network's masks: tutorial_test.py
         assert made.returncode == 0, made.stderr
         for name in ("monday", "friday", "upstairs", "downstairs"):
             shutil.copy(self.folder / "demo/tiny.ovimap", self.folder / f"{name}.ovimap")
