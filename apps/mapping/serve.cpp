@@ -45,11 +45,12 @@ std::filesystem::path viewer_folder(const std::string& option) {
 
 std::string first_line(const std::filesystem::path& file) {
   std::ifstream stream(file);
-  std::string line;
-  if (!std::getline(stream, line))
+  std::string text(4096, '\0');  // the line may have no end: /dev/zero
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  if (text.empty())
     throw Error(concat("'", file.string(), "' holds no token; write one line into it"));
-  if (line.ends_with('\r')) line.pop_back();
-  return line;
+  return text.substr(0, text.find_first_of("\r\n"));
 }
 
 /// Connections and sizes stay limited.

@@ -181,6 +181,7 @@ void add_grid_options(CLI::App& command, ExportOptions& options) {
       .add_option(
           "--band", options.band_m,
           "of a grid: heights above the floor between which things stand in the way, metres")
+      ->delimiter(',')
       ->capture_default_str();
   command
       .add_option("--heights", options.heights_m,
