@@ -3,13 +3,12 @@
 // The page while the map is made.
 import { existsSync } from 'node:fs';
 import { expect } from '@playwright/test';
-import { infoOf, RunningMap, test, wholePicture } from './running-map';
+import { infoOf, test, wholePicture } from './running-map';
 
 const PICTURES = process.env.OVIMAP_E2E_PICTURES ?? 'test-results/pictures';
 
-test('shows, searches and corrects a map while it is made', async ({ page }) => {
+test('shows, searches and corrects a map while it is made', async ({ page, live: map }) => {
   test.setTimeout(240_000);
-  const map = await RunningMap.live();
   await page.goto(map.address);
   await wholePicture(page);
   await expect(page.locator('.facts.live')).toContainText('frame');
@@ -48,7 +47,6 @@ test('shows, searches and corrects a map while it is made', async ({ page }) => 
   await expect(named).toHaveAttribute('data-id', String((await known.json()).id));
   expect(await map.interrupt()).toBe(0);
   expect(infoOf(map.file).instances.map(({ name }) => name)).toContain('reading corner');
-  await map.stop();
 });
 
 test('a camera that is lost turns red, and says where it can be found', async ({ page, map }) => {
@@ -69,9 +67,8 @@ test('a camera that is lost turns red, and says where it can be found', async ({
   await page.screenshot({ path: `${PICTURES}/lost.png` });
 });
 
-test('Ctrl-C saves what was mapped', async ({ page }) => {
+test('Ctrl-C saves what was mapped', async ({ page, live: map }) => {
   test.setTimeout(120_000);
-  const map = await RunningMap.live();
   await page.goto(map.address);
   await wholePicture(page);
   await expect(page.locator('.facts')).toContainText(/from ([4-9]|1\d) frames/);
@@ -79,5 +76,4 @@ test('Ctrl-C saves what was mapped', async ({ page }) => {
   expect(existsSync(map.file)).toBe(true);
   expect(infoOf(map.file).frames).toBeGreaterThan(3);
   await expect(page.getByRole('alert')).toContainText('connection to the server is lost');
-  await map.stop();
 });

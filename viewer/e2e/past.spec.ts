@@ -3,7 +3,7 @@
 // A map of two visits: what changed, and what was where.
 import AxeBuilder from '@axe-core/playwright';
 import { expect, type Page } from '@playwright/test';
-import { RunningMap, test, wholePicture } from './running-map';
+import { test, wholePicture } from './running-map';
 
 const PICTURES = process.env.OVIMAP_E2E_PICTURES ?? 'test-results/pictures';
 
@@ -12,9 +12,8 @@ async function shown(page: Page): Promise<Buffer> {
   return page.locator('canvas').screenshot({ timeout: 60_000 });
 }
 
-test('lists changes, flies to them, and shows the map as it was', async ({ page }) => {
+test('lists changes, flies to them, and shows the map as it was', async ({ page, home: map }) => {
   test.setTimeout(180_000);
-  const map = await RunningMap.home();
   await page.goto(map.address);
   await wholePicture(page);
   const now = await shown(page);
@@ -52,12 +51,10 @@ test('lists changes, flies to them, and shows the map as it was', async ({ page 
   await page.keyboard.press('Escape'); // ends the tool
   await expect(panel).toBeHidden();
   await expect(page.locator('#list-title')).toHaveText('All objects');
-  await map.stop();
 });
 
-test('answers what moved and where it was', async ({ page }) => {
+test('answers what moved and where it was', async ({ page, home: map }) => {
   test.setTimeout(180_000);
-  const map = await RunningMap.home();
   await page.goto(map.address);
   await wholePicture(page);
   await page.getByRole('combobox').fill('what changed since visit 1');
@@ -75,5 +72,4 @@ test('answers what moved and where it was', async ({ page }) => {
   await page.getByRole('combobox').fill('mug on 2020-01-01');
   await page.keyboard.press('Enter');
   await expect(page.locator('.verdict')).toContainText('the map begins on', { timeout: 60_000 });
-  await map.stop();
 });

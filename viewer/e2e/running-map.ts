@@ -93,7 +93,10 @@ export async function wholePicture(page: Page): Promise<void> {
 }
 
 /** Tests share a server, as people do, and fail when the page reports a fault. */
-export const test = base.extend<{ faults: void }, { map: RunningMap }>({
+export const test = base.extend<
+  { faults: void; live: RunningMap; home: RunningMap },
+  { map: RunningMap }
+>({
   map: [
     async ({}, use) => {
       const map = await RunningMap.start();
@@ -102,6 +105,17 @@ export const test = base.extend<{ faults: void }, { map: RunningMap }>({
     },
     { scope: 'worker', timeout: 60_000 },
   ],
+  /** A map while it is made, for one test alone; ended however the test ends. */
+  live: async ({}, use) => {
+    const live = await RunningMap.live();
+    await use(live);
+    await live.stop();
+  },
+  home: async ({}, use) => {
+    const home = await RunningMap.home();
+    await use(home);
+    await home.stop();
+  },
   faults: [
     async ({ page }, use) => {
       const faults: string[] = [];
