@@ -27,6 +27,18 @@ struct RunOptions {
   double fps = 30;
 };
 
+/// Visits lie in the order in which they were mapped: times of before the last one's would put
+/// questions about the past out of order.
+void require_later(const std::filesystem::path& continued, double recorded_s) {
+  const MapHistory history = read_map_info(continued).history;
+  if (history.visits.empty() || !history.visits.back().recorded_s) return;
+  const double last_s = *history.visits.back().recorded_s;
+  if (recorded_s < last_s)
+    throw Error(concat("--recorded ", date_text(recorded_s), " is before the last visit of '",
+                       continued.string(), "', ", date_text(last_s),
+                       "; give the time of this recording, and map visits in their order"));
+}
+
 /// When the recording began, as --recorded says.
 double recorded_s(const std::string& text) {
   const TimeAsked time = time_of_text(text, seconds_now());
@@ -59,6 +71,8 @@ int run(RunOptions options) {
   if (options.map.empty())
     throw Error("say where the map goes with -o, or which one to go on with by --continue");
   if (!options.recorded.empty()) options.mapping.recorded_s = recorded_s(options.recorded);
+  if (!options.continued.empty() && options.mapping.recorded_s && !options.resume)
+    require_later(options.continued, *options.mapping.recorded_s);
   const ThreadLimit limit(options.mapping.threads);
   check_map_target(options.map);
   if (!options.pictures.empty()) make_folder(options.pictures);

@@ -172,6 +172,16 @@ int diff_times(const CompareOptions& options) {
   return changes.empty() ? kDone : kAnswerIsNo;
 }
 
+/// Where one map goes on with the other, its own history tells more: of each thing that went it
+/// kept what that was.
+void tell_own_history(const CompareOptions& options, const MapRecord& a, const MapRecord& b) {
+  const std::size_t before = std::max<std::size_t>(a.history.visits.size(), 1);
+  const std::string& begun = a.history.visits.empty() ? a.source : a.history.visits[0].source;
+  if (b.history.visits.size() <= before || b.history.visits[0].source != begun) return;
+  warn(concat(options.b.string(), " goes on with ", options.a.string(), "; `ovimap diff ",
+              options.b.string(), " --since \"visit ", before, "\"` tells what its history says"));
+}
+
 /// Exit code 1: something changed.
 int diff(const CompareOptions& options) {
   const ThreadLimit limit(options.threads);
@@ -182,6 +192,7 @@ int diff(const CompareOptions& options) {
   if (times) return diff_times(options);
   const MapDocument a = load_corrected_map(options.a), b = load_corrected_map(options.b);
   const MapAlignment alignment = find_alignment(options, a, b);
+  tell_own_history(options, a, b);
   const auto changes = diff_maps(a, b, alignment.a_from_b);
   if (!options.out.empty()) draw(options.out, change_mesh(a, b, alignment.a_from_b, changes), a.up);
   const bool changed = std::any_of(changes.begin(), changes.end(), [](const ObjectChange& change) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <limits>
 
 #include "ovimap/frames/decoding/depth_decoding.h"
 #include "ovimap/frames/decoding/frame_decoder.h"
@@ -195,6 +196,12 @@ class RecordingSource : public FrameSource {
     return depth;
   }
 
+  /// " from 0.1 to 10 m", or "" where all depth is taken.
+  std::string range_text() const {
+    if (config_.max_depth_m >= std::numeric_limits<float>::max()) return "";
+    return concat(" from ", config_.min_depth_m, " to ", config_.max_depth_m, " m");
+  }
+
   DepthImage load_depth(const RecordedFrame& record) const {
     const std::string name = label(record.depth, record.depth_part, record);
     DepthImage depth =
@@ -203,9 +210,7 @@ class RecordingSource : public FrameSource {
             : units_.metres(load(name, record.depth, record.depth_part,
                                  [&](const Bytes& bytes) { return decode_depth_units(bytes); }));
     if (recording_.depth_mirrored) mirror(depth);
-    if (!has_depth(depth))
-      fail(name,
-           concat("has no depth from ", config_.min_depth_m, " to ", config_.max_depth_m, " m"));
+    if (!has_depth(depth)) fail(name, "has no depth" + range_text());
     return depth;
   }
 

@@ -281,6 +281,7 @@ MapMerge merge_maps(MapDocument a, const MapDocument& b, const Pose& a_from_b,
   log_pairs(result.pairs, a.edits);
   a.timings.clear();
   a.live_steps.clear();  // they made a part of it
+  a.history = {};        // likewise, and tells of a part
   result.map = std::move(a);
   return result;
 }

@@ -43,8 +43,8 @@ struct MapMerge {
 
 /// One map of two, in the frame of `a`: voxels fused, everything of `b` under new ids (those of `a`
 /// stay). Objects that are one are joined by an edit in the merged map's log, which can be undone
-/// like a person's; the logs of both maps go on. Both maps as load_map gives them; `b` must have
-/// the embeddings of the same encoder, or none. Throws Error otherwise.
+/// like a person's; the logs of both maps go on, their histories do not. Both maps as load_map
+/// gives them; `b` must have the embeddings of the same encoder, or none. Throws Error otherwise.
 MapMerge merge_maps(MapDocument a, const MapDocument& b, const Pose& a_from_b,
                     const MapMergeConfig& config = {});
 

@@ -77,6 +77,7 @@ class VisitTeller {
                      [](const auto& a, const auto& b) { return a.instance < b.instance; });
     auto& all = after_.history.events;
     all.insert(all.end(), events_.begin(), events_.end());
+    drop_gone();
   }
 
  private:
@@ -280,6 +281,20 @@ class VisitTeller {
     return std::count_if(changes_.begin(), changes_.end(), [&](const ObjectChange& other) {
              return other.before != 0 && other.after == change.after;
            }) == 1;
+  }
+
+  /// What is left of a thing that is gone, on what it stood on or where this visit looked without
+  /// seeing through, is no object.
+  void drop_gone() {
+    std::set<InstanceId> gone;
+    for (const ObjectEvent& event : after_.history.events)
+      if (event.kind == ObjectEventKind::kGone)
+        gone.insert(event.instance);
+      else
+        gone.erase(event.instance);
+    std::erase_if(after_.instances,
+                  [&](const auto& instance) { return gone.contains(instance.id); });
+    std::erase_if(after_.surfaces, [&](const auto& entry) { return gone.contains(entry.first); });
   }
 
   void trade_ids(InstanceId a, InstanceId b, bool new_id) {

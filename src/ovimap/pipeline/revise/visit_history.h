@@ -32,7 +32,7 @@ void begin_visit(const MapRecord& begun, MapHeader& header);
 /// found one is a new object that says which gone one it may be. An object at its old place that
 /// the visit took for a new one gets its id back, and with it what people corrected of it meanwhile
 /// (edits of `after` beyond those of `before`). What is left of things that left their places,
-/// where the visit did not look, goes (forget_remains).
+/// where the visit did not look, goes (forget_remains), and no object is what is gone.
 ///
 /// `store`: where voxels may be meanwhile that the visit touched; null: in memory.
 void tell_visit(const MapDocument& before, MapDocument& after,
