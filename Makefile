@@ -17,7 +17,7 @@ help:
 	@echo "make build   build the program and its web page: $(OVIMAP); make build-all: all there is"
 	@echo "make bench   measure speed and memory on SOURCE (default: the demo room), beside their targets"
 	@echo "make rivals  install Open3D and OpenCV (1.4 GB) into build/rivals, for make bench to compare with"
-	@echo "make benchmarks KITCHEN=FOLDER [ONLY='tiny rooms']   write docs/benchmarks.md, or these parts of it"
+	@echo "make benchmarks KITCHEN=FOLDER [STUDIO=FOLDER] [ONLY='tiny rooms']   write docs/benchmarks.md, or these parts of it"
 	@echo "make fuzz    feed the readers with odd bytes, FUZZ_SECONDS (60) each; installs clang"
 	@echo "make live-speed SOURCE=RECORDING   what serving a map costs while it is made"
 	@echo "make site    the documentation as pages, its links checked"
@@ -89,7 +89,7 @@ rivals:
 	@tools/rivals.sh
 
 benchmarks: build
-	@python3 tools/benchmarks.py $(OVIMAP) $(if $(KITCHEN),--kitchen "$(KITCHEN)") $(if $(ONLY),--only $(ONLY))
+	@python3 tools/benchmarks.py $(OVIMAP) $(if $(KITCHEN),--kitchen "$(KITCHEN)") $(if $(STUDIO),--studio "$(STUDIO)") $(if $(ONLY),--only $(ONLY))
 
 wheel: test-setup
 	@tools/wheel_test.sh $(if $(SOURCE),"$(SOURCE)")

@@ -7,6 +7,7 @@
 
 #include "ovimap/base/config.h"
 #include "ovimap/hub/model_fetch.h"
+#include "ovimap/inference/encoders/image_text_encoder.h"
 
 namespace ovimap::apps {
 
@@ -99,6 +100,7 @@ int fetch(const FetchOptions& options) {
 }
 
 std::string better_encoder() {
+  if (preferred_encoder({}) != kDefaultEncoder) return {};  // one is here
   const HubConfig config = read_hub_config({"hub.connect_timeout_s=3", "hub.stall_timeout_s=3"});
   if (!Hub(config, hub_access_from_environment()).answers()) return {};
   return fetch_line(find_entry(read_catalogue({}), kFirstEncoder));

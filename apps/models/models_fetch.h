@@ -34,7 +34,8 @@ bool lacks_default();
 /// `ovimap models hub`: whether there is one to fetch from.
 int hub_answers(const FetchOptions& options);
 
-/// The command that gets a better encoder than the default; empty where no hub answers within 3 s.
+/// The command that gets a better encoder than the default; empty where one is installed, or no hub
+/// answers within 3 s.
 std::string better_encoder();
 
 struct TryOptions {

@@ -72,6 +72,20 @@ void bind_answers(nb::module_& module) {
       .def_ro("reading", &QueryAnswer::reading, "how a phrase was understood: \"[mug] on [table]\"")
       .def_ro("reason", &QueryAnswer::reason, "why a phrase was not found")
       .def_prop_ro(
+          "count",
+          [](const QueryAnswer& answer) {
+            return answer.count ? std::optional(answer.count->found) : std::nullopt;
+          },
+          "of \"how many\" and \"two ...\": of how many objects it is true; None otherwise")
+      .def_prop_ro(
+          "expected_count",
+          [](const QueryAnswer& answer) {
+            return answer.count
+                       ? std::optional(std::pair(answer.count->expected, answer.count->deviation))
+                       : std::nullopt;
+          },
+          "likewise: the sum of all objects' chances and its standard deviation")
+      .def_prop_ro(
           "relevance",
           [](const QueryAnswer& answer) {
             return view<Relevance>(answer.relevance.data(),

@@ -65,6 +65,10 @@ test('answers queries, and says what is not there', async ({ page, map }) => {
   await ask(page, 'largest object');
   await expect(page.locator('.verdict')).toContainText('Found');
   await expect(page.locator('.verdict')).toContainText('read as largest [object]');
+  await ask(page, 'how many sofas');
+  await expect(page.locator('.verdict')).toContainText(
+    /\d found, [\d.]+ ± [\d.]+ by their chances/,
+  );
   await ask(page, 'dinosaur skeleton');
   await expect(page.locator('.verdict')).toContainText('Not in the map');
   await expect(page.locator('#list-title')).toHaveText('What comes nearest');

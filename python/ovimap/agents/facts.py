@@ -77,6 +77,8 @@ class Answer:
     """how a phrase was understood, as "[mug] on [table]"; empty: as a plain name"""
     reason: str
     """why a phrase was not found"""
+    count: int | None
+    """of "how many" and "two ...": of how many objects it is true"""
     matches: list[Match]
     """best first"""
 

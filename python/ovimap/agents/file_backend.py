@@ -68,7 +68,7 @@ class FileBackend(MapBackend):
                     continue
                 thing = opened.objects[match.id]
                 matches.append(Match(**vars(thing), probability=share(match.probability), score=rounded(match.standard_score), evidence=match.evidence))
-            return Answer(self.name, answer.query, answer.found, answer.reading, answer.reason, matches)
+            return Answer(self.name, answer.query, answer.found, answer.reading, answer.reason, answer.count, matches)
 
     def describe(self, id: int) -> Description:
         with self._faults():

@@ -99,7 +99,8 @@ class HttpBackend(MapBackend):
             for match in said["matches"]
             if match["id"] in objects  # a map that is being made may have lost one since
         ]
-        return Answer(self.name, said["query"], said["verdict"] == "found", said["reading"], said["reason"], matches)
+        count = said["count"]["found"] if said["count"] else None
+        return Answer(self.name, said["query"], said["verdict"] == "found", said["reading"], said["reason"], count, matches)
 
     @_understood
     def describe(self, id: int) -> Description:

@@ -247,6 +247,8 @@ export interface Answer {
   verdict: 'found' | 'not_in_map';
   reading: string;
   reason: string;
+  /** Of "how many" and "two ...". */
+  count: { expected: number; deviation: number; found: number } | null;
   matches: Match[];
   heat: [number, number][];
 }

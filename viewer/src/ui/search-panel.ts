@@ -9,7 +9,7 @@ import { icon } from './icons';
 import { objectRow } from './object-row';
 import { roomRow } from './room-row';
 import { suggest, vocabularyOf } from './suggestions';
-import { plural, withTitles } from './words';
+import { countText, plural, withTitles } from './words';
 
 const MOST_RECENT = 5;
 
@@ -137,6 +137,7 @@ export class SearchPanel {
     this.verdict.className = `verdict ${found ? 'found' : 'absent'}`;
     this.verdict.textContent = found ? 'Found' : 'Not in the map';
     const more = [
+      answer.count && countText(answer.count),
       answer.reading && `read as ${answer.reading}`,
       withTitles(answer.reason, (id) => this.instances.get(id)),
     ];

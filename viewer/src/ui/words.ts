@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
-import type { Approach, Box, HistoryEvent, Instance, Visit } from '../api/types';
+import type { Answer, Approach, Box, HistoryEvent, Instance, Visit } from '../api/types';
 
 /** The word that the evidence for an object is clear about; empty: none. */
 function clearWord(instance: Instance): string {
@@ -70,6 +70,12 @@ export function eventText(event: HistoryEvent): string {
     ((box?.min[axis] ?? 0) + (box?.max[axis] ?? 0)) / 2;
   const shift = [0, 1, 2].map((axis) => middle(event.after, axis) - middle(event.before, axis));
   return `moved ${Math.hypot(...shift).toFixed(2)} m`;
+}
+
+/** "2 found, 1.9 ± 0.7 by their chances" */
+export function countText(count: NonNullable<Answer['count']>): string {
+  const expected = `${count.expected.toFixed(1)} ± ${count.deviation.toFixed(1)}`;
+  return `${count.found} found, ${expected} by their chances`;
 }
 
 export function plural(count: number, one: string, many = `${one}s`): string {

@@ -36,8 +36,8 @@ class MaskPool {
   /// Takes one of the proposals that pass the quality tests, unless it repeats a mask held already.
   /// With the geometric `region` that prompted, the best whose size is like the region's; without,
   /// the largest of those that score about as well as the best, because an entity is wanted rather
-  /// than its part. After a box prompt (`boxed`) only masks that stay inside its box pass, and of a
-  /// known object only one that is like it. Returns
+  /// than its part. After a box prompt (`boxed`) only masks that stay inside its box pass, and of
+  /// what a finder saw (MaskPrompt::known) only one that is like it. Returns
   /// whether the answer explains the region, or, without one, whether any proposal passed.
   bool offer(const MaskProposals& proposals, const MaskPrompt* region = nullptr,
              bool boxed = false);

@@ -51,7 +51,7 @@ void SamMaskSource::ask_where_expected(const ImageFeatures& features,
                                        std::span<const MaskPrompt> prompts, MaskPool& pool) const {
   std::vector<MaskPrompt> open = things_to_ask(things, masks, pool);
   const auto spared = static_cast<int>(things.size() - open.size());
-  // Objects of a map have as many prompts of their own: new ones are to be found beside them.
+  // What a finder saw has as many prompts of its own: what it missed is to be found beside that.
   const auto objects = static_cast<int>(std::count_if(
       prompts.begin(), prompts.end(), [](const MaskPrompt& prompt) { return prompt.known; }));
   const int allowed =

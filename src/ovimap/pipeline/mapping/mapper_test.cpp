@@ -68,6 +68,27 @@ TEST(Mapper, MasksOfAnotherSizeAreAFaultOfTheirFrame) {
   }
 }
 
+TEST(Mapper, MasksOfNoiseAreAFaultOfTheirFrame) {
+  class NoisyMasks : public MaskSource {
+   public:
+    std::string kind() const override { return "noisy"; }
+    std::optional<Entities> entities(const Frame& frame, std::span<const MaskPrompt>) override {
+      Entities noise{IdImage(frame.color.width(), frame.color.height()), {}};
+      for (std::uint16_t& id : noise.ids) noise.scores.push_back(1.f), id = noise.scores.size();
+      return noise;
+    }
+  };
+  Mapper mapper({}, std::make_shared<NoisyMasks>());
+  try {
+    mapper.process(*DeskScene().read(0).frame);
+    FAIL();
+  } catch (const FrameError& fault) {
+    EXPECT_NE(std::string(fault.what()).find("name 19200 things; more than 2000 in one image"),
+              std::string::npos)
+        << fault.what();
+  }
+}
+
 TEST(Mapper, DepthAloneSeparatesTheBallsFromTheTable) {
   Mapper mapper({});
   map_desk(mapper);

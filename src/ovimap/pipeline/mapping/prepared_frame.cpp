@@ -46,6 +46,9 @@ PreparedFrame prepare_frame(std::shared_ptr<const Frame> frame, const MapperConf
           std::move(read.estimate), std::move(color),        std::move(whole)};
 }
 
+/// Each may be a super-point of its own for ever; SAM's grids give some hundred.
+constexpr std::size_t kMostEntities = 2000;
+
 std::optional<FrameSegments> cut_segments(const PreparedFrame& prepared, MaskSource* masks,
                                           const MapperConfig& config, StageTimers& timers) {
   const Frame& frame = *prepared.frame;
@@ -70,6 +73,10 @@ std::optional<FrameSegments> cut_segments(const PreparedFrame& prepared, MaskSou
                             entities->ids.width(), "x", entities->ids.height(),
                             ", but its colour image is ", frame.color.width(), "x",
                             frame.color.height(), "; give masks of the colour image's size"));
+  if (entities->scores.size() > kMostEntities)
+    throw FrameError(concat("the '", masks->kind(), "' masks of frame ", frame.index, " name ",
+                            entities->scores.size(), " things; more than ", kMostEntities,
+                            " in one image are noise"));
   cut.masked = true;
   cut.entities = static_cast<int>(entities->scores.size());
   auto t = timers.measure("mask_fusion");

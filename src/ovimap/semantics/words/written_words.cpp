@@ -57,9 +57,11 @@ std::vector<std::u32string> written_words(std::string_view text) {
     else if (!words.back().empty())
       words.emplace_back();
   }
-  std::erase_if(words, [](const std::u32string& word) {
-    return word.empty() || word == U"a" || word == U"an" || word == U"the";
-  });
+  std::erase_if(words, [](const std::u32string& word) { return word.empty(); });
+  const auto is_article = [](const std::u32string& word) {
+    return word == U"a" || word == U"an" || word == U"the";
+  };
+  if (!std::all_of(words.begin(), words.end(), is_article)) std::erase_if(words, is_article);
   return words;
 }
 

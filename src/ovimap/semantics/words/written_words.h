@@ -18,7 +18,7 @@ std::vector<WrittenLine> surest_readings(std::vector<WrittenLine> lines);
 std::vector<WrittenLine> writing_of(const Appearance& appearance);
 
 /// A text in words of letters, numbers and the signs that names have ("C++", "R&D"), lower case,
-/// without articles.
+/// without articles, unless there is nothing else.
 std::vector<std::u32string> written_words(std::string_view text);
 
 struct WritingMatch {

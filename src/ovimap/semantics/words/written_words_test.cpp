@@ -18,7 +18,8 @@ WrittenLine line(const std::string& text, float confidence = 1.f) {
 TEST(WrittenWords, AreLettersNumbersAndSignsOfNames) {
   EXPECT_EQ(written_words("The C++ book, 2nd (R&D)"),
             (std::vector<std::u32string>{U"c++", U"book", U"2nd", U"r&d"}));
-  EXPECT_TRUE(written_words(" ... the ").empty());
+  EXPECT_EQ(written_words(" ... the "), std::vector<std::u32string>{U"the"}) << "all there is";
+  EXPECT_TRUE(written_words(" ... ").empty());
   EXPECT_EQ(written_words("ÉCOLE"), (std::vector<std::u32string>{U"école"}));
 }
 

@@ -242,6 +242,13 @@ json instance_detail_json(const ServedMap& map, InstanceId id) {
   return detail;
 }
 
+static json count_json(const std::optional<CountEstimate>& count) {
+  if (!count) return json();
+  return {{"expected", rounded_json(static_cast<float>(count->expected))},
+          {"deviation", rounded_json(static_cast<float>(count->deviation))},
+          {"found", count->found}};
+}
+
 json answer_json(const MapAnswer& answered) {
   const QueryAnswer& answer = answered.answer;
   json matches = json::array();
@@ -250,6 +257,7 @@ json answer_json(const MapAnswer& answered) {
                  {"verdict", verdict_name(answer.verdict)},
                  {"reading", answer.reading},
                  {"reason", answer.reason},
+                 {"count", count_json(answer.count)},
                  {"matches", matches}};
   if (answer.relevance.size() > 0) {
     result["heat"] = json::array();

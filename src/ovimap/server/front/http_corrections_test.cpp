@@ -176,7 +176,7 @@ TEST_F(HttpServerTest, TakesObjectsApart) {
 
 TEST_F(HttpServerTest, RefusesBadCorrections) {
   serve();
-  post("/api/corrections", R"({"kind":"rename","instance":2,"name":"x"})", 404);
+  post("/api/corrections", R"({"kind":"rename","instance":99,"name":"x"})", 404);
   for (const char* body :
        {R"({"kind":"rename","instance":1})", R"({"kind":"rename","name":"x"})",
         R"({"kind":"paint","instance":1})", R"({"kind":"merge","instance":1})",
