@@ -10,7 +10,6 @@
 
 #include "ovimap/base/error.h"
 #include "ovimap/instance/instance_aliases.h"
-#include "ovimap/map/rays/surface_lookup.h"
 #include "ovimap/pipeline/revise/scattered.h"
 #include "ovimap/pipeline/revise/thing_look.h"
 #include "ovimap/pipeline/revise/visit_surface.h"
@@ -18,34 +17,6 @@
 namespace ovimap {
 
 namespace {
-
-/// The colour of the voxel at a point, sRGB; all 0 where it has none.
-std::array<std::uint8_t, 3> color_at(VoxelFinder& finder, const Eigen::Vector3f& point) {
-  std::array<std::uint8_t, 3> color{};
-  if (!finder.seek(point)) return color;
-  const auto v = static_cast<std::size_t>(finder.voxel());
-  for (std::size_t channel = 0; channel < color.size(); ++channel)
-    color[channel] = static_cast<std::uint8_t>(finder.block().color[channel][v] >> 8);
-  return color;
-}
-
-/// What will be known of an object when it is not there any more; null where it has no surface.
-std::shared_ptr<const PastObject> past_of(const MapDocument& map, InstanceId id) {
-  const InstanceSummary* instance = find_instance(map.instances, id);
-  const auto surface = map.surfaces.find(id);
-  if (instance == nullptr || surface == map.surfaces.end() || surface->second.empty())
-    return nullptr;
-  auto was = std::make_shared<PastObject>(PastObject{instance->centroid,
-                                                     instance->points,
-                                                     instance->views,
-                                                     instance->super_points,
-                                                     surface->second,
-                                                     {}});
-  VoxelFinder finder(map.map);
-  for (const Eigen::Vector3f& point : was->surface) was->colors.push_back(color_at(finder, point));
-  map.map.trim();
-  return was;
-}
 
 /// A gone object and a found one that may be it.
 struct Pair {

@@ -18,6 +18,16 @@ namespace {
 constexpr std::size_t kLeastPoints = 10;  // of an object's surface: fewer are a stray look at it
 constexpr std::uint32_t kBlocksPerPart = 4096;  // then maps may make room
 
+/// The colour of the voxel at a point, sRGB; all 0 where it has none.
+std::array<std::uint8_t, 3> color_at(VoxelFinder& finder, const Eigen::Vector3f& point) {
+  std::array<std::uint8_t, 3> color{};
+  if (!finder.seek(point)) return color;
+  const auto v = static_cast<std::size_t>(finder.voxel());
+  for (std::size_t channel = 0; channel < color.size(); ++channel)
+    color[channel] = static_cast<std::uint8_t>(finder.block().color[channel][v] >> 8);
+  return color;
+}
+
 /// Whether a voxel is as the visit found it. Supports of labels say no more than its distance.
 bool is_untouched(const VoxelBlock& was, const VoxelBlock& is, std::size_t v) {
   return was.tsdf[v] == is.tsdf[v] && was.weight[v] == is.weight[v] &&
@@ -165,6 +175,23 @@ MapDocument seen_in_visit(const MapDocument& before, const MapDocument& after,
 void forget_remains(const MapDocument& before, const MapDocument& seen,
                     const std::set<InstanceId>& gone, MapDocument& after) {
   if (!gone.empty()) Remains(before, seen, gone, after).forget();
+}
+
+std::shared_ptr<const PastObject> past_of(const MapDocument& map, InstanceId id) {
+  const InstanceSummary* instance = find_instance(map.instances, id);
+  const auto surface = map.surfaces.find(id);
+  if (instance == nullptr || surface == map.surfaces.end() || surface->second.empty())
+    return nullptr;
+  auto was = std::make_shared<PastObject>(PastObject{instance->centroid,
+                                                     instance->points,
+                                                     instance->views,
+                                                     instance->super_points,
+                                                     surface->second,
+                                                     {}});
+  VoxelFinder finder(map.map);
+  for (const Eigen::Vector3f& point : was->surface) was->colors.push_back(color_at(finder, point));
+  map.map.trim();
+  return was;
 }
 
 }  // namespace ovimap

@@ -24,4 +24,7 @@ MapDocument seen_in_visit(const MapDocument& before, const MapDocument& after,
 void forget_remains(const MapDocument& before, const MapDocument& seen,
                     const std::set<InstanceId>& gone, MapDocument& after);
 
+/// What will be known of an object when it is not there any more; null where it has no surface.
+std::shared_ptr<const PastObject> past_of(const MapDocument& map, InstanceId id);
+
 }  // namespace ovimap
