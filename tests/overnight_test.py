@@ -28,7 +28,7 @@ def main(program):
         assert lamp.returncode == 1, f"it was carried off: {lamp.stdout}"
         earlier = [program, "run", str(folder / "room/visit2"), "--recorded", "2026-03-01", "--continue", str(folder / "morning.ovimap")]
         refused = subprocess.run(earlier, capture_output=True, text=True)
-        assert refused.returncode == 2 and "before the last visit" in refused.stderr, refused.stderr
+        assert refused.returncode == 2 and "before the map's last visit" in refused.stderr, refused.stderr
         picture = Image.open(folder / "overnight.jpg")
         parts = [picture.crop((left, 0, left + picture.width // 3, picture.height)) for left in range(0, picture.width - 2, picture.width // 3)]
         assert len({part.tobytes() for part in parts}) == 3, "evening, morning and changes look the same"

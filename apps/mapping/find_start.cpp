@@ -5,6 +5,8 @@
 #include <chrono>
 #include <optional>
 
+#include "ovimap/frames/frame/moved_source.h"
+#include "ovimap/pipeline/search/history_dates.h"
 #include "ovimap/pipeline/sequence/visit_start.h"
 
 namespace ovimap::apps {
@@ -23,16 +25,17 @@ AlignmentSearch ask_objects(const MapDocument& map, MappingInputs& inputs) {
   alone.frame_store.max_mb = 0;
   alone.allow_still_camera = true;  // the recording as a whole moved
   Progress progress("looking for the recording's place");
+  std::optional<PoseFinder> finder;
+  if (inputs.tracking) finder.emplace(Tracker(config.track), config.loops);
   try {
-    ObjectPlacing placing =
-        place_by_objects(map, *inputs.source, first_of(inputs.range, config.visit.object_frames),
-                         Mapper(alone, inputs.masks, inputs.encoder),
-                         PoseFinder(Tracker(config.track), config.loops), config.visit.alignment,
-                         [&](std::size_t done, std::size_t total, const FrameReport*) {
-                           progress.show(done, total);
-                           return !interrupted();
-                         });
-    inputs.finder->tracker().propose(std::move(placing.places));
+    ObjectPlacing placing = place_by_objects(
+        map, *inputs.source, first_of(inputs.range, config.visit.object_frames),
+        Mapper(alone, inputs.masks, inputs.encoder), finder ? &*finder : nullptr,
+        config.visit.alignment, [&](std::size_t done, std::size_t total, const FrameReport*) {
+          progress.show(done, total);
+          return !interrupted();
+        });
+    if (inputs.finder) inputs.finder->tracker().propose(std::move(placing.places));
     return placing.alignment;
   } catch (const Error& fault) {
     return {{}, fault.what()};  // the camera was lost there as well
@@ -80,17 +83,69 @@ void find_start(const MapDocument& begun, bool new_visit, MappingInputs& inputs)
                inputs.placing ? concat(" (", inputs.placing->doubt, ")") : std::string()));
 }
 
+namespace {
+
+VisitFit fit_of(const MapDocument& map, const MappingInputs& inputs) {
+  return fit_visit(map.map, *inputs.source, inputs.range, inputs.config.track, inputs.config.visit);
+}
+
+void move_recording(const Pose& map_from_recording, MappingInputs& inputs) {
+  inputs.source = std::make_unique<MovedSource>(std::move(inputs.source), map_from_recording);
+  inputs.map_from_recording =
+      map_from_recording * inputs.map_from_recording.value_or(Pose::Identity());
+}
+
+}  // namespace
+
+void align_recording(const MapDocument& map, MappingInputs& inputs) {
+  if (inputs.tracking)
+    throw Error(
+        "--align is for recordings with poses; leave it away where the camera is tracked, "
+        "which finds its place in the map by itself");
+  const VisitFitConfig& config = inputs.config.visit;
+  const VisitFit near = fit_of(map, inputs);
+  if (misfit(near, config).empty()) return;
+  if (near.compared > 0) {  // the poses may be off by a little
+    move_recording(near.map_from_recording, inputs);
+    const VisitFit moved = fit_of(map, inputs);
+    if (2 * moved.compared >= near.compared && misfit(moved, config).empty()) return;
+    move_recording(near.map_from_recording.inverse(), inputs);
+  }
+  const AlignmentSearch placed = ask_objects(map, inputs);
+  if (!placed.doubt.empty())
+    throw Error(concat("nothing says where the recording lies in the map, which stays as it was: ",
+                       placed.doubt, "; give poses in the map's world frame"));
+  move_recording(placed.best.a_from_b, inputs);
+  move_recording(fit_of(map, inputs).map_from_recording, inputs);
+}
+
 void require_fit(const MapDocument& begun, const MappingInputs& inputs, FrameIntake* intake) {
   const ProgramConfig& config = inputs.config;
   if (!config.visit.enabled || inputs.tracking) return;
   const std::optional<VisitFit> fit =
-      intake ? fit_pushed(begun.map, *intake, config)
-             : fit_visit(begun.map, *inputs.source, inputs.range, config.track, config.visit);
+      intake ? fit_pushed(begun.map, *intake, config) : fit_of(begun, inputs);
   const std::string fault = fit ? misfit(*fit, config.visit) : "";
   if (!fault.empty())
     throw Error(concat("the recording does not fit the map, which stays as it was: ", fault,
-                       "; map it by itself and bring the two together with `ovimap merge --align`, "
+                       intake ? "; map it by itself and bring the two together with `ovimap merge "
+                                "--align`, "
+                              : "; move it there with --align, ",
                        "or give poses in the map's world frame"));
+}
+
+void require_later(const MapRecord& begun, const MapHeader& header, const MappingInputs& inputs) {
+  std::optional<double> recorded_s;
+  if (!header.history.visits.empty()) recorded_s = header.history.visits.back().recorded_s;
+  if (!recorded_s && inputs.source && !inputs.range.empty()) {
+    const FrameRead first = inputs.source->read(inputs.range.front());
+    if (first.frame && is_date(first.frame->timestamp_s)) recorded_s = first.frame->timestamp_s;
+  }
+  const HistoryDates dates(begun.history, begun.frames);
+  const std::optional<double> last_s = dates.begin_of(dates.visits());
+  if (recorded_s && last_s && *recorded_s < *last_s)
+    throw Error(concat("the recording is of ", date_text(*recorded_s),
+                       ", before the map's last visit, ", date_text(*last_s),
+                       "; map visits in their order, or say with --recorded when this one was"));
 }
 
 void require_same_recording(const MapDocument& begun, const MappingInputs& inputs,

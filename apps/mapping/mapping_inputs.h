@@ -25,6 +25,8 @@ struct MappingInputs {
   std::shared_ptr<const ThingRecognizer> recognizer;
   std::shared_ptr<PoseFinder> finder;      ///< null: poses are given
   std::optional<AlignmentSearch> placing;  ///< what objects said of where the recording lies
+  std::optional<Pose>
+      map_from_recording;  ///< by which its poses were moved; nullopt: they were not
 };
 
 }  // namespace ovimap::apps

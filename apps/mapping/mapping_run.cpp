@@ -108,6 +108,7 @@ SequenceResult resume(BegunRun& begun, MapHeader& header, MappingInputs& inputs,
   SequenceResult sequence;
   if (!begun.document) return sequence;
   if (begun.new_visit) {
+    require_later(*begun.document, header, inputs);
     require_fit(*begun.document, inputs, intake);
     discount_past(begun.document->map, inputs.config.visit.past);
     begun.document->seen_free.clear();  // between two visits anything may have come
@@ -168,13 +169,16 @@ std::shared_ptr<PoseFinder> make_finder(const MappingInputs& inputs, const Begun
 
 /// Begins the search for the camera in what the run goes on with; throws Error where that has other
 /// voxels or embeddings, before anything that takes long.
-void begin_in(const BegunRun& begun, MappingInputs& inputs) {
+void begin_in(const BegunRun& begun, const RunTarget& target, MappingInputs& inputs) {
   inputs.finder = make_finder(inputs, begun);
   if (!begun.document) return;
   if (begun.new_visit)
     require_same_map(*begun.document, inputs.config.mapper.map, inputs.encoder);
   else
     require_same_encoder(begun.document->semantics.encoder, inputs.encoder);
+  if (target.align && begun.new_visit) align_recording(*begun.document, inputs);
+  if (target.align && !begun.new_visit)  // resumed: it finds the same again
+    align_recording(load_map(target.continued), inputs);
   if (inputs.finder && !begun.document->frames.empty())
     find_start(*begun.document, begun.new_visit, inputs);
 }
@@ -227,6 +231,7 @@ MappingRun finished_run(MappingInputs&& inputs, MapHeader header, Mapper&& mappe
   if (inputs.finder)
     run.tracking = finish_tracking(*inputs.finder, inputs.config, mapper, sequence);
   if (inputs.finder) run.tracking->placing = std::move(inputs.placing);
+  run.map_from_recording = inputs.map_from_recording;
   run.source = std::move(inputs.source);
   run.masks_wanted = inputs.masks != nullptr;
   if (inputs.people) run.people_frames = inputs.people->frames_with_people();
@@ -303,7 +308,7 @@ MappingRun map_recording(const MappingOptions& options, const std::string& title
   BegunRun begun = find_begun(target, inputs.config.memory);
   inputs.open_networks(options, keep_masks);
   watch_for_interrupt();
-  begin_in(begun, inputs);
+  begin_in(begun, target, inputs);
   const auto finder = inputs.finder;
   Mapper mapper(inputs.config.mapper, inputs.masks, inputs.encoder);
   mapper.recognize_with(inputs.recognizer);
@@ -353,7 +358,7 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
     lower_thread_priority();
     inputs.open_networks(options);
   }).get();
-  begin_in(begun, inputs);
+  begin_in(begun, target, inputs);
   LiveMapper mapper(inputs.config.mapper, inputs.config.live, inputs.masks, inputs.encoder);
   mapper.recognize_with(inputs.recognizer);
   mapper.track_with(inputs.finder);

@@ -39,6 +39,7 @@ struct MappingRun {
   std::optional<LiveRunResult> live;         ///< of map_live
   std::optional<std::size_t> people_frames;  ///< that showed people, who were left out
   std::optional<TrackingRun> tracking;       ///< where poses were not given
+  std::optional<Pose> map_from_recording;    ///< by which its poses were moved
   std::vector<MapPart> parts;                ///< mapped by themselves
   StageTimers timers;
   MapDocument document;
@@ -50,7 +51,8 @@ struct RunTarget {
   std::filesystem::path map;
   bool resume = false;  ///< go on with the checkpoint or map that is there
   std::filesystem::path continued =
-      {};  ///< another visit to the place of this map; empty: a new map
+      {};              ///< another visit to the place of this map; empty: a new map
+  bool align = false;  ///< the recording may lie elsewhere than the map, and is moved there
   std::filesystem::path repeated = {};  ///< the map of a live run, to be made again; map_live alone
 };
 

@@ -24,20 +24,9 @@ struct RunOptions {
   bool json = false;
   bool live = false;
   bool resume = false;
+  bool align = false;
   double fps = 30;
 };
-
-/// Visits lie in the order in which they were mapped: times of before the last one's would put
-/// questions about the past out of order.
-void require_later(const std::filesystem::path& continued, double recorded_s) {
-  const MapHistory history = read_map_info(continued).history;
-  if (history.visits.empty() || !history.visits.back().recorded_s) return;
-  const double last_s = *history.visits.back().recorded_s;
-  if (recorded_s < last_s)
-    throw Error(concat("--recorded ", date_text(recorded_s), " is before the last visit of '",
-                       continued.string(), "', ", date_text(last_s),
-                       "; give the time of this recording, and map visits in their order"));
-}
 
 /// When the recording began, as --recorded says.
 double recorded_s(const std::string& text) {
@@ -55,6 +44,7 @@ void check_for_camera(const RunOptions& options) {
   };
   refuse(!options.repeated.empty(), "--repeat");
   refuse(!options.pictures.empty(), "--pictures");
+  refuse(options.align, "--align");
 }
 
 MappingRun map_source(const RunOptions& options, const RunTarget& target,
@@ -71,12 +61,11 @@ int run(RunOptions options) {
   if (options.map.empty())
     throw Error("say where the map goes with -o, or which one to go on with by --continue");
   if (!options.recorded.empty()) options.mapping.recorded_s = recorded_s(options.recorded);
-  if (!options.continued.empty() && options.mapping.recorded_s && !options.resume)
-    require_later(options.continued, *options.mapping.recorded_s);
   const ThreadLimit limit(options.mapping.threads);
   check_map_target(options.map);
   if (!options.pictures.empty()) make_folder(options.pictures);
-  const RunTarget target{options.map, options.resume, options.continued, options.repeated};
+  const RunTarget target{options.map, options.resume, options.continued, options.align,
+                         options.repeated};
   std::optional<CameraRun> camera;
   if (names_camera(options.mapping.source))
     check_for_camera(options), camera.emplace(options.mapping);
@@ -135,12 +124,18 @@ Action add_run(CLI::App& command) {
               "frames that it took and the masks when they came, and say whether it is the same "
               "map")
           ->excludes(live);
+  auto* continued =
+      command
+          .add_option(
+              "--continue", options->continued,
+              "a map of the same place to go on with, in whose world frame the recording's poses "
+              "are: what is gone leaves it, ids, names and corrections stay")
+          ->excludes(repeat);
   command
-      .add_option(
-          "--continue", options->continued,
-          "a map of the same place to go on with, in whose world frame the recording's poses "
-          "are: what is gone leaves it, ids, names and corrections stay")
-      ->excludes(repeat);
+      .add_flag("--align", options->align,
+                "the recording's poses are in a world frame of their own: move them to where its "
+                "surface and objects lie in that map")
+      ->needs(continued);
   command.add_option(
       "--recorded", options->recorded,
       "when the recording was made, as 2026-03-14T09:30 or \"yesterday evening\", so that the "

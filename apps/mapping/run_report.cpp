@@ -3,6 +3,7 @@
 #include "run_report.h"
 
 #include <cstdio>
+#include <numbers>
 
 #include "ovimap/base/listed.h"
 #include "ovimap/hub/catalogue/catalogue.h"
@@ -133,6 +134,21 @@ nlohmann::json tracking_json(const TrackingRun& tracking) {
           {"loop_fused_share", tracking.loops.fused_share}};
 }
 
+/// Row by row; null where the recording stayed where it was.
+nlohmann::json move_json(const std::optional<Pose>& move) {
+  if (!move) return nullptr;
+  nlohmann::json rows = nlohmann::json::array();
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column) rows.push_back(move->matrix()(row, column));
+  return rows;
+}
+
+void print_move(const Pose& move) {
+  std::printf("the recording was turned by %.1f degrees and moved by %.2f m to where the map is\n",
+              Eigen::AngleAxisd(move.linear()).angle() * 180 / std::numbers::pi,
+              move.translation().norm());
+}
+
 nlohmann::json parts_json(const std::vector<MapPart>& parts) {
   nlohmann::json list = nlohmann::json::array();
   for (const MapPart& part : parts)
@@ -249,6 +265,7 @@ nlohmann::json run_json(const std::filesystem::path& map, const MappingRun& run,
                            {"instances", run.document.instances.size()},
                            {"cpu_seconds", cpu_seconds()},
                            {"peak_rss_mb", peak_rss_mb()}};
+  report["map_from_recording"] = move_json(run.map_from_recording);
   report["movers"] = movers_json(run.document);
   if (run.people_frames) report["people_frames"] = *run.people_frames;
   if (run.tracking) report["tracking"] = tracking_json(*run.tracking);
@@ -275,6 +292,7 @@ void print_run(const std::filesystem::path& map, const MappingRun& run, double f
   if (!run.document.movers.empty())
     std::printf("%zu things moved while they were seen\n", run.document.movers.size());
   if (run.people_frames) std::printf("left out people in %zu frames\n", *run.people_frames);
+  if (run.map_from_recording) print_move(*run.map_from_recording);
   if (run.tracking) print_tracking(*run.tracking);
   print_parts(run);
   if (repetition)

@@ -91,11 +91,22 @@ void print_rooms(const InfoOptions& options) {
                 double{door.place_m.x()}, double{door.place_m.y()}, double{door.width_m});
 }
 
+nlohmann::json known(const std::optional<double>& date) {
+  return date ? nlohmann::json(*date) : nlohmann::json();
+}
+
+/// Adds to each object when it was seen last.
+void add_sightings(const MapInfo& map, const HistoryDates& dates, nlohmann::json& instances) {
+  for (nlohmann::json& instance : instances) {
+    const auto last = map.last_seen.find(instance["id"].get<InstanceId>());
+    if (last == map.last_seen.end()) continue;
+    if (const auto seen = dates.sighting(last->second))
+      instance["last_seen"] = {{"visit", seen->visit}, {"time_s", known(seen->time_s)}};
+  }
+}
+
 /// Adds when visits were and events happened, in seconds since 1970 (UTC) or null.
 void add_dates(const HistoryDates& dates, nlohmann::json& history) {
-  const auto known = [](const std::optional<double>& date) {
-    return date ? nlohmann::json(*date) : nlohmann::json();
-  };
   for (std::size_t i = 0; i < history["visits"].size(); ++i)
     history["visits"][i]["begin_s"] = known(dates.begin_of(static_cast<int>(i) + 1));
   for (std::size_t i = 0; i < history["events"].size(); ++i)
@@ -128,7 +139,9 @@ int info(const InfoOptions& options) {
     auto document = nlohmann::json::parse(info_json(options.map, map, titles.labels));
     document["tiles_evicted"] = tiles.evicted;
     document["tiles_loaded"] = tiles.loaded;
-    if (!map.history.visits.empty()) add_dates(dates_of(options.map, map), document["history"]);
+    const HistoryDates dates = dates_of(options.map, map);
+    add_sightings(map, dates, document["instances"]);
+    if (!map.history.visits.empty()) add_dates(dates, document["history"]);
     print_json(document);
     return kDone;
   }

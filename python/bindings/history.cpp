@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -74,6 +75,16 @@ std::vector<Visit> visits(SavedMap& map) {
          dates.begin_of(visit), dates.end_of(visit)});
   }
   return list;
+}
+
+using VisitAndTime = std::pair<int, std::optional<double>>;
+
+std::optional<VisitAndTime> last_seen(SavedMap& map, InstanceId id) {
+  map.position(id);  // throws where there is none
+  const auto last = map.info().last_seen.find(id);
+  if (last == map.info().last_seen.end()) return std::nullopt;
+  const auto seen = dates_of(map.record()).sighting(last->second);
+  return seen ? std::optional(VisitAndTime{seen->visit, seen->time_s}) : std::nullopt;
 }
 
 std::vector<Change> events(SavedMap& map) {
@@ -186,7 +197,11 @@ void bind_history(nb::module_& module, nb::class_<SavedMap>& map) {
            nb::call_guard<WithoutGil>(),
            "What changed between two times (docs/query.md, \"Times\"), by object; what came and "
            "went "
-           "in between is left out. Empty: the beginning, and the last visit.");
+           "in between is left out. Empty: the beginning, and the last visit.")
+      .def("last_seen", &last_seen, nb::arg("id"), nb::call_guard<WithoutGil>(),
+           "When the last frame was taken whose segments showed an object: the visit, from 1, and "
+           "seconds since 1970 (UTC), or None where nobody told when that visit was. None: the map "
+           "does not know. Raises Error for an unknown id.");
 }
 
 }  // namespace ovimap::python

@@ -29,6 +29,15 @@ def test_events_say_what_became_of_things(opened):
     assert len(opened.changes(since="2026-03-15", until="2026-03-16")) == len(opened.events)
 
 
+def test_each_object_says_when_it_was_seen_last(opened):
+    seen = [opened.last_seen(int(id)) for id in opened.instances.ids]
+    assert {visit for visit, _ in seen} <= {1, 2} and any(visit == 2 for visit, _ in seen)
+    for visit, time_s in seen:
+        assert opened.visits[visit - 1].begin_s <= time_s <= opened.visits[visit - 1].end_s
+    with pytest.raises(ovimap.Error, match="no object|no instance"):
+        opened.last_seen(999999)
+
+
 def test_questions_go_to_the_map_as_it_was(opened):
     gone = [event for event in opened.events if event.event == "gone"]
     answer = opened.query("what is gone", relevance=True)

@@ -16,6 +16,7 @@ export function instance(id: number, more: Partial<Instance> = {}): Instance {
     points: 10,
     locked: false,
     views: 3,
+    last_seen: null,
     confidence: 0.72,
     crops: [],
     ...more,

@@ -4,7 +4,7 @@ import { api } from '../api/client';
 import type { Box, Instance, InstanceDetail, Neighbor, Part } from '../api/types';
 import { h, swatch } from './dom';
 import { icon, type IconName } from './icons';
-import { isGuess, percent, placeOf, plural, sizeOf, titleOf } from './words';
+import { isGuess, lastSeenText, percent, placeOf, plural, sizeOf, titleOf } from './words';
 
 export interface CardHooks {
   onFocus: (id: number) => void;
@@ -233,6 +233,7 @@ function facts(instance: Instance, detail: InstanceDetail | null): HTMLElement {
     ...(detail ? entry('Footprint', `${detail.footprint_m2.toFixed(2)} m²`) : []),
     ...entry('Position', placeOf(instance)),
     ...entry('Seen in', plural(instance.views, 'frame')),
+    ...(instance.last_seen ? entry('Last seen', lastSeenText(instance.last_seen)) : []),
     ...(instance.confidence === null
       ? []
       : entry('Whole by its masks', percent(instance.confidence))),

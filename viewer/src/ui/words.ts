@@ -55,6 +55,12 @@ export function visitText(visits: readonly Visit[], visit: number): string {
   return `visit ${visit} of ${visits.length}${date && `, ${date}`}`;
 }
 
+/** "visit 2, 14 Mar 2026, 09:30". */
+export function lastSeenText({ visit, time_s }: NonNullable<Instance['last_seen']>): string {
+  const date = dateOf(time_s);
+  return `visit ${visit}${date && `, ${date}`}`;
+}
+
 /** What an object that may be gone is called. */
 export function eventTitle(event: HistoryEvent): string {
   const word = event.label === 'object' ? '' : event.label;

@@ -21,6 +21,7 @@ class Sampler {
       const FrameRead read = source_.read(position);
       if (read.frame) {
         entry->second = thin_frame(*read.frame, config_.compared_width_px);
+        sample_.captures.emplace(position, capture_of(*read.frame));
         sample_.registered &= read.frame->registered();
         if (sample_.frames.size() % 2 == 1) sample_.alignment.add(*read.frame);
       } else {

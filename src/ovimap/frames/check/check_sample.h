@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "ovimap/frames/check/capture_check.h"
 #include "ovimap/frames/check/depth_agreement.h"
 #include "ovimap/frames/check/edge_alignment.h"
 #include "ovimap/frames/check/source_check.h"
@@ -18,6 +19,7 @@ namespace ovimap {
 struct CheckSample {
   std::map<std::int64_t, std::optional<ThinFrame>> frames;  ///< by position; nullopt: unusable
   std::map<std::int64_t, std::string> faults;               ///< of the unusable ones
+  std::map<std::int64_t, Capture> captures;                 ///< of the others
   std::vector<std::pair<ThinFrame, ThinFrame>> neighbours;  ///< with limited rotation between them
   bool registered = true;                                   ///< colour and depth share one camera
   EdgeAlignment alignment;                                  ///< of every second frame

@@ -262,6 +262,12 @@ void check_poses(const FrameSource& source, const CheckSample& sample,
             : "give the camera's pose for each frame");
 }
 
+void check_capture(const CheckSample& sample, CheckReport& report) {
+  std::vector<Capture> captures;
+  for (const auto& [position, capture] : sample.captures) captures.push_back(capture);
+  for (Finding& finding : check_captures(captures)) report.findings.push_back(std::move(finding));
+}
+
 bool has_fault(const CheckReport& report, const std::string& name) {
   return std::any_of(report.findings.begin(), report.findings.end(), [&](const Finding& finding) {
     return finding.name == name && finding.severity == Severity::kFault;
@@ -374,6 +380,7 @@ CheckReport check_source(const FrameSource& source, const SourceCheckConfig& con
   check_poses(source, sample, config, report);
   check_registration(sample, config, report);
   check_lens(source, sample, config, report);
+  check_capture(sample, report);
   return report;
 }
 

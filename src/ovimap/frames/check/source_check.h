@@ -38,7 +38,7 @@ enum class Severity { kOk, kWarning, kFault };
 
 /// One result of a check. `name` is stable, for programs: "frames", "bad_frames", "depth_valid",
 /// "depth_scale", "poses" (there are none), "still_poses", "pose_convention", "pose_unit",
-/// "intrinsics", "time_offset", "agreement", "registration", "lens", "noise".
+/// "intrinsics", "time_offset", "agreement", "registration", "lens", "clock", "blur", "noise".
 struct Finding {
   Severity severity = Severity::kOk;
   std::string name;

@@ -301,6 +301,18 @@ void read_super_point_frames(SQLite::Database& database, const LabelForest& fore
   }
 }
 
+std::map<Label, std::int64_t> read_last_frames(SQLite::Database& database) {
+  std::map<Label, std::int64_t> last;
+  RowReader rows(database, kSuperPointFrames);
+  while (rows.next()) {
+    const auto label = rows.integer<Label>();
+    rows.integer<std::int64_t>();  // the first
+    last[label] = rows.integer<std::int64_t>();
+    rows.skip();
+  }
+  return last;
+}
+
 void read_registry(SQLite::Database& database, int schema, const LabelForest& forest,
                    MapRecord& record) {
   InstanceRegistry::State& state = record.registry;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -78,5 +79,17 @@ struct MapHistory {
   std::vector<MapVisit> visits;
   std::vector<ObjectEvent> events;
 };
+
+/// The objects of which the last event says that they are gone: what a map still has under such an
+/// id is what is left of it on what it stood on, and no object.
+inline std::set<InstanceId> gone_objects(const MapHistory& history) {
+  std::set<InstanceId> gone;
+  for (const ObjectEvent& event : history.events)
+    if (event.kind == ObjectEventKind::kGone)
+      gone.insert(event.instance);
+    else
+      gone.erase(event.instance);
+  return gone;
+}
 
 }  // namespace ovimap

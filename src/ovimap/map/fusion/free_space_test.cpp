@@ -6,6 +6,7 @@
 
 #include "ovimap/base/parallel.h"
 #include "ovimap/map/fusion/plain_free_space.h"
+#include "ovimap/map/fusion/seen_ahead.h"
 
 namespace ovimap {
 namespace {
@@ -144,6 +145,28 @@ TEST(FreeSpace, AFrameThatContradictsMoreThanItConfirmsIsNotBelieved) {
   const ClearedSpace cleared = clear_free_space(map, far.observation(), {});
   EXPECT_TRUE(cleared.refused);
   EXPECT_TRUE(cleared.slots.empty());
+}
+
+TEST(FreeSpace, AFrameThatSeesThroughNearlyAllOfTheMapIsKnown) {
+  const Stage wall;
+  VoxelMap map;
+  EXPECT_FALSE(sees_through_map(map, wall.observation())) << "nothing is known";
+  for (int i = 0; i < 10; ++i) integrate(map, wall.observation());
+  EXPECT_FALSE(sees_through_map(map, wall.observation()));
+  Stage other;
+  other.depth.fill(6.f);
+  EXPECT_TRUE(sees_through_map(map, other.observation()));
+  const float wall_m = wall.depth[0];
+  other.depth.fill(1.15f * wall_m);
+  EXPECT_FALSE(sees_through_map(map, other.observation())) << "poses drift";
+  other.depth.fill(0.5f * wall_m);
+  EXPECT_FALSE(sees_through_map(map, other.observation())) << "something stands before it";
+  other.depth = wall.depth;
+  for (int y = 0; y < other.depth.height() / 2; ++y)
+    for (int x = 0; x < other.depth.width(); ++x) other.depth.at(x, y) = 6.f;
+  EXPECT_FALSE(sees_through_map(map, other.observation())) << "half of it is where it was";
+  other.depth.fill(0.f);
+  EXPECT_FALSE(sees_through_map(map, other.observation()));
 }
 
 /// A frame with noise, holes, slants and a box, from a pose of its own.

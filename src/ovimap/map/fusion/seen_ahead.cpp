@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ovimap/map/fusion/free_tiles.h"
+#include "ovimap/map/rays/ray_cast.h"
 #include "ovimap/map/rays/surface_lookup.h"
 
 namespace ovimap {
@@ -16,7 +17,12 @@ namespace {
 constexpr int kTile_px = 8;            // blocks are held against these
 constexpr int kTilesOfRegionTile = 4;  // and regions against so many at once, each way
 constexpr int kSampleStep_px = 8;
+constexpr int kRayStep_px = 16;
 constexpr float kBeside_m = 0.05f;
+// Of frames that see through the map, as seen_ahead.h says.
+constexpr float kByFar = 0.8f;
+constexpr double kNearlyAll = 0.75, kLeastKnown = 0.5;
+constexpr float kLongestRay = 2.f;  // of the furthest depth: rays at the corners are longer
 
 /// The most of each square of values.
 Image<float> most_of_squares(const Image<float>& values, int side) {
@@ -76,6 +82,25 @@ class FreeTiles {
   float most_m_ = 0;
 };
 
+/// One pixel in a square of that side, of an image and of its camera.
+DepthImage every(int step_px, const DepthImage& depth) {
+  DepthImage sampled((depth.width() + step_px / 2 - 1) / step_px,
+                     (depth.height() + step_px / 2 - 1) / step_px);
+  for (int y = 0; y < sampled.height(); ++y)
+    for (int x = 0; x < sampled.width(); ++x)
+      sampled.at(x, y) = depth.at(step_px / 2 + x * step_px, step_px / 2 + y * step_px);
+  return sampled;
+}
+PinholeCamera every(int step_px, const PinholeCamera& camera) {
+  const auto step = static_cast<float>(step_px), first = static_cast<float>(step_px / 2);
+  return {(camera.width + step_px / 2 - 1) / step_px,
+          (camera.height + step_px / 2 - 1) / step_px,
+          camera.fx / step,
+          camera.fy / step,
+          (camera.cx - first) / step,
+          (camera.cy - first) / step};
+}
+
 }  // namespace
 
 std::vector<BlockAhead> blocks_ahead(const VoxelMap& map, const Observation& observation,
@@ -121,6 +146,24 @@ double confirmed_px(const VoxelMap& map, const Observation& observation) {
           finder.seek(point) && finder.observed() && std::fabs(finder.distance_m()) < near_m;
     }
   return static_cast<double>(confirmed) * kSampleStep_px * kSampleStep_px;
+}
+
+bool sees_through_map(const VoxelMap& map, const Observation& observation) {
+  const DepthImage seen = every(kRayStep_px, observation.depth);
+  const float furthest_m = *std::max_element(seen.begin(), seen.end());
+  if (furthest_m <= 0.f || map.block_count() == 0) return false;
+  const DepthImage known = cast_rays(map, every(kRayStep_px, observation.camera),
+                                     observation.world_from_camera, kLongestRay * furthest_m)
+                               .depth;
+  int samples = 0, both = 0, through = 0;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (seen[i] <= 0.f) continue;
+    ++samples;
+    if (known[i] <= 0.f) continue;
+    ++both;
+    through += known[i] < kByFar * seen[i];
+  }
+  return both >= kLeastKnown * samples && through >= kNearlyAll * both;
 }
 
 }  // namespace ovimap

@@ -25,4 +25,11 @@ std::vector<BlockAhead> blocks_ahead(const VoxelMap& map, const Observation& obs
 /// judged by one in 64.
 double confirmed_px(const VoxelMap& map, const Observation& observation);
 
+/// Whether the frame sees through nearly all of the map that it should see, and by far: three
+/// quarters of the places where both have surface, by a fifth of the depth at least, and the map
+/// has surface in half of what the frame shows. No drift of poses shows that, and little that
+/// happens in a room: a sensor's depth that is suddenly all far does, and a pose of somewhere else.
+/// Judged by one pixel in 64.
+bool sees_through_map(const VoxelMap& map, const Observation& observation);
+
 }  // namespace ovimap

@@ -9,6 +9,7 @@
 #include "ovimap/base/error.h"
 #include "ovimap/base/version.h"
 #include "ovimap/map/fusion/integrate.h"
+#include "ovimap/map/fusion/seen_ahead.h"
 #include "ovimap/map/rays/surface_lookup.h"
 #include "ovimap/pipeline/motion/motion_filter.h"
 
@@ -116,6 +117,7 @@ bool Mapper::wants_masks(const Frame& frame) const {
 
 FrameReport Mapper::fuse(const PreparedFrame& prepared, const FrameSegments* cut) {
   builder_->rethrow_failure();  // before anything changes
+  require_agreement(prepared);
   settled_ = false;
   const MovingPixels moving = find_motion(prepared);
   const std::optional<FrameSegments> still = without(moving.ids, cut);
@@ -152,6 +154,15 @@ FrameReport Mapper::fuse(const PreparedFrame& prepared, const FrameSegments* cut
   report.moving_px = static_cast<int>(moving.ids.size()) -
                      static_cast<int>(std::count(moving.ids.begin(), moving.ids.end(), 0));
   return report;
+}
+
+void Mapper::require_agreement(const PreparedFrame& prepared) {
+  if (!config_.free_space.enabled) return;
+  auto t = timers_.measure("agreement");
+  if (sees_through_map(map_, whole_of(prepared)))
+    throw FrameError(concat(prepared.frame->name,
+                            ": sees through most of the surface that the map has there; its depth "
+                            "is wrong, or its pose"));
 }
 
 MovingPixels Mapper::find_motion(const PreparedFrame& prepared) {

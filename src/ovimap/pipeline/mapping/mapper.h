@@ -62,7 +62,8 @@ class Mapper {
   }
   RecognizerIdentity recognizer() const { return builder_->recognizer(); }
 
-  /// Fuses one frame. Throws what the mask source throws, and, once, what the encoder threw on
+  /// Fuses one frame. Throws what the mask source throws, FrameError for a frame that contradicts
+  /// nearly all of the map that it sees (sees_through_map), and, once, what the encoder threw on
   /// views of earlier frames; the map is then as it was before the frame, which can be given again.
   FrameReport process(const Frame& frame);
 
@@ -147,6 +148,8 @@ class Mapper {
 
  private:
   void settle();
+  /// Throws FrameError for a frame that contradicts nearly all of the map that it sees.
+  void require_agreement(const PreparedFrame& prepared);
   MovingPixels find_motion(const PreparedFrame& prepared);
   std::vector<std::uint32_t> take_back(const PreparedFrame& prepared, const MovingPixels& moving);
   std::vector<std::uint32_t> clear_free_space(const Observation& observation);

@@ -31,6 +31,17 @@ std::pair<double, InstanceId> purity(const IdImage& truth, const Image<InstanceI
   return {static_cast<double>(most->second) / total, most->first};
 }
 
+/// Six boxes in a row of places, each with a colour of its own.
+FurnishedRoom room_with_boxes() {
+  FurnishedRoom room;
+  room.frames = 60;
+  for (int i = 0; i < 6; ++i)
+    room.things.push_back(furniture(-1.f + 1.f * static_cast<float>(i % 3), i < 3 ? -0.5f : 0.5f,
+                                    {0.4f, 0.4f, 0.5f},
+                                    {static_cast<std::uint8_t>(40 * i), 200, 30}));
+  return room;
+}
+
 TEST(Mapper, FindsTheObjectsOfTheDesk) {
   Mapper mapper({}, std::make_shared<DeskMasks>());
   map_desk(mapper);
@@ -87,6 +98,25 @@ TEST(Mapper, MasksOfNoiseAreAFaultOfTheirFrame) {
               std::string::npos)
         << fault.what();
   }
+}
+
+TEST(Mapper, AFrameThatSeesThroughTheMapIsAFaultOfItsOwn) {
+  const FurnishedRoom room = room_with_boxes();
+  Mapper mapper(furnished_config(), std::make_shared<FurnishedMasks>(room));
+  for (int i = 0; i < 8; ++i) mapper.process(*room.read(i).frame);
+  const std::uint64_t before = mapper.map().content_hash();
+  Frame far = *room.read(8).frame;
+  for (float& depth_m : far.depth) depth_m *= 3;
+  try {
+    mapper.process(far);
+    FAIL() << "it was fused";
+  } catch (const FrameError& fault) {
+    EXPECT_NE(std::string(fault.what()).find("frame8: sees through"), std::string::npos)
+        << fault.what();
+  }
+  EXPECT_EQ(mapper.map().content_hash(), before);
+  EXPECT_EQ(mapper.frames(), 8);
+  mapper.process(*room.read(8).frame);
 }
 
 TEST(Mapper, DepthAloneSeparatesTheBallsFromTheTable) {
@@ -154,17 +184,6 @@ TEST(Mapper, AsksANetworkWhenThePictureHasMoved) {
   config.mask_motion = 0.f;
   Mapper every(config, std::make_shared<SlowDeskMasks>());
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(every.process(*scene.read(0).frame).labelled);
-}
-
-/// Six boxes in a row of places, each with a colour of its own.
-FurnishedRoom room_with_boxes() {
-  FurnishedRoom room;
-  room.frames = 60;
-  for (int i = 0; i < 6; ++i)
-    room.things.push_back(furniture(-1.f + 1.f * static_cast<float>(i % 3), i < 3 ? -0.5f : 0.5f,
-                                    {0.4f, 0.4f, 0.5f},
-                                    {static_cast<std::uint8_t>(40 * i), 200, 30}));
-  return room;
 }
 
 /// Of the boxes, those that are an object of their own.

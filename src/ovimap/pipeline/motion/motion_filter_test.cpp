@@ -130,10 +130,24 @@ TEST(MotionFilter, NoiseAndSmallPatchesStand) {
 TEST(MotionFilter, AFrameThatContradictsMoreThanItConfirmsIsRefused) {
   Scene scene;
   scene.watch(10);
-  scene.depth.fill(1.5f);
+  scene.depth.fill(kWall_m + 1.f);
+  for (int y = 0; y < 120; ++y)
+    for (int x = 35; x < 125; ++x) scene.depth.at(x, y) = 1.5f;
   const MovingPixels moving = scene.see();
   EXPECT_TRUE(moving.refused);
   EXPECT_TRUE(moving.ids.empty());
+}
+
+TEST(MotionFilter, AHandOnTheLensIsLeftOut) {
+  Scene scene;
+  scene.watch(10);
+  scene.depth.fill(0.f);  // too near for the sensor
+  for (int y = 30; y < 90; ++y)
+    for (int x = 40; x < 120; ++x) scene.depth.at(x, y) = 0.7f;
+  const MovingPixels moving = scene.see();
+  EXPECT_FALSE(moving.refused);
+  const DepthImage left = still_depth(scene.depth, moving.ids);
+  EXPECT_EQ(std::count(left.begin(), left.end(), 0.f), 160 * 120) << "nothing of it is left";
 }
 
 TEST(MotionFilter, WhatStaysIsPartOfThePlaceAfterAWhile) {

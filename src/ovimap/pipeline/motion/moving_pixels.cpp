@@ -19,6 +19,7 @@ namespace {
 constexpr std::size_t kRowsPerTask = 16;
 constexpr float kUnknownSlope = 0.5f;  // of a plane that does not fit, as FreeSpaceConfig takes it
 constexpr float kLeastSlope = 0.1f;
+constexpr double kNearlyAll = 0.75;  // of what a frame shows
 constexpr std::uint16_t kMostPatches = MovingPixels::kTakenOut - 1;
 
 /// Patches grown from the pixels that contradict, one after another in the order of their first.
@@ -261,7 +262,10 @@ MovingPixels find_moving(const VoxelMap& map, const SeenFree& space, const Obser
   moving.cells = std::move(cells);
   double moving_px = 0;  // what hangs together with them may be more, where little is known
   for (const MovingPatch& patch : moving.patches) moving_px += patch.core_px;
-  if (moving_px > 0 && moving_px > confirmed_px(map, seen)) {
+  const auto known_px = std::count_if(seen.depth.begin(), seen.depth.end(),
+                                      [](float depth_m) { return depth_m > 0.f; });
+  const bool all = moving_px >= kNearlyAll * static_cast<double>(known_px);  // a hand on the lens
+  if (moving_px > 0 && !all && moving_px > confirmed_px(map, seen)) {
     moving.refused = true;
     moving.ids = {};
     moving.patches.clear();

@@ -30,7 +30,8 @@ struct MovingPixels {
       ids;  ///< depth image size, patch of each pixel, [id - 1]; 0: it stands still; empty: all do
   std::vector<MovingPatch> patches;
   std::vector<BlockIndex> cells;  ///< of seen-empty space in which surface is seen, whatever it is
-  bool refused = false;  ///< more would move than the map confirms: it is the frame that is wrong
+  bool refused = false;  ///< more would move than the map confirms: it is the frame that is wrong.
+                         ///< Where nearly all of it would, as of a hand on the lens, it moves
 };
 
 /// Finds surface where frames had looked through, and what hangs together with it. `observation`

@@ -32,7 +32,8 @@ class VisitTeller {
       : before_(before),
         after_(after),
         config_(config),
-        seen_(seen_in_visit(before, after, std::move(store))) {}
+        seen_(seen_in_visit(before, after, std::move(store))),
+        gone_before_(gone_objects(before.history)) {}
 
   void tell() {
     changes_ = changes_of_visit();
@@ -124,14 +125,6 @@ class VisitTeller {
     }
   }
 
-  /// Whether it is known to be gone already, and what is left of it was seen through only now.
-  bool told_gone(InstanceId id) const {
-    const auto& events = after_.history.events;
-    const auto last = std::find_if(events.rbegin(), events.rend(),
-                                   [id](const ObjectEvent& event) { return event.instance == id; });
-    return last != events.rend() && last->kind == ObjectEventKind::kGone;
-  }
-
   /// Things that the map before did not have: new ones, and those whose places nobody had looked
   /// at, which are told of only where a thing that is gone fits them.
   static bool may_have_come(const ObjectChange& change) {
@@ -201,7 +194,8 @@ class VisitTeller {
   void tell(const ObjectChange& change) {
     const InstanceId id = change.before != 0 ? change.before : change.after;
     if (id == 0) return;
-    if (change.kind == ChangeKind::kRemoved && !told_gone(id))
+    // What is left of a thing that is known to be gone may be seen through only now.
+    if (change.kind == ChangeKind::kRemoved && !gone_before_.contains(id))
       add(ObjectEventKind::kGone, id, box_of(before_, id), {}, last_frame());
     if (change.kind == ChangeKind::kNew) {
       add(ObjectEventKind::kAppeared, id, {}, box_of(seen_, id), first_frame(id));
@@ -257,12 +251,7 @@ class VisitTeller {
   /// What is left of a thing that is gone, on what it stood on or where this visit looked without
   /// seeing through, is no object.
   void drop_gone() {
-    std::set<InstanceId> gone;
-    for (const ObjectEvent& event : after_.history.events)
-      if (event.kind == ObjectEventKind::kGone)
-        gone.insert(event.instance);
-      else
-        gone.erase(event.instance);
+    const std::set<InstanceId> gone = gone_objects(after_.history);
     std::erase_if(after_.instances,
                   [&](const auto& instance) { return gone.contains(instance.id); });
     std::erase_if(after_.surfaces, [&](const auto& entry) { return gone.contains(entry.first); });
@@ -292,6 +281,7 @@ class VisitTeller {
   MapDocument& after_;
   const VisitHistoryConfig& config_;
   MapDocument seen_;  ///< of `after`, in the visit
+  const std::set<InstanceId> gone_before_;
   std::vector<ObjectChange> changes_;
   std::set<InstanceId> remains_;  ///< of what was no thing any more before the visit
   std::vector<std::pair<std::size_t, std::size_t>> strangers_;  ///< what left, and what came there

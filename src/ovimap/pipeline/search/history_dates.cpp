@@ -10,8 +10,7 @@ namespace ovimap {
 
 namespace {
 
-/// The year 2001. Times of frames below count from the start of a recording, or of a machine.
-constexpr double kFirstDate_s = 978'307'200;
+constexpr double kFirstDate_s = 978'307'200;  // the year 2001
 
 std::string place_text(const Eigen::AlignedBox3f& box) {
   const Eigen::Vector3f center = box.center();
@@ -22,6 +21,10 @@ std::string place_text(const Eigen::AlignedBox3f& box) {
 }
 
 }  // namespace
+
+bool is_date(double timestamp_s) {
+  return timestamp_s >= kFirstDate_s && std::isfinite(timestamp_s);
+}
 
 HistoryDates::HistoryDates(const MapHistory& history, std::span<const FrameLogEntry> frames) {
   std::vector<MapVisit> visits = history.visits;
@@ -36,16 +39,26 @@ HistoryDates::HistoryDates(const MapHistory& history, std::span<const FrameLogEn
       const double since_s = time_of(frame) - time_of(visit.first_frame);
       return *visit.recorded_s + (std::isfinite(since_s) ? std::max(since_s, 0.) : 0.);
     }
-    if (time_of(frame) >= kFirstDate_s && std::isfinite(time_of(frame))) return time_of(frame);
-    return std::nullopt;
+    return is_date(time_of(frame)) ? std::optional(time_of(frame)) : std::nullopt;
   };
   for (std::size_t i = 0; i < visits.size(); ++i) {
     const std::int64_t end = i + 1 < visits.size() ? visits[i + 1].first_frame : count;
     begins_.push_back(date_in(visits[i], visits[i].first_frame));
     ends_.push_back(date_in(visits[i], end - 1));
+    for (std::int64_t frame = visits[i].first_frame; frame < std::min(end, count); ++frame)
+      frames_.push_back({frames[static_cast<std::size_t>(frame)].index,
+                         {static_cast<int>(i) + 1, date_in(visits[i], frame)}});
   }
   for (const ObjectEvent& event : history.events)
     events_.push_back(date_in(visits[index(event.visit)], event.frame));
+}
+
+std::optional<Sighting> HistoryDates::sighting(std::int64_t frame) const {
+  const auto found = std::lower_bound(
+      frames_.begin(), frames_.end(), frame,
+      [](const DatedFrame& dated, std::int64_t index) { return dated.index < index; });
+  if (found == frames_.end() || found->index != frame) return std::nullopt;
+  return found->seen;
 }
 
 void HistoryDates::require_known(const MapMoment& moment) const {

@@ -19,6 +19,16 @@ class MomentUnknown : public Error {
   using Error::Error;
 };
 
+/// When something was seen.
+struct Sighting {
+  int visit = 1;                 ///< from 1
+  std::optional<double> time_s;  ///< since 1970 (UTC)
+};
+
+/// Whether a frame's time is a date, seconds since 1970; else it counts from the start of a
+/// recording, or of a machine.
+bool is_date(double timestamp_s);
+
 /// When the visits of a map were and its events happened: as people said of a recording, else as
 /// its frames say where their times are dates. Seconds since 1970 (UTC).
 class HistoryDates {
@@ -32,6 +42,8 @@ class HistoryDates {
   std::optional<double> end_of(int visit) const { return ends_[index(visit)]; }
   /// When the frame of an event of the history was taken.
   std::optional<double> date_of(std::size_t event) const { return events_[event]; }
+  /// When a frame was taken, by its FrameLogEntry::index; none that the map does not have.
+  std::optional<Sighting> sighting(std::int64_t frame) const;
 
   /// Whether an event of the history had been noticed by then.
   bool happened(const MapHistory& history, std::size_t event, const MapMoment& moment) const;
@@ -48,7 +60,13 @@ class HistoryDates {
  private:
   static std::size_t index(int visit) { return static_cast<std::size_t>(visit - 1); }
 
+  struct DatedFrame {
+    std::int64_t index;
+    Sighting seen;
+  };
+
   std::vector<std::optional<double>> begins_, ends_, events_;
+  std::vector<DatedFrame> frames_;  ///< by index
 };
 
 /// "moved from (1.00, 2.00, 0.50) to (0.20, 1.10, 0.50)": centres of boxes, metres in the world.

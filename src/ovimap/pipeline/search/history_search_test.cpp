@@ -102,6 +102,18 @@ class HistorySearchTest : public MapFolder {
   MapRecord record_;
 };
 
+TEST_F(HistorySearchTest, FramesHaveAVisitAndATime) {
+  const HistoryDates dates(record_.history, record_.frames);
+  const auto seen = dates.sighting(3);
+  ASSERT_TRUE(seen);
+  EXPECT_EQ(seen->visit, 2);
+  EXPECT_EQ(seen->time_s, kMonday_s + kDay_s + 1);
+  EXPECT_FALSE(dates.sighting(6)) << "the map has no such frame";
+  EXPECT_FALSE(dates.sighting(-1));
+  record_.frames[3].timestamp_s = 3;  // since some machine was started
+  EXPECT_FALSE(HistoryDates(record_.history, record_.frames).sighting(3)->time_s);
+}
+
 TEST_F(HistorySearchTest, TheMapAsItWas) {
   EXPECT_EQ(place("mug", "visit 1"), 20);
   EXPECT_EQ(place("mug", "visit 2"), 30);

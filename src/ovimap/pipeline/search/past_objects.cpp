@@ -17,10 +17,7 @@ PastStates states_now(const MapRecord& corrected) {
         instance,
         surface == corrected.surfaces.end() ? std::vector<Eigen::Vector3f>{} : surface->second, 0};
   }
-  std::map<InstanceId, ObjectEventKind> last;
-  for (const ObjectEvent& event : corrected.history.events) last[event.instance] = event.kind;
-  for (const auto& [id, kind] : last)
-    if (kind == ObjectEventKind::kGone) states.erase(id);
+  for (const InstanceId id : gone_objects(corrected.history)) states.erase(id);
   return states;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -64,6 +65,9 @@ void VisitFitter::add(const Frame& frame) {
   if (!frame.posed) return;
   const auto alignment = align_to_map(frame, map_, track_, config_);
   if (!alignment) return;
+  given_.push_back(frame.world_from_camera);
+  moves_.push_back(frame.world_from_camera * alignment->reference_from_frame *
+                   frame.world_from_camera.inverse());
   offsets_m_.push_back(alignment->reference_from_frame.translation().norm());
   turns_rad_.push_back(Eigen::AngleAxisd(alignment->reference_from_frame.linear()).angle());
   agreements_.push_back(alignment->quality.agreement);
@@ -71,7 +75,27 @@ void VisitFitter::add(const Frame& frame) {
 
 VisitFit VisitFitter::fit() const {
   return {static_cast<int>(offsets_m_.size()), share_of(offsets_m_, 0.75),
-          share_of(turns_rad_, 0.75), share_of(agreements_, 0.5)};
+          share_of(turns_rad_, 0.75), share_of(agreements_, 0.5), middle_motion(given_, moves_)};
+}
+
+Pose middle_motion(const std::vector<Pose>& world_from_camera, const std::vector<Pose>& moves) {
+  std::vector<Eigen::Vector3d> points;
+  for (const Pose& pose : world_from_camera)
+    for (const Eigen::Vector3d& seen : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0, 0, 1)})
+      points.push_back(pose * seen);
+  const auto difference = [&](const Pose& a, const Pose& b) {
+    double sum_m = 0;
+    for (const Eigen::Vector3d& point : points) sum_m += (a * point - b * point).norm();
+    return sum_m;
+  };
+  Pose middle = Pose::Identity();
+  double least_m = std::numeric_limits<double>::max();
+  for (const Pose& move : moves) {
+    double sum_m = 0;
+    for (const Pose& other : moves) sum_m += difference(move, other);
+    if (sum_m < least_m) least_m = sum_m, middle = move;
+  }
+  return middle;
 }
 
 VisitFit fit_visit(const VoxelMap& map, const FrameSource& source,

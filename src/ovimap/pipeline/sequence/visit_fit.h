@@ -34,6 +34,7 @@ struct VisitFit {
   double offset_m = 0;  ///< three quarters of them lie nearer than this to where the map says
   double turn_rad = 0;
   double agreement = 0;  ///< median share of what they see that lies on the map's surface then
+  Pose map_from_recording = Pose::Identity();  ///< what most of them say
 };
 
 /// Aligns frames of a recording to a map's surface, by depth alone and each by itself, from the
@@ -53,6 +54,8 @@ class VisitFitter {
   const TrackConfig& track_;
   const VisitFitConfig& config_;
   std::vector<double> offsets_m_, turns_rad_, agreements_;
+  std::vector<Pose> given_, moves_;  ///< poses of frames that see the map, and map_from_recording
+                                     ///< as each of them says
 };
 
 /// The same of `config.frames` of the recording at `positions`. Frames that cannot be read are
@@ -60,6 +63,11 @@ class VisitFitter {
 VisitFit fit_visit(const VoxelMap& map, const FrameSource& source,
                    const std::vector<std::int64_t>& positions, const TrackConfig& track,
                    const VisitFitConfig& config);
+
+/// The motion of these that moves the recording's cameras least from where the others move them.
+/// Turns count as far as they move what a camera sees a metre before it. Identity where there are
+/// none.
+Pose middle_motion(const std::vector<Pose>& world_from_camera, const std::vector<Pose>& moves);
 
 /// What speaks against going on with the map, in words; empty when nothing does.
 std::string misfit(const VisitFit& fit, const VisitFitConfig& config);

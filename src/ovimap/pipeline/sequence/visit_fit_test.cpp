@@ -45,6 +45,22 @@ TEST(VisitFit, PosesThreeCentimetresOffAreTold) {
   const VisitFit fit = fit_of(map.map, furnished(off));
   EXPECT_GT(fit.offset_m, 0.02);
   EXPECT_NE(misfit(fit, {}).find("cm and"), std::string::npos);
+  EXPECT_LT((fit.map_from_recording * off).translation().norm(), 0.01) << "where it lies is known";
+}
+
+TEST(VisitFit, OfMotionsTheMiddleOneIsTaken) {
+  EXPECT_TRUE(middle_motion({}, {}).isApprox(Pose::Identity()));
+  const auto motion = [](double metres, double turn_rad) {
+    Pose pose = Pose::Identity();
+    pose.translation().x() = metres;
+    pose.rotate(Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitY()));
+    return pose;
+  };
+  const std::vector<Pose> cameras(4, Pose::Identity());
+  EXPECT_TRUE(middle_motion(cameras, {motion(1, 0), motion(1.1, 0), motion(1.3, 0), motion(9, 0)})
+                  .isApprox(motion(1.1, 0)));
+  EXPECT_TRUE(middle_motion(cameras, {motion(1, 0.5), motion(1, 0.1), motion(1, 0), motion(1, 0)})
+                  .isApprox(motion(1, 0)));
 }
 
 TEST(VisitFit, AnotherPlaceIsTold) {

@@ -22,10 +22,9 @@ bool shows_known_place(const FrameSource& source, const std::vector<std::int64_t
 
 ObjectPlacing place_by_objects(const MapDocument& map, const FrameSource& source,
                                const std::vector<std::int64_t>& positions, Mapper&& alone,
-                               PoseFinder&& finder, const AlignmentConfig& config,
+                               PoseFinder* finder, const AlignmentConfig& config,
                                const SequenceProgress& progress) {
-  const SequenceResult done =
-      run_sequence(source, positions, alone, progress, {}, nullptr, &finder);
+  const SequenceResult done = run_sequence(source, positions, alone, progress, {}, nullptr, finder);
   if (2 * done.frames.size() < positions.size())
     return {{{},
              concat("the camera was lost in ", positions.size() - done.frames.size(), " of ",
@@ -33,8 +32,8 @@ ObjectPlacing place_by_objects(const MapDocument& map, const FrameSource& source
             {}};
   const MapDocument part = make_document(std::move(alone), done, {});
   ObjectPlacing placing{search_alignment(map, part, config), {}};
-  if (!placing.alignment.doubt.empty()) return placing;
-  placing.places = finder.tracker().keyframes();
+  if (!finder || !placing.alignment.doubt.empty()) return placing;
+  placing.places = finder->tracker().keyframes();
   for (Keyframe& place : placing.places)
     place.world_from_camera = placing.alignment.best.a_from_b * place.world_from_camera;
   return placing;

@@ -22,10 +22,11 @@ struct ObjectPlacing {
 
 /// Maps the frames at `positions` by themselves, in a world of their own, with a mapper that is
 /// fresh, and looks for that map in `map` (search_alignment). The camera is tracked by `finder`,
-/// likewise fresh. Throws what run_sequence throws.
+/// likewise fresh; null: the frames have poses, in a world of their own. Throws what run_sequence
+/// throws.
 ObjectPlacing place_by_objects(const MapDocument& map, const FrameSource& source,
                                const std::vector<std::int64_t>& positions, Mapper&& alone,
-                               PoseFinder&& finder, const AlignmentConfig& config,
+                               PoseFinder* finder, const AlignmentConfig& config,
                                const SequenceProgress& progress = nullptr);
 
 }  // namespace ovimap

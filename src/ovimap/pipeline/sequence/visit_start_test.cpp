@@ -31,10 +31,11 @@ class Unposed : public FrameSource {
 class VisitStart : public ::testing::Test {
  protected:
   ObjectPlacing placed_in(const MapDocument& map) const {
+    PoseFinder finder(Tracker(TrackConfig{}), LoopConfig{});
     return place_by_objects(map, visit_, positions_,
                             Mapper(furnished_config(), std::make_shared<FurnishedMasks>(room_),
                                    std::make_shared<ColorEncoder>()),
-                            PoseFinder(Tracker(TrackConfig{}), LoopConfig{}), AlignmentConfig{});
+                            &finder, AlignmentConfig{});
   }
   static FurnishedRoom seen_in(int frames, double first_turn, double last_turn) {
     FurnishedRoom room = visited(first_turn, last_turn);

@@ -11,6 +11,7 @@
 #include "ovimap/io/exports/rounded_json.h"
 #include "ovimap/io/map_tables/map_file_record.h"
 #include "ovimap/io/pictures/palette.h"
+#include "ovimap/pipeline/search/history_dates.h"
 #include "ovimap/semantics/query/query_grammar.h"
 #include "ovimap/semantics/relations/scene_relations.h"
 #include "ovimap/semantics/words/main_colors.h"
@@ -97,7 +98,16 @@ json writing_of(const MapSnapshot& now, InstanceId id) {
   return list;
 }
 
-json instance_json(const MapSnapshot& now, std::size_t position) {
+/// When the last frame was taken that showed it; null: not known.
+json last_seen_of(const MapSnapshot& now, const HistoryDates& dates,
+                  const InstanceSummary& instance) {
+  const InstanceRecord known = record_of(now.record->registry.super_points, instance.super_points);
+  const auto seen = known.views > 0 ? dates.sighting(known.last_frame) : std::nullopt;
+  if (!seen) return nullptr;
+  return {{"visit", seen->visit}, {"time_s", optional_number(seen->time_s)}};
+}
+
+json instance_json(const MapSnapshot& now, const HistoryDates& dates, std::size_t position) {
   const InstanceSummary& instance = now.record->instances[position];
   return {{"id", instance.id},
           {"name", now.name_of(instance.id)},
@@ -109,6 +119,7 @@ json instance_json(const MapSnapshot& now, std::size_t position) {
           {"centroid", rounded_point(instance.centroid)},
           {"points", instance.points},
           {"views", instance.views},
+          {"last_seen", last_seen_of(now, dates, instance)},
           {"confidence", instance.confidence ? rounded_json(*instance.confidence) : json()},
           {"locked", now.record->locked.contains(instance.id)},
           {"crops", crops_of(now, instance)},
@@ -202,9 +213,10 @@ json map_json(const ServedMap& map) {
 
 json instances_json(const ServedMap& map) {
   const auto now = map.snapshot();
+  const HistoryDates dates(now->record->history, now->record->frames);
   json list = json::array();
   for (std::size_t i = 0; i < now->record->instances.size(); ++i)
-    list.push_back(instance_json(*now, i));
+    list.push_back(instance_json(*now, dates, i));
   return {{"version", now->version}, {"instances", list}};
 }
 
@@ -226,7 +238,8 @@ json instance_detail_json(const ServedMap& map, InstanceId id) {
   const auto now = map.snapshot();
   const std::size_t position = position_of(*now, id);
   const QueryScene& scene = now->objects->scene;
-  json detail = instance_json(*now, position);
+  json detail =
+      instance_json(*now, HistoryDates(now->record->history, now->record->frames), position);
   const ObjectShape& shape = scene.shapes.outline(position);
   detail["super_points"] = now->record->instances[position].super_points;
   detail["height_m"] = rounded_json(shape.height_m());
