@@ -211,47 +211,66 @@ def place_section(program, work, name, studio):
 
 # Large places: one whose walk chose the defaults, and one that chose nothing. Errors of a real sensor are alike over windows, and its lens bends.
 WINDOWS = ["--set", "sensor.correlation_px=6", "--set", "sensor.lens_bias_px=0.05"]
-LARGE = {"flat": ["--plan", "flat"], "harbour": ["--room", "harbour"]}
+LARGE = {"flat": ["--plan", "flat"], "harbour": ["--room", "harbour"], "hall": ["--plan", "hall"]}
 SENSORS = {"each pixel errs by itself": [], "neighbours err alike": WINDOWS}
 FUSIONS = {"ovimap, raw depth, 1/z^2, any weight": ["depth.enabled=false", "map.min_mesh_weight=0.0001"],
            "ovimap": []}
 OPEN3D_WEIGHTS = [1, 3, 5, 10]
 
 
-def surface_row(program, scene, name, surface):
-    scores = run_json(program, "eval", surface, "--gt", scene, "--encoder", "none", "--protocol", "standard")["standard"]
-    geometry, objects = scores["geometry"], scores["class_agnostic"]
-    agnostic = "- | -" if surface.suffix == ".ply" else f"{objects['ap50']:.3f} | {objects['ap25']:.3f}"
+def surface_scores(program, scene, surface):
+    return run_json(program, "eval", surface, "--gt", scene, "--encoder", "none", "--protocol", "standard")["standard"]
+
+
+def surface_row(name, scores, agnostic="- | -"):
+    geometry = scores["geometry"]
     return (f"| {name} | {1e3 * geometry['accuracy_median_m']:.1f} | {1e3 * geometry['accuracy_m']:.1f} | {100 * geometry['stray']:.1f} "
             f"| {geometry['completeness']:.3f} | {geometry['completeness_1cm']:.3f} | {agnostic} |")
 
 
-def open3d_rows(program, scene, folder):
-    """Nothing where `make rivals` was not run."""
+def open3d_scores(program, scene, folder):
+    """By weight. Nothing where `make rivals` was not run."""
     python = speed.RIVALS / "bin" / "python"
     if not python.exists():
-        return []
+        return {}
     run(python, "bench/rivals/open3d_surface.py", pathlib.Path(program).parent / "ovimap_fusion_steps", scene, folder,
         "--weights", *OPEN3D_WEIGHTS)
-    return [surface_row(program, scene, f"Open3D, weight >= {weight}", folder / f"weight-{weight}.ply") for weight in OPEN3D_WEIGHTS]
+    return {weight: surface_scores(program, scene, folder / f"weight-{weight}.ply") for weight in OPEN3D_WEIGHTS}
+
+
+def surface_curve(program, surface, scene, completenesses):
+    command = [pathlib.Path(program).parent / "ovimap_surface_curve", surface, scene, *map(str, completenesses)]
+    return json.loads(subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True).stdout)
 
 
 def surface_rows(program, scene, folder):
-    rows = []
+    """The table, and a sentence on what the frames tell well."""
+    rows, surface = [], folder / "surface.ovimap"
     for name, settings in FUSIONS.items():
         options = [word for setting in settings for word in ("--set", setting)]
-        map_recording(program, scene, folder / "surface.ovimap", "--masks", "gt", "--encoder", "none", *options)
-        rows.append(surface_row(program, scene, name, folder / "surface.ovimap"))
-    return rows + open3d_rows(program, scene, folder)
+        map_recording(program, scene, surface, "--masks", "gt", "--encoder", "none", *options)
+        scores = surface_scores(program, scene, surface)
+        objects = scores["class_agnostic"]
+        rows.append(surface_row(name, scores, f"{objects['ap50']:.3f} | {objects['ap25']:.3f}"))
+    theirs = open3d_scores(program, scene, folder)
+    complete = {weight: scores["geometry"]["completeness"] for weight, scores in theirs.items()}
+    curve = surface_curve(program, surface, scene, complete.values())
+    for (weight, scores), ours in zip(theirs.items(), curve["curve"]):
+        rows += [surface_row(f"Open3D, weight >= {weight}", scores),
+                 f"| ... ovimap as complete | {1e3 * ours['median_m']:.1f} | {1e3 * ours['mean_m']:.1f} | {100 * ours['stray']:.1f} | {ours['completeness']:.3f} | - | - | - |"]
+    return [*rows, "", f"All frames together tell {100 * curve['known']:.0f} % of the true vertices to 10 mm (one standard deviation, if each pixel erred by itself); "
+            f"of these the map has {100 * curve['completeness_of_known']:.1f} %."]
 
 
 def surface_section(program, work):
     lines = ["## The surface of large places under sensor noise", "",
              "    ovimap synth DIR PLACE --fps 2 [--set SENSOR...]", "    ovimap run DIR/SCENE --masks gt [--set SETTING...] -o MAP",
-             "    bench/rivals/open3d_surface.py build/release/bin/ovimap_fusion_steps DIR/SCENE OUT", "    ovimap eval MAP|PLY --gt DIR/SCENE", "",
+             "    bench/rivals/open3d_surface.py build/release/bin/ovimap_fusion_steps DIR/SCENE OUT", "    ovimap eval MAP|PLY --gt DIR/SCENE",
+             "    build/release/bin/ovimap_surface_curve MAP DIR/SCENE COMPLETENESS...", "",
              "Error: from the vertices to the true surface; stray are those farther than 20 cm from it, which count in neither error. One walk at 640x480, "
              "voxels of 1 cm, truncation 5 cm for all. Raw depth: `" + " ".join(FUSIONS["ovimap, raw depth, 1/z^2, any weight"])
-             + "`. Neighbours err alike: `" + " ".join(WINDOWS) + "`. Open3D 0.20's VoxelBlockGrid shows surface from a weight of 3 unless told otherwise.", ""]
+             + "`. Neighbours err alike: `" + " ".join(WINDOWS) + "`. Open3D 0.20's VoxelBlockGrid shows surface from a weight of 3 unless told otherwise. "
+             "As complete: those vertices of the row `ovimap` that are known best, as many as make it as complete as Open3D's row above.", ""]
     for (place, options), (sensor, settings) in itertools.product(LARGE.items(), SENSORS.items()):
         folder = work / "surface" / (place + ("-windows" if settings else ""))
         run(program, "synth", folder, *options, "--fps", "2", *settings)

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rooms that change between visits, for tools/benchmarks.py: what the map keeps of what left, and what it tells."""
 import functools
+import statistics
 import sys
 
 from speed import map_recording, run, run_json
@@ -13,6 +14,7 @@ MOVER_ROOMS = ["office", "living-room"]
 VISITS = 4
 MASKS = ["gt", "sam"]
 KINDS = ["moved", "removed", "added"]
+WITHOUT = ["--set", "free_space.enabled=false", "--dynamic", "off"]
 
 
 @functools.cache
@@ -58,6 +60,26 @@ def movers(program, work):
             "| room | `--dynamic` | left | kept | AP50 of the room |", "| --- " * 5 + "|", *rows, ""]
 
 
+def cost_row(program, work, room):
+    """A visit in which nothing moves, with and without, by turns."""
+    folder, ways = work / "visits" / room, {"off": WITHOUT, "on": []}
+    render(program, folder, room, *ROOMS[room], "--visits", VISITS)
+    runs, maps = {way: [] for way in ways}, {way: folder / f"still-{way}.ovimap" for way in ways}
+    for way in list(ways) * 3:
+        runs[way].append(run_json(program, "run", folder / "visit1", "--masks", "gt", "--encoder", "none", "-o", maps[way], *ways[way]))
+    median = {way: {of: statistics.median(one[of] for one in runs[way]) for of in ("cpu_seconds", "peak_rss_mb")} for way in ways}
+    scores = {way: run_json(program, "eval", maps[way], "--gt", folder / "visit1", "--encoder", "none")["standard"] for way in ways}
+    more = [f"{100 * (median['on'][of] / median['off'][of] - 1):+.1f} %" for of in ("cpu_seconds", "peak_rss_mb")]
+    same = [" -> ".join(f"{scores[way][part][of]:.3f}" for way in ways) for part, of in
+            (("class_agnostic", "ap50"), ("class_agnostic", "ap25"), ("geometry", "completeness"))]  # fmt: skip
+    return f"| {room} | {' | '.join(same + more)} |"
+
+
+def costs(program, work):
+    return ["What it costs where nothing moves: the first visit, true masks, with `" + " ".join(WITHOUT) + "` -> as it is; processor time and peak memory of whole runs, medians of three by turns.", "",
+            "| room | AP50 | AP25 | completeness | processor time | memory |", "| --- " * 6 + "|", *(told(cost_row(program, work, room)) for room in ROOMS), ""]  # fmt: skip
+
+
 def told(made):
     """Hours go into this table: what is there is said at once."""
     print(made, file=sys.stderr, flush=True)
@@ -73,4 +95,4 @@ def section(program, work):
             "Between two visits three things move, one is carried off and one brought in; in the flat `harbour`, of which a walk sees less, a door turns as well. Left: share of the surface of what left that the map still "
             "shows, where five frames looked through. Kept: share of unchanged surface within 2 cm of the map's. AP50: of the last visit's objects. Changes: precision / "
             "recall (how many there were); ids of what moved: kept, and told in doubt. docs/changes.md says how they are counted.", "",
-            "| room | masks | free space | left | kept | AP50 | moved | removed | added | ids of moved kept |", "| --- " * 10 + "|", *rows, "", *movers(program, work)]
+            "| room | masks | free space | left | kept | AP50 | moved | removed | added | ids of moved kept |", "| --- " * 10 + "|", *rows, "", *movers(program, work), *costs(program, work)]

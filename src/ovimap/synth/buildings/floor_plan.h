@@ -39,8 +39,9 @@ struct FloorPlan {
 };
 
 /// "flat": four rooms and the corridor that joins them, 9.4 x 9.5 m. "loop": eight rooms in a ring,
-/// 11.8 x 10.6 m, each with doors to the next and the one before. "building": office_building of a
-/// hundred rooms. Throws Error for another name.
+/// 11.8 x 10.6 m, each with doors to the next and the one before. "hall": one room of 12 x 8.4 m
+/// and 3.6 m high, and the lobby before it. "building": office_building of a hundred rooms. Throws
+/// Error for another name.
 FloorPlan floor_plan(const std::string& name, std::uint64_t seed = 1);
 std::vector<std::string> floor_plan_names();
 

@@ -170,7 +170,7 @@ TEST(OfficeBuilding, OneWalksThroughTheRowsAndBackByTheFirstRooms) {
   EXPECT_THROW(office_building(0, 3), Error);
 }
 
-INSTANTIATE_TEST_SUITE_P(Every, NamedPlan, testing::Values("flat", "loop"),
+INSTANTIATE_TEST_SUITE_P(Every, NamedPlan, testing::Values("flat", "hall", "loop"),
                          [](const auto& plan) { return plan.param; });
 
 }  // namespace

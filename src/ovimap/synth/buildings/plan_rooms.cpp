@@ -68,9 +68,32 @@ RoomSpec dining_room() {
   return spec;
 }
 
+/// Where people meet: much floor, little furniture.
+RoomSpec assembly_hall() {
+  RoomSpec spec;
+  spec.wall_color = {232, 230, 222};
+  spec.accent_color = {176, 160, 136};
+  const Classes table = {"table"}, low = {"cabinet"};
+  spec.furniture = {{"window", kInWall, 4},
+                    {"cabinet", kAgainstWall, 2, {}, "BlendSwap-CC-BY/dresserWithDrawers"},
+                    {"table", kInMiddle, 2, {}, "Scopia/white_kitchen_table"},
+                    {"chair", kAround, 6, table, "BlendSwap-CC-BY/plaidChair"},
+                    {"plant", kInCorner, 2, {}, "Scopia/maceta"},
+                    {"stereo", kOnTop, 1, low},
+                    {"vase", kOnTop, 1, low},
+                    {"bowl", kOnTop, 1, table},
+                    {"backpack", kOnFloor},
+                    {"radiator", kOnWall, 2, {}, "BlendSwap-CC-BY/modernRadiator", 0.12f},
+                    {"picture", kOnWall, 5},
+                    {"clock", kOnWall},
+                    {"ceiling lamp", kOnCeiling, 6}};
+  return spec;
+}
+
 RoomSpec lived_in(const std::string& kind) {
   if (kind == "hall") return hall();
   if (kind == "dining-room") return dining_room();
+  if (kind == "assembly-hall") return assembly_hall();
   RoomSpec spec = room_spec(kind);
   std::erase_if(spec.furniture, [](const FurnitureRequest& request) {
     return left_out().count(request.class_name) > 0;
@@ -108,6 +131,16 @@ FloorPlan loop() {
   return plan;
 }
 
+/// One large and high room, and the lobby before it.
+FloorPlan assembly_rooms() {
+  constexpr float kHallHeight_m = 3.6f, kHallDepth_m = 8.4f;
+  FloorPlan plan;
+  plan.rooms = {at("hall", 4, 0, 4, 2), {{}, {0, 2 + kPlanWall_m}}};
+  plan.rooms[1].spec = plan_room("assembly-hall", {12, kHallDepth_m, kHallHeight_m});
+  plan.doors = {{0, 1, 6}};
+  return plan;
+}
+
 }  // namespace
 
 RoomSpec plan_room(const std::string& kind, const Eigen::Vector3f& size_m) {
@@ -118,7 +151,7 @@ RoomSpec plan_room(const std::string& kind, const Eigen::Vector3f& size_m) {
 }
 
 std::vector<std::string> floor_plan_names() {
-  return {"flat", "loop", "building"};
+  return {"flat", "loop", "hall", "building"};
 }
 
 FloorPlan floor_plan(const std::string& name, std::uint64_t seed) {
@@ -127,6 +160,8 @@ FloorPlan floor_plan(const std::string& name, std::uint64_t seed) {
     plan = flat();
   else if (name == "loop")
     plan = loop();
+  else if (name == "hall")
+    plan = assembly_rooms();
   else if (name == "building")
     plan = office_building(kBuildingRooms, kBuildingRooms);
   else
