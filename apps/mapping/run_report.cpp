@@ -212,6 +212,10 @@ bool masks_all_absent(const MappingRun& run) {
   return run.masks_wanted && run.document.mask_frames == 0;
 }
 
+bool mostly_blank(const MappingRun& run) {
+  return 2 * run.blank_masks > run.document.mask_frames;
+}
+
 double frames_per_second(const MappingRun& run) {
   const std::size_t fused = run.sequence.frames.size() - run.frames_before;
   return fused == 0 ? 0 : static_cast<double>(fused) / run.sequence.seconds;
@@ -242,6 +246,11 @@ void report_faults(const MappingRun& run) {
     warn(concat("none of the ", run.sequence.frames.size(),
                 " frames had masks, so the map tells no objects apart; name a mask file after its "
                 "frame or its number, or map with --masks none"));
+  if (mostly_blank(run))
+    warn(
+        concat("the masks of ", run.blank_masks, " of ", run.document.mask_frames,
+               " frames tell nothing: no thing at all, or one that is the whole picture; look at "
+               "some, where they come from a folder its images must hold a number for each thing"));
   if (!run.live) return;
   report_bad_frames(run.live->statistics);
   report_bad_masks(run.live->statistics);
@@ -257,6 +266,7 @@ nlohmann::json run_json(const std::filesystem::path& map, const MappingRun& run,
                            {"seconds", run.sequence.seconds},
                            {"fps", frames_per_second(run)},
                            {"mask_frames", run.document.mask_frames},
+                           {"masks_blank", run.blank_masks},
                            {"interrupted", interrupted()},
                            {"stages", stages_json(run.timers)},
                            {"tiles_evicted", tiles.evicted},
@@ -316,7 +326,7 @@ bool mostly_lost(const MappingRun& run) {
 
 void advise_on_objects(const MappingRun& run) {
   if (mostly_lost(run)) return advise_on_lost_camera(run);
-  if (!run.document.instances.empty() || masks_all_absent(run)) return;
+  if (!run.document.instances.empty() || masks_all_absent(run) || mostly_blank(run)) return;
   warn(concat("no object was seen often enough to be kept; map more frames, or --set ",
               run.live ? "live.masks.min_gap" : "mask_interval", "=1 where masks are slow"));
 }

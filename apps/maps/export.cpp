@@ -86,8 +86,9 @@ void export_ply(const ExportOptions& options) {
 void export_glb(const ExportOptions& options) {
   const ObjectLabels labels = labels_in(open_map_search(options.map), options);
   const MapDocument document = load_corrected_map(options.map);
-  write_glb(options.out, colored_parts(document, options), document.instances,
-            {document.names, labels}, document.up);
+  const ObjectTitles titles{document.names, labels};
+  write_glb(options.out, colored_parts(document, options),
+            {document.instances, document.parts, titles, document.up});
 }
 
 void export_png(const ExportOptions& options) {

@@ -177,7 +177,8 @@ void export_map(SavedMap& map, const std::filesystem::path& out) {
     const MapDocument document = load_corrected_map(map.path());
     const MeshParts parts = visible_parts(document, map.path());
     if (ending == ".ply") return write_ply(out, parts);
-    return write_glb(out, parts, document.instances, titles_of(map), document.up);
+    const ObjectTitles titles = titles_of(map);
+    return write_glb(out, parts, {document.instances, document.parts, titles, document.up});
   }
   if (ending == ".json") return write_text(out, objects_json(map));
   if (ending == ".csv") return write_text(out, instances_csv(info.instances, titles_of(map)));

@@ -198,28 +198,29 @@ class GlbBuilder {
 
 /// Fills `body` and returns what stands before it. Pieces of objects wait beside `target`.
 Bytes glb_head(const std::filesystem::path& target, const MeshParts& parts,
-               std::span<const InstanceSummary> instances, const ObjectTitles& titles,
-               const Eigen::Vector3f& up, ScratchFile& body) {
+               const ExportedObjects& objects, ScratchFile& body) {
   const LabelledPieces pieces(parts, target);
   GlbBuilder builder(body);
-  for (const InstanceSummary& instance : instances) {
-    Json extras = instance_json_value(instance, titles);
+  const auto known_parts = parts_by_object(objects.parts, objects.instances);
+  for (const InstanceSummary& instance : objects.instances) {
+    Json extras = instance_json_value(instance, objects.titles);
+    if (const auto of_it = known_parts.find(instance.id); of_it != known_parts.end())
+      extras["parts"] = parts_json_value(of_it->second);
     extras.erase("superpoints");
-    const std::string title = titles.title_of(instance.id);
+    const std::string title = objects.titles.title_of(instance.id);
     builder.add_node(concat(title.empty() ? "object" : title, " ", instance.id),
                      pieces.piece(instance.id), std::move(extras));
   }
   builder.add_node("background", pieces.piece(0), nullptr);
-  return builder.finish(up);
+  return builder.finish(objects.up);
 }
 
 }  // namespace
 
-std::string encode_glb(const MeshParts& parts, std::span<const InstanceSummary> instances,
-                       const ObjectTitles& titles, const Eigen::Vector3f& up) {
+std::string encode_glb(const MeshParts& parts, const ExportedObjects& objects) {
   const auto target = std::filesystem::temp_directory_path() / "ovimap.glb";
   ScratchFile body(target);
-  const Bytes head = glb_head(target, parts, instances, titles, up, body);
+  const Bytes head = glb_head(target, parts, objects, body);
   std::string file(head.begin(), head.end());
   file.resize(head.size() + body.size());
   body.read(0, {reinterpret_cast<std::uint8_t*>(file.data()) + head.size(), body.size()});
@@ -227,10 +228,9 @@ std::string encode_glb(const MeshParts& parts, std::span<const InstanceSummary> 
 }
 
 void write_glb(const std::filesystem::path& path, const MeshParts& parts,
-               std::span<const InstanceSummary> instances, const ObjectTitles& titles,
-               const Eigen::Vector3f& up) {
+               const ExportedObjects& objects) {
   ScratchFile body(path);
-  const Bytes head = glb_head(path, parts, instances, titles, up, body);
+  const Bytes head = glb_head(path, parts, objects, body);
   write_file(path, head, {&body});
 }
 

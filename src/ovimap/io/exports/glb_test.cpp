@@ -52,9 +52,13 @@ MeshParts whole(Mesh mesh) {
 }
 
 TEST(Glb, HasANodePerObject) {
-  const std::string file =
-      encode_glb(whole(two_triangles()), std::vector{instance(4), instance(9)},
-                 {{{4, "mug"}}, {{4, "cup"}, {9, "chair"}}}, Eigen::Vector3f::UnitZ());
+  const ObjectTitles titles{{{4, "mug"}}, {{4, "cup"}, {9, "chair"}}};
+  std::vector objects{instance(4), instance(9)};
+  objects[0].super_points = {2, 7};
+  std::vector parts{instance(7)};
+  parts[0].super_points = {7};
+  parts[0].points = 30;
+  const std::string file = encode_glb(whole(two_triangles()), {objects, parts, titles});
   const auto document = document_of(file);
   const auto& nodes = document["nodes"];
   ASSERT_EQ(nodes.size(), 4u);
@@ -62,6 +66,10 @@ TEST(Glb, HasANodePerObject) {
   EXPECT_EQ(nodes[0]["extras"]["id"], 4);
   EXPECT_EQ(nodes[0]["extras"]["box"]["max"][0], 1);
   EXPECT_EQ(nodes[0]["extras"]["label"], "cup");
+  ASSERT_EQ(nodes[0]["extras"]["parts"].size(), 1u);
+  EXPECT_EQ(nodes[0]["extras"]["parts"][0]["name"], "part 1");
+  EXPECT_EQ(nodes[0]["extras"]["parts"][0]["points"], 30);
+  EXPECT_FALSE(nodes[1]["extras"].contains("parts"));
   EXPECT_EQ(nodes[1]["name"], "chair 9");
   EXPECT_FALSE(nodes[1].contains("mesh"));  // it has no surface
   EXPECT_EQ(nodes[2]["name"], "background");
@@ -75,23 +83,22 @@ TEST(Glb, AFileOfPartsIsThatOfTheWhole) {
   first.triangles.pop_back();
   second.triangles.erase(second.triangles.begin());
   const std::vector objects{instance(4), instance(9)};
+  const ObjectTitles titles{{{4, "mug"}}, {}};
   const auto path = std::filesystem::temp_directory_path() / concat("ovimap-", ::getpid(), ".glb");
-  write_glb(
-      path,
-      [&](const auto& visit) {
-        visit(first);
-        visit(second);
-      },
-      objects, {{{4, "mug"}}, {}}, Eigen::Vector3f::UnitZ());
+  write_glb(path,
+            [&](const auto& visit) {
+              visit(first);
+              visit(second);
+            },
+            {objects, {}, titles});
   const Bytes written = read_file(path);
-  EXPECT_EQ(
-      std::string(written.begin(), written.end()),
-      encode_glb(whole(two_triangles()), objects, {{{4, "mug"}}, {}}, Eigen::Vector3f::UnitZ()));
+  EXPECT_EQ(std::string(written.begin(), written.end()),
+            encode_glb(whole(two_triangles()), {objects, {}, titles}));
   std::filesystem::remove(path);
 }
 
 TEST(Glb, AnEmptyMapIsADocument) {
-  const auto document = document_of(encode_glb(whole({}), {}, {}, Eigen::Vector3f(0, -1, 0)));
+  const auto document = document_of(encode_glb(whole({}), {{}, {}, ObjectTitles(), {0, -1, 0}}));
   EXPECT_EQ(document["nodes"].size(), 2u);
   EXPECT_FALSE(document.contains("buffers"));
 }

@@ -44,6 +44,17 @@ Json instance_json_value(const InstanceSummary& instance, const ObjectTitles& ti
   return entry;
 }
 
+Json parts_json_value(std::span<const ObjectPart* const> parts) {
+  Json list = Json::array();
+  for (const ObjectPart* part : parts) {
+    Json entry = instance_json_value(*part, {});
+    entry.erase("id");
+    entry["name"] = concat("part ", list.size() + 1);
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
 Json relation_json_value(const ObjectRelation& relation) {
   return {{"object", relation.object},
           {"relation", relation_name(relation.relation)},
@@ -54,27 +65,15 @@ Json relation_json_value(const ObjectRelation& relation) {
 
 namespace {
 
-Json instance_list(std::span<const InstanceSummary> instances, const ObjectTitles& titles) {
-  Json list = Json::array();
-  for (const InstanceSummary& instance : instances)
-    list.push_back(instance_json_value(instance, titles));
-  return list;
-}
-
-/// Below the instances that have some.
-void add_parts(const MapInfo& info, Json& instances) {
+Json instance_list(const MapInfo& info, const ObjectTitles& titles) {
   const auto parts = parts_by_object(info.parts, info.instances);
-  for (Json& instance : instances) {
-    const auto of_it = parts.find(instance["id"].get<InstanceId>());
-    if (of_it == parts.end()) continue;
-    int number = 0;
-    for (const ObjectPart* part : of_it->second) {
-      Json entry = instance_json_value(*part, {});
-      entry.erase("id");
-      entry["name"] = concat("part ", ++number);
-      instance["parts"].push_back(std::move(entry));
-    }
+  Json list = Json::array();
+  for (const InstanceSummary& instance : info.instances) {
+    list.push_back(instance_json_value(instance, titles));
+    if (const auto of_it = parts.find(instance.id); of_it != parts.end())
+      list.back()["parts"] = parts_json_value(of_it->second);
   }
+  return list;
 }
 
 Json relation_list(std::span<const ObjectRelation> relations) {
@@ -122,8 +121,7 @@ Json info_value(const std::filesystem::path& path, const MapInfo& info,
   document["schema"] = info.schema;
   document["frames"] = info.frames;
   document["mask_frames"] = info.mask_frames;
-  document["instances"] = instance_list(info.instances, {info.names, labels});
-  add_parts(info, document["instances"]);
+  document["instances"] = instance_list(info, {info.names, labels});
   document["hidden"] = Json::array();
   for (const InstanceSummary& instance : info.hidden) document["hidden"].push_back(instance.id);
   if (!info.writing_reader.empty()) document["writing"] = writing_value(info);

@@ -20,6 +20,9 @@ nlohmann::ordered_json json_vector(const Eigen::Vector3f& v);
 nlohmann::ordered_json instance_json_value(const InstanceSummary& instance,
                                            const ObjectTitles& titles);
 
+/// Parts of one object, a list of the same without "id": they are called "part 1", ...
+nlohmann::ordered_json parts_json_value(std::span<const ObjectPart* const> parts);
+
 /// {"object", "relation", "anchor", "score", "evidence"}
 nlohmann::ordered_json relation_json_value(const ObjectRelation& relation);
 

@@ -121,12 +121,15 @@ void write_object_folder(const fs::path& folder, const MapRecord& map, const Obj
   FolderWriter writer(plain(folder));
   const ObjectTitles titles{map.names, labels};
   const LabelledPieces pieces(parts, writer.path() / "pieces");
+  const auto known_parts = parts_by_object(map.parts, map.instances);
   for (const InstanceSummary& instance : map.instances) {
     const fs::path place = writer.path() / folder_name(instance.id, titles.title_of(instance.id));
     fs::create_directory(place);
     if (const Mesh piece = pieces.piece(instance.id); !piece.triangles.empty())
       write_ply(place / "mesh.ply", piece);
     Json entry = instance_json_value(instance, titles);
+    if (const auto of_it = known_parts.find(instance.id); of_it != known_parts.end())
+      entry["parts"] = parts_json_value(of_it->second);
     entry["relations"] = relations_of(instance.id, relations);
     entry["crops"] = write_crops(place, appearance_of(map.semantics.looks, instance.super_points));
     write_text(place / "object.json",

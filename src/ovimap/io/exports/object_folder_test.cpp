@@ -20,7 +20,10 @@ class ObjectFolder : public MapFolder {
     map_.instances.resize(2);
     map_.instances[0].id = 4;
     map_.instances[1].id = 9;
-    map_.instances[0].super_points = {1};
+    map_.instances[0].super_points = {1, 3};
+    map_.parts.resize(1);
+    map_.parts[0].id = 3;
+    map_.parts[0].super_points = {3};
     map_.names[4] = "Tea pot/../..\xc3\xa4 ";
     ObjectView view;
     view.visible_px = 7;
@@ -47,6 +50,7 @@ TEST_F(ObjectFolder, HasEverythingOfAnObject) {
   const auto entry = nlohmann::json::parse(std::ifstream(pot / "object.json"));
   EXPECT_EQ(entry["id"], 4);
   EXPECT_EQ(entry["relations"][0]["anchor"], 9);
+  EXPECT_EQ(entry["parts"][0]["name"], "part 1");
   ASSERT_EQ(entry["crops"].size(), 1u);
   EXPECT_EQ(entry["crops"][0]["frame"], 3);
   EXPECT_EQ(read_rgb(pot / std::string(entry["crops"][0]["file"])).width(), 2);

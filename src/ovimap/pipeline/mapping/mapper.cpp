@@ -238,6 +238,7 @@ FrameReport Mapper::observe(const Frame& frame, const FrameSegments* cut,
   auto t = timers_.measure("registry");
   registry_.observe(cut->segments, associations, number_of(frame), cut->masked, map_.labels());
   mask_frames_ += cut->masked;
+  blank_masks_ += cut->blank;
   FrameReport report;
   report.regions = cut->regions;
   report.entities = cut->entities;

@@ -145,6 +145,8 @@ class Mapper {
   /// Slots of the map's blocks that the last `process`, `fuse` or `label` touched.
   const std::vector<std::uint32_t>& touched_blocks() const { return touched_blocks_; }
   int mask_frames() const { return mask_frames_; }
+  /// Of the frames of this run, those whose masks told nothing (FrameSegments::blank).
+  int blank_masks() const { return blank_masks_; }
 
  private:
   void settle();
@@ -175,7 +177,7 @@ class Mapper {
   std::vector<std::uint32_t> touched_blocks_;
   std::vector<LiveStep> live_steps_;
   std::string writing_reader_;  ///< read the writing that restored views have; empty: nothing did
-  int frames_ = 0, mask_frames_ = 0;
+  int frames_ = 0, mask_frames_ = 0, blank_masks_ = 0;
   std::int64_t first_number_ = 0;
 };
 

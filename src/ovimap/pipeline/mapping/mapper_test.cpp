@@ -100,6 +100,27 @@ TEST(Mapper, MasksOfNoiseAreAFaultOfTheirFrame) {
   }
 }
 
+TEST(Mapper, MasksThatTellNothingAreCounted) {
+  class BlankMasks : public MaskSource {
+   public:
+    std::string kind() const override { return "blank"; }
+    std::optional<Entities> entities(const Frame& frame, std::span<const MaskPrompt>) override {
+      Entities blank{IdImage(frame.color.width(), frame.color.height()), {}};
+      if (frame.index == 0) return blank;  // nothing, then everything, then half of it
+      const auto shown = blank.ids.begin() +
+                         static_cast<std::ptrdiff_t>(blank.ids.size() / (frame.index == 1 ? 1 : 2));
+      std::fill(blank.ids.begin(), shown, std::uint16_t{1});
+      blank.scores = {1.f};
+      return blank;
+    }
+  };
+  Mapper mapper({}, std::make_shared<BlankMasks>());
+  const DeskScene desk;
+  for (int i = 0; i < 4; ++i) mapper.process(*desk.read(i).frame);
+  EXPECT_EQ(mapper.mask_frames(), 4);
+  EXPECT_EQ(mapper.blank_masks(), 2);
+}
+
 TEST(Mapper, AFrameThatSeesThroughTheMapIsAFaultOfItsOwn) {
   const FurnishedRoom room = room_with_boxes();
   Mapper mapper(furnished_config(), std::make_shared<FurnishedMasks>(room));

@@ -31,6 +31,17 @@ std::optional<DepthReading> read_whole(const Frame& frame, const MapperConfig& c
   return read_depth(depth, frame.depth_camera, config, timers);
 }
 
+/// Each may be a super-point of its own for ever; SAM's grids give some hundred.
+constexpr std::size_t kMostEntities = 2000;
+constexpr double kAllOfIt = 0.98;  // of a picture: borders may be left out
+
+bool tells_nothing(const Entities& entities) {
+  if (entities.scores.size() != 1) return entities.scores.empty();
+  const auto shown = std::count_if(entities.ids.begin(), entities.ids.end(),
+                                   [](std::uint16_t id) { return id != 0; });
+  return static_cast<double>(shown) > kAllOfIt * static_cast<double>(entities.ids.size());
+}
+
 }  // namespace
 
 PreparedFrame prepare_frame(std::shared_ptr<const Frame> frame, const MapperConfig& config,
@@ -45,9 +56,6 @@ PreparedFrame prepare_frame(std::shared_ptr<const Frame> frame, const MapperConf
   return {std::move(frame),         std::move(registration), std::move(read.surface),
           std::move(read.estimate), std::move(color),        std::move(whole)};
 }
-
-/// Each may be a super-point of its own for ever; SAM's grids give some hundred.
-constexpr std::size_t kMostEntities = 2000;
 
 std::optional<FrameSegments> cut_segments(const PreparedFrame& prepared, MaskSource* masks,
                                           const MapperConfig& config, StageTimers& timers) {
@@ -78,6 +86,7 @@ std::optional<FrameSegments> cut_segments(const PreparedFrame& prepared, MaskSou
                             entities->scores.size(), " things; more than ", kMostEntities,
                             " in one image are noise"));
   cut.masked = true;
+  cut.blank = tells_nothing(*entities);
   cut.entities = static_cast<int>(entities->scores.size());
   auto t = timers.measure("mask_fusion");
   cut.segments = fuse_masks(regions, prepared.registration.ids_at_depth(entities->ids), frame.depth,

@@ -39,6 +39,7 @@ struct FrameSegments {
   int regions = 0;      ///< geometric regions
   int entities = 0;     ///< 2D entities
   bool masked = false;  ///< 2D masks had a say
+  bool blank = false;   ///< and tell nothing: no entity at all, or one that is all of the picture
 };
 
 /// Cuts the frame by depth and, unless `masks` is null, by its 2D entities; nullopt when the source

@@ -180,9 +180,11 @@ HttpReply export_glb(const ServedMap& map, KeptGlb& kept) {
   if (!kept.file || kept.version != now->version || kept.mesh_version != surface->version()) {
     kept.file.reset();  // two never exist at once
     const auto hidden = now->hidden();
+    const MapRecord& record = *now->record;
+    const ObjectTitles titles{record.names, labels_of(now->index(), now->names)};
     kept.file = std::make_shared<std::string>(
-        encode_glb(labelled_parts(*surface, now->instance_of_label, hidden), now->record->instances,
-                   {now->record->names, labels_of(now->index(), now->names)}, now->record->up));
+        encode_glb(labelled_parts(*surface, now->instance_of_label, hidden),
+                   {record.instances, record.parts, titles, record.up}));
     kept.version = now->version;
     kept.mesh_version = surface->version();
   }

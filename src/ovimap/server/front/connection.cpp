@@ -143,6 +143,7 @@ void Connection::read_body() {
 }
 
 void Connection::more_body(std::size_t bytes) {
+  since_ = Clock::now();  // who sends keeps nobody waiting
   if (!decision_.refusal) request_.body.append(buffer_.data(), bytes);
   body_left_ -= bytes;
   piece_left_ -= bytes;
@@ -198,6 +199,7 @@ void Connection::write_piece() {
 
 void Connection::sent() {
   out_.clear();
+  since_ = Clock::now();
   if (!body_out_.empty()) return write_piece();
   if (reply_.stream) return stream();
   const bool goes_on = !reply_.ends_connection && !ending_;

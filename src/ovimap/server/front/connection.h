@@ -51,6 +51,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void close();
 
   State state() const { return state_; }
+  /// When it came to its state, or something was last read or written of a body.
   Clock::time_point since() const { return since_; }
   const std::string& client() const { return client_; }
 
