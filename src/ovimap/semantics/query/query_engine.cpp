@@ -142,6 +142,20 @@ QueryAnswer QueryEngine::find(const Query& query) const {
   return result;
 }
 
+CountEstimate QueryEngine::count_all(const MatchScores& scores,
+                                     const Probability& probability) const {
+  CountEstimate count;
+  for (std::size_t i = 0; i < index_.size(); ++i) {
+    if (scores.excluded[i] || !index_.has_embedding(i)) continue;
+    const double chance = probability(i);
+    count.expected += chance;
+    count.deviation += chance * (1.0 - chance);
+    count.found += scores.log_odds.size() > 0 ? matcher_->is_found(scores, i) : chance > 0.5;
+  }
+  count.deviation = std::sqrt(count.deviation);
+  return count;
+}
+
 QueryAnswer QueryEngine::find_text(const std::string& text,
                                    const std::vector<std::string>& negatives,
                                    const Query& query) const {
@@ -158,7 +172,12 @@ QueryAnswer QueryEngine::find_text(const std::string& text,
     return model ? model_probability(*model, scores.cosines[static_cast<Eigen::Index>(position)])
                  : matcher_->probability(scores, position);
   };
-  return answer(scores, p_value, probability, query.relevance);
+  QueryAnswer result = answer(scores, p_value, probability, query.relevance);
+  if (terms.size() == 1 && asks_for_all(terms[0])) {
+    result.reading = concat("all [", thing_of_term(terms[0]), "]");
+    result.count = count_all(scores, probability);
+  }
+  return result;
 }
 
 QueryAnswer QueryEngine::find_phrase(const QueryPhrase& phrase,

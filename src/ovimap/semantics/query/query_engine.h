@@ -93,6 +93,8 @@ class QueryEngine {
   using Probability = std::function<double(std::size_t position)>;  // empty: by p-value
 
   void prepare(Embeddings vocabulary);
+  /// How many objects there are of what was asked for.
+  CountEstimate count_all(const MatchScores& scores, const Probability& probability) const;
   QueryAnswer find_text(const std::string& text, const std::vector<std::string>& negatives,
                         const Query& query) const;
   QueryAnswer find_phrase(const QueryPhrase& phrase, const std::vector<std::string>& negatives,

@@ -303,6 +303,12 @@ TEST_F(AttributesTest, ThingsAreCounted) {
   EXPECT_EQ(chairs.matches.size(), 3u);
   EXPECT_EQ(engine_->find({"two chairs", {}}).verdict, Verdict::kFound);
   EXPECT_EQ(engine_->find({"two chairs", {}}).matches.size(), 2u);
+  const QueryAnswer all = engine_->find({"all the chairs", {}});
+  ASSERT_TRUE(all.count);
+  EXPECT_EQ(all.count->found, 3);
+  EXPECT_EQ(all.reading, "all [chair]");
+  EXPECT_EQ(all.matches[0].standard_score, engine_->find({"chair", {}}).matches[0].standard_score);
+  EXPECT_FALSE(engine_->find({"the chair", {}}).count);
   const QueryAnswer tables = engine_->find({"two tables", {}});
   EXPECT_EQ(tables.verdict, Verdict::kNotInMap);
   EXPECT_EQ(tables.reason, "only 1 of 2");

@@ -150,8 +150,9 @@ WordLists TextMatcher::encode_word_lists(ImageTextEncoder& encoder, const QueryC
 MatchScores TextMatcher::match(const std::vector<std::string>& terms,
                                const std::vector<std::string>& negatives) const {
   OVIMAP_ASSERT(!terms.empty());
-  std::vector<std::string> texts = terms;
-  texts.insert(texts.end(), negatives.begin(), negatives.end());
+  std::vector<std::string> texts;
+  for (const std::vector<std::string>* asked : {&terms, &negatives})
+    for (const std::string& term : *asked) texts.push_back(thing_of_term(term));
   if (texts.size() > kMostTexts)
     throw Error(concat("a question of ", texts.size(), " things is too long; ask for at most ",
                        kMostTexts, " at once, what it must not be included"));
@@ -161,10 +162,12 @@ MatchScores TextMatcher::match(const std::vector<std::string>& terms,
       throw Error(concat("encoder '", encoder_.identity().name, "' gave no embedding of '",
                          texts[i], "'; try other words"));
   const auto count = static_cast<Eigen::Index>(terms.size());
-  MatchScores scores = joined(terms, rows.topRows(count), config_.terms);
+  const std::span<const std::string> all = texts;
+  MatchScores scores = joined(all.first(terms.size()), rows.topRows(count), config_.terms);
   if (!negatives.empty())
-    apply_negatives(joined(negatives, rows.bottomRows(rows.rows() - count), TermRule::kAny),
-                    scores);
+    apply_negatives(
+        joined(all.subspan(terms.size()), rows.bottomRows(rows.rows() - count), TermRule::kAny),
+        scores);
   return scores;
 }
 

@@ -3,8 +3,11 @@
 #include "ovimap/semantics/query/query_text.h"
 
 #include <algorithm>
+#include <array>
 
 #include "ovimap/base/error.h"
+#include "ovimap/base/text/ascii.h"
+#include "ovimap/semantics/words/text_evidence.h"
 #include "ovimap/semantics/words/word_lists.h"
 
 namespace ovimap {
@@ -37,6 +40,21 @@ std::string_view without_article(std::string_view text) {
   for (const std::string_view article : {"a ", "an ", "the "})
     if (text.starts_with(article)) return text.substr(article.size());
   return text;
+}
+
+constexpr std::array<std::string_view, 10> kDeterminers{"a",    "an",  "the",  "all",   "every",
+                                                        "each", "any", "some", "these", "those"};
+
+/// "all the mugs" -> "mugs".
+std::string_view without_determiners(std::string_view text) {
+  while (true) {
+    const std::size_t end = text.find(' ');
+    const std::string first = lower_case(text.substr(0, end));
+    if (end == std::string_view::npos ||
+        std::find(kDeterminers.begin(), kDeterminers.end(), first) == kDeterminers.end())
+      return text;
+    text.remove_prefix(end + 1);
+  }
 }
 
 std::ptrdiff_t characters(std::string_view utf8) {
@@ -87,6 +105,17 @@ std::vector<std::string> split_terms(std::string_view text) {
   }
   finish();
   return terms;
+}
+
+std::string thing_of_term(const std::string& term) {
+  return builtin_concepts().singular_of(without_determiners(term));
+}
+
+bool asks_for_all(const std::string& term) {
+  const std::string_view words = without_determiners(term);
+  const std::string asked = lower_case(term.substr(0, term.size() - words.size()));
+  return asked.starts_with("all ") || asked.starts_with("every ") ||
+         builtin_concepts().singular_of(words) != words;
 }
 
 std::vector<std::string> split_prompts(const std::string& templates) {

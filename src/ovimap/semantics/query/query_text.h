@@ -20,6 +20,13 @@ std::string checked_query_text(std::string_view text, int max_chars);
 /// are left out.
 std::vector<std::string> split_terms(std::string_view text);
 
+/// The thing that a term asks for: "the chairs" and "all kitchen chairs" are "chair" and "kitchen
+/// chair" (Concepts::singular_of), which is how things are known.
+std::string thing_of_term(const std::string& term);
+
+/// Whether a term asks for all things of a kind: "chairs", "all the mugs", "every book".
+bool asks_for_all(const std::string& term);
+
 /// Templates separated by |, each with one {} where the text goes: "a photo of a {}|a {}". Throws
 /// Error when one has no {}.
 std::vector<std::string> split_prompts(const std::string& templates);

@@ -53,6 +53,23 @@ TEST(SplitPrompts, WantsASlotInEach) {
   EXPECT_THROW(split_prompts(""), Error);
 }
 
+TEST(ThingOfTerm, LeavesDeterminersOutAndPluralsOfKnownWords) {
+  for (const char* term : {"chair", "chairs", "the chairs", "All the chairs", "every chair"})
+    EXPECT_EQ(thing_of_term(term), "chair") << term;
+  EXPECT_EQ(thing_of_term("some kitchen shelves"), "kitchen shelf");
+  EXPECT_EQ(thing_of_term("Office Chairs"), "Office chair");
+  for (const char* own : {"glasses", "scissors", "stairs", "glass of water", "the", "brass", "s"})
+    EXPECT_EQ(thing_of_term(own), own);
+  EXPECT_EQ(thing_of_term("frobniks"), "frobniks") << "nobody knows what that is";
+}
+
+TEST(ThingOfTerm, SaysWhetherAllAreMeant) {
+  for (const char* all : {"chairs", "the mugs", "every chair", "all of it"})
+    EXPECT_TRUE(asks_for_all(all)) << all;
+  for (const char* one : {"chair", "the mug", "any mug", "glasses", "all"})
+    EXPECT_FALSE(asks_for_all(one)) << one;
+}
+
 TEST(EncodePrompted, AveragesTemplates) {
   WordEncoder encoder;
   const Texts texts{"cup", "dog"};

@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "ovimap/base/text/ascii.h"
+#include "ovimap/semantics/words/concepts.h"
 #include "ovimap/semantics/words/one_of.h"
 
 namespace ovimap {
@@ -134,20 +135,6 @@ std::optional<float> parse_length(Words words) {
   for (const UnitWord& known : kLengthUnits)
     if (unit == known.word) return number * known.metres;
   return std::nullopt;
-}
-
-/// "mugs" -> "mug", as good as it goes without a dictionary.
-std::string singular(std::string word) {
-  const auto ends = [&](std::string_view end) {
-    return word.size() > end.size() + 1 && word.ends_with(end);
-  };
-  if (word.ends_with("shelves")) return word.substr(0, word.size() - 3) + "f";
-  if (word.ends_with("knives")) return word.substr(0, word.size() - 3) + "fe";
-  if (ends("ies")) return word.substr(0, word.size() - 3) + "y";
-  if (ends("xes") || ends("ches") || ends("shes") || ends("sses"))
-    return word.substr(0, word.size() - 2);
-  if (ends("s") && !ends("ss")) return word.substr(0, word.size() - 1);
-  return word;
 }
 
 }  // namespace

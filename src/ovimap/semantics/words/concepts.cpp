@@ -59,6 +59,30 @@ std::vector<Concepts::Kind> Concepts::exact(const std::string& words, Senses sen
   return found == by_word_.end() ? std::vector<Kind>{} : found->second;
 }
 
+std::string singular(std::string word) {
+  const auto ends = [&](std::string_view end) {
+    return word.size() > end.size() + 1 && word.ends_with(end);
+  };
+  if (word.ends_with("shelves")) return word.substr(0, word.size() - 3) + "f";
+  if (word.ends_with("knives")) return word.substr(0, word.size() - 3) + "fe";
+  if (ends("ies")) return word.substr(0, word.size() - 3) + "y";
+  if (ends("xes") || ends("ches") || ends("shes") || ends("sses"))
+    return word.substr(0, word.size() - 2);
+  if (ends("s") && !ends("ss")) return word.substr(0, word.size() - 1);
+  return word;
+}
+
+std::string Concepts::singular_of(std::string_view text) const {
+  const std::string words = lower_case(text);
+  if (!exact(words, Senses::kAll).empty()) return std::string(text);
+  const std::size_t blank = words.rfind(' '), last = blank == std::string::npos ? 0 : blank + 1;
+  const std::string plural = words.substr(last), one = singular(plural);
+  if (one == plural || !exact(plural, Senses::kAll).empty()) return std::string(text);
+  if (exact(one, Senses::kAll).empty() && exact(words.substr(0, last) + one, Senses::kAll).empty())
+    return std::string(text);
+  return std::string(text.substr(0, last)) + one;
+}
+
 std::vector<Concepts::Kind> Concepts::known(const std::string& words, Senses senses) const {
   std::vector<Kind> kinds = exact(words, senses);
   for (const std::string_view plural : {"s", "es"})

@@ -10,6 +10,9 @@
 
 namespace ovimap {
 
+/// "mugs" -> "mug", as good as it goes without a dictionary.
+std::string singular(std::string word);
+
 /// Which words name a kind of which thing: a mug is a drinking vessel, a container, an artefact.
 /// A part of WordNet (docs/NOTICE-wordnet.md). Immutable.
 class Concepts {
@@ -27,6 +30,10 @@ class Concepts {
 
   /// The same, but of a household word its household sense alone: a stool to sit on, no toilet.
   std::vector<Kind> senses_of(std::string_view text) const;
+
+  /// The text with its last word in the singular, where that is a word of it and the plural is none
+  /// of its own: "kitchen chairs" -> "kitchen chair", but "glasses". Else the text.
+  std::string singular_of(std::string_view text) const;
 
   /// Whether the whole text is a word of it, in the singular or the plural.
   bool knows(std::string_view text) const;
