@@ -9,7 +9,7 @@
 #include "ovimap/io/map_file/map_file_access.h"
 #include "ovimap/io/map_file/searchable_map.h"
 #include "ovimap/pipeline/revise/percent_text.h"
-#include "ovimap/pipeline/search/history_dates.h"
+#include "ovimap/pipeline/search/history_search.h"
 #include "ovimap/pipeline/search/object_labels.h"
 #include "ovimap/pipeline/search/scene_graph.h"
 #include "ovimap/pipeline/sequence/timings_text.h"
@@ -47,6 +47,19 @@ int check_file(const InfoOptions& options) {
 
 HistoryDates dates_of(const std::filesystem::path& path, const MapInfo& map) {
   return {map.history, read_searchable_map(path).frames};
+}
+
+/// What objects clearly are, those that are gone included; none where nothing tells words.
+ObjectLabels labels_with_gone(const std::filesystem::path& path, const MapInfo& map) {
+  ObjectLabels labels;
+  try {
+    const auto encoder = encoder_of_map(map.encoder, "auto", {});
+    if (!encoder) return labels;
+    for (auto& [id, word] : words_with_gone(read_corrected_record(path), map, *encoder, {}, {}))
+      if (word != ObjectName::kUnclear) labels.emplace(id, std::move(word));
+  } catch (const Error&) {  // a search in words says why; here they are an extra
+  }
+  return labels;
 }
 
 /// The name that people gave, or in brackets what the object looks like.
@@ -134,6 +147,11 @@ int info(const InfoOptions& options) {
   const MapInfo map = read_map_info(options.map);
   const TileTraffic tiles = tile_traffic(parse_timings(map.timings));
   ObjectTitles titles{map.names, {}};
+  if (options.history && !options.json) {
+    if (!map.encoder.name.empty()) titles.labels = labels_with_gone(options.map, map);
+    print_history(map, titles, dates_of(options.map, map));
+    return kDone;
+  }
   if (!map.encoder.name.empty()) titles.labels = read_labels(open_map_search(options.map), "auto");
   if (options.json) {
     auto document = nlohmann::json::parse(info_json(options.map, map, titles.labels));
@@ -143,10 +161,6 @@ int info(const InfoOptions& options) {
     add_sightings(map, dates, document["instances"]);
     if (!map.history.visits.empty()) add_dates(dates, document["history"]);
     print_json(document);
-    return kDone;
-  }
-  if (options.history) {
-    print_history(map, titles, dates_of(options.map, map));
     return kDone;
   }
   std::printf(

@@ -28,9 +28,9 @@ async function answered(viewport, colorScheme) {
   const page = await browser.newPage({ viewport, colorScheme });
   await page.goto(address);
   await page.locator('.row').first().waitFor({ timeout: 120_000 });
-  await page.getByRole('searchbox').fill(query);
+  await page.getByRole('combobox').first().fill(query);
   await page.keyboard.press('Enter');
-  await page.locator('.verdict').waitFor();
+  await page.locator('.verdict.found').waitFor({ timeout: 120_000 });
   await page.waitForTimeout(4000);
   return page;
 }

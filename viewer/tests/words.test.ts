@@ -7,6 +7,7 @@ import { suggest, vocabularyOf } from '../src/ui/suggestions';
 import {
   approachText,
   isGuess,
+  lastSeenText,
   percent,
   placeOf,
   plural,
@@ -122,4 +123,14 @@ test('a robot hears where to stand, or why it cannot', () => {
     '64 % of it is seen from 0.86 m',
   );
   expect(approachText({ poses: [], reason: 'no way' })).toBe('It cannot be reached: no way');
+});
+
+test('says when an object was seen last where that tells something', () => {
+  const seen = (visit: number, visits: number, time_s: number | null) =>
+    lastSeenText(instance(1, { last_seen: { visit, visits, time_s } }));
+  expect(lastSeenText(instance(1))).toBe('');
+  expect(seen(1, 1, null)).toBe('');
+  expect(seen(2, 3, null)).toBe('visit 2 of 3');
+  expect(seen(1, 1, 1_773_480_600)).toMatch(/^14 Mar 2026/);
+  expect(seen(2, 3, 1_773_480_600)).toMatch(/^visit 2 of 3, 14 Mar 2026/);
 });

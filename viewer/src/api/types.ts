@@ -64,7 +64,7 @@ export interface Instance {
   points: number;
   views: number;
   /** Null where the map does not know. */
-  last_seen: { visit: number; time_s: number | null } | null;
+  last_seen: { visit: number; visits: number; time_s: number | null } | null;
   /** How sure masks are that it is one whole thing; null where nobody rated them. */
   confidence: number | null;
   /** Nothing may change it before the lock is undone. */

@@ -233,7 +233,7 @@ function facts(instance: Instance, detail: InstanceDetail | null): HTMLElement {
     ...(detail ? entry('Footprint', `${detail.footprint_m2.toFixed(2)} m²`) : []),
     ...entry('Position', placeOf(instance)),
     ...entry('Seen in', plural(instance.views, 'frame')),
-    ...(instance.last_seen ? entry('Last seen', lastSeenText(instance.last_seen)) : []),
+    ...(lastSeenText(instance) ? entry('Last seen', lastSeenText(instance)) : []),
     ...(instance.confidence === null
       ? []
       : entry('Whole by its masks', percent(instance.confidence))),

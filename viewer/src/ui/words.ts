@@ -55,10 +55,10 @@ export function visitText(visits: readonly Visit[], visit: number): string {
   return `visit ${visit} of ${visits.length}${date && `, ${date}`}`;
 }
 
-/** "visit 2, 14 Mar 2026, 09:30". */
-export function lastSeenText({ visit, time_s }: NonNullable<Instance['last_seen']>): string {
-  const date = dateOf(time_s);
-  return `visit ${visit}${date && `, ${date}`}`;
+/** "visit 2 of 3, 14 Mar 2026, 09:30"; empty where there was but one, and nobody knows when. */
+export function lastSeenText({ last_seen: seen }: Instance): string {
+  const visit = seen && seen.visits > 1 ? `visit ${seen.visit} of ${seen.visits}` : '';
+  return [visit, dateOf(seen?.time_s ?? null)].filter((part) => part !== '').join(', ');
 }
 
 /** What an object that may be gone is called. */

@@ -104,7 +104,9 @@ json last_seen_of(const MapSnapshot& now, const HistoryDates& dates,
   const InstanceRecord known = record_of(now.record->registry.super_points, instance.super_points);
   const auto seen = known.views > 0 ? dates.sighting(known.last_frame) : std::nullopt;
   if (!seen) return nullptr;
-  return {{"visit", seen->visit}, {"time_s", optional_number(seen->time_s)}};
+  return {{"visit", seen->visit},
+          {"visits", dates.visits()},
+          {"time_s", optional_number(seen->time_s)}};
 }
 
 json instance_json(const MapSnapshot& now, const HistoryDates& dates, std::size_t position) {
