@@ -133,9 +133,8 @@ void require_fit(const MapDocument& begun, const MappingInputs& inputs, FrameInt
                        "or give poses in the map's world frame"));
 }
 
-void require_later(const MapRecord& begun, const MapHeader& header, const MappingInputs& inputs) {
-  std::optional<double> recorded_s;
-  if (!header.history.visits.empty()) recorded_s = header.history.visits.back().recorded_s;
+void require_later(const MapRecord& begun, std::optional<double> recorded_s,
+                   const MappingInputs& inputs) {
   if (!recorded_s && inputs.source && !inputs.range.empty()) {
     const FrameRead first = inputs.source->read(inputs.range.front());
     if (first.frame && is_date(first.frame->timestamp_s)) recorded_s = first.frame->timestamp_s;
@@ -146,6 +145,14 @@ void require_later(const MapRecord& begun, const MapHeader& header, const Mappin
     throw Error(concat("the recording is of ", date_text(*recorded_s),
                        ", before the map's last visit, ", date_text(*last_s),
                        "; map visits in their order, or say with --recorded when this one was"));
+}
+
+void warn_of_known_recording(const MapRecord& begun, const std::string& source) {
+  const auto& visits = begun.history.visits;
+  const bool known = begun.source == source ||
+                     std::any_of(visits.begin(), visits.end(),
+                                 [&](const MapVisit& visit) { return visit.source == source; });
+  if (known) warn(concat("'", source, "' is in the map already; it is taken for another visit"));
 }
 
 void require_same_recording(const MapDocument& begun, const MappingInputs& inputs,

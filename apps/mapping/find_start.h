@@ -32,7 +32,11 @@ void require_fit(const MapDocument& begun, const MappingInputs& inputs, FrameInt
 /// which they were mapped, and questions about the past would be answered out of order.
 /// `recorded_s`: when it was, as people said; else its first frame tells, where frames' times are
 /// dates.
-void require_later(const MapRecord& begun, const MapHeader& header, const MappingInputs& inputs);
+void require_later(const MapRecord& begun, std::optional<double> recorded_s,
+                   const MappingInputs& inputs);
+
+/// Who looks in vain for what changed may have given the recording of before: warns of it.
+void warn_of_known_recording(const MapRecord& begun, const std::string& source);
 
 /// Throws Error unless the frames of which the map was made, by position in the recording, lie in
 /// it: else two places would. Likewise.

@@ -91,15 +91,6 @@ std::vector<std::int64_t> take_done(std::vector<std::int64_t>& left, const MapRe
   return done;
 }
 
-/// Who looks in vain for what changed may have given the recording of before.
-void warn_of_known_recording(const MapRecord& begun, const std::string& source) {
-  const auto& visits = begun.history.visits;
-  const bool known = begun.source == source ||
-                     std::any_of(visits.begin(), visits.end(),
-                                 [&](const MapVisit& visit) { return visit.source == source; });
-  if (known) warn(concat("'", source, "' is in the map already; it is taken for another visit"));
-}
-
 /// Gives `mapper`, a Mapper or a LiveMapper, what an earlier run had, and `header` what people told
 /// that run's map, which no run finds anew; returns its frames. `intake`: where frames are pushed.
 template <class AnyMapper>
@@ -108,7 +99,6 @@ SequenceResult resume(BegunRun& begun, MapHeader& header, MappingInputs& inputs,
   SequenceResult sequence;
   if (!begun.document) return sequence;
   if (begun.new_visit) {
-    require_later(*begun.document, header, inputs);
     require_fit(*begun.document, inputs, intake);
     discount_past(begun.document->map, inputs.config.visit.past);
     begun.document->seen_free.clear();  // between two visits anything may have come
@@ -169,13 +159,16 @@ std::shared_ptr<PoseFinder> make_finder(const MappingInputs& inputs, const Begun
 
 /// Begins the search for the camera in what the run goes on with; throws Error where that has other
 /// voxels or embeddings, before anything that takes long.
-void begin_in(const BegunRun& begun, const RunTarget& target, MappingInputs& inputs) {
+void begin_in(const BegunRun& begun, const MappingOptions& options, const RunTarget& target,
+              MappingInputs& inputs) {
   inputs.finder = make_finder(inputs, begun);
   if (!begun.document) return;
-  if (begun.new_visit)
+  if (begun.new_visit) {
+    require_later(*begun.document, options.recorded_s, inputs);
     require_same_map(*begun.document, inputs.config.mapper.map, inputs.encoder);
-  else
+  } else {
     require_same_encoder(begun.document->semantics.encoder, inputs.encoder);
+  }
   // As it was before the visit: a run that is resumed finds the same again.
   if (target.align) align_recording(load_map(target.continued), inputs);
   if (inputs.finder && !begun.document->frames.empty())
@@ -308,7 +301,7 @@ MappingRun map_recording(const MappingOptions& options, const std::string& title
   BegunRun begun = find_begun(target, inputs.config.memory);
   inputs.open_networks(options, keep_masks);
   watch_for_interrupt();
-  begin_in(begun, target, inputs);
+  begin_in(begun, options, target, inputs);
   const auto finder = inputs.finder;
   Mapper mapper(inputs.config.mapper, inputs.masks, inputs.encoder);
   mapper.recognize_with(inputs.recognizer);
@@ -358,7 +351,7 @@ MappingRun map_live(const MappingOptions& options, double fps, const RunTarget& 
     lower_thread_priority();
     inputs.open_networks(options);
   }).get();
-  begin_in(begun, target, inputs);
+  begin_in(begun, options, target, inputs);
   LiveMapper mapper(inputs.config.mapper, inputs.config.live, inputs.masks, inputs.encoder);
   mapper.recognize_with(inputs.recognizer);
   mapper.track_with(inputs.finder);
