@@ -111,7 +111,12 @@ void align_recording(const MapDocument& map, MappingInputs& inputs) {
     if (2 * moved.compared >= near.compared && misfit(moved, config).empty()) return;
     move_recording(near.map_from_recording.inverse(), inputs);
   }
-  const AlignmentSearch placed = ask_objects(map, inputs);
+  const bool may_ask = config.object_frames > 0 && inputs.config.memory.max_mb == 0;
+  const AlignmentSearch placed =
+      may_ask ? ask_objects(map, inputs)
+              : AlignmentSearch{{},
+                                "its frames do not, and objects are asked without a bound on "
+                                "memory alone (--max-memory, visit.object_frames)"};
   if (!placed.doubt.empty())
     throw Error(concat("nothing says where the recording lies in the map, which stays as it was: ",
                        placed.doubt, "; give poses in the map's world frame"));
@@ -162,8 +167,10 @@ void require_same_recording(const MapDocument& begun, const MappingInputs& input
   const std::string fault =
       misfit(fit_visit(begun.map, *inputs.source, done, inputs.config.track, config), config);
   if (!fault.empty())
-    throw Error(concat("the map was made of another recording, for this one does not fit it: ",
-                       fault, "; --resume goes on with the same one, --continue with the place"));
+    throw Error(
+        concat("the map was made of another recording, for this one does not fit it: ", fault,
+               "; --resume goes on with the same one and the same options (--align), "
+               "--continue with the place"));
 }
 
 }  // namespace ovimap::apps

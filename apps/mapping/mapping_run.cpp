@@ -169,8 +169,9 @@ void begin_in(const BegunRun& begun, const MappingOptions& options, const RunTar
   } else {
     require_same_encoder(begun.document->semantics.encoder, inputs.encoder);
   }
-  // As it was before the visit: a run that is resumed finds the same again.
-  if (target.align) align_recording(load_map(target.continued), inputs);
+  if (target.align && begun.new_visit) align_recording(*begun.document, inputs);
+  if (target.align && !begun.new_visit)  // resumed: it finds the same again in what was before
+    align_recording(load_map(target.continued), inputs);
   if (inputs.finder && !begun.document->frames.empty())
     find_start(*begun.document, begun.new_visit, inputs);
 }
@@ -226,7 +227,7 @@ MappingRun finished_run(MappingInputs&& inputs, MapHeader header, Mapper&& mappe
   run.map_from_recording = inputs.map_from_recording;
   run.source = std::move(inputs.source);
   run.masks_wanted = inputs.masks != nullptr;
-  run.blank_masks = mapper.blank_masks();
+  run.masks_seen = mapper.masks_seen();
   if (inputs.people) run.people_frames = inputs.people->frames_with_people();
   run.sequence = std::move(sequence);
   mapper.finish();

@@ -34,7 +34,7 @@ struct MapPart {
 struct MappingRun {
   std::unique_ptr<FrameSource> source;  ///< null where frames were pushed
   bool masks_wanted = false;            ///< there was a source of 2D masks
-  int blank_masks = 0;                  ///< frames whose masks told nothing
+  Mapper::MaskCount masks_seen;         ///< by this run
   std::size_t frames_before = 0;        ///< in the map or checkpoint that it went on with
   SequenceResult sequence;
   std::optional<LiveRunResult> live;         ///< of map_live

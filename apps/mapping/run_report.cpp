@@ -213,7 +213,7 @@ bool masks_all_absent(const MappingRun& run) {
 }
 
 bool mostly_blank(const MappingRun& run) {
-  return 2 * run.blank_masks > run.document.mask_frames;
+  return 2 * run.masks_seen.blank > run.masks_seen.frames;
 }
 
 double frames_per_second(const MappingRun& run) {
@@ -248,7 +248,7 @@ void report_faults(const MappingRun& run) {
                 "frame or its number, or map with --masks none"));
   if (mostly_blank(run))
     warn(
-        concat("the masks of ", run.blank_masks, " of ", run.document.mask_frames,
+        concat("the masks of ", run.masks_seen.blank, " of ", run.masks_seen.frames,
                " frames tell nothing: no thing at all, or one that is the whole picture; look at "
                "some, where they come from a folder its images must hold a number for each thing"));
   if (!run.live) return;
@@ -266,7 +266,7 @@ nlohmann::json run_json(const std::filesystem::path& map, const MappingRun& run,
                            {"seconds", run.sequence.seconds},
                            {"fps", frames_per_second(run)},
                            {"mask_frames", run.document.mask_frames},
-                           {"masks_blank", run.blank_masks},
+                           {"masks_blank", run.masks_seen.blank},
                            {"interrupted", interrupted()},
                            {"stages", stages_json(run.timers)},
                            {"tiles_evicted", tiles.evicted},

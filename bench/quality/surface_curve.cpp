@@ -13,6 +13,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <functional>
 #include <map>
 #include <numeric>
 #include <tuple>
@@ -148,6 +149,7 @@ void print_curve(const char* map_path, const char* scene, std::vector<double> wa
   std::size_t of_known = 0, covered = 0;
   for (std::size_t i = 0; i < best.size(); ++i)
     if (told[i]) ++of_known, covered += best[i] >= 0.f;
+  if (best.empty()) throw Error("the truth has no surface");
   std::vector<float> ranked = best;
   std::sort(ranked.begin(), ranked.end(), std::greater<>());
   std::printf(
@@ -157,8 +159,10 @@ void print_curve(const char* map_path, const char* scene, std::vector<double> wa
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     const auto rank = static_cast<std::size_t>(wanted[i] * static_cast<double>(ranked.size()));
     if (i > 0) std::printf(", ");
-    print_errors(errors_m, weights, wanted[i],
-                 std::max(0.f, ranked[std::min(rank, ranked.size() - 1)]), config.accuracy_limit_m);
+    const float least = std::max(0.f, ranked[std::min(rank, ranked.size() - 1)]);
+    const auto shown = std::count_if(best.begin(), best.end(), [&](float w) { return w >= least; });
+    print_errors(errors_m, weights, static_cast<double>(shown) / static_cast<double>(best.size()),
+                 least, config.accuracy_limit_m);
   }
   std::printf("]}\n");
 }

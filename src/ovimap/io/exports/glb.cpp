@@ -205,7 +205,10 @@ Bytes glb_head(const std::filesystem::path& target, const MeshParts& parts,
   for (const InstanceSummary& instance : objects.instances) {
     Json extras = instance_json_value(instance, objects.titles);
     if (const auto of_it = known_parts.find(instance.id); of_it != known_parts.end())
-      extras["parts"] = parts_json_value(of_it->second);
+      for (Json part : parts_json_value(of_it->second)) {
+        part.erase("superpoints");
+        extras["parts"].push_back(std::move(part));
+      }
     extras.erase("superpoints");
     const std::string title = objects.titles.title_of(instance.id);
     builder.add_node(concat(title.empty() ? "object" : title, " ", instance.id),

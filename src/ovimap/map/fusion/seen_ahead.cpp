@@ -17,7 +17,7 @@ namespace {
 constexpr int kTile_px = 8;            // blocks are held against these
 constexpr int kTilesOfRegionTile = 4;  // and regions against so many at once, each way
 constexpr int kSampleStep_px = 8;
-constexpr int kRayStep_px = 16;
+constexpr int kRaysAcross = 12;  // some hundred rays tell three quarters from a half
 constexpr float kBeside_m = 0.05f;
 // Of frames that see through the map, as seen_ahead.h says.
 constexpr float kByFar = 0.8f;
@@ -149,10 +149,12 @@ double confirmed_px(const VoxelMap& map, const Observation& observation) {
 }
 
 bool sees_through_map(const VoxelMap& map, const Observation& observation) {
-  const DepthImage seen = every(kRayStep_px, observation.depth);
+  const int step_px = std::max(2, observation.depth.width() / kRaysAcross);
+  const DepthImage seen = every(step_px, observation.depth);
+  if (seen.size() == 0 || map.block_count() == 0) return false;
   const float furthest_m = *std::max_element(seen.begin(), seen.end());
-  if (furthest_m <= 0.f || map.block_count() == 0) return false;
-  const DepthImage known = cast_rays(map, every(kRayStep_px, observation.camera),
+  if (furthest_m <= 0.f) return false;
+  const DepthImage known = cast_rays(map, every(step_px, observation.camera),
                                      observation.world_from_camera, kLongestRay * furthest_m)
                                .depth;
   int samples = 0, both = 0, through = 0;

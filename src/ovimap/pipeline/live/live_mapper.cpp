@@ -272,7 +272,10 @@ void LiveMapper::fuse(Prepared prepared, const LiveStep* told) {
   step.asked = told ? told->asked : wants_masks(frame);
   if (step.asked) ask_for_masks(prepared);
   depth_camera_ = frame.depth_camera;
-  if (!take_in(prepared)) return;
+  if (!take_in(prepared)) {  // which says what comes after it as well
+    mapper_->note(step);
+    return;
+  }
   const double lag_ms = milliseconds_since(prepared.pushed);
   frames_.push_back({step.frame, frame.timestamp_s, frame.name, frame.world_from_camera,
                      prepared.cut != nullptr});

@@ -17,6 +17,8 @@ namespace ovimap {
 
 namespace {
 
+constexpr double kUsualPace_fps = 30;  // where clocks stand still
+
 Observation observation_of(const PreparedFrame& prepared, const FrameSegments* cut,
                            std::span<const Label> labels, const DepthImage& depth) {
   const Image<float>& sigma = prepared.estimate.sigma_m;
@@ -159,10 +161,20 @@ FrameReport Mapper::fuse(const PreparedFrame& prepared, const FrameSegments* cut
 void Mapper::require_agreement(const PreparedFrame& prepared) {
   if (!config_.free_space.enabled) return;
   auto t = timers_.measure("agreement");
-  if (sees_through_map(map_, whole_of(prepared)))
-    throw FrameError(concat(prepared.frame->name,
-                            ": sees through most of the surface that the map has there; its depth "
-                            "is wrong, or its pose"));
+  const Frame& frame = *prepared.frame;
+  if (!sees_through_map(map_, whole_of(prepared))) {
+    disagreement_.reset();
+    return;
+  }
+  if (!disagreement_) disagreement_ = {frame.timestamp_s, 0};
+  // What stays so is so: it was the map that was wrong, a hand on the lens or a wardrobe.
+  const double patience_s = static_cast<double>(config_.motion.stays_s);
+  if (frame.timestamp_s - disagreement_->first_s >= patience_s ||
+      ++disagreement_->frames > static_cast<int>(patience_s * kUsualPace_fps))
+    return;
+  throw FrameError(concat(frame.name,
+                          ": sees through most of the surface that the map has there; its depth is "
+                          "wrong, or its pose"));
 }
 
 MovingPixels Mapper::find_motion(const PreparedFrame& prepared) {
@@ -238,7 +250,8 @@ FrameReport Mapper::observe(const Frame& frame, const FrameSegments* cut,
   auto t = timers_.measure("registry");
   registry_.observe(cut->segments, associations, number_of(frame), cut->masked, map_.labels());
   mask_frames_ += cut->masked;
-  blank_masks_ += cut->blank;
+  masks_seen_.frames += cut->masked;
+  masks_seen_.blank += cut->blank;
   FrameReport report;
   report.regions = cut->regions;
   report.entities = cut->entities;

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "ovimap/base/stage_timers.h"
 #include "ovimap/frames/frame/frame.h"
@@ -145,12 +146,17 @@ class Mapper {
   /// Slots of the map's blocks that the last `process`, `fuse` or `label` touched.
   const std::vector<std::uint32_t>& touched_blocks() const { return touched_blocks_; }
   int mask_frames() const { return mask_frames_; }
-  /// Of the frames of this run, those whose masks told nothing (FrameSegments::blank).
-  int blank_masks() const { return blank_masks_; }
+  /// The masks of this run: frames that had some, and those whose masks told nothing
+  /// (FrameSegments::blank).
+  struct MaskCount {
+    int frames = 0, blank = 0;
+  };
+  const MaskCount& masks_seen() const { return masks_seen_; }
 
  private:
   void settle();
-  /// Throws FrameError for a frame that contradicts nearly all of the map that it sees.
+  /// Throws FrameError for a frame that contradicts nearly all of the map that it sees, unless
+  /// those before it have done so for a while (MotionConfig::stays_s).
   void require_agreement(const PreparedFrame& prepared);
   MovingPixels find_motion(const PreparedFrame& prepared);
   std::vector<std::uint32_t> take_back(const PreparedFrame& prepared, const MovingPixels& moving);
@@ -171,13 +177,19 @@ class Mapper {
   FrameStore frame_store_;
   std::vector<Pose> fused_from_;  ///< of all frames: the poses that the voxels have them from
   SeparateLooks looks_;
+  struct Disagreement {
+    double first_s = 0;  ///< time of the first frame on end that was left out
+    int frames = 0;
+  };
+  std::optional<Disagreement> disagreement_;
   MaskMotion mask_motion_;
   std::unique_ptr<MotionFilter> motion_;
   bool settled_ = false;  ///< the objects are those of all that is in the map
   std::vector<std::uint32_t> touched_blocks_;
   std::vector<LiveStep> live_steps_;
   std::string writing_reader_;  ///< read the writing that restored views have; empty: nothing did
-  int frames_ = 0, mask_frames_ = 0, blank_masks_ = 0;
+  int frames_ = 0, mask_frames_ = 0;
+  MaskCount masks_seen_;
   std::int64_t first_number_ = 0;
 };
 

@@ -79,10 +79,12 @@ VisitFit VisitFitter::fit() const {
 }
 
 Pose middle_motion(const std::vector<Pose>& world_from_camera, const std::vector<Pose>& moves) {
+  constexpr std::size_t kMostCameras = 16;
   std::vector<Eigen::Vector3d> points;
-  for (const Pose& pose : world_from_camera)
+  const std::size_t step = 1 + world_from_camera.size() / kMostCameras;
+  for (std::size_t i = 0; i < world_from_camera.size(); i += step)
     for (const Eigen::Vector3d& seen : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0, 0, 1)})
-      points.push_back(pose * seen);
+      points.push_back(world_from_camera[i] * seen);
   const auto difference = [&](const Pose& a, const Pose& b) {
     double sum_m = 0;
     for (const Eigen::Vector3d& point : points) sum_m += (a * point - b * point).norm();

@@ -27,8 +27,9 @@ ObjectPlacing place_by_objects(const MapDocument& map, const FrameSource& source
   const SequenceResult done = run_sequence(source, positions, alone, progress, {}, nullptr, finder);
   if (2 * done.frames.size() < positions.size())
     return {{{},
-             concat("the camera was lost in ", positions.size() - done.frames.size(), " of ",
-                    positions.size(), " frames by itself as well")},
+             concat(finder ? "the camera was lost in " : "there is no use in ",
+                    positions.size() - done.frames.size(), " of ", positions.size(), " frames",
+                    finder ? " by itself as well" : "")},
             {}};
   const MapDocument part = make_document(std::move(alone), done, {});
   ObjectPlacing placing{search_alignment(map, part, config), {}};

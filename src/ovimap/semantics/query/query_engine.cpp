@@ -79,15 +79,6 @@ std::vector<std::size_t> some_embedded(const SearchIndex& index, std::size_t mos
   return some;
 }
 
-/// Whether people call an object so: "the red mug on the table" may be a name.
-bool is_name(const SearchIndex& index, const std::string& text) {
-  const std::string wanted = lower_case(text);
-  return std::any_of(
-      index.objects().begin(), index.objects().end(), [&](const SearchObject& object) {
-        return object.name.size() == wanted.size() && lower_case(object.name) == wanted;
-      });
-}
-
 }  // namespace
 
 QueryEngine::QueryEngine(const SearchIndex& index, ImageTextEncoder* encoder,
@@ -131,7 +122,7 @@ QueryAnswer QueryEngine::find(const Query& query) const {
       negatives.push_back(std::move(term));
   QueryPhrase phrase;
   phrase.things = text;
-  if (config_.grammar && !is_name(index_, text))
+  if (config_.grammar && !index_.is_name(text))
     phrase =
         parse_query(text, {.colors = scene_.colors != nullptr, .parts = scene_.parts != nullptr});
   QueryAnswer result = phrase.free_text() ? find_text(text, negatives, query)
@@ -173,7 +164,7 @@ QueryAnswer QueryEngine::find_text(const std::string& text,
                  : matcher_->probability(scores, position);
   };
   QueryAnswer result = answer(scores, p_value, probability, query.relevance);
-  if (terms.size() == 1 && asks_for_all(terms[0])) {
+  if (terms.size() == 1 && !index_.is_name(terms[0]) && asks_for_all(terms[0])) {
     result.reading = concat("all [", thing_of_term(terms[0]), "]");
     result.count = count_all(scores, probability);
   }

@@ -152,7 +152,8 @@ MatchScores TextMatcher::match(const std::vector<std::string>& terms,
   OVIMAP_ASSERT(!terms.empty());
   std::vector<std::string> texts;
   for (const std::vector<std::string>* asked : {&terms, &negatives})
-    for (const std::string& term : *asked) texts.push_back(thing_of_term(term));
+    for (const std::string& term : *asked)
+      texts.push_back(index_.is_name(term) ? term : thing_of_term(term));
   if (texts.size() > kMostTexts)
     throw Error(concat("a question of ", texts.size(), " things is too long; ask for at most ",
                        kMostTexts, " at once, what it must not be included"));

@@ -114,7 +114,7 @@ std::string thing_of_term(const std::string& term) {
 bool asks_for_all(const std::string& term) {
   const std::string_view words = without_determiners(term);
   const std::string asked = lower_case(term.substr(0, term.size() - words.size()));
-  return asked.starts_with("all ") || asked.starts_with("every ") ||
+  return asked.starts_with("all ") || asked.starts_with("every ") || asked.starts_with("each ") ||
          builtin_concepts().singular_of(words) != words;
 }
 

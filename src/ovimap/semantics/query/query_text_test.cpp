@@ -58,6 +58,8 @@ TEST(ThingOfTerm, LeavesDeterminersOutAndPluralsOfKnownWords) {
     EXPECT_EQ(thing_of_term(term), "chair") << term;
   EXPECT_EQ(thing_of_term("some kitchen shelves"), "kitchen shelf");
   EXPECT_EQ(thing_of_term("Office Chairs"), "Office chair");
+  EXPECT_EQ(thing_of_term("cookies"), "cookie");
+  EXPECT_EQ(thing_of_term("boxes"), "box");
   for (const char* own : {"glasses", "scissors", "stairs", "glass of water", "the", "brass", "s"})
     EXPECT_EQ(thing_of_term(own), own);
   EXPECT_EQ(thing_of_term("frobniks"), "frobniks") << "nobody knows what that is";

@@ -7,6 +7,7 @@
 
 #include "ovimap/base/error.h"
 #include "ovimap/base/parallel.h"
+#include "ovimap/base/text/ascii.h"
 #include "ovimap/base/vectorize.h"
 
 namespace ovimap {
@@ -57,6 +58,13 @@ SearchIndex::SearchIndex(std::vector<SearchObject> objects, Embeddings embedding
     has_embedding_[static_cast<std::size_t>(row)] = true;
     ++embedded_;
   }
+}
+
+bool SearchIndex::is_name(std::string_view text) const {
+  const std::string wanted = lower_case(text);
+  return std::any_of(objects_.begin(), objects_.end(), [&](const SearchObject& object) {
+    return object.name.size() == wanted.size() && lower_case(object.name) == wanted;
+  });
 }
 
 std::optional<std::size_t> SearchIndex::find(InstanceId id) const {

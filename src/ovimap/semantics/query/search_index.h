@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -44,6 +45,9 @@ class SearchIndex {
   const std::vector<SearchObject>& objects() const { return objects_; }
   const Embeddings& embeddings() const { return embeddings_; }  ///< rows of length 1 or 0
   bool has_embedding(std::size_t position) const { return has_embedding_[position]; }
+
+  /// Whether people call an object so, in any letters: "the red mug on the table" may be a name.
+  bool is_name(std::string_view text) const;
 
   /// Position of the object with that id, if there is one.
   std::optional<std::size_t> find(InstanceId id) const;

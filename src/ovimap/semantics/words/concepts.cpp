@@ -76,11 +76,14 @@ std::string Concepts::singular_of(std::string_view text) const {
   const std::string words = lower_case(text);
   if (!exact(words, Senses::kAll).empty()) return std::string(text);
   const std::size_t blank = words.rfind(' '), last = blank == std::string::npos ? 0 : blank + 1;
-  const std::string plural = words.substr(last), one = singular(plural);
-  if (one == plural || !exact(plural, Senses::kAll).empty()) return std::string(text);
-  if (exact(one, Senses::kAll).empty() && exact(words.substr(0, last) + one, Senses::kAll).empty())
-    return std::string(text);
-  return std::string(text.substr(0, last)) + one;
+  const std::string plural = words.substr(last);
+  if (!plural.ends_with('s') || !exact(plural, Senses::kAll).empty()) return std::string(text);
+  // "cookies" is of "cookie" where that is a word, else of "cooky".
+  for (const std::string& one : {plural.substr(0, plural.size() - 1), singular(plural)})
+    if (one != plural && (!exact(one, Senses::kAll).empty() ||
+                          !exact(words.substr(0, last) + one, Senses::kAll).empty()))
+      return std::string(text.substr(0, last)) + one;
+  return std::string(text);
 }
 
 std::vector<Concepts::Kind> Concepts::known(const std::string& words, Senses senses) const {
