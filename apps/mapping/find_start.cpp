@@ -18,6 +18,11 @@ std::vector<std::int64_t> first_of(const std::vector<std::int64_t>& positions, i
   return {positions.begin(), positions.begin() + end};
 }
 
+/// Both maps must be in memory.
+bool may_ask_objects(const ProgramConfig& config) {
+  return config.visit.object_frames > 0 && config.memory.max_mb == 0;
+}
+
 /// Where objects say that the recording lies in the map.
 AlignmentSearch ask_objects(const MapDocument& map, MappingInputs& inputs) {
   const ProgramConfig& config = inputs.config;
@@ -66,10 +71,7 @@ std::optional<VisitFit> fit_pushed(const VoxelMap& map, FrameIntake& intake,
 void find_start(const MapDocument& begun, bool new_visit, MappingInputs& inputs) {
   const ProgramConfig& config = inputs.config;
   const std::vector<Keyframe>& keyframes = inputs.finder->tracker().keyframes();
-  // Both maps must be in memory.
-  const bool may_ask =
-      new_visit && inputs.source && config.visit.object_frames > 0 && config.memory.max_mb == 0;
-  if (may_ask &&
+  if (new_visit && inputs.source && may_ask_objects(config) &&
       !shows_known_place(*inputs.source, first_of(inputs.range, config.track.part_frames),
                          begun.map, keyframes, config.track))
     inputs.placing = ask_objects(begun, inputs);
@@ -85,14 +87,9 @@ void find_start(const MapDocument& begun, bool new_visit, MappingInputs& inputs)
 
 namespace {
 
-VisitFit fit_of(const MapDocument& map, const MappingInputs& inputs) {
-  return fit_visit(map.map, *inputs.source, inputs.range, inputs.config.track, inputs.config.visit);
-}
-
-void move_recording(const Pose& map_from_recording, MappingInputs& inputs) {
-  inputs.source = std::make_unique<MovedSource>(std::move(inputs.source), map_from_recording);
-  inputs.map_from_recording =
-      map_from_recording * inputs.map_from_recording.value_or(Pose::Identity());
+VisitFit fit_of(const MapDocument& map, const MappingInputs& inputs,
+                const std::vector<std::int64_t>& positions) {
+  return fit_visit(map.map, *inputs.source, positions, inputs.config.track, inputs.config.visit);
 }
 
 }  // namespace
@@ -103,32 +100,40 @@ void align_recording(const MapDocument& map, MappingInputs& inputs) {
         "--align is for recordings with poses; leave it away where the camera is tracked, "
         "which finds its place in the map by itself");
   const VisitFitConfig& config = inputs.config.visit;
-  const VisitFit near = fit_of(map, inputs);
+  const VisitFit near = fit_of(map, inputs, inputs.range);
   if (misfit(near, config).empty()) return;
+  auto owned = std::make_unique<MovedSource>(std::move(inputs.source));
+  MovedSource& recording = *owned;
+  inputs.source = std::move(owned);
   if (near.compared > 0) {  // the poses may be off by a little
-    move_recording(near.map_from_recording, inputs);
-    const VisitFit moved = fit_of(map, inputs);
-    if (2 * moved.compared >= near.compared && misfit(moved, config).empty()) return;
-    move_recording(near.map_from_recording.inverse(), inputs);
+    recording.move_to(near.map_from_recording);
+    const VisitFit moved = fit_of(map, inputs, inputs.range);
+    if (2 * moved.compared >= near.compared && misfit(moved, config).empty()) {
+      inputs.map_from_recording = near.map_from_recording;
+      return;
+    }
+    recording.move_to(Pose::Identity());
   }
-  const bool may_ask = config.object_frames > 0 && inputs.config.memory.max_mb == 0;
   const AlignmentSearch placed =
-      may_ask ? ask_objects(map, inputs)
-              : AlignmentSearch{{},
-                                "its frames do not, and objects are asked without a bound on "
-                                "memory alone (--max-memory, visit.object_frames)"};
+      may_ask_objects(inputs.config)
+          ? ask_objects(map, inputs)
+          : AlignmentSearch{{},
+                            "its frames do not, and objects are asked without a bound on "
+                            "memory alone (--max-memory, visit.object_frames)"};
   if (!placed.doubt.empty())
     throw Error(concat("nothing says where the recording lies in the map, which stays as it was: ",
                        placed.doubt, "; give poses in the map's world frame"));
-  move_recording(placed.best.a_from_b, inputs);
-  move_recording(fit_of(map, inputs).map_from_recording, inputs);
+  recording.move_to(placed.best.a_from_b);
+  inputs.map_from_recording =
+      fit_of(map, inputs, inputs.range).map_from_recording * placed.best.a_from_b;
+  recording.move_to(*inputs.map_from_recording);
 }
 
 void require_fit(const MapDocument& begun, const MappingInputs& inputs, FrameIntake* intake) {
   const ProgramConfig& config = inputs.config;
   if (!config.visit.enabled || inputs.tracking) return;
   const std::optional<VisitFit> fit =
-      intake ? fit_pushed(begun.map, *intake, config) : fit_of(begun, inputs);
+      intake ? fit_pushed(begun.map, *intake, config) : fit_of(begun, inputs, inputs.range);
   const std::string fault = fit ? misfit(*fit, config.visit) : "";
   if (!fault.empty())
     throw Error(concat("the recording does not fit the map, which stays as it was: ", fault,
@@ -163,9 +168,7 @@ void warn_of_known_recording(const MapRecord& begun, const std::string& source) 
 void require_same_recording(const MapDocument& begun, const MappingInputs& inputs,
                             const std::vector<std::int64_t>& done) {
   if (!inputs.config.visit.enabled || inputs.tracking || !inputs.source || done.empty()) return;
-  const VisitFitConfig& config = inputs.config.visit;
-  const std::string fault =
-      misfit(fit_visit(begun.map, *inputs.source, done, inputs.config.track, config), config);
+  const std::string fault = misfit(fit_of(begun, inputs, done), inputs.config.visit);
   if (!fault.empty())
     throw Error(
         concat("the map was made of another recording, for this one does not fit it: ", fault,

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstdio>
 
 #include "apps/command/command.h"
@@ -43,10 +44,6 @@ int check_file(const InfoOptions& options) {
                 check.faults.empty() ? "all as written" : "restore it from a copy or map again");
   }
   return check.faults.empty() ? kDone : kAnswerIsNo;
-}
-
-HistoryDates dates_of(const std::filesystem::path& path, const MapInfo& map) {
-  return {map.history, read_searchable_map(path).frames};
 }
 
 /// What objects clearly are, those that are gone included; none where nothing tells words.
@@ -109,11 +106,14 @@ nlohmann::json known(const std::optional<double>& date) {
 }
 
 /// Adds to each object when it was seen last.
-void add_sightings(const MapInfo& map, const HistoryDates& dates, nlohmann::json& instances) {
+void add_sightings(const MapSightings& sightings, const HistoryDates& dates,
+                   nlohmann::json& instances) {
   for (nlohmann::json& instance : instances) {
-    const auto last = map.last_seen.find(instance["id"].get<InstanceId>());
-    if (last == map.last_seen.end()) continue;
-    if (const auto seen = dates.sighting(last->second))
+    std::int64_t last = -1;
+    for (const Label label : instance["superpoints"].get<std::vector<Label>>())
+      if (const auto seen = sightings.last.find(label); seen != sightings.last.end())
+        last = std::max(last, seen->second);
+    if (const auto seen = dates.sighting(last))
       instance["last_seen"] = {{"visit", seen->visit}, {"time_s", known(seen->time_s)}};
   }
 }
@@ -149,7 +149,7 @@ int info(const InfoOptions& options) {
   ObjectTitles titles{map.names, {}};
   if (options.history && !options.json) {
     if (!map.encoder.name.empty()) titles.labels = labels_with_gone(options.map, map);
-    print_history(map, titles, dates_of(options.map, map));
+    print_history(map, titles, HistoryDates(map.history, read_sightings(options.map).frames));
     return kDone;
   }
   if (!map.encoder.name.empty()) titles.labels = read_labels(open_map_search(options.map), "auto");
@@ -157,8 +157,9 @@ int info(const InfoOptions& options) {
     auto document = nlohmann::json::parse(info_json(options.map, map, titles.labels));
     document["tiles_evicted"] = tiles.evicted;
     document["tiles_loaded"] = tiles.loaded;
-    const HistoryDates dates = dates_of(options.map, map);
-    add_sightings(map, dates, document["instances"]);
+    const MapSightings sightings = read_sightings(options.map);
+    const HistoryDates dates(map.history, sightings.frames);
+    add_sightings(sightings, dates, document["instances"]);
     if (!map.history.visits.empty()) add_dates(dates, document["history"]);
     print_json(document);
     return kDone;

@@ -80,10 +80,9 @@ std::vector<Visit> visits(SavedMap& map) {
 using VisitAndTime = std::pair<int, std::optional<double>>;
 
 std::optional<VisitAndTime> last_seen(SavedMap& map, InstanceId id) {
-  map.position(id);  // throws where there is none
-  const auto last = map.info().last_seen.find(id);
-  if (last == map.info().last_seen.end()) return std::nullopt;
-  const auto seen = dates_of(map.record()).sighting(last->second);
+  const InstanceSummary& instance = map.info().instances[map.position(id)];
+  const MapRecord& record = map.record();
+  const auto seen = ovimap::last_seen(record, dates_of(record), instance.super_points);
   return seen ? std::optional(VisitAndTime{seen->visit, seen->time_s}) : std::nullopt;
 }
 

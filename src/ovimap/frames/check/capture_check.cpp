@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "ovimap/base/error.h"
+#include "ovimap/base/median.h"
 #include "ovimap/image/blur.h"
 
 namespace ovimap {
@@ -46,11 +47,9 @@ std::optional<Finding> blur_finding(const std::vector<Capture>& captures) {
   if (smears.empty()) return std::nullopt;
   const auto smeared =
       std::count_if(smears.begin(), smears.end(), [](float smear) { return smear > kSmeared; });
-  const auto middle = smears.begin() + static_cast<std::ptrdiff_t>(smears.size() / 2);
-  std::nth_element(smears.begin(), middle, smears.end());
   const std::string message =
       concat(smeared, " of ", smears.size(), " pictures are smeared; edges are as wide as ",
-             finely(double{*middle}), " of a picture in the median");
+             finely(double{median_of(smears)}), " of a picture in the median");
   if (static_cast<double>(smeared) <= kFew * static_cast<double>(smears.size()))
     return Finding{Severity::kOk, "blur", message, {}};
   return Finding{Severity::kWarning, "blur", message,

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "ovimap/base/config.h"
+#include "ovimap/base/median.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/frames/check/check_sample.h"
 #include "ovimap/frames/check/pose_offset.h"
@@ -66,9 +67,7 @@ void check_depth(const CheckSample& sample, const SourceCheckConfig& config, Che
       if (depth_m > 0) depths_m.push_back(depth_m);
   }
   if (depths_m.empty()) return;
-  const auto middle = depths_m.begin() + static_cast<std::ptrdiff_t>(depths_m.size() / 2);
-  std::nth_element(depths_m.begin(), middle, depths_m.end());
-  report.median_depth_m = *middle;
+  report.median_depth_m = median_of(depths_m);
   report.valid_share = double(depths_m.size()) / double(pixels);
   const bool sparse = report.valid_share < config.min_valid_share;
   add(report, sparse ? Severity::kWarning : Severity::kOk, "depth_valid",

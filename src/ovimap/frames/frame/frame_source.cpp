@@ -6,6 +6,7 @@
 #include <charconv>
 
 #include "ovimap/base/config.h"
+#include "ovimap/frames/frame/wrapped_source.h"
 
 namespace ovimap {
 
@@ -21,18 +22,15 @@ std::optional<std::int64_t> parse_part(std::string_view text, std::int64_t absen
   return value;
 }
 
-class ChosenFrames : public FrameSource {
+class ChosenFrames : public WrappedSource {
  public:
   ChosenFrames(std::unique_ptr<FrameSource> source, std::vector<std::int64_t> positions)
-      : source_(std::move(source)), positions_(std::move(positions)) {}
+      : WrappedSource(std::move(source)), positions_(std::move(positions)) {}
 
-  std::string kind() const override { return source_->kind(); }
   std::int64_t size() const override { return static_cast<std::int64_t>(positions_.size()); }
-  bool posed() const override { return source_->posed(); }
-  bool rectified() const override { return source_->rectified(); }
-  FrameRead read(std::int64_t position) const override { return source_->read(at(position)); }
+  FrameRead read(std::int64_t position) const override { return WrappedSource::read(at(position)); }
   std::optional<IdImage> truth_ids(std::int64_t position) const override {
-    return source_->truth_ids(at(position));
+    return WrappedSource::truth_ids(at(position));
   }
 
  private:
@@ -40,7 +38,6 @@ class ChosenFrames : public FrameSource {
     return positions_[static_cast<std::size_t>(position)];
   }
 
-  std::unique_ptr<FrameSource> source_;
   std::vector<std::int64_t> positions_;
 };
 

@@ -2,37 +2,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <memory>
-#include <utility>
-
-#include "ovimap/frames/frame/frame_source.h"
+#include "ovimap/frames/frame/wrapped_source.h"
 #include "ovimap/geometry/pose.h"
 
 namespace ovimap {
 
-/// A recording in another world frame.
-class MovedSource : public FrameSource {
+/// A recording in another world frame; in its own until it is moved.
+class MovedSource : public WrappedSource {
  public:
-  MovedSource(std::unique_ptr<FrameSource> source, const Pose& world_from_recording)
-      : source_(std::move(source)), world_from_recording_(world_from_recording) {}
+  using WrappedSource::WrappedSource;
 
-  std::string kind() const override { return source_->kind(); }
-  std::int64_t size() const override { return source_->size(); }
-  bool posed() const override { return source_->posed(); }
-  bool rectified() const override { return source_->rectified(); }
+  /// Not while frames are read.
+  void move_to(const Pose& world_from_recording) { world_from_recording_ = world_from_recording; }
+
   FrameRead read(std::int64_t position) const override {
-    FrameRead read = source_->read(position);
+    FrameRead read = WrappedSource::read(position);
     if (read.frame && read.frame->posed)
       read.frame->world_from_camera = world_from_recording_ * read.frame->world_from_camera;
     return read;
   }
-  std::optional<IdImage> truth_ids(std::int64_t position) const override {
-    return source_->truth_ids(position);
-  }
 
  private:
-  std::unique_ptr<FrameSource> source_;
-  Pose world_from_recording_;
+  Pose world_from_recording_ = Pose::Identity();
 };
 
 }  // namespace ovimap

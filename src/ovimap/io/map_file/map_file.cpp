@@ -141,20 +141,6 @@ void place_blocks(SQLite::Database& database, std::uint64_t blocks, VoxelMap& ma
   places.expect_end();
 }
 
-/// The last frame that showed each object, by its super-points.
-std::map<InstanceId, std::int64_t> last_sightings(SQLite::Database& database,
-                                                  std::span<const InstanceSummary> instances) {
-  const std::map<Label, std::int64_t> by_root = read_last_frames(database);
-  std::map<InstanceId, std::int64_t> result;
-  for (const InstanceSummary& instance : instances)
-    for (const Label label : instance.super_points)
-      if (const auto seen = by_root.find(label); seen != by_root.end()) {
-        std::int64_t& last = result.try_emplace(instance.id, seen->second).first->second;
-        last = std::max(last, seen->second);
-      }
-  return result;
-}
-
 /// What was read on each object, by its super-points' views.
 std::map<InstanceId, std::vector<WrittenLine>> writing_of_instances(
     SQLite::Database& database, std::span<const InstanceSummary> instances) {
@@ -218,8 +204,6 @@ MapInfo read_info(SQLite::Database& database, const OpenMap& file) {
   info.instances = std::move(record.instances);
   info.hidden = std::move(record.hidden);
   info.locked = std::move(record.locked);
-  if (file.schema() >= kSchemaWithSuperPoints)
-    info.last_seen = last_sightings(database, info.instances);
   info.parts = read_object_parts(database);
   info.names = std::move(record.names);
   info.writing_reader = std::move(record.semantics.writing_reader);

@@ -21,10 +21,7 @@ struct MapInfo {
   std::vector<InstanceSummary> instances;  ///< as people corrected them
   std::vector<InstanceSummary> hidden;     ///< objects that people hid; not in `instances`
   std::set<InstanceId> locked;             ///< objects that must stay as they are
-  std::map<InstanceId, std::int64_t>
-      last_seen;  ///< FrameLogEntry::index of the last frame whose segments showed each instance;
-                  ///< empty in maps of earlier schemas
-  std::vector<ObjectPart> parts;  ///< of objects, by id; parts_by_object() says of which
+  std::vector<ObjectPart> parts;           ///< of objects, by id; parts_by_object() says of which
   std::map<InstanceId, std::string> names;
   std::string writing_reader;  ///< what read the writing; empty: nothing did
   std::map<InstanceId, std::vector<WrittenLine>> writing;  ///< of those on which some was read

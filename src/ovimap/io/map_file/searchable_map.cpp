@@ -57,6 +57,18 @@ InstanceSurfaces read_corrected_surfaces(const std::filesystem::path& path) {
   return surfaces;
 }
 
+MapSightings read_sightings(const std::filesystem::path& path) {
+  OpenMap file(path);
+  MapSightings seen;
+  file.read([&](SQLite::Database& database) {
+    MapRecord record;
+    read_frames(database, record);
+    seen.frames = std::move(record.frames);
+    if (file.schema() >= kSchemaWithSuperPoints) seen.last = read_last_frames(database);
+  });
+  return seen;
+}
+
 SearchableMap read_searchable_map(const std::filesystem::path& path) {
   OpenMap file(path);
   SearchableMap map;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <vector>
 
 #include "ovimap/io/map_file/map_file.h"
@@ -18,6 +19,15 @@ struct SearchableMap {
   ObjectShapes shapes;         ///< of the instances; surfaces are read from the file when asked for
   std::vector<FrameLogEntry> frames;
 };
+
+/// The frames of a map, and what they showed last.
+struct MapSightings {
+  std::vector<FrameLogEntry> frames;
+  /// FrameLogEntry::index of the last frame whose segments showed each super-point; empty in maps
+  /// of earlier schemas.
+  std::map<Label, std::int64_t> last;
+};
+MapSightings read_sightings(const std::filesystem::path& path);
 
 /// Of the instances of a map as people corrected it; verified likewise.
 InstanceSurfaces read_corrected_surfaces(const std::filesystem::path& path);

@@ -45,8 +45,7 @@ void read_frames(SQLite::Database& database, MapRecord& record);
 void read_registry(SQLite::Database& database, int schema, const LabelForest& forest,
                    MapRecord& record);
 
-/// Of each super-point the last frame that showed it, as Frame::index: the part of `read_registry`
-/// that searches need.
+/// Of each super-point the last frame that showed it, as Frame::index: a part of `read_registry`.
 std::map<Label, std::int64_t> read_last_frames(SQLite::Database& database);
 
 /// A label that exists, and an instance that was once given out.

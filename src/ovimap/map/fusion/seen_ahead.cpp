@@ -82,10 +82,13 @@ class FreeTiles {
   float most_m_ = 0;
 };
 
-/// One pixel in a square of that side, of an image and of its camera.
+/// Squares of that side along an edge whose middle pixel is in the image.
+int squares_along(int edge_px, int side_px) {
+  return (edge_px + side_px / 2 - 1) / side_px;
+}
+/// The middle pixel of each square, of an image and of its camera.
 DepthImage every(int step_px, const DepthImage& depth) {
-  DepthImage sampled((depth.width() + step_px / 2 - 1) / step_px,
-                     (depth.height() + step_px / 2 - 1) / step_px);
+  DepthImage sampled(squares_along(depth.width(), step_px), squares_along(depth.height(), step_px));
   for (int y = 0; y < sampled.height(); ++y)
     for (int x = 0; x < sampled.width(); ++x)
       sampled.at(x, y) = depth.at(step_px / 2 + x * step_px, step_px / 2 + y * step_px);
@@ -93,8 +96,8 @@ DepthImage every(int step_px, const DepthImage& depth) {
 }
 PinholeCamera every(int step_px, const PinholeCamera& camera) {
   const auto step = static_cast<float>(step_px), first = static_cast<float>(step_px / 2);
-  return {(camera.width + step_px / 2 - 1) / step_px,
-          (camera.height + step_px / 2 - 1) / step_px,
+  return {squares_along(camera.width, step_px),
+          squares_along(camera.height, step_px),
           camera.fx / step,
           camera.fy / step,
           (camera.cx - first) / step,

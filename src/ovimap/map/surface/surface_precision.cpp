@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "ovimap/base/median.h"
+
 namespace ovimap {
 
 namespace {
@@ -23,9 +25,7 @@ std::optional<float> surface_error_m(const VoxelMap& map, const VoxelBlock& bloc
     if (std::fabs(map.distance_m(block, voxel)) < voxel_m) weights.push_back(weight);
   }
   if (weights.empty()) return std::nullopt;
-  const auto middle = weights.begin() + static_cast<std::ptrdiff_t>(weights.size() / 2);
-  std::nth_element(weights.begin(), middle, weights.end());
-  return voxel_m / std::sqrt(*middle);
+  return voxel_m / std::sqrt(median_of(weights));
 }
 
 std::uint8_t error_byte(std::optional<float> error_m) {

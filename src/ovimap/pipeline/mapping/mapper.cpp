@@ -17,8 +17,6 @@ namespace ovimap {
 
 namespace {
 
-constexpr double kUsualPace_fps = 30;  // where clocks stand still
-
 Observation observation_of(const PreparedFrame& prepared, const FrameSegments* cut,
                            std::span<const Label> labels, const DepthImage& depth) {
   const Image<float>& sigma = prepared.estimate.sigma_m;
@@ -168,9 +166,10 @@ void Mapper::require_agreement(const PreparedFrame& prepared) {
   }
   if (!disagreement_) disagreement_ = {frame.timestamp_s, 0};
   // What stays so is so: it was the map that was wrong, a hand on the lens or a wardrobe.
-  const double patience_s = static_cast<double>(config_.motion.stays_s);
-  if (frame.timestamp_s - disagreement_->first_s >= patience_s ||
-      ++disagreement_->frames > static_cast<int>(patience_s * kUsualPace_fps))
+  // Where clocks stand still a frame is a tick.
+  const float patience_s = config_.motion.stays_s;
+  if (frame.timestamp_s - disagreement_->first_s >= static_cast<double>(patience_s) ||
+      ++disagreement_->frames > ticks_of(patience_s))
     return;
   throw FrameError(concat(frame.name,
                           ": sees through most of the surface that the map has there; its depth is "

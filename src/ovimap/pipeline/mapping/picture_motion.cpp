@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "ovimap/base/median.h"
+
 namespace ovimap {
 
 namespace {
@@ -18,12 +20,6 @@ bool sees(const PinholeCamera& camera, const Eigen::Vector3f& point) {
   const Eigen::Vector2f pixel = camera.project(point);
   return pixel.minCoeff() > -0.5f && pixel.x() < static_cast<float>(camera.width) - 0.5f &&
          pixel.y() < static_cast<float>(camera.height) - 0.5f;
-}
-
-float median(std::vector<float>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 }  // namespace
@@ -44,7 +40,7 @@ float picture_motion(const Frame& frame, const Pose& earlier_from_now) {
           sees(camera, point) ? std::min(1.f, (camera.project(point) - now).norm() / width) : 1.f);
     }
   }
-  return moved.empty() ? 0.f : median(moved);
+  return moved.empty() ? 0.f : median_of(moved);
 }
 
 bool MaskMotion::wants(const Frame& frame) const {
@@ -77,7 +73,7 @@ bool MaskMotion::slow(const Frame& frame) const {
     steps.push_back(picture_motion(
         frame, walk_[i - 1].world_from_camera.inverse() * walk_[i].world_from_camera));
   return steps.empty() || picture_motion(frame, walk_.back().world_from_camera.inverse() *
-                                                    frame.world_from_camera) <= median(steps);
+                                                    frame.world_from_camera) <= median_of(steps);
 }
 
 }  // namespace ovimap

@@ -98,6 +98,12 @@ std::string HistoryDates::text_of(const MapMoment& moment) const {
   return std::isinf(moment.time_s) ? "the beginning" : date_text(moment.time_s);
 }
 
+std::optional<Sighting> last_seen(const MapRecord& record, const HistoryDates& dates,
+                                  std::span<const Label> super_points) {
+  const InstanceRecord known = record_of(record.registry.super_points, super_points);
+  return known.views > 0 ? dates.sighting(known.last_frame) : std::nullopt;
+}
+
 std::string event_text(const ObjectEvent& event) {
   switch (event.kind) {
     case ObjectEventKind::kGone:

@@ -69,6 +69,11 @@ class HistoryDates {
   std::vector<DatedFrame> frames_;  ///< by index
 };
 
+/// When the last frame was taken whose segments showed an object of these super-points; none: the
+/// map does not know.
+std::optional<Sighting> last_seen(const MapRecord& record, const HistoryDates& dates,
+                                  std::span<const Label> super_points);
+
 /// "moved from (1.00, 2.00, 0.50) to (0.20, 1.10, 0.50)": centres of boxes, metres in the world.
 std::string event_text(const ObjectEvent& event);
 

@@ -50,8 +50,8 @@ QueryAnswer ask_history(const HistorySearch& history, const QueryEngine* engine,
 
 using WordsOfObjects = std::map<InstanceId, std::string>;
 
-/// What each object clearly is, those that are gone included; empty for what is not clearly
-/// anything. `encoder`: of the map's embeddings. Throws what QueryEngine throws.
+/// What each object clearly is, those that are gone included; ObjectName::kUnclear for what is
+/// not clearly anything. `encoder`: of the map's embeddings. Throws what QueryEngine throws.
 WordsOfObjects words_with_gone(const MapRecord& corrected, const MapInfo& info,
                                ImageTextEncoder& encoder, const QueryConfig& config,
                                const TaughtThings& taught);

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "ovimap/base/error.h"
+#include "ovimap/base/median.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/segment/depth_surface.h"
 
@@ -44,12 +45,6 @@ Errors errors_in(const Frame& frame, const DepthSurfaceConfig& config) {
                  noise.plane.at(distance_m) * sigma_m};
   }
   return errors;
-}
-
-float median_of(std::vector<float> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 std::string millimetres(float length_m) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <tuple>
 
 #include "ovimap/base/error.h"
@@ -24,16 +25,25 @@ double model_probability(const MatchCalibration& model, float cosine) {
   return 1.0 / (1.0 + std::exp(-(double{model.scale} * double{cosine} + double{model.bias})));
 }
 
-CountEstimate count_of(const PhraseMatch& found) {
-  CountEstimate count;
-  for (std::size_t i = 0; i < found.holds.size(); ++i) {
-    const double chance = double{found.scores[static_cast<Eigen::Index>(i)]};
+/// Of objects that each are one by chance; `found`: how many are taken to be.
+CountEstimate count_of(std::span<const double> chances, int found) {
+  CountEstimate count{0, 0, found};
+  for (const double chance : chances) {
     count.expected += chance;
     count.deviation += chance * (1.0 - chance);
-    count.found += found.holds[i] && chance > 0.0 ? 1 : 0;
   }
   count.deviation = std::sqrt(count.deviation);
   return count;
+}
+
+CountEstimate count_of(const PhraseMatch& match) {
+  std::vector<double> chances;
+  int found = 0;
+  for (std::size_t i = 0; i < match.holds.size(); ++i) {
+    chances.push_back(double{match.scores[static_cast<Eigen::Index>(i)]});
+    found += match.holds[i] && chances.back() > 0.0;
+  }
+  return count_of(chances, found);
 }
 
 void collect_materials(const QueryPhrase& phrase, std::vector<std::string>& words) {
@@ -135,16 +145,14 @@ QueryAnswer QueryEngine::find(const Query& query) const {
 
 CountEstimate QueryEngine::count_all(const MatchScores& scores,
                                      const Probability& probability) const {
-  CountEstimate count;
+  std::vector<double> chances;
+  int found = 0;
   for (std::size_t i = 0; i < index_.size(); ++i) {
     if (scores.excluded[i] || !index_.has_embedding(i)) continue;
-    const double chance = probability(i);
-    count.expected += chance;
-    count.deviation += chance * (1.0 - chance);
-    count.found += scores.log_odds.size() > 0 ? matcher_->is_found(scores, i) : chance > 0.5;
+    chances.push_back(probability(i));
+    found += scores.log_odds.size() > 0 ? matcher_->is_found(scores, i) : chances.back() > 0.5;
   }
-  count.deviation = std::sqrt(count.deviation);
-  return count;
+  return count_of(chances, found);
 }
 
 QueryAnswer QueryEngine::find_text(const std::string& text,

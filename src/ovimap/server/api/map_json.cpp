@@ -101,8 +101,7 @@ json writing_of(const MapSnapshot& now, InstanceId id) {
 /// When the last frame was taken that showed it; null: not known.
 json last_seen_of(const MapSnapshot& now, const HistoryDates& dates,
                   const InstanceSummary& instance) {
-  const InstanceRecord known = record_of(now.record->registry.super_points, instance.super_points);
-  const auto seen = known.views > 0 ? dates.sighting(known.last_frame) : std::nullopt;
+  const auto seen = last_seen(*now.record, dates, instance.super_points);
   if (!seen) return nullptr;
   return {{"visit", seen->visit},
           {"visits", dates.visits()},
