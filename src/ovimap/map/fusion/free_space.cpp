@@ -40,6 +40,8 @@ OVIMAP_VECTORIZE void find_doubted(const FusionView& view, const Image<float>& f
   for (std::size_t i = 0; i < result.rows.size(); ++i) {
     const float y = static_cast<float>(i % kBlockSide), z = static_cast<float>(i / kBlockSide);
     const Eigen::Vector3f start = origin + steps.col(1) * y + steps.col(2) * z;
+    // Before anything of the block is read: most rows lie behind.
+    if (std::min(start.z(), start.z() + (kLanes - 1) * steps(2, 0)) >= furthest_m) continue;
     const Floats distance = load_integers(block.tsdf.data() + i * kBlockSide);
     const Ints claims = (start.z() + along * steps(2, 0) < furthest_m) & (distance < surface);
     if (!any(claims)) continue;
@@ -102,7 +104,8 @@ ClearedSpace clear_free_space(VoxelMap& map, const Observation& observation,
                               const FreeSpaceConfig& config) {
   ClearedSpace result;
   if (!config.enabled || observation.sigma_m == nullptr || map.block_count() == 0) return result;
-  const Image<float> free_m = free_depth(map.config(), observation, config);
+  Image<float> made;
+  const Image<float>& free_m = free_depth(map.config(), observation, config, made);
   const FusionView view(map.config(), observation);
   const std::vector<BlockAhead> ahead = blocks_ahead(map, observation, free_m);
   std::vector<Doubted> doubted(ahead.size());

@@ -44,6 +44,9 @@ struct ClearedSpace {
 /// by margin and sigmas. The observation must have sigma_m.
 Image<float> free_depth(const VoxelMapConfig& map, const Observation& observation,
                         const FreeSpaceConfig& config);
+/// The observation's own, or else made and kept in `made`.
+const Image<float>& free_depth(const VoxelMapConfig& map, const Observation& observation,
+                               const FreeSpaceConfig& config, Image<float>& made);
 
 /// Takes back surface that the frame, and others before it, see through. A voxel that claims to be
 /// within a voxel of a surface, or behind one, and lies in front of the free depth, is doubted; one

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <vector>
 
 #include "ovimap/geometry/camera.h"
 #include "ovimap/geometry/pose.h"
@@ -11,6 +12,27 @@
 #include "ovimap/image/image.h"
 
 namespace ovimap {
+
+/// What `join` makes of each square of pixels, beginning with `first`.
+template <class Join>
+Image<float> joined_squares(const Image<float>& values, int side, float first, const Join& join) {
+  const int width = values.width(), height = values.height();
+  Image<float> squares((width + side - 1) / side, (height + side - 1) / side, first);
+  std::vector<float> columns(static_cast<std::size_t>(width));
+  for (int top = 0; top < height; top += side) {
+    std::fill(columns.begin(), columns.end(), first);
+    for (int y = top; y < std::min(top + side, height); ++y) {
+      const float* const row = values.row(y);
+      for (std::size_t x = 0; x < columns.size(); ++x) columns[x] = join(columns[x], row[x]);
+    }
+    float* into = squares.row(top / side);
+    for (int x = 0, in_square = 0; x < width; ++x) {
+      *into = join(*into, columns[static_cast<std::size_t>(x)]);
+      if (++in_square == side) ++into, in_square = 0;
+    }
+  }
+  return squares;
+}
 
 /// Least and furthest free depth by tile of the image: tells of spheres whether all of one, or any,
 /// lies in free space.
@@ -20,15 +42,8 @@ class LeastTiles {
 
   LeastTiles(const PinholeCamera& camera, const Image<float>& free_m)
       : camera_(camera),
-        least_m_((free_m.width() + kTile_px - 1) / kTile_px,
-                 (free_m.height() + kTile_px - 1) / kTile_px) {
-    least_m_.fill(std::numeric_limits<float>::max());
-    for (int y = 0; y < free_m.height(); ++y) {
-      const float* row = free_m.row(y);
-      float* into = least_m_.row(y / kTile_px);
-      for (int x = 0; x < free_m.width(); ++x)
-        into[x / kTile_px] = std::min(into[x / kTile_px], row[x]);
-    }
+        least_m_(joined_squares(free_m, kTile_px, std::numeric_limits<float>::max(),
+                                [](float a, float b) { return b < a ? b : a; })) {
     for (const float least : least_m_) most_m_ = std::max(most_m_, least);
   }
 
@@ -46,6 +61,23 @@ class LeastTiles {
     for (int y = tile(top); y <= tile(bottom); ++y)
       for (int x = tile(left); x <= tile(right); ++x)
         if (least_m_.at(x, y) <= far_m) return false;
+    return true;
+  }
+
+  /// True only where nothing that lies in the sphere, of any size, is `all_free`.
+  bool none_free(const Eigen::Vector3f& center, float radius) const {
+    const float near_m = center.z() - radius;
+    if (near_m >= most_m_) return true;
+    if (near_m < kNear_m) return false;
+    const Eigen::AlignedBox2f covered = pixels_around(camera_, center, radius);
+    if (covered.max().minCoeff() < 0.f) return true;
+    const int left = tile(std::max(covered.min().x(), 0.f)),
+              top = tile(std::max(covered.min().y(), 0.f)),
+              right = std::min(tile(covered.max().x()), least_m_.width() - 1),
+              bottom = std::min(tile(covered.max().y()), least_m_.height() - 1);
+    for (int y = top; y <= bottom; ++y)
+      for (int x = left; x <= right; ++x)
+        if (least_m_.at(x, y) > near_m) return false;
     return true;
   }
 

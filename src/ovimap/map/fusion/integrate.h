@@ -22,7 +22,8 @@ struct Observation {
   const Image<float>* plane_slope = nullptr;  ///< see DepthSurface::plane_slope; 0 = unknown
   const Image<float>* sigma_m = nullptr;  ///< standard deviation of the depth; null: unknown, it
                                           ///< is taken to grow with depth
-  const IdImage* segment_ids = nullptr;   ///< segment of each pixel; 0 = none
+  const Image<float>* free_m = nullptr;  ///< free_depth of the frame; null: made where it is needed
+  const IdImage* segment_ids = nullptr;  ///< segment of each pixel; 0 = none
   std::span<const Label> segment_labels = {};  ///< label of segment id, at [id - 1]
   const BlockChoice* blocks = nullptr;  ///< the only ones that the frame may change; null: all
 };

@@ -19,20 +19,14 @@ constexpr int kTilesOfRegionTile = 4;  // and regions against so many at once, e
 constexpr int kSampleStep_px = 8;
 constexpr int kRaysAcross = 12;  // some hundred rays tell three quarters from a half
 constexpr float kBeside_m = 0.05f;
+constexpr double kRounding_m = 1e-4;
 // Of frames that see through the map, as seen_ahead.h says.
 constexpr float kByFar = 0.8f;
 constexpr double kNearlyAll = 0.75, kLeastKnown = 0.5;
 constexpr float kLongestRay = 2.f;  // of the furthest depth: rays at the corners are longer
 
-/// The most of each square of values.
 Image<float> most_of_squares(const Image<float>& values, int side) {
-  Image<float> most((values.width() + side - 1) / side, (values.height() + side - 1) / side);
-  for (int y = 0; y < values.height(); ++y) {
-    const float* row = values.row(y);
-    float* into = most.row(y / side);
-    for (int x = 0; x < values.width(); ++x) into[x / side] = std::max(into[x / side], row[x]);
-  }
-  return most;
+  return joined_squares(values, side, 0.f, [](float a, float b) { return a < b ? b : a; });
 }
 
 /// Furthest free depth by tile of the image.
@@ -82,6 +76,31 @@ class FreeTiles {
   float most_m_ = 0;
 };
 
+/// Whether the map has surface where a pixel shows it, whichever block that is in.
+class SurfaceProbe {
+ public:
+  SurfaceProbe(const VoxelMap& map, const Observation& seen)
+      : seen_(seen),
+        world_from_camera_(seen.world_from_camera.cast<float>()),
+        near_m_(2 * map.config().voxel_size_m),
+        finder_(map) {}
+
+  bool confirms(int x, int y) {
+    const float depth_m = seen_.depth.at(x, y);
+    return depth_m > 0.f &&
+           finder_.seek(world_from_camera_ * seen_.camera.unproject(static_cast<float>(x),
+                                                                    static_cast<float>(y),
+                                                                    depth_m)) &&
+           finder_.observed() && std::fabs(finder_.distance_m()) < near_m_;
+  }
+
+ private:
+  const Observation& seen_;
+  Eigen::Isometry3f world_from_camera_;
+  float near_m_;
+  VoxelFinder finder_;
+};
+
 /// Squares of that side along an edge whose middle pixel is in the image.
 int squares_along(int edge_px, int side_px) {
   return (edge_px + side_px / 2 - 1) / side_px;
@@ -104,6 +123,19 @@ PinholeCamera every(int step_px, const PinholeCamera& camera) {
           (camera.cy - first) / step};
 }
 
+/// Of the pixels that `every` takes, those that have depth.
+bool confirms_more_than(double share, const VoxelMap& map, const Observation& observation,
+                        int step_px) {
+  SurfaceProbe probe(map, observation);
+  int samples = 0, confirmed = 0;
+  for (int y = step_px / 2; y < observation.depth.height(); y += step_px)
+    for (int x = step_px / 2; x < observation.depth.width(); x += step_px) {
+      samples += observation.depth.at(x, y) > 0.f;
+      confirmed += probe.confirms(x, y);
+    }
+  return confirmed > share * samples;
+}
+
 }  // namespace
 
 std::vector<BlockAhead> blocks_ahead(const VoxelMap& map, const Observation& observation,
@@ -117,14 +149,18 @@ std::vector<BlockAhead> blocks_ahead(const VoxelMap& map, const Observation& obs
     return (camera_from_world * center).cast<float>();
   };
   const float radius = static_cast<float>(block_m) * kCubeHalfDiagonal;
+  // Of a block along the optical axis, which is less than the radius; and what rounding may add.
+  const auto half_depth_m = static_cast<float>(
+      camera_from_world.linear().row(2).cwiseAbs().sum() * block_m / 2 + kRounding_m);
   std::vector<BlockAhead> ahead;
   map.for_each_region([&](const BlockRegion& region) {
     const Eigen::Vector3f center = middle(region.index, region_m);
     if (region_tiles.furthest(center, radius * kRegionBlocks) <= 0.f) return;
     for (const std::uint32_t slot : region.slots) {
       if (slot == kNoBlock || (observation.blocks && !observation.blocks->contains(slot))) continue;
-      const float free = tiles.furthest(middle(map.block_index(slot), block_m), radius);
-      if (free > 0.f) ahead.push_back({slot, free});
+      const Eigen::Vector3f block = middle(map.block_index(slot), block_m);
+      const float free = tiles.furthest(block, radius);
+      if (block.z() - half_depth_m < free) ahead.push_back({slot, free});
     }
   });
   std::sort(ahead.begin(), ahead.end(), [&map](const BlockAhead& a, const BlockAhead& b) {
@@ -134,20 +170,11 @@ std::vector<BlockAhead> blocks_ahead(const VoxelMap& map, const Observation& obs
 }
 
 double confirmed_px(const VoxelMap& map, const Observation& observation) {
-  const Eigen::Isometry3f world_from_camera = observation.world_from_camera.cast<float>();
-  const float near_m = 2 * map.config().voxel_size_m;
-  VoxelFinder finder(map);
+  SurfaceProbe probe(map, observation);
   int confirmed = 0;
   for (int y = kSampleStep_px / 2; y < observation.depth.height(); y += kSampleStep_px)
-    for (int x = kSampleStep_px / 2; x < observation.depth.width(); x += kSampleStep_px) {
-      const float depth_m = observation.depth.at(x, y);
-      if (depth_m <= 0.f) continue;
-      const Eigen::Vector3f point =
-          world_from_camera *
-          observation.camera.unproject(static_cast<float>(x), static_cast<float>(y), depth_m);
-      confirmed +=
-          finder.seek(point) && finder.observed() && std::fabs(finder.distance_m()) < near_m;
-    }
+    for (int x = kSampleStep_px / 2; x < observation.depth.width(); x += kSampleStep_px)
+      confirmed += probe.confirms(x, y);
   return static_cast<double>(confirmed) * kSampleStep_px * kSampleStep_px;
 }
 
@@ -157,6 +184,7 @@ bool sees_through_map(const VoxelMap& map, const Observation& observation) {
   if (seen.size() == 0 || map.block_count() == 0) return false;
   const float furthest_m = *std::max_element(seen.begin(), seen.end());
   if (furthest_m <= 0.f) return false;
+  if (confirms_more_than(1 - kNearlyAll, map, observation, step_px)) return false;
   const DepthImage known = cast_rays(map, every(step_px, observation.camera),
                                      observation.world_from_camera, kLongestRay * furthest_m)
                                .depth;

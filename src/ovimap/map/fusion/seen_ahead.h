@@ -29,7 +29,8 @@ double confirmed_px(const VoxelMap& map, const Observation& observation);
 /// quarters of the places where both have surface, by a fifth of the depth at least, and the map
 /// has surface in half of what the frame shows. No drift of poses shows that, and little that
 /// happens in a room: a sensor's depth that is suddenly all far does, and a pose of somewhere else.
-/// Judged by some hundred pixels.
+/// Where more than a quarter of the frame lies on surface of the map it does not, whatever stood
+/// before that. Judged by some hundred pixels.
 bool sees_through_map(const VoxelMap& map, const Observation& observation);
 
 }  // namespace ovimap

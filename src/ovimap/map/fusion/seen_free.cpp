@@ -41,29 +41,41 @@ class Looker {
     for (int z = low.z(); z <= high.z(); ++z)
       for (int y = low.y(); y <= high.y(); ++y)
         for (int x = low.x(); x <= high.x(); ++x)
-          if (in_view({x, y, z}, region_m)) regions.emplace_back().key = pack_index({x, y, z});
+          if (in_view({x, y, z})) regions.emplace_back().key = pack_index({x, y, z});
     return regions;
   }
 
   void look(RegionLook& region) const {
-    const BlockIndex first = unpack_index(region.key) * kRegionBlocks;
-    for (int z = 0; z < kRegionBlocks; ++z)
-      for (int y = 0; y < kRegionBlocks; ++y)
-        for (int x = 0; x < kRegionBlocks; ++x) {
-          const BlockIndex cell = first + BlockIndex(x, y, z);
-          if (!tiles_.all_free(middle(cell, cell_m_), radius_m_)) continue;
-          region.through[BlockRegion::position(cell)] = region.any = true;
-        }
+    look(unpack_index(region.key) * kRegionBlocks, kRegionBlocks, region);
   }
 
  private:
-  Eigen::Vector3f middle(const BlockIndex& index, double size_m) const {
-    return (camera_from_world_ *
-            Eigen::Vector3d((index.cast<double>() + Eigen::Vector3d::Constant(0.5)) * size_m))
-        .cast<float>();
+  /// A cube of so many cells along a side, `first` the lowest of them: it is cut in eight where it
+  /// is neither free nor hidden as a whole.
+  void look(const BlockIndex& first, int side, RegionLook& region) const {
+    const Eigen::Vector3f center = middle_of_cube(first, side);
+    const float radius_m = radius_m_ * static_cast<float>(side);
+    if (tiles_.none_free(center, radius_m)) return;
+    if (tiles_.all_free(center, radius_m)) return mark(first, side, region);
+    if (side == 1) return;
+    for (int part = 0; part < 8; ++part)
+      look(first + BlockIndex(part & 1, part >> 1 & 1, part >> 2) * (side / 2), side / 2, region);
   }
-  bool in_view(const BlockIndex& region, double region_m) const {
-    return tiles_.any_free(middle(region, region_m), radius_m_ * kRegionBlocks);
+  static void mark(const BlockIndex& first, int side, RegionLook& region) {
+    for (int z = 0; z < side; ++z)
+      for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x)
+          region.through[BlockRegion::position(first + BlockIndex(x, y, z))] = true;
+    region.any = true;
+  }
+  Eigen::Vector3f middle_of_cube(const BlockIndex& first, int side) const {
+    const Eigen::Vector3d middle =
+        (first.cast<double>() + Eigen::Vector3d::Constant(0.5 * side)) * cell_m_;
+    return (camera_from_world_ * middle).cast<float>();
+  }
+  bool in_view(const BlockIndex& region) const {
+    return tiles_.any_free(middle_of_cube(region * kRegionBlocks, kRegionBlocks),
+                           radius_m_ * kRegionBlocks);
   }
 
   Pose camera_from_world_;

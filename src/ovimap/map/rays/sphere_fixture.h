@@ -64,8 +64,13 @@ struct SphereScene {
     const std::array<Label, 1> labels{label};
     for (int i = 0; i < views; ++i) {
       const Pose world_from_camera = pose(2 * M_PI * i / views);
-      integrate(map,
-                {image, camera, world_from_camera, &colors, &slopes, nullptr, &segments, labels});
+      integrate(map, {.depth = image,
+                      .camera = camera,
+                      .world_from_camera = world_from_camera,
+                      .color = &colors,
+                      .plane_slope = &slopes,
+                      .segment_ids = &segments,
+                      .segment_labels = labels});
     }
   }
 };

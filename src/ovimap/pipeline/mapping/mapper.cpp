@@ -45,7 +45,8 @@ Observation whole_of(const PreparedFrame& prepared) {
           .camera = prepared.frame->depth_camera,
           .world_from_camera = prepared.frame->world_from_camera,
           .plane_slope = &surface.plane_slope,
-          .sigma_m = estimate.sigma_m.empty() ? nullptr : &estimate.sigma_m};
+          .sigma_m = estimate.sigma_m.empty() ? nullptr : &estimate.sigma_m,
+          .free_m = prepared.free_m.empty() ? nullptr : &prepared.free_m};
 }
 
 /// Nothing where nothing moves, or there are no segments.

@@ -31,6 +31,20 @@ std::optional<DepthReading> read_whole(const Frame& frame, const MapperConfig& c
   return read_depth(depth, frame.depth_camera, config, timers);
 }
 
+Image<float> read_free_depth(const Frame& frame, const DepthReading& read,
+                             const MapperConfig& config, StageTimers& timers) {
+  const bool asked = config.free_space.enabled || config.motion.mode != DynamicMode::kOff;
+  if (!asked || read.estimate.sigma_m.empty()) return {};
+  auto t = timers.measure("free_depth");
+  return free_depth(config.map,
+                    {.depth = read.estimate.depth_m,
+                     .camera = frame.depth_camera,
+                     .world_from_camera = frame.world_from_camera,
+                     .plane_slope = &read.surface.plane_slope,
+                     .sigma_m = &read.estimate.sigma_m},
+                    config.free_space);
+}
+
 /// Each may be a super-point of its own for ever; SAM's grids give some hundred.
 constexpr std::size_t kMostEntities = 2000;
 constexpr double kAllOfIt = 0.98;  // of a picture: borders may be left out
@@ -52,9 +66,11 @@ PreparedFrame prepare_frame(std::shared_ptr<const Frame> frame, const MapperConf
   }();
   DepthReading read = read_depth(frame->depth, frame->depth_camera, config, timers);
   std::optional<DepthReading> whole = read_whole(*frame, config, timers);
+  Image<float> free_m = read_free_depth(*frame, whole ? *whole : read, config, timers);
   RgbImage color = registration.color_at_depth(frame->color);
   return {std::move(frame),         std::move(registration), std::move(read.surface),
-          std::move(read.estimate), std::move(color),        std::move(whole)};
+          std::move(read.estimate), std::move(color),        std::move(whole),
+          std::move(free_m)};
 }
 
 std::optional<FrameSegments> cut_segments(const PreparedFrame& prepared, MaskSource* masks,

@@ -28,6 +28,7 @@ struct PreparedFrame {
   /// Of the depth with what was taken out of the frame (Frame::taken_out), where something was: for
   /// what moves and what is empty.
   std::optional<DepthReading> whole = std::nullopt;
+  Image<float> free_m;  ///< free_depth of the same; empty where nobody asks for it
 };
 
 PreparedFrame prepare_frame(std::shared_ptr<const Frame> frame, const MapperConfig& config,

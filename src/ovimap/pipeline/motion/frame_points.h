@@ -21,6 +21,9 @@ class FramePoints {
   Eigen::Vector3f at(int x, int y, float depth_m) const {
     return origin_ + rays_.at(x, y) * depth_m;
   }
+  /// Of an image row, from `origin`.
+  PixelRays::Row row(int y) const { return rays_.row(y); }
+  const Eigen::Vector3f& origin() const { return origin_; }
   /// Of a pixel by its place in the image, row by row.
   Eigen::Vector3f at(int pixel) const {
     const int x = pixel % depth_.width(), y = pixel / depth_.width();

@@ -55,9 +55,12 @@ MovingPixels MotionFilter::see(const VoxelMap& map, const Observation& observati
   mark_taken_out(taken_out, moving);
   space_.take(moving.cells, ticks, ticks_of(config_.stays_s));
   stand(map, observation, moving, ticks);
-  if (look && !moving.refused)
+  if (look && !moving.refused) {
+    Image<float> made;
     space_.look(observation.camera, observation.world_from_camera,
-                free_depth(map.config(), observation, free_space), map.config().block_size_m());
+                free_depth(map.config(), observation, free_space, made),
+                map.config().block_size_m());
+  }
   if (config_.mode == DynamicMode::kTrack) tracker_.add(moving.patches, timestamp_s, number);
   if (moving.ids.empty()) return moving;
   recent_.emplace_back(number, moving.ids);

@@ -7,18 +7,15 @@
 #include <cmath>
 
 #include "ovimap/base/config.h"
-#include "ovimap/base/parallel.h"
 #include "ovimap/map/fusion/seen_ahead.h"
 #include "ovimap/map/rays/surface_lookup.h"
+#include "ovimap/pipeline/motion/contradicting_pixels.h"
 #include "ovimap/pipeline/motion/frame_points.h"
 
 namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kRowsPerTask = 16;
-constexpr float kUnknownSlope = 0.5f;  // of a plane that does not fit, as FreeSpaceConfig takes it
-constexpr float kLeastSlope = 0.1f;
 constexpr double kNearlyAll = 0.75;  // of what a frame shows
 constexpr std::uint16_t kMostPatches = MovingPixels::kTakenOut - 1;
 
@@ -223,32 +220,6 @@ void list_fields(MotionConfig& config, ConfigFields& fields) {
              "tracks: how fast a thing may be, metres a second");
   fields.add("forget_s", config.forget_s, 0.f, 1000.f,
              "tracks: what was not seen for so long is another thing, seconds");
-}
-
-Image<std::uint8_t> contradicting_pixels(const VoxelMapConfig& map, const SeenFree& space,
-                                         const Observation& seen, const MotionConfig& config) {
-  const int width = seen.depth.width(), height = seen.depth.height();
-  const FramePoints points(seen);
-  const float inverse_cell = 1.f / map.block_size_m(),
-              margin_m = config.margin_voxels * map.voxel_size_m;
-  Image<std::uint8_t> result(width, height);
-  const auto rows = static_cast<std::size_t>(height);
-  parallel_for_ranges(rows, kRowsPerTask, [&](std::size_t begin, std::size_t end) {
-    SpaceFinder finder(space), behind(space);
-    const auto is_empty = [&](SpaceFinder& at, const Eigen::Vector3f& point) {
-      return at.at(block_at(point, inverse_cell)).looks >= config.looks;
-    };
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
-      for (int x = 0; x < width; ++x) {
-        const float depth_m = seen.depth.at(x, y);
-        if (depth_m <= 0.f || !is_empty(finder, points.at(x, y, depth_m))) continue;
-        const float fitted = seen.plane_slope->at(x, y);
-        const float slope = fitted > 0.f ? std::max(fitted, kLeastSlope) : kUnknownSlope;
-        const float margin = std::max(margin_m / slope, config.sigmas * seen.sigma_m->at(x, y));
-        result.at(x, y) = is_empty(behind, points.at(x, y, depth_m + margin));
-      }
-  });
-  return result;
 }
 
 MovingPixels find_moving(const VoxelMap& map, const SeenFree& space, const Observation& seen,

@@ -40,10 +40,4 @@ struct MovingPixels {
 MovingPixels find_moving(const VoxelMap& map, const SeenFree& space, const Observation& observation,
                          const MotionConfig& config);
 
-/// The pixels in which surface contradicts seen-empty space: what find_moving begins with. Not 0:
-/// it does.
-Image<std::uint8_t> contradicting_pixels(const VoxelMapConfig& map, const SeenFree& space,
-                                         const Observation& observation,
-                                         const MotionConfig& config);
-
 }  // namespace ovimap
