@@ -249,6 +249,7 @@ bool take_voxels(const std::vector<LoadedPlace>& places, std::uint8_t* body, con
     const float value = std::bit_cast<float>(weight.take());
     weights_valid = weights_valid && value >= 0.f && value <= std::numeric_limits<float>::max();
     block->weight[v] = value;
+    block->note_observed(v);
   }
   Planes<std::uint16_t> green = color_planes(body, at, 0), red = color_planes(body, at, 1),
                         blue = color_planes(body, at, 2);

@@ -69,6 +69,14 @@ TEST(MapFileBlocks, RandomBlocksReturnBitForBit) {
   }
 }
 
+TEST(MapFileBlocks, RowsWithObservedVoxelsAreNoted) {
+  const VoxelMap map = through_tiles(random_map(50, 3));
+  for (std::uint32_t slot = 0; slot < map.block_count(); ++slot)
+    for (std::size_t v = 0; v < kBlockVoxels; ++v)
+      ASSERT_TRUE(map.block(slot).weight[v] <= 0.f ||
+                  map.block(slot).observed_rows >> v / kBlockSide & 1);
+}
+
 TEST(MapFileBlocks, DoubtsTakeNoSpaceWhereThereAreNone) {
   VoxelMap map;
   VoxelBlock& block = map.writable_block(map.find_or_create({0, 0, 0}));

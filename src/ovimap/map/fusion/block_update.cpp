@@ -233,6 +233,7 @@ OVIMAP_VECTORIZE void update_block(const FusionView& view, VoxelBlock& block) {
     if (view.frame.color) blend_colors(*view.frame.color, row, share, color);
     if (view.frame.segment_ids) voter.vote(row, seen, first);
     if (!block.doubts.empty()) end_doubts(view, seen, block.doubts.data() + first);
+    block.note_observed(static_cast<std::size_t>(first));
   });
 }
 

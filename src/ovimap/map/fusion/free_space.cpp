@@ -28,27 +28,25 @@ struct Doubted {
   float image_px = 0;  ///< of the image that their surface takes
 };
 
-/// `furthest_m`: BlockAhead::free_m. Few rows of a block claim surface before that, and only those
-/// are projected.
+/// `furthest_m`: BlockAhead::free_m. Voxels are read last, where they lie before what is free: that
+/// takes longer than to find out.
 OVIMAP_VECTORIZE void find_doubted(const FusionView& view, const Image<float>& free_m,
                                    float furthest_m, const VoxelBlock& block, Doubted& result) {
   const Eigen::Vector3f origin = view.block_origin(block.index);
   const Eigen::Matrix3f& steps = view.voxel_steps;
   const Floats surface = broadcast(view.to_tsdf / view.voxels_per_m);  // one voxel, as stored
-  const Floats along = {0.f, 1.f, 2.f, 3.f, 4.f, 5.f, 6.f, 7.f};
   ProjectedRow row;
-  for (std::size_t i = 0; i < result.rows.size(); ++i) {
+  for (std::uint64_t rows = block.observed_rows; rows != 0; rows &= rows - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(rows));
     const float y = static_cast<float>(i % kBlockSide), z = static_cast<float>(i / kBlockSide);
     const Eigen::Vector3f start = origin + steps.col(1) * y + steps.col(2) * z;
-    // Before anything of the block is read: most rows lie behind.
     if (std::min(start.z(), start.z() + (kLanes - 1) * steps(2, 0)) >= furthest_m) continue;
-    const Floats distance = load_integers(block.tsdf.data() + i * kBlockSide);
-    const Ints claims = (start.z() + along * steps(2, 0) < furthest_m) & (distance < surface);
-    if (!any(claims)) continue;
-    const Ints observed = claims & (load(block.weight.data() + i * kBlockSide) > 0.f);
-    if (!any(observed)) continue;
     project(view.camera, start, steps, row);
-    const Ints through = observed & row.inside & (row.z_m < gather(free_m.data(), row.pixel));
+    const Ints before = row.inside & (row.z_m < gather(free_m.data(), row.pixel));
+    if (!any(before)) continue;
+    const Floats distance = load_integers(block.tsdf.data() + i * kBlockSide);
+    const Ints through =
+        before & (distance < surface) & (load(block.weight.data() + i * kBlockSide) > 0.f);
     if (!any(through)) continue;
     for (int lane = 0; lane < kLanes; ++lane) {
       if (!through[lane]) continue;

@@ -192,6 +192,8 @@ TEST(Integrate, EqualsThePlainFusionToTheBit) {
     integrate(fast, observation);
     plain::integrate(plain, observation);
     ASSERT_EQ(fast.content_hash(), plain.content_hash()) << "view " << view;
+    for (std::uint32_t slot = 0; slot < fast.block_count(); ++slot)
+      ASSERT_EQ(fast.block(slot).observed_rows, plain.find(fast.block_index(slot))->observed_rows);
   }
   EXPECT_GT(fast.block_count(), 100u);
 }

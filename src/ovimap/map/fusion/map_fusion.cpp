@@ -183,6 +183,7 @@ void fuse_voxel(const VoxelMap& map, VoxelBlock& block, int voxel, const Sample&
   block.tsdf[v] = static_cast<VoxelBlock::Tsdf>(std::lround(units));
   fuse_color(block, v, sample, own);
   block.weight[v] = std::min(total, map.config().max_weight);
+  block.note_observed(v);
   if (!block.doubts.empty()) block.doubts[v] = 0;
   fuse_labels(block, voxel, sample.labels, offset, map.labels());
 }

@@ -53,6 +53,7 @@ TEST(FuseMap, TwoHalvesMakeTheWhole) {
     for (int v = 0; v < kBlockVoxels; ++v) {
       const auto i = static_cast<std::size_t>(v);
       ASSERT_NEAR(fused->weight[i], expected.weight[i], 1e-3f * expected.weight[i]);
+      ASSERT_TRUE(fused->weight[i] <= 0.f || fused->observed_rows >> i / kBlockSide & 1);
       ASSERT_NEAR(fused->tsdf[i], expected.tsdf[i], 20);  // rounded after every frame
       ASSERT_NEAR(fused->color[0][i], expected.color[0][i], 40);
       const LabelSupport a = voxel_labels(*fused, v, left.labels())[0],

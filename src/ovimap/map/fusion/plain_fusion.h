@@ -76,6 +76,7 @@ class VoxelFusion {
     const float old = block_.tsdf[voxel];
     block_.tsdf[voxel] = static_cast<VoxelBlock::Tsdf>(rounded(old + share * (target - old)));
     block_.weight[voxel] = std::min(sum, view_.max_weight);
+    block_.note_observed(voxel);
     if (view_.frame.color) blend_color(voxel, (*view_.frame.color)[pixel], share);
     if (std::fabs(distance) > std::max(view_.label_band_m, sigma_m(pixel))) return;
     if (view_.frame.segment_ids) vote(voxel, (*view_.frame.segment_ids)[pixel], point.z());

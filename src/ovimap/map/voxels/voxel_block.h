@@ -80,6 +80,9 @@ struct VoxelBlock {
 
   BlockIndex index;
   std::uint32_t forest_epoch = 0;  ///< merges up to this epoch are already written into the palette
+  /// A bit for each row along x of which a voxel may have been observed: whoever looks for surface
+  /// need not read the others.
+  std::uint64_t observed_rows = 0;
   std::vector<Label> palette{kNoLabel};  ///< labels of the block; slots hold positions in it
 
   std::array<Tsdf, kBlockVoxels> tsdf;     ///< signed distance in truncations, positive in front
@@ -93,6 +96,8 @@ struct VoxelBlock {
   /// none, as in most blocks.
   std::vector<std::uint8_t> doubts;
 
+  /// To be called of every voxel that gets a weight.
+  void note_observed(std::size_t voxel) { observed_rows |= std::uint64_t{1} << voxel / kBlockSide; }
   /// The voxel is as never observed.
   void forget(std::size_t voxel) {
     tsdf[voxel] = 0;

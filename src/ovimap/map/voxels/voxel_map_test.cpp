@@ -84,7 +84,7 @@ TEST(VoxelMap, ContentHashIgnoresCreationOrderAndSeesEveryVoxel) {
 }
 
 TEST(VoxelBlock, TakesTwentyFourBytesAVoxel) {
-  EXPECT_LE(sizeof(VoxelBlock), 24u * kBlockVoxels + 64u);
+  EXPECT_LE(sizeof(VoxelBlock), 24u * kBlockVoxels + 72u);
 }
 
 }  // namespace
