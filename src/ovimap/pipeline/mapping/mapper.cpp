@@ -101,9 +101,13 @@ Mapper::~Mapper() = default;
 Mapper::Mapper(Mapper&&) noexcept = default;
 
 FrameReport Mapper::process(const Frame& frame) {
-  live_steps_.clear();  // they no longer tell how all of the map was made
   const std::shared_ptr<const Frame> borrowed(std::shared_ptr<const Frame>(), &frame);
-  const PreparedFrame prepared = prepare_frame(borrowed, config_, timers_);
+  return process(prepare_frame(borrowed, config_, timers_));
+}
+
+FrameReport Mapper::process(const PreparedFrame& prepared) {
+  live_steps_.clear();  // they no longer tell how all of the map was made
+  const Frame& frame = *prepared.frame;
   std::optional<FrameSegments> cut;
   if (wants_masks(frame)) cut = cut_segments(prepared, masks_.get(), config_, timers_);
   FrameReport report = fuse(prepared, cut ? &*cut : nullptr);

@@ -67,6 +67,8 @@ class Mapper {
   /// nearly all of the map that it sees (sees_through_map), and, once, what the encoder threw on
   /// views of earlier frames; the map is then as it was before the frame, which can be given again.
   FrameReport process(const Frame& frame);
+  /// The same, of a frame that was prepared with the mapper's config.
+  FrameReport process(const PreparedFrame& prepared);
 
   // The parts of `process`, for a pipeline that runs the others on threads of its own.
 

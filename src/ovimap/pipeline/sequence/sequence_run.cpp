@@ -16,11 +16,34 @@ namespace {
 
 constexpr std::size_t kFramesUntilMotion = 30;  // tell early, not after an hour
 
+/// A frame that was read and prepared while another was mapped.
+struct FrameAhead {
+  std::string fault;             ///< why it could not be read
+  std::shared_ptr<Frame> frame;  ///< its pose may be found later, preparing does not ask for it
+  std::future<PreparedFrame> prepared;  ///< is there, or throws what preparing threw
+  StageTimers timers;
+};
+
+FrameAhead read_ahead(const FrameSource& source, std::int64_t position,
+                      const MapperConfig& config) {
+  FrameRead read = source.read(position);
+  FrameAhead ahead;
+  ahead.fault = std::move(read.fault);
+  if (!read.frame) return ahead;
+  ahead.frame = std::make_shared<Frame>(std::move(*read.frame));
+  std::packaged_task<PreparedFrame()> prepare(
+      [&] { return prepare_frame(ahead.frame, config, ahead.timers); });
+  ahead.prepared = prepare.get_future();
+  prepare();
+  return ahead;
+}
+
 /// Returns what kept the frame out of the map, empty when nothing did. What is wrong with the very
 /// first frame is wrong with all of them as a rule, and better told at once.
-std::string fuse(const Frame& frame, Mapper& mapper, bool others_went_well, FrameReport& report) {
+std::string fuse(std::future<PreparedFrame> prepared, Mapper& mapper, bool others_went_well,
+                 FrameReport& report) {
   try {
-    report = mapper.process(frame);
+    report = mapper.process(prepared.get());
     return {};
   } catch (const FrameError& fault) {
     if (!others_went_well) throw;
@@ -61,23 +84,25 @@ SequenceResult run_sequence(const FrameSource& source, const std::vector<std::in
     throw Error(concat("no frame is asked for: --frames must leave some of the recording's ",
                        source.size(), ", which are counted from 0"));
   const auto start = std::chrono::steady_clock::now();
-  const auto read = [&source](std::int64_t position) {
-    return std::async(std::launch::async, [&source, position] { return source.read(position); });
+  const auto read = [&source, &config = mapper.config()](std::int64_t position) {
+    return std::async(std::launch::async, read_ahead, std::cref(source), position,
+                      std::cref(config));
   };
   SequenceResult result = std::move(begun);
-  std::future<FrameRead> next;
+  std::future<FrameAhead> next;
   if (!positions.empty()) next = read(positions[0]);
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    FrameRead current = [&] {
+    FrameAhead current = [&] {
       auto t = mapper.timers().measure("wait_for_frame");
       return next.get();
     }();
     if (i + 1 < positions.size()) next = read(positions[i + 1]);
+    mapper.timers().merge(current.timers);
     FrameReport report;
     if (current.frame && finder && !finder->locate(*current.frame, mapper).tracked)
       current.fault = concat(current.frame->name, ": the camera is lost");
     if (current.frame && current.fault.empty())
-      current.fault = fuse(*current.frame, mapper, !result.frames.empty(), report);
+      current.fault = fuse(std::move(current.prepared), mapper, !result.frames.empty(), report);
     if (current.fault.empty()) {
       const Frame& frame = *current.frame;
       if (result.frames.empty() || is_other_camera(result.depth_camera, frame.depth_camera))

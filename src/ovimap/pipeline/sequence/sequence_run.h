@@ -32,7 +32,8 @@ struct SequenceResult {
 using SequenceProgress =
     std::function<bool(std::size_t done, std::size_t total, const FrameReport* report)>;
 
-/// Feeds the frames at `positions` to the mapper, decoding the next frame while one is mapped. Bad
+/// Feeds the frames at `positions` to the mapper, reading and preparing the next frame
+/// while one is mapped. Bad
 /// frames are skipped and listed, and so are those whose masks are bad once a frame went well.
 /// Throws Error when no frame was usable, naming the commonest fault, and what else the mask source
 /// throws.
