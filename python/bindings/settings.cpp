@@ -97,8 +97,8 @@ void bind_settings(nb::module_& module) {
         return concat(setting.name, "=", setting.value, " (", setting.accepts, "): ", setting.help);
       });
   module.def("settings", &list_settings, nb::arg("of") = "mapper",
-             "Every setting of a component: mapper, live, source, masks, query, check or "
-             "evaluation. Raises Error for another.");
+             "Every setting of a component: mapper, live, source, masks, query, check, calibrate "
+             "or evaluation. Raises Error for another.");
 }
 
 }  // namespace ovimap::python

@@ -4,11 +4,13 @@
 
 #include <unistd.h>
 
+#include <cmath>
 #include <fstream>
 #include <map>
 
 #include <gtest/gtest.h>
 
+#include "ovimap/base/error_fixture.h"
 #include "ovimap/io/settings/config_file.h"
 
 namespace ovimap {
@@ -25,12 +27,7 @@ class LoadConfigTest : public ::testing::Test {
 
   std::string load(const std::string& text) {
     std::ofstream(path_) << text;
-    try {
-      load_config(path_, fields_);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return {};
+    return fault_of([&] { load_config(path_, fields_); });
   }
 
   std::filesystem::path path_;
@@ -81,6 +78,8 @@ TEST(MapperPreset, ReferenceIsWhatTheReleasedCodeDoes) {
       {"instance.instances", "entity_votes"},
       {"instance.merge_min_count", "10"},
       {"free_space.enabled", "false"},
+      {"motion.mode", "off"},
+      {"depth.enabled", "false"},
       {"map.truncation_voxels", "5"},
       {"map.max_weight", "10000"},
       {"map.label_band_voxels", "5"},
@@ -116,6 +115,10 @@ TEST(MapperPreset, ReferenceIsWhatTheReleasedCodeDoes) {
   }
   EXPECT_EQ(found, released.size()) << "a setting has another name";
   EXPECT_FLOAT_EQ(config.map.voxel_size_m, 0.01f);
+  EXPECT_FLOAT_EQ(config.map.min_mesh_weight, 1e-4f);
+  EXPECT_FLOAT_EQ(config.segment.surface.discontinuity_ratio, 0.01f);
+  EXPECT_NEAR(config.segment.concave_angle_rad, std::acos(0.97f), 1e-3f);
+  EXPECT_FLOAT_EQ(config.segment.regrow_m, 0.05f);
   EXPECT_FLOAT_EQ(config.semantics.views.theta_novel, 0.1f);
   EXPECT_FLOAT_EQ(config.semantics.crops.padding_step, 0.1f);
   EXPECT_FLOAT_EQ(config.association.merge_min_share, 0.15f);
