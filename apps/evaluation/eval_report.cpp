@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 #include "eval_report.h"
+#include "ovimap/io/exports/json_values.h"
 
 #include <array>
 #include <cstdio>
@@ -77,20 +78,17 @@ nlohmann::json json_of(const SemanticScores& scores, bool panoptic) {
 }
 
 nlohmann::json json_of(const ClassScores& scores, const LabelSet& set, bool panoptic) {
-  const auto figure = [](const std::optional<double>& value) {
-    return value ? nlohmann::json(*value) : nlohmann::json();
-  };
   nlohmann::json json = {
       {"name", set.labels[static_cast<std::size_t>(scores.class_number - 1)].name},
       {"truth_vertices", scores.truth_vertices},
       {"predicted_vertices", scores.predicted_vertices},
-      {"iou", figure(scores.iou)},
-      {"accuracy", figure(scores.accuracy)},
-      {"ap25", figure(scores.ap25)},
-      {"ap50", figure(scores.ap50)},
-      {"ap75", figure(scores.ap75)},
-      {"ap", figure(scores.ap)}};
-  if (panoptic) json["pq"] = figure(scores.pq);
+      {"iou", json_or_null(scores.iou)},
+      {"accuracy", json_or_null(scores.accuracy)},
+      {"ap25", json_or_null(scores.ap25)},
+      {"ap50", json_or_null(scores.ap50)},
+      {"ap75", json_or_null(scores.ap75)},
+      {"ap", json_or_null(scores.ap)}};
+  if (panoptic) json["pq"] = json_or_null(scores.pq);
   return json;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 #include "reproduce_report.h"
+#include "ovimap/io/exports/json_values.h"
 
 #include <cmath>
 
@@ -23,8 +24,7 @@ nlohmann::json figures_json(const std::vector<AblationColumn>& columns,
                             const AblationResult& result, Protocol protocol) {
   nlohmann::json json = nlohmann::json::object();
   for (const AblationColumn& column : columns) {
-    const auto figure = column.figure(result.figures, protocol);
-    json[column.name] = figure ? nlohmann::json(*figure) : nlohmann::json();
+    json[column.name] = json_or_null(column.figure(result.figures, protocol));
   }
   return json;
 }

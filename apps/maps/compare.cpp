@@ -9,6 +9,7 @@
 #include "ovimap/base/parallel.h"
 #include "ovimap/frames/recording/number_text.h"
 #include "ovimap/image/codec.h"
+#include "ovimap/io/exports/json_values.h"
 #include "ovimap/io/map_file/map_edits.h"
 #include "ovimap/io/map_file/map_file.h"
 #include "ovimap/io/mesh/ply.h"
@@ -134,7 +135,7 @@ nlohmann::json change_json(const HistoryChange& change, const MapHistory& histor
           {"box_before", box_json<nlohmann::json>(first.before)},
           {"box_after", box_json<nlohmann::json>(last.after)},
           {"visit", last.visit},
-          {"time_s", date ? nlohmann::json(*date) : nlohmann::json()},
+          {"time_s", json_or_null(date)},
           {"evidence", change_text(change, history, dates)}};
 }
 
@@ -258,7 +259,7 @@ int merge(const CompareOptions& options) {
       pairs.push_back({{"a", pair.a},
                        {"b", pair.b},
                        {"overlap", pair.overlap},
-                       {"cosine", pair.cosine ? nlohmann::json(*pair.cosine) : nlohmann::json()}});
+                       {"cosine", json_or_null(pair.cosine)}});
     for (const MergeConflict& conflict : merged.conflicts)
       conflicts.push_back({{"a", conflict.a}, {"b", conflict.b}, {"what", conflict.what}});
     print_json({{"map", options.out.string()},

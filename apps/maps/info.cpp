@@ -6,6 +6,7 @@
 #include "apps/command/command.h"
 #include "ovimap/base/text/printable.h"
 #include "ovimap/io/exports/instance_json.h"
+#include "ovimap/io/exports/json_values.h"
 #include "ovimap/io/map_file/map_check.h"
 #include "ovimap/io/map_file/map_file_access.h"
 #include "ovimap/io/map_file/searchable_map.h"
@@ -101,10 +102,6 @@ void print_rooms(const InfoOptions& options) {
                 double{door.place_m.x()}, double{door.place_m.y()}, double{door.width_m});
 }
 
-nlohmann::json known(const std::optional<double>& date) {
-  return date ? nlohmann::json(*date) : nlohmann::json();
-}
-
 /// Adds to each object when it was seen last.
 void add_sightings(const MapSightings& sightings, const HistoryDates& dates,
                    nlohmann::json& instances) {
@@ -114,16 +111,16 @@ void add_sightings(const MapSightings& sightings, const HistoryDates& dates,
       if (const auto seen = sightings.last.find(label); seen != sightings.last.end())
         last = std::max(last, seen->second);
     if (const auto seen = dates.sighting(last))
-      instance["last_seen"] = {{"visit", seen->visit}, {"time_s", known(seen->time_s)}};
+      instance["last_seen"] = {{"visit", seen->visit}, {"time_s", json_or_null(seen->time_s)}};
   }
 }
 
 /// Adds when visits were and events happened, in seconds since 1970 (UTC) or null.
 void add_dates(const HistoryDates& dates, nlohmann::json& history) {
   for (std::size_t i = 0; i < history["visits"].size(); ++i)
-    history["visits"][i]["begin_s"] = known(dates.begin_of(static_cast<int>(i) + 1));
+    history["visits"][i]["begin_s"] = json_or_null(dates.begin_of(static_cast<int>(i) + 1));
   for (std::size_t i = 0; i < history["events"].size(); ++i)
-    history["events"][i]["time_s"] = known(dates.date_of(i));
+    history["events"][i]["time_s"] = json_or_null(dates.date_of(i));
 }
 
 void print_parts(std::span<const ObjectPart* const> parts) {

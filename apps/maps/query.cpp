@@ -8,6 +8,7 @@
 #include "ovimap/base/parallel.h"
 #include "ovimap/image/codec.h"
 #include "ovimap/instance/instance_mesh.h"
+#include "ovimap/io/exports/json_values.h"
 #include "ovimap/io/map_file/map_edits.h"
 #include "ovimap/io/mesh/map_mesh.h"
 #include "ovimap/io/mesh/ply.h"
@@ -50,16 +51,13 @@ nlohmann::json part_json(const QueryMatch& match) {
 
 nlohmann::json match_json(const QueryMatch& match, const SearchObject& object,
                           const std::string& title) {
-  const auto number = [](const std::optional<double>& value) {
-    return value ? nlohmann::json(*value) : nlohmann::json();
-  };
   return {{"id", match.id},
           {"name", object.name},
           {"title", title},
           {"score", match.score},
           {"standard_score", match.standard_score},
-          {"p_value", number(match.p_value)},
-          {"probability", number(match.probability)},
+          {"p_value", json_or_null(match.p_value)},
+          {"probability", json_or_null(match.probability)},
           {"evidence", match.evidence},
           {"part", part_json(match)},
           {"box", {{"min", point_json(object.box.min())}, {"max", point_json(object.box.max())}}},

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ovimap/base/error.h"
+#include "ovimap/base/error_fixture.h"
 
 namespace ovimap {
 namespace {
@@ -15,13 +16,8 @@ namespace {
 constexpr std::size_t kMost = 2'000'000;
 
 /// The message of the Error for `text`; empty: none.
-std::string fault_of(const std::string& text, std::size_t most_bytes = kMost) {
-  try {
-    parse_json(text, "the body", most_bytes);
-    return {};
-  } catch (const Error& error) {
-    return error.what();
-  }
+std::string json_fault(const std::string& text, std::size_t most_bytes = kMost) {
+  return fault_of([&] { parse_json(text, "the body", most_bytes); });
 }
 
 std::string repeated(const std::string& piece, std::size_t times) {
@@ -43,36 +39,36 @@ TEST(BoundedJson, EndsAtADepth) {
     const auto nested = [&](std::size_t levels) {
       return repeated(opening, levels) + "1" + repeated(closing, levels);
     };
-    EXPECT_EQ(fault_of(nested(kDeepestDocument)), "");
-    EXPECT_EQ(fault_of(nested(kDeepestDocument + 1)),
+    EXPECT_EQ(json_fault(nested(kDeepestDocument)), "");
+    EXPECT_EQ(json_fault(nested(kDeepestDocument + 1)),
               "the body is nested more than 32 levels deep");
-    EXPECT_NE(fault_of(repeated(opening, 300'000)), "") << "and never ends";
+    EXPECT_NE(json_fault(repeated(opening, 300'000)), "") << "and never ends";
   };
   check("[", "]");
   check(R"({"a":)", "}");
 }
 
 TEST(BoundedJson, SaysWhereItGoesWrong) {
-  EXPECT_EQ(fault_of("{\n  \"a\": nan}"), "the body is not JSON: line 2, column 9");
-  EXPECT_EQ(fault_of("[1, 2"), "the body is not JSON: line 1, column 5, where it ends");
-  EXPECT_EQ(fault_of(""), "the body is not JSON: line 1, column 1, where it ends");
-  EXPECT_EQ(fault_of(R"({"a": 1, "b": 2, "a": 3})"),
+  EXPECT_EQ(json_fault("{\n  \"a\": nan}"), "the body is not JSON: line 2, column 9");
+  EXPECT_EQ(json_fault("[1, 2"), "the body is not JSON: line 1, column 5, where it ends");
+  EXPECT_EQ(json_fault(""), "the body is not JSON: line 1, column 1, where it ends");
+  EXPECT_EQ(json_fault(R"({"a": 1, "b": 2, "a": 3})"),
             R"(the body has the key "a" twice in one object)");
-  EXPECT_EQ(fault_of("[[1],[2],[3]]", 10),
+  EXPECT_EQ(json_fault("[[1],[2],[3]]", 10),
             "the body is larger than 10 bytes, the most that is accepted");
-  EXPECT_EQ(fault_of(std::string("[1]\0[2]", 7)), "the body is no text: byte 4 is NUL");
+  EXPECT_EQ(json_fault(std::string("[1]\0[2]", 7)), "the body is no text: byte 4 is NUL");
 }
 
 TEST(BoundedJson, RefusesWhatIsNoJson) {
   for (const char* text :
        {"NaN", "[Infinity]", "[1e999]", "[1,]", "{a: 1}", "'a'", "[1] 2", "/* */ 1", "[01]",
         "[\"\xff\"]", "[\"\xc0\xaf\"]", "[\"\xed\xa0\x80\"]", R"(["\ud800"])", "[\"\n\"]"})
-    EXPECT_NE(fault_of(text).find("is not JSON"), std::string::npos) << text;
+    EXPECT_NE(json_fault(text).find("is not JSON"), std::string::npos) << text;
 }
 
 TEST(BoundedJson, FaultsAreOneShortLine) {
   const std::string key = "\\n" + repeated("x", 100'000);
-  const std::string fault = fault_of("{\"" + key + "\": 1, \"" + key + "\": 2}");
+  const std::string fault = json_fault("{\"" + key + "\": 1, \"" + key + "\": 2}");
   EXPECT_NE(fault.find("twice"), std::string::npos);
   EXPECT_LT(fault.size(), 200u);
   EXPECT_EQ(fault.find('\n'), std::string::npos);

@@ -6,18 +6,14 @@
 #include <yaml-cpp/yaml.h>
 
 #include "ovimap/base/error.h"
+#include "ovimap/base/error_fixture.h"
 
 namespace ovimap {
 namespace {
 
 /// The message of the Error for `text`; empty: none.
 std::string yaml_fault(const std::string& text, std::size_t most_bytes = kSmallDocument) {
-  try {
-    parse_yaml(text, "calibration.yaml", most_bytes);
-    return {};
-  } catch (const Error& error) {
-    return error.what();
-  }
+  return fault_of([&] { parse_yaml(text, "calibration.yaml", most_bytes); });
 }
 
 std::string copies_of(const std::string& piece, std::size_t times) {

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "ovimap/base/error_fixture.h"
+
 namespace ovimap {
 namespace {
 
@@ -29,12 +31,7 @@ ConfigFields fields_of(ExampleConfig& config) {
 }
 
 std::string message_of(ConfigFields& fields, const char* name, const char* text) {
-  try {
-    fields.set(name, text);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return {};
+  return error_of([&] { fields.set(name, text); });
 }
 
 TEST(ConfigFields, SetsEveryKindOfField) {

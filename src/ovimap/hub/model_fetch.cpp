@@ -95,21 +95,17 @@ void check_room(const FetchTarget& target, const fs::path& folder) {
 /// not fetched.
 bool is_there(const FetchTarget& target, const fs::path& folder) {
   if (!fs::exists(folder)) return false;
-  const auto key = [&](const ModelFolder& model, const char* name) {
-    const auto found = model.extras.find(name);
-    return found == model.extras.end() ? std::string() : found->second;
-  };
   ModelFolder model;
   try {
     model = read_model_folder(folder);
   } catch (const Error& error) {
     throw Error(concat(error.what(), "; remove the folder, or name another with --as"));
   }
-  if (key(model, "catalogue").empty())
+  if (model.extra("catalogue").empty())
     throw Error(concat("model folder ", folder.string(),
                        " exists and was not fetched; name another with --as"));
-  if (key(model, "catalogue") != target.entry.name ||
-      key(model, "revision") != target.listing.commit || key(model, "variant") != target.variant)
+  if (model.extra("catalogue") != target.entry.name ||
+      model.extra("revision") != target.listing.commit || model.extra("variant") != target.variant)
     return false;
   try {
     verify_model_files(model);

@@ -13,6 +13,8 @@
 
 #include <gtest/gtest.h>
 
+#include "ovimap/base/error_fixture.h"
+
 namespace ovimap {
 namespace {
 
@@ -76,16 +78,6 @@ Bytes tiny_gray_png(int bits, const Bytes& row) {
   return png;
 }
 
-template <class Call>
-std::string fault_of(Call&& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no fault";
-}
-
 TEST(Png, RgbRoundTripIsExact) {
   const RgbImage image = random_rgb(37, 21);
   EXPECT_EQ(decode_rgb(encode_png(image)), image);
@@ -118,11 +110,11 @@ TEST(Png, GrayReadAsRgbHasThreeEqualChannels) {
 }
 
 TEST(Png, NarrowGrayAndColourAreRefusedAsValues) {
-  EXPECT_NE(fault_of([] { decode_gray(tiny_gray_png(4, {0x12})); }).find("4-bit"),
+  EXPECT_NE(error_of([] { decode_gray(tiny_gray_png(4, {0x12})); }).find("4-bit"),
             std::string::npos);
-  EXPECT_NE(fault_of([] { decode_gray(encode_png(random_rgb(4, 4))); }).find("in colour"),
+  EXPECT_NE(error_of([] { decode_gray(encode_png(random_rgb(4, 4))); }).find("in colour"),
             std::string::npos);
-  EXPECT_NE(fault_of([] { decode_gray(encode_jpeg(random_rgb(16, 16), 90)); }).find("not a PNG"),
+  EXPECT_NE(error_of([] { decode_gray(encode_jpeg(random_rgb(16, 16), 90)); }).find("not a PNG"),
             std::string::npos);
 }
 
@@ -131,14 +123,14 @@ TEST(Png, EveryTruncationIsAFault) {
   // The last 12 bytes are the end mark, after all pixels.
   for (std::size_t length = 0; length + 12 < whole.size(); length += 13)
     EXPECT_THROW(decode_gray(std::span(whole).first(length)), Error) << length;
-  EXPECT_EQ(fault_of([&] { decode_gray(std::span(whole).first(whole.size() / 2)); }),
+  EXPECT_EQ(error_of([&] { decode_gray(std::span(whole).first(whole.size() / 2)); }),
             "is a truncated PNG");
 }
 
 TEST(Png, FlippedBitIsAFault) {
   Bytes bytes = encode_png(random_gray(24, 24));
   bytes[bytes.size() / 2] ^= 0x10;
-  EXPECT_NE(fault_of([&] { decode_gray(bytes); }).find("damaged PNG"), std::string::npos);
+  EXPECT_NE(error_of([&] { decode_gray(bytes); }).find("damaged PNG"), std::string::npos);
 }
 
 TEST(Codec, AnotherSizeIsFoundBeforeThePixels) {
@@ -147,10 +139,10 @@ TEST(Codec, AnotherSizeIsFoundBeforeThePixels) {
               jpeg = encode_jpeg(random_rgb(24, 16), 90);
   for (const Bytes& bytes : {color, jpeg}) {
     EXPECT_EQ(decode_rgb(bytes, ImageSize{24, 16}), decode_rgb(bytes));
-    EXPECT_EQ(fault_of([&] { decode_rgb(bytes, ImageSize{24, 17}); }), fault);
+    EXPECT_EQ(error_of([&] { decode_rgb(bytes, ImageSize{24, 17}); }), fault);
   }
   const auto header_alone = std::span(gray).first(60);
-  EXPECT_EQ(fault_of([&] { decode_gray(header_alone, ImageSize{24, 17}); }), fault);
+  EXPECT_EQ(error_of([&] { decode_gray(header_alone, ImageSize{24, 17}); }), fault);
 }
 
 TEST(Png, ImpossibleSizeIsRefusedBeforeMemoryIsTaken) {
@@ -176,7 +168,7 @@ std::string fault_in_little_memory(Call&& call) {
 #endif
   std::string fault;
   try {
-    fault = fault_of(call);
+    fault = error_of(call);
   } catch (const std::bad_alloc&) {
     fault = "out of memory";
   }
@@ -212,7 +204,7 @@ TEST(Png, TextsThatUnpackToGigabytesAreRefused) {
   Bytes png(plain.begin(), plain.begin() + after_header);
   put_chunk(png, "zTXt", text);
   png.insert(png.end(), plain.begin() + after_header, plain.end());
-  EXPECT_NE(fault_of([&] { decode_gray(png); }).find("damaged PNG"), std::string::npos);
+  EXPECT_NE(error_of([&] { decode_gray(png); }).find("damaged PNG"), std::string::npos);
 }
 
 TEST(Jpeg, ASizeThatTheBytesCannotHoldTakesNoMemory) {
@@ -243,7 +235,7 @@ TEST(Jpeg, TruncationIsAFault) {
   for (const std::size_t length :
        {std::size_t{3}, std::size_t{40}, whole.size() / 2, whole.size() - 40})
     EXPECT_THROW(decode_rgb(std::span(whole).first(length)), Error) << length;
-  EXPECT_EQ(fault_of([&] { decode_rgb(std::span(whole).first(whole.size() / 2)); }),
+  EXPECT_EQ(error_of([&] { decode_rgb(std::span(whole).first(whole.size() / 2)); }),
             "is a truncated JPEG");
 }
 
@@ -254,17 +246,17 @@ TEST(Jpeg, QualityOutOfRangeIsRefused) {
 
 TEST(Decode, UnknownContentIsNamed) {
   const Bytes text = {'h', 'e', 'l', 'l', 'o'};
-  EXPECT_EQ(fault_of([&] { decode_rgb(text); }), "is not a PNG or JPEG");
-  EXPECT_EQ(fault_of([] { decode_rgb({}); }), "is empty");
-  EXPECT_EQ(fault_of([] { decode_gray({}); }), "is empty");
+  EXPECT_EQ(error_of([&] { decode_rgb(text); }), "is not a PNG or JPEG");
+  EXPECT_EQ(error_of([] { decode_rgb({}); }), "is empty");
+  EXPECT_EQ(error_of([] { decode_gray({}); }), "is empty");
 }
 
 TEST(Decode, FaultOfAFileNamesTheFile) {
   const auto path =
       std::filesystem::temp_directory_path() / concat("ovimap-codec-", ::getpid(), ".jpg");
   write_file(path, {});
-  EXPECT_EQ(fault_of([&] { read_rgb(path); }), path.string() + " is empty");
-  EXPECT_EQ(fault_of([&] { read_gray(path); }), path.string() + " is empty");
+  EXPECT_EQ(error_of([&] { read_rgb(path); }), path.string() + " is empty");
+  EXPECT_EQ(error_of([&] { read_gray(path); }), path.string() + " is empty");
   std::filesystem::remove(path);
 }
 

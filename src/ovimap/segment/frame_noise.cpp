@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "ovimap/base/median.h"
 #include "ovimap/segment/depth_surface.h"
 
 namespace ovimap {
@@ -40,9 +41,7 @@ class Residuals {
 
  private:
   static float sigma_of(std::vector<float>& residuals, float median_of_one) {
-    const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
-    std::nth_element(residuals.begin(), middle, residuals.end());
-    return std::max(kLeastScale, *middle / median_of_one);
+    return std::max(kLeastScale, median_of(residuals) / median_of_one);
   }
 
   std::array<std::vector<float>, ByRange::kRanges> by_range_;

@@ -53,10 +53,6 @@ export class Movement {
   /** Metres a second that keys move by; it follows the size of the map. */
   speed = 2;
 
-  get isFlying(): boolean {
-    return this.flying;
-  }
-
   setFlying(flying: boolean): void {
     this.flying = flying;
     this.orbit.enableRotate = !flying;

@@ -124,14 +124,6 @@ export class Surface {
     if (this.coarse) this.chooseAll();
   }
 
-  get trianglesDrawn(): number {
-    let count = 0;
-    this.group.traverseVisible((object) => {
-      if (object instanceof Mesh) count += (object.geometry.index?.count ?? 0) / 3;
-    });
-    return count;
-  }
-
   box(): Box3 {
     const box = new Box3();
     for (const levels of this.chunks.values()) {

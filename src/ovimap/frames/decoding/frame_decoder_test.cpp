@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ovimap/base/error_fixture.h"
 #include "ovimap/frames/recording/sequence_fixture.h"
 
 namespace ovimap {
@@ -15,14 +16,9 @@ CameraRig rig_of(const fixture::Sequence& sequence) {
   return rig;
 }
 
-std::string fault_of(const FrameDecoder& decoder, const Bytes& color, const Bytes& depth,
-                     const Eigen::Matrix4d& pose) {
-  try {
-    decoder.decode(color, depth, pose);
-  } catch (const Error& fault) {
-    return fault.what();
-  }
-  return "";
+std::string decoding_fault(const FrameDecoder& decoder, const Bytes& color, const Bytes& depth,
+                           const Eigen::Matrix4d& pose) {
+  return fault_of([&] { decoder.decode(color, depth, pose); });
 }
 
 TEST(FrameDecoder, GivesWhatTheReadersGive) {
@@ -70,15 +66,16 @@ TEST(FrameDecoder, SaysWhatIsWrongWithAFrame) {
   const auto expect = [&](const std::string& fault, const char* words) {
     EXPECT_NE(fault.find(words), std::string::npos) << fault;
   };
-  EXPECT_EQ(fault_of(decoder, color, depth, pose), "");
-  expect(fault_of(decoder, depth, color, pose), "depth");
-  expect(fault_of(decoder, {1, 2, 3}, depth, pose), "color");
-  expect(fault_of(decoder, color, {}, pose), "depth");
-  expect(fault_of(decoder, color, depth, 2 * pose), "pose");
-  expect(fault_of(decoder, encode_png(RgbImage(3, 2)), depth, pose), "3x2");
-  expect(fault_of(decoder, color, encode_png(Image<std::uint16_t>(3, 2)), pose), "3x2");
-  expect(fault_of(decoder, color, encode_png(Image<std::uint16_t>(80, 60)), pose), "no value");
-  expect(fault_of(decoder, color, encode_png(Image<std::uint8_t>(80, 60)), pose), "8 bits");
+  EXPECT_EQ(decoding_fault(decoder, color, depth, pose), "");
+  expect(decoding_fault(decoder, depth, color, pose), "depth");
+  expect(decoding_fault(decoder, {1, 2, 3}, depth, pose), "color");
+  expect(decoding_fault(decoder, color, {}, pose), "depth");
+  expect(decoding_fault(decoder, color, depth, 2 * pose), "pose");
+  expect(decoding_fault(decoder, encode_png(RgbImage(3, 2)), depth, pose), "3x2");
+  expect(decoding_fault(decoder, color, encode_png(Image<std::uint16_t>(3, 2)), pose), "3x2");
+  expect(decoding_fault(decoder, color, encode_png(Image<std::uint16_t>(80, 60)), pose),
+         "no value");
+  expect(decoding_fault(decoder, color, encode_png(Image<std::uint8_t>(80, 60)), pose), "8 bits");
 }
 
 TEST(FrameDecoder, NeedsWholeCameras) {

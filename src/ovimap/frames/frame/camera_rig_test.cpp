@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ovimap/base/error_fixture.h"
 #include "ovimap/frames/recording/sequence_fixture.h"
 
 namespace ovimap {
@@ -16,13 +17,8 @@ CameraRig applied(const std::string& yaml, CameraRig rig = {}) {
   return rig;
 }
 
-std::string fault_of(const std::string& yaml) {
-  try {
-    applied(yaml);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no fault";
+std::string rig_fault(const std::string& yaml) {
+  return error_of([&] { applied(yaml); });
 }
 
 TEST(CameraRig, EveryKeyIsOptional) {
@@ -113,24 +109,24 @@ TEST(CameraRig, StoredPosesAreTakenToTheDepthCamera) {
 }
 
 TEST(CameraRig, FaultsNameKeyValueAndRemedy) {
-  EXPECT_NE(fault_of("depth_camera: {fx: abc}")
+  EXPECT_NE(rig_fault("depth_camera: {fx: abc}")
                 .find("depth_camera.fx is 'abc'; accepted is a number above 0"),
             std::string::npos);
-  EXPECT_NE(fault_of("depth_camera: {fx: -5}").find("'-5'"), std::string::npos);
-  EXPECT_NE(fault_of("color_camera: {width: 64.5}").find("a whole number from 1 to 32767"),
+  EXPECT_NE(rig_fault("depth_camera: {fx: -5}").find("'-5'"), std::string::npos);
+  EXPECT_NE(rig_fault("color_camera: {width: 64.5}").find("a whole number from 1 to 32767"),
             std::string::npos);
-  EXPECT_NE(fault_of("depth_camera: {focal: 3}").find("no key 'depth_camera.focal'"),
+  EXPECT_NE(rig_fault("depth_camera: {focal: 3}").find("no key 'depth_camera.focal'"),
             std::string::npos);
-  EXPECT_NE(fault_of("colour_camera: {fx: 3}").find("did you mean 'color_camera'"),
+  EXPECT_NE(rig_fault("colour_camera: {fx: 3}").find("did you mean 'color_camera'"),
             std::string::npos);
-  EXPECT_NE(fault_of("color_from_depth: {translation: [1, 2]}").find("a list of three numbers"),
+  EXPECT_NE(rig_fault("color_from_depth: {translation: [1, 2]}").find("a list of three numbers"),
             std::string::npos);
-  EXPECT_NE(fault_of("color_from_depth: {translation: [1, 2, .nan]}")
+  EXPECT_NE(rig_fault("color_from_depth: {translation: [1, 2, .nan]}")
                 .find("color_from_depth.translation"),
             std::string::npos);
-  EXPECT_NE(fault_of("depth_camera: {invalid: [70000]}").find("'70000'"), std::string::npos);
+  EXPECT_NE(rig_fault("depth_camera: {invalid: [70000]}").find("'70000'"), std::string::npos);
   const auto lens_fault = [](const std::string& lens) {
-    return fault_of("color_camera: {distortion: {" + lens + "}}");
+    return rig_fault("color_camera: {distortion: {" + lens + "}}");
   };
   EXPECT_NE(lens_fault("coefficients: [1, 2, 3, 4]")
                 .find("color_camera.distortion.coefficients is '[1, 2, 3, 4]'; accepted is a list "
@@ -141,10 +137,10 @@ TEST(CameraRig, FaultsNameKeyValueAndRemedy) {
             std::string::npos);
   EXPECT_NE(lens_fault("coefficients: [1, 2, 3, 4, x]").find("'x'"), std::string::npos);
   EXPECT_NE(lens_fault("k1: 3").find("no key 'color_camera.distortion.k1'"), std::string::npos);
-  EXPECT_NE(fault_of("depth_camera: 5").find("a mapping"), std::string::npos);
-  EXPECT_NE(fault_of("poses: {axes: blender}").find("opencv or opengl or ros"), std::string::npos);
-  EXPECT_NE(fault_of("a: [1, 2\nb: }").find("is not YAML"), std::string::npos);
-  EXPECT_NE(fault_of("just text").find("calibration.yaml"), std::string::npos);
+  EXPECT_NE(rig_fault("depth_camera: 5").find("a mapping"), std::string::npos);
+  EXPECT_NE(rig_fault("poses: {axes: blender}").find("opencv or opengl or ros"), std::string::npos);
+  EXPECT_NE(rig_fault("a: [1, 2\nb: }").find("is not YAML"), std::string::npos);
+  EXPECT_NE(rig_fault("just text").find("calibration.yaml"), std::string::npos);
 }
 
 }  // namespace

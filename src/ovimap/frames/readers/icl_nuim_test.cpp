@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include "ovimap/base/error_fixture.h"
 #include "ovimap/frames/frame/frame_source.h"
 #include "ovimap/frames/recording/sequence_fixture.h"
 
@@ -41,12 +42,7 @@ class IclNuim : public testing::Test {
     return stored;
   }
   std::string error() const {
-    try {
-      open_frame_source(path());
-    } catch (const Error& fault) {
-      return fault.what();
-    }
-    return "no error";
+    return error_of([&] { open_frame_source(path()); });
   }
 
   fixture::TemporaryFolder folder_;

@@ -19,18 +19,8 @@ namespace fs = std::filesystem;
 /// Of OniPixelFormat.
 constexpr int kDepthMillimetres = 100, kDepthTenthMillimetres = 101, kRgb888 = 200;
 
-/// SOURCE itself, or the one .oni file in it; empty when there is none.
-fs::path find_oni(const fs::path& source) {
-  if (fs::is_regular_file(source)) return source.extension() == ".oni" ? source : fs::path();
-  const std::vector<fs::path> files = list_files(source, {".oni"});
-  if (files.size() > 1)
-    throw Error(concat(source.string(), " holds ", files.size(),
-                       " .oni files; give one of them, as ", files.front().string()));
-  return files.empty() ? fs::path() : files.front();
-}
-
 bool is_oni(const fs::path& source) {
-  return !find_oni(source).empty();
+  return !find_file(source, ".oni").empty();
 }
 
 void check_stream(const fs::path& path, const OniStream& stream, const char* name) {
@@ -101,7 +91,7 @@ RecordedFrame frame_of(const fs::path& path, const OniFile& file, std::size_t co
 }
 
 Recording list_oni(const fs::path& source, const FrameSourceConfig& config) {
-  const fs::path path = find_oni(source);
+  const fs::path path = find_file(source, ".oni");
   const OniFile file = list_oni_file(path);
   check_stream(path, file.depth, "depth");
   check_stream(path, file.color, "colour");

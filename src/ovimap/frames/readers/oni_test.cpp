@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ovimap/base/error_fixture.h"
 #include "ovimap/frames/frame/frame_source.h"
 
 namespace ovimap {
@@ -19,12 +20,7 @@ class Oni : public ::testing::Test {
     return open_frame_source(file(), config);
   }
   std::string error() const {
-    try {
-      open();
-    } catch (const Error& fault) {
-      return fault.what();
-    }
-    return "no error";
+    return error_of([&] { open(); });
   }
   void expect_error(const fixture::OniWriter& writer, const char* words) const {
     write(writer);

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ovimap/base/error_fixture.h"
 #include "ovimap/frames/frame/frame_source.h"
 #include "ovimap/frames/recording/sequence_fixture.h"
 
@@ -72,12 +73,7 @@ class Record3d : public testing::Test {
                k.fy, ", 0, ", k.cx, ", ", k.cy, R"(, 1], "poses": [)", poses, "]", more, "}"));
   }
   std::string error() const {
-    try {
-      open_frame_source(path());
-    } catch (const Error& fault) {
-      return fault.what();
-    }
-    return "no error";
+    return error_of([&] { open_frame_source(path()); });
   }
 
   fixture::TemporaryFolder folder_;

@@ -174,25 +174,15 @@ bool index_frame(SensFile& file, const CameraRig& rig, RecordedFrame& frame) {
   return true;
 }
 
-/// SOURCE itself, or the one .sens file in it; empty when there is none.
-fs::path find_sens(const fs::path& source) {
-  if (fs::is_regular_file(source)) return source.extension() == ".sens" ? source : fs::path();
-  const std::vector<fs::path> files = list_files(source, {".sens"});
-  if (files.size() > 1)
-    throw Error(concat(source.string(), " holds ", files.size(),
-                       " .sens files; give one of them, as ", files.front().string()));
-  return files.empty() ? fs::path() : files.front();
-}
-
 bool is_sens(const fs::path& source) {
-  return !find_sens(source).empty();
+  return !find_file(source, ".sens").empty();
 }
 
 Recording list_sens(const fs::path& source, const FrameSourceConfig&) {
   Recording recording;
   recording.kind = kSensReader.kind;
   recording.folder = source;
-  SensFile file(find_sens(source));
+  SensFile file(find_file(source, ".sens"));
   read_header(file, recording);
   const auto promised = file.read<std::uint64_t>();
   bool whole = true;

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ovimap/base/error_fixture.h"
 #include "ovimap/frames/frame/frame_source.h"
 #include "ovimap/frames/readers/scannet_fixture.h"
 
@@ -18,12 +19,7 @@ class Sens : public testing::Test {
   fs::path file() const { return folder_.path() / "scene0000_00.sens"; }
   void write() const { write_file(file(), fixture::sens_bytes(sequence_, content_)); }
   std::string error() const {
-    try {
-      open_frame_source(file());
-    } catch (const Error& fault) {
-      return fault.what();
-    }
-    return "no error";
+    return error_of([&] { open_frame_source(file()); });
   }
   void expect_frame(const FrameSource& source, int i) const {
     const FrameRead read = source.read(i);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include "ovimap/base/error_fixture.h"
 #include "ovimap/frames/frame/frame_source.h"
 #include "ovimap/frames/readers/scannet_fixture.h"
 
@@ -17,12 +18,7 @@ class ScanNet : public testing::Test {
 
   const fs::path& path() const { return folder_.path(); }
   std::string error() const {
-    try {
-      open_frame_source(path());
-    } catch (const Error& fault) {
-      return fault.what();
-    }
-    return "no error";
+    return error_of([&] { open_frame_source(path()); });
   }
 
   fixture::TemporaryFolder folder_;

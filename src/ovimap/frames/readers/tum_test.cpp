@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include "ovimap/base/error_fixture.h"
 #include "ovimap/frames/frame/frame_source.h"
 #include "ovimap/frames/recording/sequence_fixture.h"
 
@@ -16,12 +17,7 @@ class Tum : public testing::Test {
     fixture::write_tum(folder_.path(), sequence_);
   }
   std::string error() const {
-    try {
-      open_frame_source(folder_.path());
-    } catch (const Error& fault) {
-      return fault.what();
-    }
-    return "no error";
+    return error_of([&] { open_frame_source(folder_.path()); });
   }
 
   fixture::TemporaryFolder folder_;

@@ -35,6 +35,15 @@ std::vector<fs::path> list_files(const fs::path& folder, const Names& extensions
   return files;
 }
 
+fs::path find_file(const fs::path& source, const char* extension) {
+  if (fs::is_regular_file(source)) return source.extension() == extension ? source : fs::path();
+  const std::vector<fs::path> files = list_files(source, {extension});
+  if (files.size() > 1)
+    throw Error(concat(source.string(), " holds ", files.size(), " ", extension,
+                       " files; give one of them, as ", files.front().string()));
+  return files.empty() ? fs::path() : files.front();
+}
+
 std::vector<fs::path> partner_files(const std::vector<fs::path>& colors, const fs::path& folder,
                                     const std::string& extension) {
   const std::vector<fs::path> files = list_files(folder, {extension.c_str()});

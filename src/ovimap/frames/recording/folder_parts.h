@@ -20,6 +20,10 @@ std::filesystem::path find_one(const std::filesystem::path& folder, const Names&
 std::vector<std::filesystem::path> list_files(const std::filesystem::path& folder,
                                               const Names& extensions);
 
+/// `source` itself, or the one file with the extension (".oni") in it; empty when there is none.
+/// Throws Error where there are several.
+std::filesystem::path find_file(const std::filesystem::path& source, const char* extension);
+
 /// For each colour file its partner in `folder`: of equal stem or, when no stem agrees, of equal
 /// rank. A colour file whose partner is missing gets the path where it should be. Throws Error when
 /// no stem agrees and the counts differ.

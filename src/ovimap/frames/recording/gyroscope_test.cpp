@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ovimap/base/error_fixture.h"
 #include "ovimap/frames/frame/frame_source.h"
 #include "ovimap/frames/recording/sequence_fixture.h"
 
@@ -54,14 +55,9 @@ TEST(OrientationTimeline, SaysNothingWhereThereAreNoSamples) {
 class GyroscopeFile : public testing::Test {
  protected:
   GyroscopeFile() { fixture::write_tum(folder_.path(), sequence_); }
-  std::string error_of(const std::string& text) const {
+  std::string error(const std::string& text) const {
     write_text(file_, text);
-    try {
-      read_gyroscope(file_);
-    } catch (const Error& fault) {
-      return fault.what();
-    }
-    return "no error";
+    return error_of([&] { read_gyroscope(file_); });
   }
 
   fixture::TemporaryFolder folder_;
@@ -89,11 +85,11 @@ TEST_F(GyroscopeFile, ARecordingWithoutOneHasNoOrientations) {
 }
 
 TEST_F(GyroscopeFile, SaysWhatIsWrongWithALine) {
-  EXPECT_NE(error_of("# t\n1 0 0 0\n2 0 0\n").find("line 3 is '2 0 0'; expected a time"),
+  EXPECT_NE(error("# t\n1 0 0 0\n2 0 0\n").find("line 3 is '2 0 0'; expected a time"),
             std::string::npos);
-  EXPECT_NE(error_of("1 0 0 x\n").find("line 1"), std::string::npos);
-  EXPECT_NE(error_of("1 0 90 0\n").find("are they degrees?"), std::string::npos);
-  EXPECT_NE(error_of("1 0 nan 0\n").find("line 1 turns by"), std::string::npos);
+  EXPECT_NE(error("1 0 0 x\n").find("line 1"), std::string::npos);
+  EXPECT_NE(error("1 0 90 0\n").find("are they degrees?"), std::string::npos);
+  EXPECT_NE(error("1 0 nan 0\n").find("line 1 turns by"), std::string::npos);
 }
 
 TEST_F(GyroscopeFile, LinesMayComeInAnyOrder) {

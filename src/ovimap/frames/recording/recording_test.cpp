@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ovimap/base/error_fixture.h"
 #include "ovimap/frames/recording/sequence_fixture.h"
 
 namespace ovimap {
@@ -157,13 +158,8 @@ TEST_F(RecordingTest, PosesMayBeMissingWhereTheCallerAllowsIt) {
 
 TEST(OpenFrameSource, WhatCannotBeOpenedIsNamed) {
   const fixture::TemporaryFolder folder;
-  const auto message = [](const std::filesystem::path& path) -> std::string {
-    try {
-      open_frame_source(path);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "no error";
+  const auto message = [](const std::filesystem::path& path) {
+    return error_of([&] { open_frame_source(path); });
   };
   EXPECT_NE(message(folder.path() / "none").find("does not exist"), std::string::npos);
   EXPECT_NE(message(folder.path()).find("is empty"), std::string::npos);

@@ -169,6 +169,11 @@ const std::string& ModelFolder::output_of(const std::string& network_name,
   return tensor_of(*this, network_name, network(network_name).outputs, "outputs", role);
 }
 
+std::string ModelFolder::extra(const std::string& key) const {
+  const auto found = extras.find(key);
+  return found == extras.end() ? std::string() : found->second;
+}
+
 std::string ModelFolder::digest() const {
   Sha256 sum;
   for (const auto& [file, file_digest] : sha256) {

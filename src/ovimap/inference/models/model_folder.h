@@ -57,6 +57,8 @@ struct ModelFolder {
   /// The tensor that plays `role`. Throws Error when model.yaml does not say.
   const std::string& input_of(const std::string& network_name, const std::string& role) const;
   const std::string& output_of(const std::string& network_name, const std::string& role) const;
+  /// One of the extras; empty: there is none.
+  std::string extra(const std::string& key) const;
   /// SHA-256 over the lines "file digest" in the order of the files' names: which build it is.
   std::string digest() const;
 };

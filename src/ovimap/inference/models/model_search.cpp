@@ -34,19 +34,14 @@ void append_above_program(std::vector<fs::path>& folders) {
   for (; at.has_relative_path(); at = at.parent_path()) folders.push_back(at / kProjectFolder);
 }
 
-std::string extra(const ModelFolder& model, const char* key) {
-  const auto found = model.extras.find(key);
-  return found == model.extras.end() ? "" : found->second;
-}
-
 ModelListing listing(const fs::path& folder) {
   ModelListing found{folder, folder.filename().string(), "", "", 0, "", false};
   try {
     const ModelFolder model = read_model_folder(folder);
     found.kind = model.kind;
-    found.preference = std::atoi(extra(model, "preference").c_str());
-    found.variant = extra(model, "variant");
-    found.doubtful = extra(model, "self_test") == "doubtful";
+    found.preference = std::atoi(model.extra("preference").c_str());
+    found.variant = model.extra("variant");
+    found.doubtful = model.extra("self_test") == "doubtful";
   } catch (const Error& error) {
     found.fault = error.what();
   }

@@ -8,9 +8,7 @@
 #include <fstream>
 #include <string>
 
-#include <gtest/gtest.h>
-
-#include "ovimap/base/error.h"
+#include "ovimap/base/error_fixture.h"
 #include "ovimap/image/image.h"
 
 namespace ovimap {
@@ -42,18 +40,6 @@ class ScratchFolder {
  private:
   std::filesystem::path path_;
 };
-
-/// The message of the Error that `action` throws; fails the test when it throws none.
-template <class Action>
-std::string error_of(Action&& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << "no ovimap::Error was thrown";
-  return "";
-}
 
 inline bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;

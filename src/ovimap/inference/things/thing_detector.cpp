@@ -24,11 +24,6 @@ const ModelFolder& checked_detector(const ModelFolder& model) {
   return model;
 }
 
-std::string text_of(const ModelFolder& model, const char* key) {
-  const auto found = model.extras.find(key);
-  return found == model.extras.end() ? "" : found->second;
-}
-
 float number_in(const std::string& text, const ModelFolder& model, const std::string& what,
                 float least, float most) {
   char* end = nullptr;
@@ -64,9 +59,9 @@ ThingDetector::ThingDetector(const ModelFolder& model, const RuntimeConfig& runt
       boxes_(model.output_of("detector", "boxes")),
       scores_(model.output_of("detector", "scores")) {
   read_names(model);
-  ratio_.floor = number_in(text_of(model, "floor"), model, "'floor'", 1e-6f, 1.f);
-  ratio_.slope = number_in(text_of(model, "slope"), model, "'slope'", 0.f, 100.f);
-  ratio_.offset = number_in(text_of(model, "offset"), model, "'offset'", -100.f, 100.f);
+  ratio_.floor = number_in(model.extra("floor"), model, "'floor'", 1e-6f, 1.f);
+  ratio_.slope = number_in(model.extra("slope"), model, "'slope'", 0.f, 100.f);
+  ratio_.offset = number_in(model.extra("offset"), model, "'offset'", -100.f, 100.f);
   network_.input(input_);
   const TensorShape &boxes = network_.output(boxes_).shape,
                     &scores = network_.output(scores_).shape;
@@ -78,7 +73,7 @@ ThingDetector::ThingDetector(const ModelFolder& model, const RuntimeConfig& runt
 }
 
 void ThingDetector::read_names(const ModelFolder& model) {
-  std::istringstream lines(text_of(model, "names"));
+  std::istringstream lines(model.extra("names"));
   for (std::string line; std::getline(lines, line);) {
     const std::size_t end = line.find(';');
     if (end == 0 || end == std::string::npos)

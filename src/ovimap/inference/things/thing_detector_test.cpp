@@ -56,12 +56,7 @@ TEST_F(GoldenDetector, WhatOverlapsLittleSaysNothing) {
 
 TEST_F(GoldenDetector, RefusesWhatDoesNotFit) {
   const auto fault = [&](const ModelFolder& model) {
-    try {
-      ThingDetector detector(model, {});
-    } catch (const Error& error) {
-      return std::string(error.what());
-    }
-    return std::string();
+    return error_of([&] { ThingDetector(model, {}); });
   };
   ModelFolder model = model_;
   model.kind = "writing";

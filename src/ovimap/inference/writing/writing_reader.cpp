@@ -21,8 +21,7 @@ constexpr float kSureEnough = 0.9f;   // a line read so well is not read upside 
 constexpr const char* kCharacters = "character";  // key of the speller's own list
 
 float number_of(const ModelFolder& model, const char* key, float least, float most) {
-  const auto found = model.extras.find(key);
-  const std::string text = found == model.extras.end() ? "" : found->second;
+  const std::string text = model.extra(key);
   char* end = nullptr;
   const float value = std::strtof(text.c_str(), &end);
   if (text.empty() || *end != 0 || !(value >= least && value <= most))

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "ovimap/io/exports/instance_json_value.h"
+#include "ovimap/io/exports/json_values.h"
 #include "ovimap/io/map_tables/map_file_history.h"
 #include "ovimap/io/map_tables/map_file_record.h"
 #include "ovimap/semantics/query/query_grammar.h"
@@ -102,7 +103,7 @@ Json history_value(const MapHistory& history) {
     visits.push_back({{"source", visit.source},
                       {"first_frame", visit.first_frame},
                       {"first_index", visit.first_index},
-                      {"recorded_s", visit.recorded_s ? Json(*visit.recorded_s) : Json(nullptr)}});
+                      {"recorded_s", json_or_null<Json>(visit.recorded_s)}});
   for (const ObjectEvent& event : history.events)
     events.push_back({{"object", event.instance},
                       {"event", event_name(event.kind)},

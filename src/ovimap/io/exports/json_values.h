@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
 #include <cmath>
+#include <optional>
 
+#include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
 namespace ovimap {
@@ -14,6 +15,11 @@ template <class Json = nlohmann::json>
 Json rounded_json(double value) {
   constexpr double kSteps = 1e4;
   return std::isfinite(value) ? Json(std::round(value * kSteps) / kSteps) : Json();
+}
+
+template <class Json = nlohmann::json, class Value>
+Json json_or_null(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json();
 }
 
 /// Its numbers so.

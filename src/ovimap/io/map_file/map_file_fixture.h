@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "ovimap/base/config.h"
-#include "ovimap/base/error.h"
+#include "ovimap/base/error_fixture.h"
 #include "ovimap/io/map_file/map_file.h"
 
 namespace ovimap {
@@ -25,17 +25,6 @@ class MapFolder : public ::testing::Test {
 
   std::size_t files_in_root() const {
     return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(root_), {}));
-  }
-
-  /// The message of the Error that `action` throws; empty when it throws none.
-  template <class Action>
-  static std::string fault_of(Action&& action) {
-    try {
-      action();
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return {};
   }
 
   const std::filesystem::path root_ =

@@ -152,12 +152,7 @@ TEST_F(MapFileSemantics, RefusesShapesThatCannotBe) {
                     length_m, 1.f, 0.f, 0.5f, 0.5f);
       rows.finish();
     }
-    try {
-      read_searchable_map(path);
-    } catch (const Error& error) {
-      return std::string(error.what());
-    }
-    return std::string();
+    return fault_of([&] { read_searchable_map(path); });
   };
   Bytes triangle, line;
   for (const float coordinate : {0.f, 0.f, 1.f, 0.f, 0.f, 1.f}) append_float(triangle, coordinate);

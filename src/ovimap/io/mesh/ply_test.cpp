@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "ovimap/base/error.h"
+#include "ovimap/base/error_fixture.h"
 #include "ovimap/io/mesh/mesh_pieces.h"
 
 namespace ovimap {
@@ -24,17 +25,12 @@ Bytes bytes_of(const std::string& text) {
   return Bytes(text.begin(), text.end());
 }
 
-std::string fault_of(const Bytes& bytes) {
-  try {
-    decode_ply(bytes, "x.ply");
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return {};
+std::string ply_fault(const Bytes& bytes) {
+  return fault_of([&] { decode_ply(bytes, "x.ply"); });
 }
 
-std::string fault_of(const std::string& text) {
-  return fault_of(bytes_of(text));
+std::string ply_fault(const std::string& text) {
+  return ply_fault(bytes_of(text));
 }
 
 /// Appends a number in the wanted byte order.
@@ -154,13 +150,13 @@ INSTANTIATE_TEST_SUITE_P(BothOrders, PlyByteOrder,
                          ::testing::Values(std::endian::little, std::endian::big));
 
 TEST(Ply, NamesWhatIsWrongWithTheHeader) {
-  EXPECT_NE(fault_of("solid cube\n").find("'x.ply'"), std::string::npos);
-  EXPECT_NE(fault_of("solid cube\n").find("does not start with 'ply'"), std::string::npos);
-  EXPECT_NE(fault_of("ply\nformat ascii 1.0\nelement vertex 1").find("without an end_header"),
+  EXPECT_NE(ply_fault("solid cube\n").find("'x.ply'"), std::string::npos);
+  EXPECT_NE(ply_fault("solid cube\n").find("does not start with 'ply'"), std::string::npos);
+  EXPECT_NE(ply_fault("ply\nformat ascii 1.0\nelement vertex 1").find("without an end_header"),
             std::string::npos);
-  EXPECT_NE(fault_of("ply\nend_header\n").find("no format line"), std::string::npos);
+  EXPECT_NE(ply_fault("ply\nend_header\n").find("no format line"), std::string::npos);
   const auto with = [](const std::string& line) {
-    return fault_of("ply\nformat ascii 1.0\n" + line + "\nend_header\n");
+    return ply_fault("ply\nformat ascii 1.0\n" + line + "\nend_header\n");
   };
   EXPECT_NE(with("format pdf 1.0").find("'format pdf 1.0' at byte 21"), std::string::npos);
   EXPECT_NE(with("element vertex many").find("whole number"), std::string::npos);
@@ -182,28 +178,28 @@ TEST(Ply, NamesWhatIsWrongWithTheBody) {
       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
       "property float z\nproperty float label\n";
   const std::string face = "element face 1\nproperty list int int vertex_indices\n";
-  EXPECT_NE(fault_of(vertex + "end_header\n0 zero 0 1\n")
+  EXPECT_NE(ply_fault(vertex + "end_header\n0 zero 0 1\n")
                 .find("element 'vertex', item 0 of 1 at byte 121"),
             std::string::npos);
-  EXPECT_NE(fault_of(vertex + "end_header\n0 nan 0 1\n").find("not finite"), std::string::npos);
-  EXPECT_NE(fault_of(vertex + "end_header\n0 0 0 1.5\n").find("label 1.5"), std::string::npos);
-  EXPECT_NE(fault_of(vertex + "end_header\n0 0 0        ").find("ends too early"),
+  EXPECT_NE(ply_fault(vertex + "end_header\n0 nan 0 1\n").find("not finite"), std::string::npos);
+  EXPECT_NE(ply_fault(vertex + "end_header\n0 0 0 1.5\n").find("label 1.5"), std::string::npos);
+  EXPECT_NE(ply_fault(vertex + "end_header\n0 0 0        ").find("ends too early"),
             std::string::npos);
-  EXPECT_NE(fault_of(vertex + face + "end_header\n0 0 0 1\n3 0 1 0\n").find("uses vertex 1"),
+  EXPECT_NE(ply_fault(vertex + face + "end_header\n0 0 0 1\n3 0 1 0\n").find("uses vertex 1"),
             std::string::npos);
-  EXPECT_NE(fault_of(vertex + face + "end_header\n0 0 0 1\n3 0 -1 0\n").find("vertex index -1"),
+  EXPECT_NE(ply_fault(vertex + face + "end_header\n0 0 0 1\n3 0 -1 0\n").find("vertex index -1"),
             std::string::npos);
-  EXPECT_NE(fault_of(vertex + face + "end_header\n0 0 0 1\n-3 0 1 0\n").find("cannot have -3"),
+  EXPECT_NE(ply_fault(vertex + face + "end_header\n0 0 0 1\n-3 0 1 0\n").find("cannot have -3"),
             std::string::npos);
-  EXPECT_NE(fault_of("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n")
+  EXPECT_NE(ply_fault("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n")
                 .find("lacks x, y or z"),
             std::string::npos);
 }
 
 TEST(Ply, RefusesACountNoFileCouldHoldWithoutTakingTheMemory) {
   EXPECT_NE(
-      fault_of("ply\nformat binary_little_endian 1.0\nelement vertex 18446744073709551615\n"
-               "property float x\nproperty float y\nproperty float z\nend_header\n0123456789ab")
+      ply_fault("ply\nformat binary_little_endian 1.0\nelement vertex 18446744073709551615\n"
+                "property float x\nproperty float y\nproperty float z\nend_header\n0123456789ab")
           .find("18446744073709551615 items but only 12 bytes"),
       std::string::npos);
 }
@@ -212,7 +208,7 @@ TEST(Ply, NoPrefixOfAFilePassesForTheWhole) {
   Bytes whole = encode_ply(random_mesh(3, 2));
   for (std::size_t size = 0; size < whole.size(); ++size) {
     const std::string fault =
-        fault_of(Bytes(whole.begin(), whole.begin() + static_cast<long>(size)));
+        ply_fault(Bytes(whole.begin(), whole.begin() + static_cast<long>(size)));
     EXPECT_NE(fault, "") << "cut to " << size;
     EXPECT_EQ(fault.find('\n'), std::string::npos);
   }
@@ -226,7 +222,7 @@ TEST(Ply, SurvivesChangedBytes) {
     Bytes broken = whole;
     for (int i = 0; i < 3; ++i)
       broken[random() % broken.size()] = static_cast<std::uint8_t>(random());
-    refused += !fault_of(broken).empty();
+    refused += !ply_fault(broken).empty();
   }
   EXPECT_GT(refused, 500);  // most hits lie in the header or in an index
 }

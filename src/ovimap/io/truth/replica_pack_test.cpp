@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ovimap/base/error.h"
+#include "ovimap/base/error_fixture.h"
 #include "ovimap/frames/recording/sequence_fixture.h"
 #include "ovimap/io/truth/truth.h"
 
@@ -58,13 +58,8 @@ class ReplicaPackTest : public testing::Test {
     made.settings = "seed: 1\n";
     return made;
   }
-  std::string error(const ReplicaPack& made) const {
-    try {
-      write_replica_pack(folder_.path(), made);
-    } catch (const Error& fault) {
-      return fault.what();
-    }
-    return "no error";
+  std::string fault(const ReplicaPack& made) const {
+    return fault_of([&] { write_replica_pack(folder_.path(), made); });
   }
   fixture::TemporaryFolder folder_;
 };
@@ -150,13 +145,13 @@ TEST_F(ReplicaPackTest, TimesAreWrittenWhereTheyAreTrue) {
 TEST_F(ReplicaPackTest, MixingRecordingsIsRefused) {
   const RampSource source(1), skewed(2, false);
   ReplicaPack other = pack(source);
-  EXPECT_EQ(error(other), "no error");
+  EXPECT_EQ(fault(other), "");
   other.settings = "seed: 2\n";
-  EXPECT_NE(error(other).find("settings.yaml: describes other settings"), std::string::npos);
+  EXPECT_NE(fault(other).find("settings.yaml: describes other settings"), std::string::npos);
   other.scene = "attic";
   write_text(folder_.path() / "cam_params.json", "{}");
-  EXPECT_NE(error(other).find("cam_params.json: describes another camera"), std::string::npos);
-  EXPECT_NE(error(pack(skewed)).find("frame 1 of ramp: colour and depth have different cameras"),
+  EXPECT_NE(fault(other).find("cam_params.json: describes another camera"), std::string::npos);
+  EXPECT_NE(fault(pack(skewed)).find("frame 1 of ramp: colour and depth have different cameras"),
             std::string::npos);
 }
 

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ovimap/base/error.h"
+#include "ovimap/base/error_fixture.h"
 
 namespace ovimap {
 namespace {
@@ -49,12 +49,7 @@ class ReplicaTruth : public ::testing::Test {
     std::ofstream(root_ / name) << text;
   }
   std::string fault() const {
-    try {
-      load_truth(root_ / "room0");
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "no error";
+    return error_of([&] { load_truth(root_ / "room0"); });
   }
 
   const fs::path root_ =

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ovimap/base/error.h"
+#include "ovimap/base/error_fixture.h"
 #include "ovimap/io/mesh/ply.h"
 
 namespace ovimap {
@@ -46,12 +46,7 @@ class ScanNetTruth : public ::testing::Test {
     std::ofstream(scene_ / name) << text;
   }
   std::string fault() const {
-    try {
-      load_truth(scene_);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "no error";
+    return error_of([&] { load_truth(scene_); });
   }
   bool fault_names(const std::string& part) const {
     return fault().find(part) != std::string::npos;

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "ovimap/base/error.h"
+#include "ovimap/base/error_fixture.h"
 #include "ovimap/io/mesh/ply.h"
 
 namespace ovimap {
@@ -36,12 +37,7 @@ class TruthFolder : public ::testing::Test {
   }
 
   std::string fault() const {
-    try {
-      load_truth(root_ / "den");
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return {};
+    return error_of([&] { load_truth(root_ / "den"); });
   }
 
   bool fault_names(const std::string& part) const {

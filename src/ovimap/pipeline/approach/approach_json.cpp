@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "ovimap/io/exports/rounded_json.h"
+#include "ovimap/io/exports/json_values.h"
 namespace ovimap {
 
 namespace {

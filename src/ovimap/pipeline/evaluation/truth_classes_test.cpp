@@ -2,23 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/pipeline/evaluation/truth_classes.h"
 
-#include <functional>
-
 #include <gtest/gtest.h>
 
-#include "ovimap/base/error.h"
+#include "ovimap/base/error_fixture.h"
 
 namespace ovimap {
 namespace {
-
-std::string fault_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return {};
-}
 
 void expect_words(const std::string& text, std::initializer_list<const char*> words) {
   for (const char* word : words)
@@ -37,7 +26,7 @@ TEST(TruthClasses, TheirNamesMakeASet) {
   EXPECT_EQ(number_classes(kDen, set).numbers, (std::vector<std::int32_t>{3, 3, 4, 0, 0, 2}));
   EXPECT_EQ(number_classes(other, set).numbers, (std::vector<std::int32_t>{2, 1}));
   EXPECT_TRUE(number_classes(other, set).unknown.empty());
-  expect_words(fault_of([] {
+  expect_words(error_of([] {
                  label_set_of({kDen, {"cellar", {1}, {}}});
                }),
                {"cellar", "--classes"});
@@ -61,19 +50,19 @@ TEST(TruthClasses, WithoutNamesIdsAreTheSetsOwn) {
 
 TEST(TruthClasses, RefusesWhatNothingNames) {
   const LabelSet set = read_label_set("replica51");
-  expect_words(fault_of([&] {
+  expect_words(error_of([&] {
                  number_classes({"office0", {93, 777}, {}}, set);
                }),
                {"office0", "777", "replica51"});
-  expect_words(fault_of([&] {
+  expect_words(error_of([&] {
                  number_classes({"den", {4, 777}, kDen.names}, set);
                }),
                {"den", "777", "labels.json"});
-  expect_words(fault_of([&] {
+  expect_words(error_of([&] {
                  number_classes({"den", {7}, kDen.names}, set);
                }),
                {"nothing", "den", "replica51", "--classes truth"});
-  expect_words(fault_of([&] { number_classes({"den", {0, -1}, kDen.names}, set); }), {"nothing"});
+  expect_words(error_of([&] { number_classes({"den", {0, -1}, kDen.names}, set); }), {"nothing"});
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ovimap/base/error_fixture.h"
 #include "ovimap/pipeline/mapping/desk_fixture.h"
 #include "ovimap/pipeline/sequence/pose_finder.h"
 
@@ -51,12 +52,7 @@ TEST(RunLive, StopsWhenTold) {
 std::string failure_of(const FrameSource& source, const std::vector<std::int64_t>& positions,
                        std::shared_ptr<MaskSource> masks = nullptr) {
   LiveMapper mapper({}, {}, std::move(masks));
-  try {
-    (void)run_live(source, positions, mapper, 200);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "none";
+  return error_of([&] { (void)run_live(source, positions, mapper, 200); });
 }
 
 TEST(RunLive, SaysWhenNoFrameIsUsable) {
@@ -84,13 +80,10 @@ TEST(RunLive, SaysWhenNoFrameHasGoodMasks) {
 std::string repeat_failure(const FrameSource& source, const std::vector<LiveStep>& steps,
                            bool tracked = false) {
   LiveMapper mapper({}, {});
-  try {
+  return error_of([&] {
     require_repeatable(steps, tracked);
     (void)repeat_live(source, steps, mapper);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "none";
+  });
 }
 
 TEST(RepeatLive, TakesTheFramesThatTheRunTook) {

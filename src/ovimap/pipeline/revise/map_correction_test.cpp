@@ -8,6 +8,7 @@
 #include <iomanip>
 #include <set>
 
+#include "ovimap/base/error_fixture.h"
 #include "ovimap/frames/recording/sequence_fixture.h"
 #include "ovimap/io/map_file/map_file.h"
 #include "ovimap/map/rays/surface_lookup.h"
@@ -181,36 +182,31 @@ TEST(MapCorrection, KeptFramesSurviveTheFile) {
 
 TEST(MapCorrection, KeptFramesThatDoNotFitAreRefused) {
   const MapDocument map = map_desk(0.004);
-  const auto fault_after = [&](auto&& change) -> std::string {
+  const auto error_after = [&](auto&& change) {
     MapDocument changed = map_desk(0.004);
     auto frame = std::make_shared<KeptFrame>(*map.kept_frames.at(3));
     change(*frame, changed);
     changed.kept_frames[3] = std::move(frame);
-    try {
-      correct_poses(changed, true_poses(), keeping_config());
-    } catch (const Error& fault) {
-      return fault.what();
-    }
-    return {};
+    return error_of([&] { correct_poses(changed, true_poses(), keeping_config()); });
   };
   const Bytes small = encode_png(Image<std::uint16_t>(8, 6, 4000));
-  EXPECT_NE(fault_after([&](KeptFrame& frame, auto&) {
+  EXPECT_NE(error_after([&](KeptFrame& frame, auto&) {
               frame.depth_png = small;
             }).find("frame 3 cannot be fused again (is 8x6, expected 160x120)"),
             std::string::npos);
-  EXPECT_NE(fault_after([&](KeptFrame& frame, auto&) {
+  EXPECT_NE(error_after([&](KeptFrame& frame, auto&) {
               frame.segments_png = small;
             }).find("is 8x6, expected 160x120"),
             std::string::npos);
-  EXPECT_NE(fault_after([](KeptFrame& frame, auto&) {
+  EXPECT_NE(error_after([](KeptFrame& frame, auto&) {
               frame.color_jpeg = encode_jpeg(RgbImage(8, 6), 90);
             }).find("is 8x6, expected 160x120"),
             std::string::npos);
-  EXPECT_NE(fault_after([](KeptFrame& frame, auto&) {
+  EXPECT_NE(error_after([](KeptFrame& frame, auto&) {
               frame.labels.resize(1);
             }).find("but only 1 labels"),
             std::string::npos);
-  EXPECT_NE(fault_after([](KeptFrame&, MapDocument& changed) {
+  EXPECT_NE(error_after([](KeptFrame&, MapDocument& changed) {
               changed.depth_camera.fx = 0;
             }).find("which camera"),
             std::string::npos);
@@ -313,13 +309,8 @@ class PoseMatchTest : public ::testing::Test {
       EXPECT_TRUE(poses[i].isApprox(poses_[i], 1e-9)) << i;
   }
 
-  std::string fault_of(const fs::path& file) const {
-    try {
-      match_poses(frames_, file, 0.02);
-    } catch (const Error& fault) {
-      return fault.what();
-    }
-    return {};
+  std::string fault(const fs::path& file) const {
+    return fault_of([&] { match_poses(frames_, file, 0.02); });
   }
 
   const std::vector<FrameLogEntry> frames_ = map_desk(0.004).frames;
@@ -334,12 +325,12 @@ TEST_F(PoseMatchTest, MatchesByTimeByLineAndByNumber) {
 }
 
 TEST_F(PoseMatchTest, NamesTheFrameThatHasNoPose) {
-  EXPECT_NE(fault_of(write_tum(0.03)).find("frame0"), std::string::npos);
-  EXPECT_NE(fault_of(write_tum(0, 7)).find("frame7"), std::string::npos);
-  EXPECT_NE(fault_of(write_kitti(5)).find("frame5"), std::string::npos);
+  EXPECT_NE(fault(write_tum(0.03)).find("frame0"), std::string::npos);
+  EXPECT_NE(fault(write_tum(0, 7)).find("frame7"), std::string::npos);
+  EXPECT_NE(fault(write_kitti(5)).find("frame5"), std::string::npos);
   const fs::path file = write_kitti(12);
   std::ofstream(file, std::ios::app) << "not a pose\n";
-  EXPECT_EQ(fault_of(file), "") << "the frames' own lines are sound";
+  EXPECT_EQ(fault(file), "") << "the frames' own lines are sound";
 }
 
 }  // namespace

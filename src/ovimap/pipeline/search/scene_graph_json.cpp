@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "ovimap/io/exports/rounded_json.h"
+#include "ovimap/io/exports/json_values.h"
 #include "ovimap/pipeline/rooms/room_outline.h"
 #include "ovimap/semantics/query/query_grammar.h"
 

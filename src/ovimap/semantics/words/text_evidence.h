@@ -80,9 +80,8 @@ class TextEvidence {
   const EvidenceConfig& config() const { return config_; }
   const Concepts& concepts() const { return concepts_; }
   const TaughtNames& taught() const { return taught_; }
-  /// [objects, household words] exp(score - the object's best), and the best [objects].
+  /// [objects, household words] exp(score - the object's best).
   const Eigen::MatrixXf& household_weights() const { return weights_; }
-  const Eigen::VectorXf& household_best() const { return best_; }
 
  private:
   /// Adds what size and place say of the text to its scores [objects].

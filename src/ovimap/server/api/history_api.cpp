@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "ovimap/io/exports/rounded_json.h"
+#include "ovimap/io/exports/json_values.h"
 #include "ovimap/io/map_tables/map_file_history.h"
 #include "ovimap/server/http/request_body.h"
 
@@ -15,10 +15,6 @@ namespace ovimap {
 namespace {
 
 using nlohmann::json;
-
-json known(const std::optional<double>& date) {
-  return date ? json(*date) : json();
-}
 
 json box_or_null(const Eigen::AlignedBox3f& box) {
   if (box.isEmpty()) return nullptr;
@@ -37,8 +33,8 @@ json visits_json(const MapRecord& record, const HistoryDates& dates) {
     list.push_back({{"visit", visit},
                     {"source", visits[i].source},
                     {"frames", end - visits[i].first_frame},
-                    {"begin_s", known(dates.begin_of(visit))},
-                    {"end_s", known(dates.end_of(visit))}});
+                    {"begin_s", json_or_null(dates.begin_of(visit))},
+                    {"end_s", json_or_null(dates.end_of(visit))}});
   }
   return list;
 }
@@ -86,7 +82,7 @@ class ChangesInJson {
             {"label", word == words_.end() ? "" : word->second},
             {"event", event_name(change.kind)},
             {"visit", last.visit},
-            {"time_s", known(dates_.date_of(change.last))},
+            {"time_s", json_or_null(dates_.date_of(change.last))},
             {"before", box_or_null(first.before)},
             {"after", box_or_null(last.after)},
             {"may_be", first.may_be == 0 ? json() : json(first.may_be)}};

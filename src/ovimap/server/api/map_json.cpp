@@ -8,7 +8,7 @@
 
 #include "ovimap/base/error.h"
 #include "ovimap/base/version.h"
-#include "ovimap/io/exports/rounded_json.h"
+#include "ovimap/io/exports/json_values.h"
 #include "ovimap/io/map_tables/map_file_record.h"
 #include "ovimap/io/pictures/palette.h"
 #include "ovimap/pipeline/search/history_dates.h"
@@ -33,10 +33,6 @@ json box(const Eigen::AlignedBox3f& b) {
 
 json color(Rgb8 c) {
   return {c.r, c.g, c.b};
-}
-
-json optional_number(const std::optional<double>& value) {
-  return value ? json(*value) : json();
 }
 
 /// Sixteen colours from cold to hot; what lies between is interpolated.
@@ -103,9 +99,8 @@ json last_seen_of(const MapSnapshot& now, const HistoryDates& dates,
                   const InstanceSummary& instance) {
   const auto seen = last_seen(*now.record, dates, instance.super_points);
   if (!seen) return nullptr;
-  return {{"visit", seen->visit},
-          {"visits", dates.visits()},
-          {"time_s", optional_number(seen->time_s)}};
+  return {
+      {"visit", seen->visit}, {"visits", dates.visits()}, {"time_s", json_or_null(seen->time_s)}};
 }
 
 json instance_json(const MapSnapshot& now, const HistoryDates& dates, std::size_t position) {
@@ -164,8 +159,8 @@ json match_json(const MapAnswer& answered, const QueryMatch& match) {
           {"event", event == 0 ? json() : json(event)},
           {"score", match.score},
           {"standard_score", match.standard_score},
-          {"p_value", optional_number(match.p_value)},
-          {"probability", optional_number(match.probability)},
+          {"p_value", json_or_null(match.p_value)},
+          {"probability", json_or_null(match.probability)},
           {"evidence", match.evidence},
           {"part", part_json(match)}};
 }

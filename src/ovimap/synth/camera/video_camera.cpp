@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "ovimap/base/config.h"
+#include "ovimap/synth/shapes/texture.h"
 
 namespace ovimap {
 namespace {
@@ -24,11 +25,6 @@ PinholeCamera scaled(const PinholeCamera& camera, int width) {
   small.fx *= scale, small.fy *= scale;
   small.cx = scale * (camera.cx + 0.5f) - 0.5f, small.cy = scale * (camera.cy + 0.5f) - 0.5f;
   return small;
-}
-
-float linear_from_srgb(std::uint8_t value) {
-  const float v = static_cast<float>(value) / 255;
-  return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
 }
 
 /// Light before the tone curve 1 - exp(-light).

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "ovimap/base/error.h"
+#include "ovimap/base/error_fixture.h"
 #include "ovimap/frames/recording/sequence_fixture.h"
 #include "ovimap/synth/furniture/archive_fixture.h"
 #include "ovimap/synth/furniture/furniture_catalog.h"
@@ -13,16 +13,6 @@
 
 namespace ovimap {
 namespace {
-
-template <class Body>
-std::string error_of(const Body& body) {
-  try {
-    body();
-  } catch (const Error& fault) {
-    return fault.what();
-  }
-  return "no error";
-}
 
 class Furniture : public testing::Test {
  protected:

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "ovimap/base/error.h"
+#include "ovimap/base/error_fixture.h"
 #include "ovimap/synth/buildings/room_builder.h"
 #include "ovimap/synth/camera/small_camera_fixture.h"
 #include "ovimap/synth/furniture/furniture_palette.h"
@@ -22,23 +23,18 @@ bool furniture_installed() {
   return std::filesystem::is_directory(default_furniture_folder());
 }
 
-std::string error_of(const RoomSpec& spec, const std::filesystem::path& folder) {
-  try {
-    build_room(spec, folder);
-  } catch (const Error& fault) {
-    return fault.what();
-  }
-  return "no error";
+std::string fault_without_furniture(const RoomSpec& spec) {
+  return fault_of([&] { build_room(spec, "/nowhere"); });
 }
 
 TEST(RoomSpecTest, UnknownRoomsAndMissingFurnitureAreSaid) {
   EXPECT_THROW(room_spec("tinny"), Error);
-  EXPECT_NE(error_of(room_spec("tiny"), "/nowhere").find("sweethome3d-furniture"),
+  EXPECT_NE(fault_without_furniture(room_spec("tiny")).find("sweethome3d-furniture"),
             std::string::npos);
-  EXPECT_EQ(error_of(room_spec("bare"), "/nowhere"), "no error");
+  EXPECT_EQ(fault_without_furniture(room_spec("bare")), "");
   RoomSpec spec = room_spec("bare");
   spec.furniture = {{"wall", Placement::kAgainstWall, 1, {}, ""}};
-  EXPECT_NE(error_of(spec, "/nowhere").find("part of every room"), std::string::npos);
+  EXPECT_NE(fault_without_furniture(spec).find("part of every room"), std::string::npos);
 }
 
 TEST(SynthSequenceTest, BareRoomIsWalkedSmoothly) {

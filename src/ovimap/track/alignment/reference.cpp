@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ovimap/base/median.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/map/rays/ray_cast.h"
 
@@ -121,25 +122,19 @@ Image<float> halved_inverse(const Image<float>& fine) {
   return coarse;
 }
 
-/// The model where there is one, else the frame's own depth; returns the share of the model.
-double merge(const Image<float>& model, const Image<float>& own, Image<float>& merged) {
-  merged = own;
-  if (model.empty()) return 0;
-  std::size_t modelled = 0, valid = 0;
-  for (std::size_t i = 0; i < merged.size(); ++i) {
-    if (model[i] > 0) merged[i] = model[i], ++modelled;
-    valid += merged[i] > 0;
-  }
-  return valid > 0 ? static_cast<double>(modelled) / static_cast<double>(valid) : 0;
+/// The model where there is one, else the frame's own depth.
+Image<float> merged(const Image<float>& model, const Image<float>& own) {
+  Image<float> both = own;
+  for (std::size_t i = 0; i < model.size(); ++i)
+    if (model[i] > 0) both[i] = model[i];
+  return both;
 }
 
 float median_depth(const std::vector<ReferencePoint>& points) {
   if (points.empty()) return 1;
   std::vector<float> depths;
   for (const ReferencePoint& point : points) depths.push_back(point.point.z());
-  const auto middle = depths.begin() + std::ssize(depths) / 2;
-  std::nth_element(depths.begin(), middle, depths.end());
-  return *middle;
+  return median_of(depths);
 }
 
 }  // namespace
@@ -167,8 +162,7 @@ Reference make_reference(const TrackPyramid& pyramid, const Image<float>& model,
   Reference reference;
   reference.world_from_camera = world_from_camera;
   for (const TrackLevel& level : pyramid) reference.levels.push_back({level.camera, {}});
-  Image<float> inverse;
-  reference.mapped_share = merge(model, pyramid[kSurfaceLevel].inverse_depth, inverse);
+  Image<float> inverse = merged(model, pyramid[kSurfaceLevel].inverse_depth);
   const bool has_finest = pyramid[0].intensity.width() >= 2 * inverse.width();
   add_points(pyramid[kSurfaceLevel], inverse, has_finest ? &pyramid[0] : nullptr,
              reference.levels[kSurfaceLevel].points, &reference.levels[0].points);

@@ -28,7 +28,6 @@ struct Reference {
   Pose world_from_camera = Pose::Identity();
   std::vector<ReferenceLevel> levels;  ///< as the frame's pyramid
   float median_depth_m = 1;
-  double mapped_share = 0;  ///< of the points with depth, those that the map has
 };
 
 /// The map's inverse depth seen by a level's camera, where the map has a surface.
