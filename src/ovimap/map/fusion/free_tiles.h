@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "ovimap/geometry/camera.h"
@@ -34,56 +35,104 @@ Image<float> joined_squares(const Image<float>& values, int side, float first, c
   return squares;
 }
 
-/// Least and furthest free depth by tile of the image: tells of spheres whether all of one, or any,
-/// lies in free space.
+inline Image<float> most_of_squares(const Image<float>& values, int side) {
+  return joined_squares(values, side, 0.f, [](float a, float b) { return a < b ? b : a; });
+}
+
+/// Free depth by tile of the image, one value for each.
+class FreeTiles {
+ public:
+  static constexpr float kNear_m =
+      0.05f;  ///< what reaches nearer is around the camera or beside it
+
+  FreeTiles(const PinholeCamera& camera, int tile_px, Image<float> free_m)
+      : camera_(camera), tile_px_(tile_px), free_m_(std::move(free_m)) {
+    for (const float free : free_m_) most_m_ = std::max(most_m_, free);
+  }
+  FreeTiles coarser(int side) const {
+    return {camera_, tile_px_ * side, most_of_squares(free_m_, side)};
+  }
+
+  /// The furthest of the tiles that a sphere may show in (camera frame, metres); 0 where all of it
+  /// lies behind that, or beyond the view.
+  float furthest(const Eigen::Vector3f& center, float radius) const {
+    const float near_m = center.z() - radius;
+    if (center.z() + radius <= 0.f || near_m >= most_m_) return 0.f;
+    if (near_m < kNear_m) return beyond_view(camera_, center, radius) ? 0.f : most_m_;
+    float furthest_m = 0.f;
+    for_tiles(pixels_around(camera_, center, radius), [&](float free_m) {
+      furthest_m = std::max(furthest_m, free_m);
+      return true;
+    });
+    return near_m < furthest_m ? furthest_m : 0.f;
+  }
+
+  /// Of the tiles that hold some of these pixels, until `visit` says no; returns whether it did
+  /// not.
+  template <class Visit>
+  bool for_tiles(const Eigen::AlignedBox2f& pixels, const Visit& visit) const {
+    const int left = std::max(tile(pixels.min().x()), 0), top = std::max(tile(pixels.min().y()), 0),
+              right = std::min(tile(pixels.max().x()), free_m_.width() - 1),
+              bottom = std::min(tile(pixels.max().y()), free_m_.height() - 1);
+    for (int y = top; y <= bottom; ++y)
+      for (int x = left; x <= right; ++x)
+        if (!visit(free_m_.at(x, y))) return false;
+    return true;
+  }
+  float most_m() const { return most_m_; }
+
+ private:
+  int tile(float pixel) const {
+    constexpr float kFar_px = 1e6f;
+    const auto side = static_cast<float>(tile_px_);
+    const float from_before = std::clamp(pixel, -side, kFar_px) + 0.5f + side;  // positive
+    return static_cast<int>(from_before) / tile_px_ - 1;
+  }
+
+  const PinholeCamera& camera_;
+  int tile_px_;
+  Image<float> free_m_;
+  float most_m_ = 0;
+};
+
+/// Least free depth by tile of the image: tells of spheres whether all of one, or any, lies in free
+/// space.
 class LeastTiles {
  public:
   static constexpr int kTile_px = 8;
 
   LeastTiles(const PinholeCamera& camera, const Image<float>& free_m)
       : camera_(camera),
-        least_m_(joined_squares(free_m, kTile_px, std::numeric_limits<float>::max(),
-                                [](float a, float b) { return b < a ? b : a; })) {
-    for (const float least : least_m_) most_m_ = std::max(most_m_, least);
-  }
+        least_(camera, kTile_px,
+               joined_squares(free_m, kTile_px, std::numeric_limits<float>::max(),
+                              [](float a, float b) { return b < a ? b : a; })) {}
 
   /// Whether all of a sphere (camera frame, metres) shows in the image, and every pixel of the
   /// tiles it shows in runs free to behind it.
   bool all_free(const Eigen::Vector3f& center, float radius) const {
-    const float near_m = center.z() - radius, far_m = center.z() + radius;
-    if (near_m < kNear_m || far_m >= most_m_) return false;
+    const float far_m = center.z() + radius;
+    if (center.z() - radius < FreeTiles::kNear_m || far_m >= least_.most_m()) return false;
     const Eigen::AlignedBox2f covered = pixels_around(camera_, center, radius);
-    const float left = covered.min().x(), right = covered.max().x(), top = covered.min().y(),
-                bottom = covered.max().y();
-    if (left < 0.f || top < 0.f || right > static_cast<float>(camera_.width - 1) ||
-        bottom > static_cast<float>(camera_.height - 1))
+    if (covered.min().minCoeff() < 0.f ||
+        covered.max().x() > static_cast<float>(camera_.width - 1) ||
+        covered.max().y() > static_cast<float>(camera_.height - 1))
       return false;
-    for (int y = tile(top); y <= tile(bottom); ++y)
-      for (int x = tile(left); x <= tile(right); ++x)
-        if (least_m_.at(x, y) <= far_m) return false;
-    return true;
+    return least_.for_tiles(covered, [far_m](float free_m) { return free_m > far_m; });
   }
 
   /// True only where nothing that lies in the sphere, of any size, is `all_free`.
   bool none_free(const Eigen::Vector3f& center, float radius) const {
     const float near_m = center.z() - radius;
-    if (near_m >= most_m_) return true;
-    if (near_m < kNear_m) return false;
-    const Eigen::AlignedBox2f covered = pixels_around(camera_, center, radius);
-    if (covered.max().minCoeff() < 0.f) return true;
-    const int left = tile(std::max(covered.min().x(), 0.f)),
-              top = tile(std::max(covered.min().y(), 0.f)),
-              right = std::min(tile(covered.max().x()), least_m_.width() - 1),
-              bottom = std::min(tile(covered.max().y()), least_m_.height() - 1);
-    for (int y = top; y <= bottom; ++y)
-      for (int x = left; x <= right; ++x)
-        if (least_m_.at(x, y) > near_m) return false;
-    return true;
+    if (near_m >= least_.most_m()) return true;
+    if (near_m < FreeTiles::kNear_m) return false;
+    return least_.for_tiles(pixels_around(camera_, center, radius),
+                            [near_m](float free_m) { return free_m <= near_m; });
   }
 
   /// False only where no part of the sphere may be in view before the furthest free depth.
   bool any_free(const Eigen::Vector3f& center, float radius) const {
-    if (center.z() + radius < kNear_m || center.z() - radius >= most_m_) return false;
+    if (center.z() + radius < FreeTiles::kNear_m || center.z() - radius >= least_.most_m())
+      return false;
     return !beyond_view(camera_, center, radius);
   }
 
@@ -92,17 +141,13 @@ class LeastTiles {
     Eigen::AlignedBox3d box(world_from_camera.translation());
     for (const float u : {0.f, static_cast<float>(camera_.width - 1)})
       for (const float v : {0.f, static_cast<float>(camera_.height - 1)})
-        box.extend(world_from_camera * camera_.unproject(u, v, most_m_).cast<double>());
+        box.extend(world_from_camera * camera_.unproject(u, v, least_.most_m()).cast<double>());
     return box;
   }
 
  private:
-  static constexpr float kNear_m = 0.05f;
-  static int tile(float pixel) { return static_cast<int>(pixel + 0.5f) / kTile_px; }
-
   const PinholeCamera& camera_;
-  Image<float> least_m_;
-  float most_m_ = 0;
+  FreeTiles least_;
 };
 
 }  // namespace ovimap
