@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 #include "eval_report.h"
-#include "ovimap/io/exports/json_values.h"
 
 #include <array>
 #include <cstdio>
+
+#include "ovimap/io/exports/json_values.h"
 
 namespace ovimap::apps {
 

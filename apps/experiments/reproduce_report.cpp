@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The ovimap authors
 // SPDX-License-Identifier: Apache-2.0
 #include "reproduce_report.h"
-#include "ovimap/io/exports/json_values.h"
 
 #include <cmath>
+
+#include "ovimap/io/exports/json_values.h"
 
 namespace ovimap::apps {
 
