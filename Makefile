@@ -88,7 +88,7 @@ bench: build-all
 rivals:
 	@tools/rivals.sh
 
-benchmarks: build
+benchmarks: build-all
 	@python3 tools/benchmarks.py $(OVIMAP) $(if $(KITCHEN),--kitchen "$(KITCHEN)") $(if $(STUDIO),--studio "$(STUDIO)") $(if $(ONLY),--only $(ONLY))
 
 wheel: test-setup
