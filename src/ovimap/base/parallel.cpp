@@ -69,15 +69,22 @@ void on_this_thread(const std::function<void()>& body) {
   tbb::task_arena(1).execute(body);
 }
 
+std::size_t allowed_threads() {
+  return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+}
+
+/// Made in its place: a copied tbb::global_control limits nothing.
 struct ThreadLimit::Control {
+  explicit Control(int threads)
+      : limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads)) {}
+  Control(const Control&) = delete;
+  Control& operator=(const Control&) = delete;
+
   tbb::global_control limit;
 };
 
 ThreadLimit::ThreadLimit(int threads) {
-  if (threads > 0) {
-    control_ = std::make_unique<Control>(Control{tbb::global_control(
-        tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads))});
-  }
+  if (threads > 0) control_ = std::make_unique<Control>(threads);
 }
 
 ThreadLimit::~ThreadLimit() = default;

@@ -37,6 +37,10 @@ void parallel_for(std::size_t count, std::size_t grain, Body&& body) {
 /// Runs `body`, and every parallel_for and every task of oneTBB in it, on the calling thread alone.
 void on_this_thread(const std::function<void()>& body);
 
+/// How many threads may run the bodies of a parallel_for: as many as there are cores, or fewer
+/// while a ThreadLimit lives.
+std::size_t allowed_threads();
+
 /// While alive, no more than `threads` threads run the bodies of any parallel_for in this process
 /// (0: all cores), the threads that call one included.
 class ThreadLimit {

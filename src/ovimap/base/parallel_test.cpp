@@ -42,6 +42,16 @@ TEST(ParallelFor, DoesNothingForNothing) {
   parallel_for(0, 1, [](std::size_t) { FAIL(); });
 }
 
+TEST(ThreadLimit, SaysHowManyThreadsMayRun) {
+  const std::size_t before = allowed_threads();
+  EXPECT_GE(before, 1u);
+  {
+    const ThreadLimit one(1);
+    EXPECT_EQ(allowed_threads(), 1u);
+  }
+  EXPECT_EQ(allowed_threads(), before);
+}
+
 #ifndef __SANITIZE_THREAD__  // under which parallel_for takes threads of its own
 TEST(OnThisThread, NoOtherThreadHelps) {
   std::vector<std::thread::id> workers(64);

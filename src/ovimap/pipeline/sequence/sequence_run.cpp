@@ -7,6 +7,7 @@
 #include <future>
 
 #include "ovimap/base/error.h"
+#include "ovimap/base/parallel.h"
 #include "ovimap/pipeline/sequence/map_description.h"
 #include "ovimap/pipeline/sequence/timings_text.h"
 
@@ -84,9 +85,10 @@ SequenceResult run_sequence(const FrameSource& source, const std::vector<std::in
     throw Error(concat("no frame is asked for: --frames must leave some of the recording's ",
                        source.size(), ", which are counted from 0"));
   const auto start = std::chrono::steady_clock::now();
-  const auto read = [&source, &config = mapper.config()](std::int64_t position) {
-    return std::async(std::launch::async, read_ahead, std::cref(source), position,
-                      std::cref(config));
+  // On one thread a frame is read when its turn comes.
+  const auto when = allowed_threads() > 1 ? std::launch::async : std::launch::deferred;
+  const auto read = [&source, &config = mapper.config(), when](std::int64_t position) {
+    return std::async(when, read_ahead, std::cref(source), position, std::cref(config));
   };
   SequenceResult result = std::move(begun);
   std::future<FrameAhead> next;
@@ -119,7 +121,7 @@ SequenceResult run_sequence(const FrameSource& source, const std::vector<std::in
     const bool fused = current.fault.empty();
     if (progress && !progress(i + 1, positions.size(), fused ? &report : nullptr)) break;
   }
-  if (next.valid()) next.wait();
+  next = {};  // waits for a frame that is being read
   if (result.frames.empty())
     throw Error(concat("none of the ", result.skipped.size(), " frames is usable: ",
                        commonest_fault(result.skipped), "; `ovimap check` tells more"));
