@@ -22,6 +22,7 @@ find_program(OVIMAP_MOLD mold)
 add_library(ovimap_options INTERFACE)
 target_compile_options(ovimap_options INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor
   $<$<BOOL:${OVIMAP_WERROR}>:-Werror>)
+target_compile_options(ovimap_options INTERFACE -Wno-psabi)  # vectors go between inlined functions only (base/lanes.h)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 and 14 take copies of small vectors for reads past their end, 13 searches in strings.
   target_compile_options(ovimap_options INTERFACE -Wno-array-bounds -Wno-stringop-overread

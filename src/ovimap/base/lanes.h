@@ -14,9 +14,7 @@ inline constexpr int kLanes = 8;
 using Floats = float __attribute__((vector_size(kLanes * sizeof(float))));
 using Ints = std::int32_t __attribute__((vector_size(kLanes * sizeof(std::int32_t))));
 
-// The compiler may choose how vectors are passed: these functions are always inlined.
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wpsabi"
+// Always inlined, so that it does not matter how a processor passes vectors.
 #define OVIMAP_LANES_INLINE inline __attribute__((always_inline))
 
 OVIMAP_LANES_INLINE Floats broadcast(float value) {
@@ -71,6 +69,5 @@ OVIMAP_LANES_INLINE bool any(Ints mask) {
 }
 
 #undef OVIMAP_LANES_INLINE
-#pragma GCC diagnostic pop
 
 }  // namespace ovimap

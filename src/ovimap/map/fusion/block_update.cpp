@@ -33,9 +33,6 @@ struct ObservedRow {
   Ints observed;      ///< mask: the weight is not 0
 };
 
-// Vectors are passed between inlined functions only.
-#pragma GCC diagnostic ignored "-Wpsabi"
-
 /// Metres off the surface per metre of depth, at the pixels of `wanted` lanes.
 OVIMAP_INLINE Floats slopes(const FusionView& view, const ProjectedRow& row, Ints wanted) {
   Floats slope = {};

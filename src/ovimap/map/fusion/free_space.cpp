@@ -19,8 +19,6 @@ namespace {
 
 constexpr std::size_t kClearedBlocksPerTask = 16;
 
-#pragma GCC diagnostic ignored "-Wpsabi"
-
 /// The voxels of a block that a frame sees through: a byte for each row along x.
 struct Doubted {
   std::array<std::uint8_t, kBlockVoxels / kBlockSide> rows{};

@@ -12,9 +12,6 @@ namespace ovimap {
 
 static_assert(kBlockSide == kLanes, "a row of voxels is worked on at once");
 
-// Vectors are passed between inlined functions only.
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wpsabi"
 /// Where eight voxels in a row along x lie in the image.
 struct ProjectedRow {
   Floats z_m;            ///< of the voxel's centre along the optical axis
@@ -45,7 +42,5 @@ OVIMAP_INLINE Floats gather(const float* image, Ints pixel) {
   return Floats{image[pixel[0]], image[pixel[1]], image[pixel[2]], image[pixel[3]],
                 image[pixel[4]], image[pixel[5]], image[pixel[6]], image[pixel[7]]};
 }
-
-#pragma GCC diagnostic pop
 
 }  // namespace ovimap

@@ -17,8 +17,6 @@ constexpr std::size_t kRowsPerTask = 16;
 constexpr float kUnknownSlope = 0.5f;  // of a plane that does not fit, as FreeSpaceConfig takes it
 constexpr float kLeastSlope = 0.1f;
 
-#pragma GCC diagnostic ignored "-Wpsabi"
-
 /// The cells of eight pixels along a row, by coordinate.
 struct CellsOfPixels {
   std::int32_t x[kLanes], y[kLanes], z[kLanes];
