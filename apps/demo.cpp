@@ -3,7 +3,6 @@
 #include <cstdio>
 
 #include "apps/models/models_fetch.h"
-#include "ovimap/base/error.h"
 #include "program.h"
 
 namespace ovimap::apps {

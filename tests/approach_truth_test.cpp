@@ -11,7 +11,6 @@
 #include "ovimap/synth/buildings/benchmark_scenes.h"
 #include "ovimap/synth/buildings/floor_plan.h"
 #include "ovimap/synth/buildings/room_builder.h"
-#include "ovimap/synth/rooms/room_spec.h"
 #include "true_map_fixture.h"
 
 namespace ovimap {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ovimap/base/config.h"
 #include "ovimap/base/error.h"
 
 namespace ovimap::apps {

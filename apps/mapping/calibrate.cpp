@@ -3,7 +3,6 @@
 #include "calibrate.h"
 
 #include <cstdio>
-#include <span>
 
 #include "ovimap/base/parallel.h"
 #include "ovimap/frames/calibration/color_calibration.h"

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "camera_run.h"
 
-#include <cstdio>
-
 namespace ovimap::apps {
 
 namespace {

@@ -7,7 +7,6 @@
 #include "apps/command/kept_memory.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/image/codec.h"
-#include "ovimap/instance/instance_mesh.h"
 #include "ovimap/io/exports/json_values.h"
 #include "ovimap/io/map_file/map_edits.h"
 #include "ovimap/io/mesh/map_mesh.h"

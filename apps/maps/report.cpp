@@ -6,7 +6,6 @@
 #include "ovimap/base/parallel.h"
 #include "ovimap/image/codec.h"
 #include "ovimap/io/map_file/map_edits.h"
-#include "ovimap/io/map_file/map_file.h"
 #include "ovimap/pipeline/report/map_pictures.h"
 #include "ovimap/pipeline/report/map_report.h"
 #include "ovimap/pipeline/search/map_search.h"

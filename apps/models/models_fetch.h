@@ -4,7 +4,6 @@
 
 #include "apps/command/command.h"
 #include "ovimap/hub/catalogue/catalogue.h"
-#include "ovimap/hub/transfer/hub_config.h"
 
 namespace ovimap::apps {
 

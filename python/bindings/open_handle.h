@@ -5,7 +5,6 @@
 #include <nanobind/nanobind.h>
 
 #include <atomic>
-#include <string>
 
 #include "ovimap/base/error.h"
 

@@ -2,26 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Takes the documentation's pictures of rooms, and of where to stand to see what a query finds.
 // Usage, in viewer/: node e2e/place-pictures.mjs PROGRAM MAP OUT QUERY
-import { spawn } from 'node:child_process';
 import { join } from 'node:path';
-import { chromium } from '@playwright/test';
+import { launch, serve } from './served-map.mjs';
 
 const [program, map, out, query] = process.argv.slice(2);
 if (!program || !map || !out || !query) {
   console.error('usage: node e2e/place-pictures.mjs PROGRAM MAP OUT QUERY');
   process.exit(2);
 }
-const server = spawn(program, ['serve', map, '--port', '0', '--json', '--no-limits'], {
-  stdio: ['ignore', 'pipe', 'inherit'],
-});
-const { address } = await new Promise((resolve, reject) => {
-  server.stdout.once('data', (line) => resolve(JSON.parse(line)));
-  server.once('exit', (code) => reject(new Error(`ovimap serve ended with code ${code}`)));
-});
-const browser = await chromium.launch({
-  executablePath: process.env.OVIMAP_CHROMIUM ?? '/usr/bin/chromium',
-  args: ['--no-sandbox', '--enable-unsafe-swiftshader'],
-});
+const { server, address } = await serve(program, map);
+const browser = await launch();
 const page = await browser.newPage({
   viewport: { width: 1280, height: 800 },
   colorScheme: 'light',

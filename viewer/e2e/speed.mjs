@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Measures the viewer on a map, on loopback and with software rendering: when the first picture is drawn, and how long a query takes until
 // its answer is drawn. Usage, in viewer/: node e2e/speed.mjs PROGRAM MAP [runs]
-import { spawn } from 'node:child_process';
-import { chromium } from '@playwright/test';
+import { launch, serve } from './served-map.mjs';
 
 const [program, map, runs = '7'] = process.argv.slice(2);
 if (!program || !map) {
@@ -14,22 +13,6 @@ if (!program || !map) {
 const median = (values) => [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)];
 const row = (what, values) =>
   console.log(`| ${what} | ${median(values).toFixed(0)} | ${Math.max(...values).toFixed(0)} |`);
-
-async function serve() {
-  const server = spawn(program, ['serve', map, '--port', '0', '--json', '--no-limits'], {
-    stdio: ['ignore', 'pipe', 'inherit'],
-  });
-  const line = await new Promise((resolve) =>
-    server.stdout.once('data', (data) => resolve(data.toString())),
-  );
-  return { server, address: JSON.parse(line).address };
-}
-
-const launch = () =>
-  chromium.launch({
-    executablePath: process.env.OVIMAP_CHROMIUM ?? '/usr/bin/chromium',
-    args: ['--no-sandbox', '--enable-unsafe-swiftshader'],
-  });
 
 /** Whether the map can be searched. */
 async function searchReady(address) {
@@ -87,7 +70,7 @@ async function answerTime(address, text) {
   return performance.now() - start;
 }
 
-const { server, address } = await serve();
+const { server, address } = await serve(program, map);
 const words = await searchReady(address);
 const times = { first: [], whole: [], turned: [], still: [], words: [], bare: [], encoded: [] };
 for (let run = 0; run < Number(runs); ++run) {

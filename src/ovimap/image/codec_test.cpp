@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "ovimap/base/error_fixture.h"
+#include "ovimap/base/temporary_folder_fixture.h"
 
 namespace ovimap {
 namespace {
@@ -252,12 +253,11 @@ TEST(Decode, UnknownContentIsNamed) {
 }
 
 TEST(Decode, FaultOfAFileNamesTheFile) {
-  const auto path =
-      std::filesystem::temp_directory_path() / concat("ovimap-codec-", ::getpid(), ".jpg");
+  const fixture::TemporaryFolder folder;
+  const auto path = folder.path() / "picture.jpg";
   write_file(path, {});
   EXPECT_EQ(error_of([&] { read_rgb(path); }), path.string() + " is empty");
   EXPECT_EQ(error_of([&] { read_gray(path); }), path.string() + " is empty");
-  std::filesystem::remove(path);
 }
 
 }  // namespace

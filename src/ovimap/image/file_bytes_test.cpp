@@ -4,10 +4,11 @@
 #include <iterator>
 
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <gtest/gtest.h>
 
+#include "ovimap/base/error_fixture.h"
+#include "ovimap/base/temporary_folder_fixture.h"
 #include "ovimap/image/codec.h"
 #include "ovimap/image/scratch_file.h"
 
@@ -16,18 +17,13 @@ namespace {
 
 class FileBytes : public testing::Test {
  protected:
-  FileBytes()
-      : folder_(std::filesystem::temp_directory_path() / concat("ovimap-file-bytes-", ::getpid())) {
-    std::filesystem::create_directories(folder_);
-  }
-  ~FileBytes() override { std::filesystem::remove_all(folder_); }
-
   std::ptrdiff_t files() const {
     return std::distance(std::filesystem::directory_iterator(folder_),
                          std::filesystem::directory_iterator());
   }
 
-  std::filesystem::path folder_;
+  const fixture::TemporaryFolder scratch_;
+  const std::filesystem::path folder_ = scratch_.path();
 };
 
 TEST_F(FileBytes, WholeFileComesBack) {
@@ -41,18 +37,9 @@ TEST_F(FileBytes, WholeFileComesBack) {
 }
 
 TEST_F(FileBytes, MissingFileAndFolderAreNamed) {
-  try {
-    read_file(folder_ / "none");
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find((folder_ / "none").string()), std::string::npos);
-  }
-  try {
-    read_file(folder_);
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("is a folder"), std::string::npos);
-  }
+  EXPECT_NE(error_of([&] { read_file(folder_ / "none"); }).find((folder_ / "none").string()),
+            std::string::npos);
+  EXPECT_NE(error_of([&] { read_file(folder_); }).find("is a folder"), std::string::npos);
   EXPECT_THROW(write_file(folder_, {}), Error);
   EXPECT_THROW(write_file(folder_ / "no-such-folder" / "a", {}), Error);
   EXPECT_EQ(files(), 0);

@@ -2,11 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <map>
 #include <optional>
 #include <set>
 #include <span>
-#include <string>
 #include <vector>
 
 #include <Eigen/Core>

@@ -3,7 +3,6 @@
 #include "ovimap/segment/depth_segmentation.h"
 
 #include <random>
-#include <set>
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "ovimap/track/room_camera_fixture.h"
-
 namespace ovimap {
 namespace {
 

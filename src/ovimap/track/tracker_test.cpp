@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ovimap/base/error_fixture.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/track/room_camera_fixture.h"
 #include "ovimap/track/sensor_doubts.h"
@@ -56,12 +57,8 @@ TEST_F(TrackerTest, FollowsEveryThirdFrame) {
 
 TEST_F(TrackerTest, RefusesImagesTooSmallToSeeMotion) {
   camera_.camera = {64, 48, 56.f, 56.f, 31.5f, 23.5f};
-  try {
-    see(fixture::room_pose(0));
-    FAIL();
-  } catch (const Error& fault) {
-    EXPECT_NE(std::string(fault.what()).find("depth images are 64 pixels wide"), std::string::npos);
-  }
+  const std::string fault = error_of([&] { see(fixture::room_pose(0)); });
+  EXPECT_NE(fault.find("depth images are 64 pixels wide"), std::string::npos);
   camera_.camera = {80, 60, 70.f, 70.f, 39.5f, 29.5f};  // the smallest that are taken
   EXPECT_TRUE(see(fixture::room_pose(0)).tracked);
   EXPECT_TRUE(see(fixture::room_pose(0)).tracked);

@@ -4,20 +4,21 @@
 
 #include <gtest/gtest.h>
 
+#include "ovimap/base/temporary_folder_fixture.h"
+
 namespace ovimap {
 namespace {
 
 namespace fs = std::filesystem;
 
 TEST(InstalledData, LiesBesideAProgramsFolderOrBesideAModule) {
-  const fs::path prefix = fs::temp_directory_path() / "ovimap_installed_data_test";
-  fs::remove_all(prefix);
+  const fixture::TemporaryFolder folder;
+  const fs::path& prefix = folder.path();
   fs::create_directories(prefix / "share/ovimap/models");
   EXPECT_EQ(data_installed_with(prefix / "bin/ovimap", "models"), prefix / "share/ovimap/models");
   EXPECT_EQ(data_installed_with(prefix / "_ovimap.so", "models"), prefix / "share/ovimap/models");
   EXPECT_EQ(data_installed_with(prefix / "lib/python/ovimap/_ovimap.so", "models"), std::nullopt);
   EXPECT_EQ(data_installed_with(prefix / "bin/ovimap", "furniture"), std::nullopt);
-  fs::remove_all(prefix);
 }
 
 TEST(InstalledData, OfAProgramThatIsNotInstalledIsNone) {

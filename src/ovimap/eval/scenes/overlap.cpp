@@ -3,7 +3,6 @@
 #include "ovimap/eval/scenes/overlap.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "ovimap/base/error.h"
 

@@ -83,11 +83,6 @@ void list_fields(ReferenceProtocolConfig& config, ConfigFields& fields) {
              "instances with fewer truth vertices do not count in the reference protocol");
 }
 
-ReferenceScores reference_scores(const LabelledScene& scene,
-                                 const ReferenceProtocolConfig& config) {
-  return scores_of(sums_of(scene, config));
-}
-
 ReferenceSummary reference_summary(std::span<const LabelledScene> scenes,
                                    const ReferenceProtocolConfig& config) {
   constexpr std::array kFigures = {&ReferenceScores::miou,     &ReferenceScores::wiou,

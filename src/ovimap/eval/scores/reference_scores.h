@@ -30,13 +30,9 @@ struct ReferenceSummary {
   ReferenceScores pooled;  ///< from the sums over all scenes
 };
 
-/// One scene. The lowest truth id that occurs is dropped, whatever it is: the released code
+/// The lowest truth id that occurs in a scene is dropped, whatever it is: the released code
 /// re-indexes ids by sorted order and takes index 0 for background. Vertices of dropped instances
 /// still count in the sizes of predictions. A figure whose denominator is zero is 0.
-ReferenceScores reference_scores(const LabelledScene& scene,
-                                 const ReferenceProtocolConfig& config = {});
-
-/// Several scenes.
 ReferenceSummary reference_summary(std::span<const LabelledScene> scenes,
                                    const ReferenceProtocolConfig& config = {});
 

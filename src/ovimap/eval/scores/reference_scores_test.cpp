@@ -24,6 +24,11 @@ LabelledScene four_things() {
   return scene;
 }
 
+ReferenceScores reference_scores(const LabelledScene& scene,
+                                 const ReferenceProtocolConfig& config = {}) {
+  return reference_summary({&scene, 1}, config).pooled;
+}
+
 TEST(ReferenceScores, AreAsComputedByHand) {
   const ReferenceScores scores = reference_scores(four_things());
   EXPECT_EQ(scores.truth_instances, 2);

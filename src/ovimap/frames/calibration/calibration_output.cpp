@@ -8,7 +8,6 @@
 
 #include "ovimap/base/bounded_yaml.h"
 #include "ovimap/frames/calibration/color_calibration.h"
-#include "ovimap/image/codec.h"
 
 namespace ovimap {
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/frames/check/pose_offset.h"
 
-#include <cmath>
 #include <map>
 #include <optional>
 

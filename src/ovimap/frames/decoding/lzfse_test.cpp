@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/frames/decoding/lzfse.h"
 
-#include <functional>
 #include <string>
 #include <string_view>
 

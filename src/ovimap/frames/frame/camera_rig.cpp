@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/frames/frame/camera_rig.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <limits>
@@ -12,7 +13,6 @@
 #include "ovimap/base/bounded_yaml.h"
 #include "ovimap/base/config.h"
 #include "ovimap/geometry/camera_limits.h"
-#include "ovimap/image/codec.h"
 #include "ovimap/image/size_limits.h"
 
 namespace ovimap {

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ovimap/base/error.h"
+#include "ovimap/base/error_fixture.h"
 #include "ovimap/base/parallel.h"
 
 namespace ovimap {
@@ -133,15 +133,12 @@ TEST(Rectification, ThreadsDoNotChangeTheResult) {
 TEST(Rectification, RefusesCoefficientsThatCannotBeThisCameras) {
   for (const Lens& lens : {Lens{Lens::Model::kBrownConrady, {1e6, 0, 0, 0, 0}},
                            Lens{Lens::Model::kBrownConrady, {0, 0, 0, 0, 1e300}},
-                           Lens{Lens::Model::kKannalaBrandt, {-1e9, 0, 0, 0}}}) {
-    try {
-      Rectification(kCamera, lens, "colour");
-      ADD_FAILURE() << lens.coefficients[0];
-    } catch (const Error& fault) {
-      EXPECT_NE(std::string(fault.what()).find("the distortion of the colour camera shows only"),
-                std::string::npos);
-    }
-  }
+                           Lens{Lens::Model::kKannalaBrandt, {-1e9, 0, 0, 0}}})
+    EXPECT_NE(error_of([&] {
+                Rectification(kCamera, lens, "colour");
+              }).find("the distortion of the colour camera shows only"),
+              std::string::npos)
+        << lens.coefficients[0];
 }
 
 TEST(Rectification, TakesNoMemoryForImagesThatNoCameraHas) {

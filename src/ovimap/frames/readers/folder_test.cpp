@@ -158,13 +158,8 @@ TEST_F(Folder, WhatIsMissingIsSaidWithAnExample) {
 
 TEST_F(Folder, OfABagTheToolForItIsNamed) {
   write_text(path() / "lab.mcap", "");
-  try {
-    open_frame_source(path() / "lab.mcap");
-    FAIL();
-  } catch (const Error& fault) {
-    EXPECT_NE(std::string(fault.what()).find("`ovimap-bag lab.mcap FOLDER`"), std::string::npos)
-        << fault.what();
-  }
+  const std::string fault = error_of([&] { open_frame_source(path() / "lab.mcap"); });
+  EXPECT_NE(fault.find("`ovimap-bag lab.mcap FOLDER`"), std::string::npos) << fault;
 }
 
 }  // namespace

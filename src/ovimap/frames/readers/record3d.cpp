@@ -7,7 +7,6 @@
 #include "ovimap/frames/readers/readers.h"
 #include "ovimap/frames/recording/folder_parts.h"
 #include "ovimap/frames/recording/number_text.h"
-#include "ovimap/image/codec.h"
 #include "ovimap/image/size_limits.h"
 
 namespace ovimap {

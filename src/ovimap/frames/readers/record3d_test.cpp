@@ -195,12 +195,8 @@ TEST_F(Record3d, BrokenDescriptionsAreNamed) {
   EXPECT_NE(error().find("2147483647x2147483647 are too large"), std::string::npos);
   write_metadata("");
   write_text(path() / "take.r3d", "PK");
-  try {
-    open_frame_source(path() / "take.r3d");
-    FAIL();
-  } catch (const Error& fault) {
-    EXPECT_NE(std::string(fault.what()).find("is a zip file; unzip it"), std::string::npos);
-  }
+  const std::string fault = error_of([&] { open_frame_source(path() / "take.r3d"); });
+  EXPECT_NE(fault.find("is a zip file; unzip it"), std::string::npos);
 }
 
 }  // namespace

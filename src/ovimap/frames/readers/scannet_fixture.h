@@ -4,7 +4,6 @@
 
 // For tests only: the analytic room as a ScanNet export folder and as a .sens file.
 
-#include <array>
 #include <cstring>
 #include <string>
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/frames/recording/recording.h"
 
-#include <functional>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -128,13 +127,8 @@ TEST_F(RecordingTest, DepthIsMetresAndOutOfRangeIsZero) {
 TEST_F(RecordingTest, NoCompleteFrameIsAnErrorThatNamesWhatIsMissing) {
   for (int i = 0; i < 3; ++i)
     std::filesystem::remove(folder_.path() / ("frame-" + fixture::padded(i, 6) + ".pose.txt"));
-  try {
-    open_frame_source(folder_.path());
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("frame-000000.pose.txt is missing"), std::string::npos)
-        << error.what();
-  }
+  const std::string fault = error_of([&] { open_frame_source(folder_.path()); });
+  EXPECT_NE(fault.find("frame-000000.pose.txt is missing"), std::string::npos) << fault;
 }
 
 TEST_F(RecordingTest, PosesMayBeMissingWhereTheCallerAllowsIt) {

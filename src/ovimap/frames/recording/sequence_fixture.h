@@ -4,46 +4,21 @@
 
 // For tests only: an analytic room rendered exactly, and tiny recordings of it in each layout.
 
-#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <functional>
 #include <limits>
 #include <string>
-#include <vector>
-
-#include <unistd.h>
 
 #include "ovimap/base/error.h"
+#include "ovimap/base/temporary_folder_fixture.h"
 #include "ovimap/frames/frame/frame.h"
 #include "ovimap/image/codec.h"
 
 namespace ovimap::fixture {
 
 namespace fs = std::filesystem;
-
-/// A folder of its own under the system's temporary one, removed with its content.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    static std::atomic<int> counter{0};
-    path_ =
-        fs::temp_directory_path() / concat("ovimap-frames-", ::getpid(), "-", counter.fetch_add(1));
-    fs::create_directories(path_);
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 inline std::string padded(int number, int digits) {
   char text[32];

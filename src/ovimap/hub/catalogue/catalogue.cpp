@@ -4,8 +4,6 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include <algorithm>
-
 #include "ovimap/base/bounded_yaml.h"
 #include "ovimap/base/edit_distance.h"
 #include "ovimap/base/error.h"

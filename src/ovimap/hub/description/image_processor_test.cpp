@@ -10,7 +10,7 @@ namespace ovimap {
 namespace {
 
 ImageInputSpec read(const std::string& text) {
-  const ScratchFolder scratch("image_processor");
+  const fixture::TemporaryFolder scratch;
   scratch.write("preprocessor_config.json", text);
   return read_image_processor(scratch.path() / "preprocessor_config.json");
 }

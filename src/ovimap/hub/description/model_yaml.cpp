@@ -4,7 +4,6 @@
 #include <yaml-cpp/yaml.h>
 
 #include <fstream>
-#include <set>
 
 #include "ovimap/base/error.h"
 #include "ovimap/hub/description/model_description.h"

@@ -2,18 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/hub/transfer/git_blob.h"
 
-#include <fstream>
-
 #include <gtest/gtest.h>
 
-#include "ovimap/inference/models/test_support.h"
+#include "ovimap/base/temporary_folder_fixture.h"
 
 namespace ovimap {
 namespace {
 
 // What `git hash-object` prints.
 TEST(GitBlob, IsThatOfGit) {
-  const ScratchFolder scratch("git_blob");
+  const fixture::TemporaryFolder scratch;
   scratch.write("empty", "");
   scratch.write("hello", "hello\n");
   EXPECT_EQ(git_blob_of_file(scratch.path() / "empty"), "e69de29bb2d1d6434b8b29ae775ad8c2e48c5391");

@@ -8,7 +8,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "ovimap/inference/encoders/dual_encoder_spec.h"
 #include "ovimap/inference/encoders/image_text_encoder.h"

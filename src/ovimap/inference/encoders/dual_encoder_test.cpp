@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "ovimap/inference/models/onnx_fixture.h"
 #include "ovimap/inference/models/sha256.h"
 #include "ovimap/inference/models/test_support.h"
@@ -63,7 +61,7 @@ text_rule: bert
 /// A model folder that can be spoilt in one place.
 class EncoderFolder {
  public:
-  explicit EncoderFolder(const std::string& name) : scratch_("encoder_" + name) {
+  EncoderFolder() {
     write("vocab.txt", "[PAD]\n[UNK]\n[CLS]\n[SEP]\nred\nmug\n##s\n");
     write("image.onnx", image_network(kAnySize).file());
     write("text.onnx", text_network(kAnySize, kAnySize).file());
@@ -88,7 +86,7 @@ class EncoderFolder {
   }
 
  private:
-  ScratchFolder scratch_;
+  fixture::TemporaryFolder scratch_;
   std::string yaml_ = kEncoderYaml;
 };
 
@@ -97,7 +95,7 @@ void expect_row(const Embeddings& rows, Eigen::Index row, Eigen::Vector3f direct
 }
 
 TEST(DualEncoder, EncodesImagesByTheNetwork) {
-  EncoderFolder folder("images");
+  EncoderFolder folder;
   const auto encoder = folder.open();
   std::vector<RgbImage> images;
   for (int i = 0; i < 11; ++i)  // more than one batch
@@ -110,7 +108,7 @@ TEST(DualEncoder, EncodesImagesByTheNetwork) {
 }
 
 TEST(DualEncoder, EncodesTextsByTheNetwork) {
-  EncoderFolder folder("texts");
+  EncoderFolder folder;
   const auto encoder = folder.open();
   const std::vector<std::string> texts = {"Red mugs", "", "mug mug mug mug mug mug mug"};
   const Embeddings rows = encoder->encode_texts(texts);
@@ -121,7 +119,7 @@ TEST(DualEncoder, EncodesTextsByTheNetwork) {
 }
 
 TEST(DualEncoder, UnpaddedTextsDoNotDependOnTheirNeighbours) {
-  EncoderFolder folder("unpadded");
+  EncoderFolder folder;
   folder.edit("pad_to_context: true", "pad_to_context: false");
   const auto encoder = folder.open();
   const std::vector<std::string> texts = {"red", "red mugs red mugs"};
@@ -143,7 +141,7 @@ TEST(DualEncoder, FewTextsAndManyAreEncodedAlike) {
 }
 
 TEST(DualEncoder, TakesNetworksOfOneItem) {
-  EncoderFolder folder("single");
+  EncoderFolder folder;
   folder.write("image.onnx", image_network(1).file());
   folder.write("text.onnx", text_network(1, 6).file());
   const auto encoder = folder.open();
@@ -157,14 +155,14 @@ TEST(DualEncoder, TakesNetworksOfOneItem) {
 }
 
 TEST(DualEncoder, OnesHideNothing) {
-  EncoderFolder folder("ones");
+  EncoderFolder folder;
   folder.edit("mask: mask", "ones: mask");
   const std::vector<std::string> texts = {"red"};
   expect_row(folder.open()->encode_texts(texts), 0, {2 + 4 + 3, 6, 0});  // three ids, three [PAD]
 }
 
 TEST(DualEncoder, RunsAsManyItemsAtOnceAsItsModelSays) {
-  EncoderFolder folder("at_once");
+  EncoderFolder folder;
   OnnxGraph graph;  // adds the mean over the batch, as a network quantised while it runs might
   graph.input("pixels", OnnxGraph::kFloat, {kAnySize, 3, kSize, kSize})
       .node("ReduceMean", {"pixels"}, "mean",
@@ -184,13 +182,13 @@ TEST(DualEncoder, RunsAsManyItemsAtOnceAsItsModelSays) {
 }
 
 TEST(DualEncoder, WeightsBesideANetworkNeedADigest) {
-  EncoderFolder folder("beside");
+  EncoderFolder folder;
   folder.write("image.onnx_data", "weights");
   EXPECT_TRUE(contains(folder.error(), "no digest of image.onnx_data"));
 }
 
 TEST(DualEncoder, RowsThatAreNotFiniteBecomeZeros) {
-  EncoderFolder folder("nan");
+  EncoderFolder folder;
   OnnxGraph graph;
   graph.input("pixels", OnnxGraph::kFloat, {kAnySize, 3, kSize, kSize})
       .node("ReduceMean", {"pixels"}, "mean",
@@ -208,7 +206,7 @@ TEST(DualEncoder, RowsThatAreNotFiniteBecomeZeros) {
 }
 
 TEST(DualEncoder, TellsWhatItIs) {
-  EncoderFolder folder("identity");
+  EncoderFolder folder;
   const auto plain = folder.open();
   EXPECT_EQ(plain->identity().name, "tiny");
   EXPECT_EQ(plain->identity().dimension, 3);
@@ -229,7 +227,7 @@ TEST(DualEncoder, TellsWhatItIs) {
 }
 
 TEST(DualEncoder, DigestIsOverTheSortedFiles) {
-  EncoderFolder folder("digest");
+  EncoderFolder folder;
   const auto encoder = folder.open();
   std::string lines;
   for (const char* file : {"image.onnx", "text.onnx", "vocab.txt"})
@@ -239,32 +237,32 @@ TEST(DualEncoder, DigestIsOverTheSortedFiles) {
 }
 
 TEST(DualEncoder, RefusesNetworksThatDoNotFit) {
-  EncoderFolder size("size");
+  EncoderFolder size;
   size.edit("size: 4", "size: 8");
   EXPECT_TRUE(contains(size.error(), "[any,3,4,4], expected float32 [any,3,8,8]"));
-  EncoderFolder dimension("dimension");
+  EncoderFolder dimension;
   dimension.edit("embedding_dim: 3", "embedding_dim: 5");
   EXPECT_TRUE(contains(dimension.error(), "[any,3], expected float32 [any,5]"));
-  EncoderFolder batch("batch");
+  EncoderFolder batch;
   batch.write("image.onnx", image_network(2).file());
   EXPECT_TRUE(contains(batch.error(), "takes exactly 2 items"));
-  EncoderFolder length("length");
+  EncoderFolder length;
   length.write("text.onnx", text_network(kAnySize, 9).file());
   EXPECT_TRUE(contains(length.error(), "[any,9], expected int64 [any,6]"));
-  EncoderFolder name("name");
+  EncoderFolder name;
   name.edit("image: pixels", "image: pixel_values");
   EXPECT_TRUE(contains(name.error(), "no input named 'pixel_values'; it has pixels"));
-  EncoderFolder unfed("unfed");
+  EncoderFolder unfed;
   unfed.edit(", types: types", "");
   EXPECT_TRUE(contains(unfed.error(), "wants an input types"));
-  EncoderFolder type("type");
+  EncoderFolder type;
   type.edit("ids: ids, mask: mask, types: types", "ids: pixels");
   type.write("text.onnx", image_network(kAnySize).file());
   EXPECT_TRUE(contains(type.error(), "another type"));
 }
 
 TEST(DualEncoder, RefusesFilesThatChanged) {
-  EncoderFolder folder("changed");
+  EncoderFolder folder;
   folder.open();
   folder.write("vocab.txt", "[UNK]\n");
   const std::string message =
@@ -274,7 +272,7 @@ TEST(DualEncoder, RefusesFilesThatChanged) {
 
 TEST(MakeImageTextEncoder, TakesNamesAndFolders) {
   EXPECT_EQ(make_image_text_encoder("none", {}), nullptr);
-  EncoderFolder folder("by_name");
+  EncoderFolder folder;
   folder.open();
   const auto named =
       make_image_text_encoder(folder.path().filename().string(), {}, {folder.path().parent_path()});
@@ -282,7 +280,7 @@ TEST(MakeImageTextEncoder, TakesNamesAndFolders) {
 }
 
 TEST(MakeImageTextEncoder, SaysWhatIsMissing) {
-  const ScratchFolder scratch("no_encoder");
+  const fixture::TemporaryFolder scratch;
   const std::string absent =
       error_of([&] { make_image_text_encoder("no such model", {}, {scratch.path()}); });
   EXPECT_TRUE(contains(absent, "'no such model'"));

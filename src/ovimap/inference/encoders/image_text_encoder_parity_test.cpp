@@ -6,7 +6,6 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "ovimap/image/codec.h"
 #include "ovimap/inference/encoders/dual_encoder_spec.h"

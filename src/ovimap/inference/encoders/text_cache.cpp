@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/inference/encoders/text_cache.h"
 
-#include <unistd.h>
-
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 
 #include "ovimap/base/error.h"
 #include "ovimap/base/memory/recently_used.h"
+#include "ovimap/image/codec.h"
 #include "ovimap/inference/models/sha256.h"
 
 namespace ovimap {
@@ -39,18 +38,15 @@ std::optional<Embeddings> read_rows(const std::filesystem::path& file, Eigen::In
   return result;
 }
 
-/// Takes its place when it is complete, so that nobody reads half of it.
 void write_rows(const std::filesystem::path& file, const Embeddings& rows) {
   std::error_code fault;
   std::filesystem::create_directories(file.parent_path(), fault);
-  const std::filesystem::path partial = concat(file.string(), ".", getpid(), ".partial");
   const std::string bytes(reinterpret_cast<const char*>(rows.data()),
                           static_cast<std::size_t>(rows.size()) * sizeof(float));
-  std::ofstream out(partial, std::ios::binary);
-  out << sha256_of(bytes) << bytes;
-  out.close();
-  if (out) std::filesystem::rename(partial, file, fault);
-  std::filesystem::remove(partial, fault);
+  try {
+    write_text(file, sha256_of(bytes) + bytes);
+  } catch (const Error&) {  // the next process encodes them again
+  }
 }
 
 class ListKeeper : public ImageTextEncoder {

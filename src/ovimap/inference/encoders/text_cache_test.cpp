@@ -3,11 +3,10 @@
 #include "ovimap/inference/encoders/text_cache.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <fstream>
 
-#include "ovimap/base/error.h"
+#include "ovimap/base/temporary_folder_fixture.h"
 
 namespace ovimap {
 namespace {
@@ -36,9 +35,6 @@ class CountingEncoder : public ImageTextEncoder {
 
 class TextCacheTest : public ::testing::Test {
  protected:
-  TextCacheTest() { std::filesystem::remove_all(folder_); }
-  ~TextCacheTest() override { std::filesystem::remove_all(folder_); }
-
   std::unique_ptr<ImageTextEncoder> encoder(const std::string& digest = "a") {
     return remember_text_lists(std::make_unique<CountingEncoder>(asked_, digest), folder_);
   }
@@ -55,8 +51,8 @@ class TextCacheTest : public ::testing::Test {
     return found;
   }
 
-  const std::filesystem::path folder_ = std::filesystem::temp_directory_path() /
-                                        ("ovimap_text_cache_test_" + std::to_string(::getpid()));
+  const fixture::TemporaryFolder scratch_;
+  const std::filesystem::path folder_ = scratch_.path() / "cache";
   int asked_ = 0;
 };
 

@@ -78,7 +78,7 @@ TEST(KeptMaskSource, AsksOnlyOnce) {
    private:
     int& asked_;
   };
-  const ScratchFolder folder("kept");
+  const fixture::TemporaryFolder folder;
   int asked = 0;
   for (int run = 0; run < 2; ++run) {
     KeptMaskSource source(folder.path() / "masks", std::make_unique<Counting>(asked));
@@ -112,7 +112,7 @@ TEST(GtMaskSource, NeedsTruth) {
 TEST(DirMaskSource, FindsFilesByNameOrIndex) {
   for (const char* name :
        {"shot-020.color.png", "shot-020.png", "1.png", "000001.png", "mask_01.png"}) {
-    const ScratchFolder scratch("dir_names");
+    const fixture::TemporaryFolder scratch;
     write_ids(scratch.path() / name, 4, 3, 9);
     const TestFrames frames(false);
     const auto source = make_mask_source(scratch.path().string(), {}, {&frames, {}});
@@ -125,7 +125,7 @@ TEST(DirMaskSource, FindsFilesByNameOrIndex) {
 }
 
 TEST(DirMaskSource, AFileWithoutEntitiesIsAMaskAndNoFileIsNone) {
-  const ScratchFolder scratch("dir_empty");
+  const fixture::TemporaryFolder scratch;
   write_ids(scratch.path() / "0.png", 4, 3, 0);
   DirMaskSource source(scratch.path());
   const std::optional<Entities> nothing = source.entities(frame_at(0), {});
@@ -136,7 +136,7 @@ TEST(DirMaskSource, AFileWithoutEntitiesIsAMaskAndNoFileIsNone) {
 }
 
 TEST(DirMaskSource, NamesFileAndBothSizes) {
-  const ScratchFolder scratch("dir_size");
+  const fixture::TemporaryFolder scratch;
   write_ids(scratch.path() / "0.png", 5, 3, 1);
   DirMaskSource source(scratch.path());
   const std::string message = error_of([&] { source.entities(frame_at(0), {}); });
@@ -145,7 +145,7 @@ TEST(DirMaskSource, NamesFileAndBothSizes) {
 }
 
 TEST(DirMaskSource, TakesTheScoresOfTheIdsThatItSees) {
-  const ScratchFolder scratch("dir_scores");
+  const fixture::TemporaryFolder scratch;
   IdImage ids(4, 3);
   ids.at(0, 0) = 2;
   ids.at(1, 0) = 5;
@@ -158,7 +158,7 @@ TEST(DirMaskSource, TakesTheScoresOfTheIdsThatItSees) {
 }
 
 TEST(DirMaskSource, RefusesScoresThatAreNone) {
-  const ScratchFolder scratch("dir_no_scores");
+  const fixture::TemporaryFolder scratch;
   write_ids(scratch.path() / "0.png", 4, 3, 2);
   DirMaskSource source(scratch.path());
   for (const auto& [text, what] : {std::pair{"[1, 1]", "no list of scores"},
@@ -175,14 +175,14 @@ TEST(DirMaskSource, RefusesScoresThatAreNone) {
 }
 
 TEST(DirMaskSource, RefusesColourMasks) {
-  const ScratchFolder scratch("dir_colour");
+  const fixture::TemporaryFolder scratch;
   write_file(scratch.path() / "0.png", encode_png(RgbImage(4, 3)));
   DirMaskSource source(scratch.path());
   EXPECT_TRUE(contains(error_of([&] { source.entities(frame_at(0), {}); }), "0.png"));
 }
 
 TEST(DirMaskSource, RefusesAFolderThatFitsNoFrame) {
-  const ScratchFolder scratch("dir_none");
+  const fixture::TemporaryFolder scratch;
   const TestFrames frames(false);
   EXPECT_TRUE(contains(error_of([&] { DirMaskSource(scratch.path(), &frames); }), "holds no .png"));
   write_ids(scratch.path() / "shot-099.png", 4, 3, 1);
@@ -205,7 +205,7 @@ TEST(MakeMaskSource, KnowsNoneModelsAndNothingElse) {
 }
 
 TEST(MakeMaskSource, RefusesAModelOfAnotherKind) {
-  const ScratchFolder scratch("dual");
+  const fixture::TemporaryFolder scratch;
   scratch.write("model.yaml", "kind: dual_encoder\nname: n\nlicense: l\nsource: s\n");
   EXPECT_TRUE(contains(error_of([&] { make_mask_source(scratch.path().string(), {}); }),
                        "of kind 'dual_encoder'; as a source of masks sam and entity are accepted"));

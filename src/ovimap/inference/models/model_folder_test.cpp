@@ -32,7 +32,7 @@ std::string edited(const std::string& from, const std::string& to) {
 }
 
 TEST(ModelFolder, ReadsEveryPart) {
-  const ScratchFolder scratch("model_parts");
+  const fixture::TemporaryFolder scratch;
   scratch.write("model.yaml", kYaml);
   const ModelFolder model = read_model_folder(scratch.path());
   EXPECT_EQ(model.kind, "sam");
@@ -48,7 +48,7 @@ TEST(ModelFolder, ReadsEveryPart) {
 }
 
 TEST(ModelFolder, SaysWhatIsWrong) {
-  const ScratchFolder scratch("model_wrong");
+  const fixture::TemporaryFolder scratch;
   EXPECT_TRUE(contains(error_of([&] { read_model_folder(scratch.path()); }), "has no model.yaml"));
   const auto message = [&](const std::string& text) {
     scratch.write("model.yaml", text);
@@ -72,7 +72,7 @@ TEST(ModelFolder, SaysWhatIsWrong) {
 }
 
 TEST(ModelFolder, OnlyEncodersMayCutImages) {
-  const ScratchFolder scratch("model_resize");
+  const fixture::TemporaryFolder scratch;
   std::string text = edited("kind: sam", "kind: dual_encoder");
   text.replace(text.find("stretch"), 7, "short_side, filter: bicubic");
   scratch.write("model.yaml", text);
@@ -88,7 +88,7 @@ TEST(ModelFolder, OnlyEncodersMayCutImages) {
 }
 
 TEST(ModelFolder, NamesMissingRoles) {
-  const ScratchFolder scratch("model_roles");
+  const fixture::TemporaryFolder scratch;
   scratch.write("model.yaml", kYaml);
   const ModelFolder model = read_model_folder(scratch.path());
   EXPECT_TRUE(
@@ -98,7 +98,7 @@ TEST(ModelFolder, NamesMissingRoles) {
 }
 
 TEST(ModelFolder, VerifiesDigests) {
-  const ScratchFolder scratch("model_digest");
+  const fixture::TemporaryFolder scratch;
   scratch.write("model.yaml", kYaml);
   const ModelFolder model = read_model_folder(scratch.path());
   EXPECT_TRUE(
@@ -111,7 +111,7 @@ TEST(ModelFolder, VerifiesDigests) {
 }
 
 TEST(ModelSearch, TakesDirsThenEnvironmentOnceEach) {
-  const ScratchFolder scratch("search");
+  const fixture::TemporaryFolder scratch;
   for (const char* place : {"first", "second", "third"})
     fs::create_directories(scratch.path() / place);
   const std::string list = (scratch.path() / "second").string() + ":" +
@@ -127,7 +127,7 @@ TEST(ModelSearch, TakesDirsThenEnvironmentOnceEach) {
 }
 
 TEST(ModelSearch, ListsTheFirstOfEachName) {
-  const ScratchFolder scratch("list");
+  const fixture::TemporaryFolder scratch;
   scratch.write("a/good/model.yaml", kYaml);
   scratch.write("b/good/model.yaml", edited("kind: sam", "kind: entity"));
   scratch.write("b/broken/model.yaml", "kind: sam\n");
@@ -144,7 +144,7 @@ TEST(ModelSearch, ListsTheFirstOfEachName) {
 }
 
 TEST(ModelSearch, SaysWhereItLooked) {
-  const ScratchFolder scratch("nowhere");
+  const fixture::TemporaryFolder scratch;
   const std::string message = error_of([&] { find_model("absent", {scratch.path()}); });
   EXPECT_TRUE(contains(message, "'absent'"));
   EXPECT_TRUE(contains(message, scratch.path().string()));

@@ -47,7 +47,7 @@ TEST(OnnxSession, WrongInputIsAnErrorNamingTheFile) {
 }
 
 TEST(OnnxSession, BadFilesAreNamed) {
-  const ScratchFolder scratch("session");
+  const fixture::TemporaryFolder scratch;
   EXPECT_TRUE(
       contains(error_of([&] { OnnxSession(scratch.path() / "no.onnx", {}); }), "does not exist"));
   scratch.write("text.onnx", "this is not a network");

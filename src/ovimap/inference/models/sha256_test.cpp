@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "ovimap/base/error.h"
+#include "ovimap/base/error_fixture.h"
 
 namespace ovimap {
 namespace {
@@ -44,12 +44,8 @@ TEST(Sha256, PiecesDoNotMatter) {
 }
 
 TEST(Sha256, MissingFileIsNamed) {
-  try {
-    sha256_of_file("no/such/file");
-    FAIL() << "no error";
-  } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("no/such/file"), std::string::npos);
-  }
+  EXPECT_NE(error_of([] { sha256_of_file("no/such/file"); }).find("no/such/file"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ constexpr int kGrid = 4;
 
 /// A network that proposes for every box where the image is red, green and blue, and believes most
 /// in the colour that there is most of.
-SamNetwork color_network(const ScratchFolder& scratch) {
+SamNetwork color_network(const fixture::TemporaryFolder& scratch) {
   OnnxGraph decoder = sam_fixture::decoder(kGrid);
   decoder.node("Identity", {"image_embeddings"}, "pred_masks")
       .node("ReduceMean", {"image_embeddings"}, "iou_scores",
@@ -25,7 +25,7 @@ SamNetwork color_network(const ScratchFolder& scratch) {
 }
 
 TEST(MaskInBox, IsTheProposalThatTheNetworkBelievesInMost) {
-  const ScratchFolder scratch("box_mask");
+  const fixture::TemporaryFolder scratch;
   const SamNetwork network = color_network(scratch);
   RgbImage image(16, 16, {0, 0, 0});
   fill_box(image, 0, 0, 8, 16, {255, 0, 0});

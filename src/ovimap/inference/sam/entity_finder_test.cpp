@@ -14,7 +14,7 @@ namespace ovimap {
 namespace {
 
 /// The model folder of a finder alone. outputs, further_inputs: as model.yaml lists them.
-void write_model(const ScratchFolder& scratch, const std::string& network,
+void write_model(const fixture::TemporaryFolder& scratch, const std::string& network,
                  const std::string& outputs, const std::string& further_inputs = "") {
   scratch.write("finder.onnx", network);
   scratch.write("model.yaml",
@@ -28,7 +28,7 @@ void write_model(const ScratchFolder& scratch, const std::string& network,
 /// A model whose finder gives its embedding back.
 class Mirror {
  public:
-  explicit Mirror(int maps) : scratch_("entity_finder") {
+  explicit Mirror(int maps) {
     OnnxGraph graph;
     graph.input("embedding", OnnxGraph::kFloat, {1, maps, kAnySize, kAnySize})
         .node("Identity", {"embedding"}, "things")
@@ -38,7 +38,7 @@ class Mirror {
   EntityFinder finder() const { return {read_model_folder(scratch_.path()), {}}; }
 
  private:
-  ScratchFolder scratch_;
+  fixture::TemporaryFolder scratch_;
 };
 
 TEST(EntityFinder, LooksAtWhatTheImageFills) {
@@ -67,7 +67,7 @@ TEST(EntityFinder, RefusesAnotherNumberOfMaps) {
 
 TEST(EntityFinder, RefusesKernelsThatDoNotFitTheBasis) {
   const auto model_with = [](int kernels) {
-    ScratchFolder scratch("entity_finder_masks");
+    fixture::TemporaryFolder scratch;
     OnnxGraph graph;
     graph.input("embedding", OnnxGraph::kFloat, {1, 6, kAnySize, kAnySize})
         .node("Identity", {"embedding"}, "things")
@@ -84,7 +84,7 @@ TEST(EntityFinder, RefusesKernelsThatDoNotFitTheBasis) {
 
 TEST(EntityFinder, RefusesAViewOfDepthOfAnotherNumberOfMaps) {
   const auto model_with = [](int maps) {
-    ScratchFolder scratch("entity_finder_depth");
+    fixture::TemporaryFolder scratch;
     OnnxGraph graph;
     graph.input("embedding", OnnxGraph::kFloat, {1, 6, kAnySize, kAnySize})
         .input("geometry", OnnxGraph::kFloat, {1, maps, kAnySize, kAnySize})

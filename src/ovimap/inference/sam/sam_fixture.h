@@ -22,8 +22,8 @@ inline OnnxGraph decoder(int grid) {
 
 /// Writes the model folder of a network whose embedding is the image of kSide x kSide, made smaller
 /// to `grid` x `grid`. mean: of all channels. keys: further lines of the decoder's part.
-inline void write_model(const ScratchFolder& scratch, int grid, OnnxGraph decoder, int mean,
-                        const std::string& keys = "") {
+inline void write_model(const fixture::TemporaryFolder& scratch, int grid, OnnxGraph decoder,
+                        int mean, const std::string& keys = "") {
   const auto step = static_cast<std::size_t>(kSide / grid);
   OnnxGraph encoder;
   encoder.input("pixel_values", OnnxGraph::kFloat, {1, 3, kSide, kSide})

@@ -166,7 +166,7 @@ TEST(SamMaskSource, SameAnswerForAnyNumberOfThreads) {
 }
 
 TEST(SamNetwork, SaysWhichTensorIsWrong) {
-  const ScratchFolder scratch("sam_names");
+  const fixture::TemporaryFolder scratch;
   fs::copy(inference_testdata() / "golden_sam/batched", scratch.path(),
            fs::copy_options::recursive);
   const Bytes bytes = read_file(scratch.path() / "model.yaml");

@@ -15,7 +15,7 @@ constexpr int kNetworkGrid = 2;
 /// A network with the inputs of transformers' exports, whose score is the sum of all labels.
 class LabelSum {
  public:
-  explicit LabelSum(const std::string& keys) : scratch_("sam_network") {
+  explicit LabelSum(const std::string& keys) {
     OnnxGraph decoder = sam_fixture::decoder(kNetworkGrid);
     decoder.node("Cast", {"input_labels"}, "labels", {OnnxGraph::number_attribute("to", 1)})
         .node("ReduceSum", {"labels"}, "sum", {OnnxGraph::number_attribute("keepdims", 0)})
@@ -36,7 +36,7 @@ class LabelSum {
   const std::filesystem::path& path() const { return scratch_.path(); }
 
  private:
-  ScratchFolder scratch_;
+  fixture::TemporaryFolder scratch_;
 };
 
 const PromptPoints kPoint = {{{1, 1}, PointLabel::kForeground}, {{0, 0}, PointLabel::kPadding}};

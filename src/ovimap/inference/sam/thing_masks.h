@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <vector>
-
 #include "ovimap/inference/masks/logit_grid.h"
 #include "ovimap/inference/sam/sam_network.h"
 #include "ovimap/inference/sam/thing_cells.h"

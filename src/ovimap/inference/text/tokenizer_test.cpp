@@ -19,13 +19,14 @@ using Ids = std::vector<std::int64_t>;
 // ----------------------------------------------------------------------------------------
 // WordPiece
 
-std::unique_ptr<Tokenizer> wordpiece(const ScratchFolder& scratch, const std::string& lines) {
+std::unique_ptr<Tokenizer> wordpiece(const fixture::TemporaryFolder& scratch,
+                                     const std::string& lines) {
   scratch.write("vocab.txt", lines);
   return make_wordpiece_tokenizer(scratch.path() / "vocab.txt");
 }
 
 TEST(WordPiece, TakesTheLongestBeginning) {
-  const ScratchFolder scratch("wordpiece");
+  const fixture::TemporaryFolder scratch;
   const auto tokenizer =
       wordpiece(scratch, "[UNK]\nun\nunaff\n##aff\n##able\n##ab\n##le\n!\nmug\n##s\né\n##漢\n");
   EXPECT_EQ(tokenizer->encode("unaffable"), (Ids{2, 4}));  // not un ##aff ##able
@@ -38,7 +39,7 @@ TEST(WordPiece, TakesTheLongestBeginning) {
 }
 
 TEST(WordPiece, WordsOver100CharactersAreUnknown) {
-  const ScratchFolder scratch("wordpiece_long");
+  const fixture::TemporaryFolder scratch;
   const auto tokenizer = wordpiece(scratch, "[UNK]\né\n##é\n");
   std::string word;
   for (int i = 0; i < 100; ++i) word += "é";
@@ -47,7 +48,7 @@ TEST(WordPiece, WordsOver100CharactersAreUnknown) {
 }
 
 TEST(WordPiece, RefusesBadFiles) {
-  const ScratchFolder scratch("wordpiece_bad");
+  const fixture::TemporaryFolder scratch;
   EXPECT_TRUE(contains(error_of([&] { wordpiece(scratch, "a\nb\n"); }), "no line [UNK]"));
   EXPECT_TRUE(contains(error_of([&] { make_wordpiece_tokenizer(scratch.path() / "absent"); }),
                        "cannot be read"));
@@ -56,8 +57,8 @@ TEST(WordPiece, RefusesBadFiles) {
 // ---------------------------------------------------------------------------------------------
 // CLIP
 
-std::unique_ptr<Tokenizer> clip(const ScratchFolder& scratch, const nlohmann::json& vocabulary,
-                                const std::string& merges) {
+std::unique_ptr<Tokenizer> clip(const fixture::TemporaryFolder& scratch,
+                                const nlohmann::json& vocabulary, const std::string& merges) {
   scratch.write("vocab.json", vocabulary.dump());
   scratch.write("merges.txt", merges);
   return make_clip_tokenizer(scratch.path() / "vocab.json", scratch.path() / "merges.txt");
@@ -87,7 +88,7 @@ const nlohmann::json kWords = {{"<|endoftext|>", 0},
 constexpr const char* kMerges = "#version: 0.2\nl o\nlo w</w>\ne r</w>\n' s</w>\n";
 
 TEST(Clip, JoinsPairsInTheirOrder) {
-  const ScratchFolder scratch("clip");
+  const fixture::TemporaryFolder scratch;
   const auto tokenizer = clip(scratch, kWords, kMerges);
   EXPECT_EQ(tokenizer->encode("low"), Ids{6});
   EXPECT_EQ(tokenizer->encode("lower"), (Ids{5, 3, 9}));  // w and w</w> are different
@@ -96,7 +97,7 @@ TEST(Clip, JoinsPairsInTheirOrder) {
 }
 
 TEST(Clip, CutsTheTextIntoPieces) {
-  const ScratchFolder scratch("clip_pieces");
+  const fixture::TemporaryFolder scratch;
   const auto tokenizer = clip(scratch, kWords, kMerges);
   EXPECT_EQ(tokenizer->encode("low's low"), (Ids{6, 14, 6}));
   EXPECT_EQ(tokenizer->encode("12low!!"), (Ids{15, 16, 6, 10, 11}));  // each digit alone
@@ -131,7 +132,7 @@ Ids naive_pairs(const std::string& word, const std::map<std::string, std::int64_
 
 TEST(Clip, AgreesWithTheDefinitionOnRandomMerges) {
   std::mt19937 random(11);
-  const ScratchFolder scratch("clip_random");
+  const fixture::TemporaryFolder scratch;
   for (int round = 0; round < 20; ++round) {
     std::map<std::string, std::int64_t> ids = {{"<|endoftext|>", 0}};
     std::vector<std::string> tokens;
@@ -161,7 +162,7 @@ TEST(Clip, AgreesWithTheDefinitionOnRandomMerges) {
 }
 
 TEST(Clip, OneWordOfManyCharactersIsJoinedToo) {
-  const ScratchFolder scratch("clip_long");
+  const fixture::TemporaryFolder scratch;
   const auto tokenizer =
       clip(scratch, {{"<|endoftext|>", 0}, {"a", 1}, {"a</w>", 2}, {"aa", 3}, {"aaaa", 4}},
            "a a\naa aa\n");
@@ -171,7 +172,7 @@ TEST(Clip, OneWordOfManyCharactersIsJoinedToo) {
 }
 
 TEST(Clip, RefusesFilesThatDoNotFit) {
-  const ScratchFolder scratch("clip_bad");
+  const fixture::TemporaryFolder scratch;
   EXPECT_TRUE(contains(error_of([&] { clip(scratch, kWords, "l o\nx y\n"); }), "joins 'x y'"));
   EXPECT_TRUE(contains(error_of([&] { clip(scratch, {{"a", 1}}, ""); }), "no token <|endoftext|>"));
   EXPECT_TRUE(contains(error_of([&] { clip(scratch, {1, 2}, ""); }), "no JSON object"));
@@ -207,7 +208,7 @@ TEST(SentencePiece, FixedPiecesAreFoundBeforeLowering) {
 }
 
 TEST(SentencePiece, RefusesBadFiles) {
-  const ScratchFolder scratch("sentencepiece_bad");
+  const fixture::TemporaryFolder scratch;
   scratch.write("model", "not a model");
   EXPECT_TRUE(contains(
       error_of([&] { make_sentencepiece_tokenizer(scratch.path() / "model", {}); }), "is no"));
@@ -220,7 +221,7 @@ TEST(SentencePiece, RefusesBadFiles) {
 // kinds
 
 TEST(Tokenizers, AnyBytesAreAccepted) {
-  const ScratchFolder scratch("fuzz");
+  const fixture::TemporaryFolder scratch;
   std::vector<std::unique_ptr<Tokenizer>> tokenizers;
   tokenizers.push_back(make_sentencepiece_tokenizer(kUnigram, {.keep_start = true}));
   tokenizers.push_back(make_sentencepiece_tokenizer(kBytePairs, {.lowercase = true}));

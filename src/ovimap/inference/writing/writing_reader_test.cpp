@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
 #include "ovimap/inference/models/test_support.h"
 
 namespace ovimap {

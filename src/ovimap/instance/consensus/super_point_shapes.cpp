@@ -3,7 +3,6 @@
 #include "ovimap/instance/consensus/super_point_shapes.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "ovimap/map/surface/incremental_mesh.h"
 #include "ovimap/map/surface/mesh_extraction.h"

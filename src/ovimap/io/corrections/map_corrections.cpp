@@ -3,7 +3,6 @@
 #include "ovimap/io/corrections/map_corrections.h"
 
 #include <algorithm>
-#include <optional>
 #include <set>
 
 #include "ovimap/instance/object_boxes.h"

@@ -2,14 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/io/corrections/taught_file.h"
 
-#include <unistd.h>
-
-#include <fstream>
 #include <thread>
 
 #include <gtest/gtest.h>
 
-#include "ovimap/base/error.h"
+#include "ovimap/base/error_fixture.h"
+#include "ovimap/base/temporary_folder_fixture.h"
 
 namespace ovimap {
 namespace {
@@ -18,25 +16,16 @@ namespace fs = std::filesystem;
 
 class TaughtFileTest : public ::testing::Test {
  protected:
-  TaughtFileTest()
-      : folder_(fs::temp_directory_path() /
-                concat("ovimap_taught_", ::getpid(), "_",
-                       ::testing::UnitTest::GetInstance()->current_test_info()->name())),
-        file_(folder_ / "deep" / "taught.json") {}
-  ~TaughtFileTest() override { fs::remove_all(folder_); }
-
   static TaughtThing thing(const std::string& name, const std::string& map, InstanceId object) {
     constexpr int kNumbers = 384;
     Eigen::VectorXf look =
         Eigen::VectorXf::LinSpaced(kNumbers, -1.f, static_cast<float>(object)).normalized();
     return {name, map, object, {"some encoder", kNumbers, "abc"}, look};
   }
-  void write(const std::string& text) {
-    fs::create_directories(file_.parent_path());
-    std::ofstream(file_) << text;
-  }
+  void write(const std::string& text) const { folder_.write("deep/taught.json", text); }
 
-  const fs::path folder_, file_;
+  const fixture::TemporaryFolder folder_;
+  const fs::path file_ = folder_.path() / "deep" / "taught.json";
 };
 
 TEST_F(TaughtFileTest, ComesBackAsItWasKept) {
@@ -106,14 +95,10 @@ TEST_F(TaughtFileTest, RefusesWhatIsNoSuchFile) {
 }
 
 TEST_F(TaughtFileTest, SaysWhatToDoWhereItCannotBeWritten) {
-  fs::create_directories(folder_);
-  std::ofstream(folder_ / "file") << "x";
-  try {
-    replace_taught_things(folder_ / "file" / "taught.json", "/a", {});
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("--teach FILE"), std::string::npos) << error.what();
-  }
+  folder_.write("file", "x");
+  const std::string fault =
+      error_of([&] { replace_taught_things(folder_.path() / "file" / "taught.json", "/a", {}); });
+  EXPECT_NE(fault.find("--teach FILE"), std::string::npos) << fault;
 }
 
 }  // namespace

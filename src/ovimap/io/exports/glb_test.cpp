@@ -4,12 +4,10 @@
 
 #include <cstring>
 
-#include <unistd.h>
-
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "ovimap/base/error.h"
+#include "ovimap/base/temporary_folder_fixture.h"
 #include "ovimap/image/codec.h"
 
 namespace ovimap {
@@ -84,7 +82,8 @@ TEST(Glb, AFileOfPartsIsThatOfTheWhole) {
   second.triangles.erase(second.triangles.begin());
   const std::vector objects{instance(4), instance(9)};
   const ObjectTitles titles{{{4, "mug"}}, {}};
-  const auto path = std::filesystem::temp_directory_path() / concat("ovimap-", ::getpid(), ".glb");
+  const fixture::TemporaryFolder folder;
+  const auto path = folder.path() / "parts.glb";
   write_glb(path,
             [&](const auto& visit) {
               visit(first);
@@ -94,7 +93,6 @@ TEST(Glb, AFileOfPartsIsThatOfTheWhole) {
   const Bytes written = read_file(path);
   EXPECT_EQ(std::string(written.begin(), written.end()),
             encode_glb(whole(two_triangles()), {objects, {}, titles}));
-  std::filesystem::remove(path);
 }
 
 TEST(Glb, AnEmptyMapIsADocument) {

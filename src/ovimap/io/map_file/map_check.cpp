@@ -9,7 +9,6 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
-#include "ovimap/io/map_file/map_file.h"
 #include "ovimap/io/map_file/map_file_access.h"
 #include "ovimap/io/map_file/map_file_parts.h"
 #include "ovimap/io/map_tables/map_file_blocks.h"

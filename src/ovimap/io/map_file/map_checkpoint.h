@@ -9,7 +9,6 @@
 #include <unordered_map>
 #include <vector>
 
-#include "ovimap/image/codec.h"
 #include "ovimap/io/map_tables/map_file_blocks.h"
 #include "ovimap/io/map_tables/map_file_frames.h"
 

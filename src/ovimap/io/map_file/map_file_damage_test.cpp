@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
 #include <fstream>
-#include <functional>
 #include <limits>
 #include <random>
 

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <random>
@@ -13,6 +11,7 @@
 
 #include "ovimap/base/config.h"
 #include "ovimap/base/error_fixture.h"
+#include "ovimap/base/temporary_folder_fixture.h"
 #include "ovimap/io/map_file/map_file.h"
 
 namespace ovimap {
@@ -20,17 +19,12 @@ namespace ovimap {
 /// A folder of its own for one test, gone afterwards.
 class MapFolder : public ::testing::Test {
  protected:
-  MapFolder() { std::filesystem::create_directories(root_); }
-  ~MapFolder() override { std::filesystem::remove_all(root_); }
-
   std::size_t files_in_root() const {
     return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(root_), {}));
   }
 
-  const std::filesystem::path root_ =
-      std::filesystem::temp_directory_path() /
-      ("ovimap_map_" + std::to_string(getpid()) + "_" +
-       ::testing::UnitTest::GetInstance()->current_test_info()->name());
+  const fixture::TemporaryFolder scratch_;
+  const std::filesystem::path root_ = scratch_.path();
 };
 
 /// Fills a block with random content of which about half the voxels are observed.

@@ -7,7 +7,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "ovimap/image/codec.h"
 #include "ovimap/map/voxels/block_tiles.h"

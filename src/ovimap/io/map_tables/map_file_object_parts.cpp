@@ -3,8 +3,6 @@
 #include "ovimap/io/map_tables/map_file_object_parts.h"
 
 #include <algorithm>
-#include <functional>
-#include <optional>
 
 #include "ovimap/io/map_tables/map_file_rows.h"
 #include "ovimap/io/map_tables/map_file_semantics.h"

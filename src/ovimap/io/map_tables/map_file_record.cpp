@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <functional>
 #include <set>
 
 #include "ovimap/base/text/printable.h"

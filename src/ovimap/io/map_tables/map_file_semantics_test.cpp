@@ -17,14 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class MapFileSemantics : public ::testing::Test {
- protected:
-  MapFileSemantics() : root_(fs::temp_directory_path() / concat("ovimap_semantics_", ::getpid())) {
-    fs::create_directories(root_);
-  }
-  ~MapFileSemantics() override { fs::remove_all(root_); }
-  fs::path root_;
-};
+class MapFileSemantics : public MapFolder {};
 
 TEST_F(MapFileSemantics, ASearchNeedsNoVoxels) {
   const MapDocument saved = random_document(5, 1);

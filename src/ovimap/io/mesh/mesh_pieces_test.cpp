@@ -2,11 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/io/mesh/mesh_pieces.h"
 
-#include <unistd.h>
-
 #include <gtest/gtest.h>
 
-#include "ovimap/base/error.h"
+#include "ovimap/base/temporary_folder_fixture.h"
 #include "ovimap/io/mesh/labelled_pieces.h"
 
 namespace ovimap {
@@ -48,12 +46,13 @@ TEST(MeshPieces, LabelsCanBeLeftOut) {
 TEST(LabelledPieces, AreThoseOfTheWholeMesh) {
   Mesh above = strip();
   for (Eigen::Vector3f& vertex : above.vertices) vertex.z() += 1.f;
+  const fixture::TemporaryFolder folder;
   const LabelledPieces pieces(
       [&](const auto& visit) {
         visit(strip());
         visit(above);
       },
-      std::filesystem::temp_directory_path() / concat("ovimap-pieces-", ::getpid()));
+      folder.path() / "pieces");
   Mesh both = strip();
   append(above, both);
   const auto expected = split_by_label(both);

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/io/mesh/ply.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <bit>
 #include <cstring>
@@ -14,6 +12,7 @@
 
 #include "ovimap/base/error.h"
 #include "ovimap/base/error_fixture.h"
+#include "ovimap/base/temporary_folder_fixture.h"
 #include "ovimap/io/mesh/mesh_pieces.h"
 
 namespace ovimap {
@@ -67,21 +66,18 @@ void expect_same(const Mesh& a, const Mesh& b) {
 }
 
 TEST(Ply, ComesBackAsItWasWritten) {
-  const auto folder =
-      std::filesystem::temp_directory_path() / ("ovimap_ply_" + std::to_string(getpid()));
-  std::filesystem::create_directories(folder);
+  const fixture::TemporaryFolder folder;
   const Mesh mesh = random_mesh(500, 900);
-  write_ply(folder / "full.ply", mesh);
-  expect_same(read_ply(folder / "full.ply"), mesh);
+  write_ply(folder.path() / "full.ply", mesh);
+  expect_same(read_ply(folder.path() / "full.ply"), mesh);
   const Mesh other = random_mesh(70, 20);
-  write_ply(folder / "parts.ply", [&](const auto& visit) {
+  write_ply(folder.path() / "parts.ply", [&](const auto& visit) {
     visit(mesh);
     visit(other);
   });
   Mesh both = mesh;
   append(other, both);
-  expect_same(read_ply(folder / "parts.ply"), both);
-  std::filesystem::remove_all(folder);
+  expect_same(read_ply(folder.path() / "parts.ply"), both);
 }
 
 TEST(Ply, LeavesOutWhatTheMeshLacks) {

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <unordered_map>
 
+#include <Eigen/Core>
+
 namespace ovimap {
 
 namespace {
@@ -26,10 +28,6 @@ double fraction(double value) {
 
 double encoded(double linear) {
   return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
-}
-
-double decoded(double srgb) {
-  return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
 }
 
 Eigen::Vector3d linear_rgb(double lightness, double chroma, double hue) {
@@ -93,20 +91,6 @@ Rgb8 heat_color(float share) {
     return static_cast<std::uint8_t>(std::lround(value));
   };
   return {channel(0), channel(1), channel(2)};
-}
-
-Eigen::Vector3d oklab_of(Rgb8 color) {
-  const Eigen::Vector3d rgb(decoded(color.r / 255.0), decoded(color.g / 255.0),
-                            decoded(color.b / 255.0));
-  const Eigen::Matrix3d cone_from_rgb{{0.4122214708, 0.5363325363, 0.0514459929},
-                                      {0.2119034982, 0.6806995451, 0.1073969566},
-                                      {0.0883024619, 0.2817188376, 0.6299787005}};
-  const Eigen::Matrix3d lab_from_cone{{0.2104542553, 0.7936177850, -0.0040720468},
-                                      {1.9779984951, -2.4285922050, 0.4505937099},
-                                      {0.0259040371, 0.7827717662, -0.8086757660}};
-  const Eigen::Vector3d cone = cone_from_rgb * rgb;
-  return lab_from_cone *
-         Eigen::Vector3d(std::cbrt(cone.x()), std::cbrt(cone.y()), std::cbrt(cone.z()));
 }
 
 }  // namespace ovimap

@@ -7,8 +7,6 @@
 #include <span>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "ovimap/image/image.h"
 
 namespace ovimap {
@@ -25,9 +23,5 @@ std::vector<std::array<std::uint8_t, 3>> instance_colors(std::span<const std::ui
 /// From dark blue (0) over purple and orange to pale yellow (1); what is beyond counts as the end.
 /// Lightness rises evenly, so that the order survives print and colour blindness.
 Rgb8 heat_color(float share);
-
-/// OKLab coordinates (lightness in [0, 1], a, b) of an sRGB colour, after B. Ottosson, "A
-/// perceptual color space for image processing" (2020).
-Eigen::Vector3d oklab_of(Rgb8 color);
 
 }  // namespace ovimap

@@ -2,10 +2,33 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/io/pictures/palette.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
+#include <Eigen/Core>
 
 namespace ovimap {
 namespace {
+
+double decoded(double srgb) {
+  return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
+}
+
+/// OKLab coordinates (lightness in [0, 1], a, b) of an sRGB colour, after B. Ottosson, "A
+/// perceptual color space for image processing" (2020).
+Eigen::Vector3d oklab_of(Rgb8 color) {
+  const Eigen::Vector3d rgb(decoded(color.r / 255.0), decoded(color.g / 255.0),
+                            decoded(color.b / 255.0));
+  const Eigen::Matrix3d cone_from_rgb{{0.4122214708, 0.5363325363, 0.0514459929},
+                                      {0.2119034982, 0.6806995451, 0.1073969566},
+                                      {0.0883024619, 0.2817188376, 0.6299787005}};
+  const Eigen::Matrix3d lab_from_cone{{0.2104542553, 0.7936177850, -0.0040720468},
+                                      {1.9779984951, -2.4285922050, 0.4505937099},
+                                      {0.0259040371, 0.7827717662, -0.8086757660}};
+  const Eigen::Vector3d cone = cone_from_rgb * rgb;
+  return lab_from_cone *
+         Eigen::Vector3d(std::cbrt(cone.x()), std::cbrt(cone.y()), std::cbrt(cone.z()));
+}
 
 TEST(Palette, OklabAgreesWithPublishedValues) {
   EXPECT_NEAR((oklab_of({255, 255, 255}) - Eigen::Vector3d(1, 0, 0)).norm(), 0, 1e-4);

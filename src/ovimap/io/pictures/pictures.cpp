@@ -268,26 +268,4 @@ RgbImage top_down(const Mesh& mesh, const Eigen::Vector3f& up, const PictureConf
   return std::move(top_down(whole, up, {&config.coloring, 1}, config, max_height_m).front());
 }
 
-RgbImage perspective(const Mesh& mesh, const PinholeCamera& camera, const Pose& world_from_camera,
-                     const PictureConfig& config) {
-  RasterView view;
-  view.camera = camera;
-  view.world_from_camera = world_from_camera;
-  view.cull_back_faces = config.cull_back_faces;
-  Canvas canvas(view, {&config.coloring, 1}, config);
-  canvas.add(mesh);
-  return std::move(canvas.finish().front());
-}
-
-Pose look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, const Eigen::Vector3d& up) {
-  const Eigen::Vector3d forward = (target - eye).normalized();
-  const Eigen::Vector3d right = forward.cross(up).normalized();
-  Pose world_from_camera = Pose::Identity();
-  world_from_camera.linear().col(0) = right;
-  world_from_camera.linear().col(1) = forward.cross(right);
-  world_from_camera.linear().col(2) = forward;
-  world_from_camera.translation() = eye;
-  return world_from_camera;
-}
-
 }  // namespace ovimap

@@ -8,9 +8,7 @@
 
 #include <Eigen/Core>
 
-#include "ovimap/geometry/camera.h"
 #include "ovimap/geometry/mesh.h"
-#include "ovimap/geometry/pose.h"
 #include "ovimap/image/image.h"
 
 namespace ovimap {
@@ -46,14 +44,6 @@ std::vector<RgbImage> top_down(const MeshParts& parts, const Eigen::Vector3f& up
                                std::span<const MeshColoring> colorings,
                                const PictureConfig& config = {},
                                std::optional<float> max_height_m = std::nullopt);
-
-/// The mesh as a pinhole camera sees it, the size of `camera`.
-RgbImage perspective(const Mesh& mesh, const PinholeCamera& camera, const Pose& world_from_camera,
-                     const PictureConfig& config = {});
-
-/// The pose of a camera at `eye` that looks at `target`, upright. `up` must not point along the
-/// view.
-Pose look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, const Eigen::Vector3d& up);
 
 /// A frame and the ids seen in it, of the same size.
 struct SheetFrame {

@@ -10,7 +10,6 @@
 
 #include "ovimap/base/bounded_json.h"
 #include "ovimap/base/error.h"
-#include "ovimap/image/codec.h"
 #include "ovimap/io/mesh/ply.h"
 
 namespace ovimap {

@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/io/truth/truth_replica.h"
 
-#include <unistd.h>
-
 #include <fstream>
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include "ovimap/base/error_fixture.h"
+#include "ovimap/base/temporary_folder_fixture.h"
 
 namespace ovimap {
 namespace {
@@ -32,8 +31,6 @@ class ReplicaTruth : public ::testing::Test {
                           {"id": 9, "class_id": 76, "class_name": "sofa"},
                           {"id": 0, "class_id": -1, "class_name": "undefined"}]})");
   }
-  ~ReplicaTruth() override { fs::remove_all(root_); }
-
   /// Ten vertices in two rows; quad k has the columns k and k + 1.
   static std::string mesh_text(const std::string& property) {
     std::string text =
@@ -52,8 +49,8 @@ class ReplicaTruth : public ::testing::Test {
     return error_of([&] { load_truth(root_ / "room0"); });
   }
 
-  const fs::path root_ =
-      fs::temp_directory_path() / ("ovimap_replica_truth_" + std::to_string(getpid()));
+  const fixture::TemporaryFolder folder_;
+  const fs::path root_ = folder_.path();
 };
 
 TEST_F(ReplicaTruth, VerticesTakeTheObjectOfMostTriangles) {

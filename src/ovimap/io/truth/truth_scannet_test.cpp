@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/io/truth/truth_scannet.h"
 
-#include <unistd.h>
-
 #include <fstream>
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include "ovimap/base/error_fixture.h"
+#include "ovimap/base/temporary_folder_fixture.h"
 #include "ovimap/io/mesh/ply.h"
 
 namespace ovimap {
@@ -40,8 +39,6 @@ class ScanNetTruth : public ::testing::Test {
           "10\toffice chair\toffice chair\t595\t5\t4\tchair\tchair\r\n"
           "1299\todd thing\tobject\t1\t40\t7\tobject\totherprop\r\n");
   }
-  ~ScanNetTruth() override { fs::remove_all(root_); }
-
   void write(const std::string& name, const std::string& text) const {
     std::ofstream(scene_ / name) << text;
   }
@@ -52,8 +49,8 @@ class ScanNetTruth : public ::testing::Test {
     return fault().find(part) != std::string::npos;
   }
 
-  const fs::path root_ =
-      fs::temp_directory_path() / ("ovimap_scannet_truth_" + std::to_string(getpid()));
+  const fixture::TemporaryFolder folder_;
+  const fs::path root_ = folder_.path();
   const fs::path scene_ = root_ / "scans" / "scene0001_00";
 };
 

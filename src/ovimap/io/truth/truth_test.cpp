@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/io/truth/truth.h"
 
-#include <unistd.h>
-
 #include <fstream>
 #include <string>
 
@@ -11,6 +9,7 @@
 
 #include "ovimap/base/error.h"
 #include "ovimap/base/error_fixture.h"
+#include "ovimap/base/temporary_folder_fixture.h"
 #include "ovimap/io/mesh/ply.h"
 
 namespace ovimap {
@@ -30,8 +29,6 @@ class TruthFolder : public ::testing::Test {
     write("instance_labels_den.txt", "12\n12\n-1\n3\n");
     write("semantic_labels_den.txt", "1\r\n1\r\n0.0\r\n4.0e+00");
   }
-  ~TruthFolder() override { fs::remove_all(root_); }
-
   void write(const std::string& name, const std::string& text) {
     std::ofstream(root_ / name) << text;
   }
@@ -44,7 +41,8 @@ class TruthFolder : public ::testing::Test {
     return fault().find(part) != std::string::npos;
   }
 
-  const fs::path root_ = fs::temp_directory_path() / ("ovimap_truth_" + std::to_string(getpid()));
+  const fixture::TemporaryFolder folder_;
+  const fs::path root_ = folder_.path();
 };
 
 TEST_F(TruthFolder, LoadsMeshLabelsAndNames) {

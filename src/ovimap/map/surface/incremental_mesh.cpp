@@ -10,7 +10,6 @@
 #include "ovimap/map/surface/marching_cubes_table.h"
 #include "ovimap/map/surface/mesh_vertex.h"
 #include "ovimap/map/voxels/block_tiles.h"
-#include "ovimap/map/voxels/label_slots.h"
 
 namespace ovimap {
 

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/map/voxels/label_forest.h"
 
-#include <random>
-
 #include <gtest/gtest.h>
 
 #include "ovimap/base/error.h"

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ovimap/base/error.h"
+#include "ovimap/base/error_fixture.h"
 
 namespace ovimap {
 namespace {
@@ -59,13 +59,9 @@ TEST(VoxelMap, RefusesMoreBlocksThanCanBeReferredTo) {
   map.find_or_create({1, 0, 0});
   EXPECT_EQ(map.find_or_create({1, 0, 0}), 1u) << "what is there can be found";
   for (int attempt = 0; attempt < 2; ++attempt) {
-    try {
-      map.find_or_create({2, 0, 0});
-      FAIL();
-    } catch (const Error& fault) {
-      EXPECT_NE(std::string(fault.what()).find("at most 2 blocks"), std::string::npos);
-      EXPECT_NE(std::string(fault.what()).find("map.voxel_size_m"), std::string::npos);
-    }
+    const std::string fault = error_of([&] { map.find_or_create({2, 0, 0}); });
+    EXPECT_NE(fault.find("at most 2 blocks"), std::string::npos);
+    EXPECT_NE(fault.find("map.voxel_size_m"), std::string::npos);
   }
   EXPECT_THROW(map.create_away({2, 0, 0}), Error);
   EXPECT_EQ(map.block_count(), 2u);

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
-#include "ovimap/frames/recording/sequence_fixture.h"
+#include "ovimap/base/temporary_folder_fixture.h"
 
 namespace ovimap {
 namespace {

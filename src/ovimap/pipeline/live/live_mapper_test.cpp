@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ovimap/base/error_fixture.h"
 #include "ovimap/pipeline/mapping/desk_fixture.h"
 #include "ovimap/semantics/views/color_encoder_fixture.h"
 
@@ -333,13 +334,11 @@ TEST(LiveMapper, ABrokenMaskSourceEndsTheRunWithItsMessage) {
   auto masks = std::make_shared<DeskMasks>();
   masks->failing_frame = 0;
   LiveMapper mapper(mapper_config(1), live_config(1), masks);
-  try {
+  const std::string fault = error_of([&] {
     for (const Frame& frame : desk_frames()) mapper.push_and_wait(frame);
     mapper.drain();
-    FAIL() << "the failure must come out";
-  } catch (const Error& error) {
-    EXPECT_STREQ(error.what(), "mask source is broken");
-  }
+  });
+  EXPECT_EQ(fault, "mask source is broken");
 }
 
 /// Fails on its first batches, as one does that runs out of memory.

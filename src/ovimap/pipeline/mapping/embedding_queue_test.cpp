@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/pipeline/mapping/embedding_queue.h"
 
-#include <chrono>
 #include <thread>
 
 #include <gtest/gtest.h>

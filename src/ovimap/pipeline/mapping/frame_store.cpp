@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "ovimap/base/config.h"
-#include "ovimap/base/parallel.h"
 
 namespace ovimap {
 

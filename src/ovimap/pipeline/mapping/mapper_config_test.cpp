@@ -2,15 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/pipeline/mapping/mapper_config.h"
 
-#include <unistd.h>
-
 #include <cmath>
-#include <fstream>
 #include <map>
 
 #include <gtest/gtest.h>
 
 #include "ovimap/base/error_fixture.h"
+#include "ovimap/base/temporary_folder_fixture.h"
 #include "ovimap/io/settings/config_file.h"
 
 namespace ovimap {
@@ -18,19 +16,14 @@ namespace {
 
 class LoadConfigTest : public ::testing::Test {
  protected:
-  LoadConfigTest()
-      : path_(std::filesystem::temp_directory_path() /
-              ("ovimap-config-" + std::to_string(getpid()) + ".yaml")) {
-    list_fields(config_, fields_);
-  }
-  ~LoadConfigTest() override { std::filesystem::remove(path_); }
+  LoadConfigTest() { list_fields(config_, fields_); }
 
   std::string load(const std::string& text) {
-    std::ofstream(path_) << text;
-    return fault_of([&] { load_config(path_, fields_); });
+    folder_.write("config.yaml", text);
+    return fault_of([&] { load_config(folder_.path() / "config.yaml", fields_); });
   }
 
-  std::filesystem::path path_;
+  const fixture::TemporaryFolder folder_;
   MapperConfig config_;
   ConfigFields fields_;
 };
@@ -54,7 +47,7 @@ TEST_F(LoadConfigTest, NamesWhatIsWrong) {
             std::string::npos);
   EXPECT_NE(load("mask_interval: [1, 2]\n").find("must be one value"), std::string::npos);
   EXPECT_NE(load("hello").find("name: value"), std::string::npos);
-  EXPECT_THROW(load_config(std::filesystem::temp_directory_path(), fields_), Error) << "a folder";
+  EXPECT_THROW(load_config(folder_.path(), fields_), Error) << "a folder";
   EXPECT_NE(load("a: {").find("is not YAML"), std::string::npos);
   EXPECT_NE(load("a: &a {b: *a}").find("aliases"), std::string::npos) << "it contains itself";
   EXPECT_THROW(load_config("/nowhere/x.yaml", fields_), Error);

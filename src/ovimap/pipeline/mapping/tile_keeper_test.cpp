@@ -9,7 +9,8 @@
 #include <limits>
 #include <optional>
 
-#include "ovimap/frames/recording/sequence_fixture.h"
+#include "ovimap/base/error_fixture.h"
+#include "ovimap/base/temporary_folder_fixture.h"
 #include "ovimap/image/codec.h"
 #include "ovimap/io/map_file/map_file.h"
 #include "ovimap/pipeline/mapping/checkpointer.h"
@@ -233,7 +234,7 @@ TEST_F(TileKeeperTest, AFullDiskLeavesTheLastCheckpoint) {
         {0.f, 7}, {}, 0);
     Mapper mapped = mapper();
     std::optional<FullDisk> full;
-    try {
+    fault = error_of([&] {
       run_sequence(
           row_, positions({}, row_.size()), mapped,
           [&](std::size_t done, std::size_t, const FrameReport*) {
@@ -242,9 +243,7 @@ TEST_F(TileKeeperTest, AFullDiskLeavesTheLastCheckpoint) {
             return true;
           },
           {}, &checkpoints);
-    } catch (const Error& error) {
-      fault = error.what();
-    }
+    });
   }
   EXPECT_NE(fault.find("map.ovimap.partial"), std::string::npos) << fault;
   EXPECT_NE(fault.find("; "), std::string::npos) << fault;
@@ -273,13 +272,8 @@ TEST_F(TileKeeperTest, ASavedMapGoesOnWithinTheBound) {
 }
 
 TEST_F(TileKeeperTest, ABoundBelowWhatOneFrameSeesIsRefused) {
-  try {
-    bounded(2, 0);
-    FAIL() << "a frame of the desk takes more than 2 MB";
-  } catch (const Error& fault) {
-    EXPECT_NE(std::string(fault.what()).find("give --max-memory"), std::string::npos)
-        << fault.what();
-  }
+  const std::string fault = error_of([&] { bounded(2, 0); });  // a frame of the desk takes more
+  EXPECT_NE(fault.find("give --max-memory"), std::string::npos) << fault;
 }
 
 TEST_F(TileKeeperTest, AFileThatCannotBeWrittenEndsTheRun) {

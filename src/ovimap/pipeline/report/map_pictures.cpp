@@ -10,7 +10,6 @@
 #include "ovimap/image/codec.h"
 #include "ovimap/io/mesh/map_mesh.h"
 #include "ovimap/map/rays/ray_cast.h"
-#include "ovimap/map/rays/surface_lookup.h"
 
 namespace ovimap {
 

@@ -216,12 +216,8 @@ TEST(MapCorrection, AMapWithoutKeptFramesIsRefused) {
   MapperConfig config = keeping_config();
   config.frame_store.max_mb = 0;
   MapDocument map = map_desk(0, config);
-  try {
-    correct_poses(map, true_poses(), config);
-    FAIL();
-  } catch (const Error& fault) {
-    EXPECT_NE(std::string(fault.what()).find("frame_store.max_mb"), std::string::npos);
-  }
+  const std::string fault = error_of([&] { correct_poses(map, true_poses(), config); });
+  EXPECT_NE(fault.find("frame_store.max_mb"), std::string::npos);
 }
 
 TEST(FrameStore, ThinsWhatItKeepsEvenly) {

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ovimap/frames/recording/sequence_fixture.h"
+#include "ovimap/base/temporary_folder_fixture.h"
 #include "ovimap/io/map_file/map_file.h"
 #include "ovimap/map/surface/mesh_extraction.h"
 #include "ovimap/pipeline/mapping/furnished_fixture.h"

@@ -3,9 +3,7 @@
 #include "ovimap/pipeline/rooms/watershed.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
-#include <numeric>
 #include <unordered_map>
 #include <vector>
 

@@ -7,7 +7,6 @@
 #include "ovimap/inference/models/model_folder.h"
 #include "ovimap/io/map_file/map_file_fixture.h"
 #include "ovimap/io/pictures/palette.h"
-#include "ovimap/semantics/query/query_engine.h"
 
 namespace ovimap {
 namespace {

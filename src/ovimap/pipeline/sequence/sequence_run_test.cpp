@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ovimap/base/error_fixture.h"
 #include "ovimap/pipeline/mapping/desk_fixture.h"
 #include "ovimap/pipeline/sequence/timings_text.h"
 
@@ -34,12 +35,8 @@ TEST(RunSequence, NamesTheFaultWhenNothingIsUsable) {
   DeskScene scene;
   scene.bad_frame = 5;
   Mapper mapper({});
-  try {
-    run_sequence(scene, {5}, mapper);
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("pose is not finite"), std::string::npos);
-  }
+  const std::string fault = error_of([&] { run_sequence(scene, {5}, mapper); });
+  EXPECT_NE(fault.find("pose is not finite"), std::string::npos);
 }
 
 TEST(MakeDocument, HoldsTheMapAndItsInstances) {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <numeric>
 
 #include "ovimap/base/error.h"
 #include "ovimap/semantics/words/word_lists.h"

@@ -2,26 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/semantics/classes/label_set.h"
 
-#include <filesystem>
-#include <fstream>
 #include <set>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include "ovimap/base/error.h"
+#include "ovimap/base/error_fixture.h"
+#include "ovimap/base/temporary_folder_fixture.h"
 #include "ovimap/semantics/query/query_fixture.h"
 
 namespace ovimap {
 namespace {
-
-std::filesystem::path written_file(const std::string& text) {
-  const auto folder =
-      std::filesystem::temp_directory_path() / ("ovimap_label_set_" + std::to_string(::getpid()));
-  std::filesystem::create_directories(folder);
-  std::ofstream(folder / "pets.txt") << text;
-  return folder / "pets.txt";
-}
 
 TEST(LabelSet, BuiltInSetsHaveTheirSizesAndIds) {
   const LabelSet replica = read_label_set("replica51");
@@ -50,26 +40,22 @@ TEST(LabelSet, BuiltInSetsHaveTheirSizesAndIds) {
 }
 
 TEST(LabelSet, ReadsAFile) {
-  const auto file = written_file("# pets\ncat\r\n\n  guinea pig \n");
-  const LabelSet set = read_label_set(file.string());
+  const fixture::TemporaryFolder folder;
+  const std::string file = folder.path() / "pets.txt";
+  folder.write("pets.txt", "# pets\ncat\r\n\n  guinea pig \n");
+  const LabelSet set = read_label_set(file);
   EXPECT_EQ(set.name, "pets");
   ASSERT_EQ(set.labels.size(), 2u);
   EXPECT_EQ(set.labels[1].name, "guinea pig");
   EXPECT_EQ(set.labels[1].id, 2);
-  written_file("# nothing\n");
-  EXPECT_THROW(read_label_set(file.string()), Error);
-  std::filesystem::remove_all(file.parent_path());
+  folder.write("pets.txt", "# nothing\n");
+  EXPECT_THROW(read_label_set(file), Error);
 }
 
 TEST(LabelSet, SaysWhichSetsThereAre) {
-  try {
-    read_label_set("replica52");
-    FAIL() << "accepted";
-  } catch (const Error& error) {
-    const std::string message = error.what();
-    for (const std::string& name : label_set_names())
-      EXPECT_NE(message.find(name), std::string::npos) << message;
-  }
+  const std::string fault = error_of([] { read_label_set("replica52"); });
+  for (const std::string& name : label_set_names())
+    EXPECT_NE(fault.find(name), std::string::npos) << fault;
 }
 
 TEST(ProjectClasses, TakesTheNearestClass) {

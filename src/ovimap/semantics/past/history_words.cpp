@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/semantics/past/history_words.h"
 
-#include <algorithm>
 #include <array>
 #include <limits>
 

@@ -10,7 +10,6 @@
 
 #include "ovimap/base/error.h"
 #include "ovimap/base/listed.h"
-#include "ovimap/base/text/ascii.h"
 #include "ovimap/semantics/query/query_text.h"
 #include "ovimap/semantics/words/materials.h"
 #include "ovimap/semantics/words/spelling.h"

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "ovimap/base/config.h"
-#include "ovimap/base/error.h"
+#include "ovimap/base/error_fixture.h"
 #include "ovimap/semantics/query/query_fixture.h"
 
 namespace ovimap {
@@ -88,13 +88,10 @@ TEST_F(QueryEngineTest, OnlySomeMayBeTheAnswer) {
 TEST_F(QueryEngineTest, NeedsAsManyWordsAsTheVerdictDoes) {
   QueryConfig config;
   config.verdict.min_references = 100000;
-  try {
+  const std::string fault = error_of([&] {
     (void)QueryEngine(index_, &encoder_, config).find({"mug", {}});
-    FAIL();
-  } catch (const Error& fault) {
-    EXPECT_NE(std::string(fault.what()).find("verdict.min_references is 100000"),
-              std::string::npos);
-  }
+  });
+  EXPECT_NE(fault.find("verdict.min_references is 100000"), std::string::npos);
 }
 
 TEST_F(QueryEngineTest, RanksBothObjectsOfAKind) {

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/semantics/views/object_embedding.h"
 
-#include <limits>
-
 #include <gtest/gtest.h>
 
 #include "ovimap/semantics/views/color_encoder_fixture.h"

@@ -6,7 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include "ovimap/base/config.h"
 #include "ovimap/base/parallel.h"
 
 namespace ovimap {

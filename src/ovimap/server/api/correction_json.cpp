@@ -3,7 +3,6 @@
 #include "ovimap/server/api/correction_json.h"
 
 #include <array>
-#include <optional>
 
 #include "ovimap/server/http/request_body.h"
 

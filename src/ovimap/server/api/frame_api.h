@@ -5,7 +5,6 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <string>
 
 #include "ovimap/frames/decoding/frame_decoder.h"
 #include "ovimap/pipeline/live/frame_intake.h"

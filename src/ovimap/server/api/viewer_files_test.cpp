@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
-
 #include "ovimap/io/map_file/map_file_fixture.h"
 
 namespace ovimap {
@@ -13,10 +11,7 @@ namespace {
 
 class ViewerFilesTest : public MapFolder {
  protected:
-  void write(const std::string& name, const std::string& text) const {
-    std::filesystem::create_directories((root_ / name).parent_path());
-    std::ofstream(root_ / name) << text;
-  }
+  void write(const std::string& name, const std::string& text) const { scratch_.write(name, text); }
 };
 
 TEST_F(ViewerFilesTest, ServesWhatIsInTheFolder) {

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/server/http/http_head.h"
 
-#include <utility>
-
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/status.hpp>

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/server/http/request_body.h"
 
+#include <cmath>
+
 #include "ovimap/base/bounded_json.h"
 
 namespace ovimap {

@@ -9,10 +9,8 @@
 #include "ovimap/io/map_file/map_edits.h"
 #include "ovimap/io/map_file/map_file.h"
 #include "ovimap/io/map_file/saved_tiles.h"
-#include "ovimap/map/surface/surface_precision.h"
 #include "ovimap/pipeline/rooms/map_rooms.h"
 #include "ovimap/pipeline/search/teaching.h"
-#include "ovimap/semantics/query/query_text.h"
 
 namespace ovimap {
 

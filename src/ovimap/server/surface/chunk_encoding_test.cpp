@@ -6,11 +6,8 @@
 
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
-#include <sstream>
 
 #include "ovimap/image/codec.h"
-#include "ovimap/server/surface/surface_fixture.h"
 
 namespace ovimap {
 namespace {

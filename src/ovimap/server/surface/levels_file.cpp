@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/server/surface/levels_file.h"
 
-#include <unistd.h>
 #include <xxhash.h>
 
 #include <algorithm>
@@ -12,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ovimap/base/error.h"
+#include "ovimap/image/codec.h"
 
 namespace ovimap {
 
@@ -113,17 +113,17 @@ MadeChunks read_levels(const std::filesystem::path& file) {
 void write_levels(const std::filesystem::path& file, const MadeChunks& chunks) {
   json all = json::array();
   for (const auto& chunk : chunks) all.push_back(chunk_json(*chunk));
-  const std::vector<std::uint8_t> body = json::to_cbor(all);
-  const XXH64_hash_t hash = XXH3_64bits(body.data(), body.size());
+  constexpr std::size_t kHead = sizeof(XXH64_hash_t);
+  Bytes bytes(kHead);
+  json::to_cbor(all, bytes);
+  const XXH64_hash_t hash = XXH3_64bits(bytes.data() + kHead, bytes.size() - kHead);
+  std::memcpy(bytes.data(), &hash, kHead);
   std::error_code fault;
   std::filesystem::create_directories(file.parent_path(), fault);
-  const std::filesystem::path partial = concat(file.string(), ".", getpid(), ".partial");
-  std::ofstream out(partial, std::ios::binary);
-  out.write(reinterpret_cast<const char*>(&hash), sizeof hash);
-  out.write(reinterpret_cast<const char*>(body.data()), static_cast<std::streamsize>(body.size()));
-  out.close();
-  if (out) std::filesystem::rename(partial, file, fault);
-  std::filesystem::remove(partial, fault);
+  try {
+    write_file(file, bytes);
+  } catch (const Error&) {  // they are made again when they are needed
+  }
   remove_oldest(file.parent_path());
 }
 

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "ovimap/synth/camera/video_camera.h"
 #include "ovimap/synth/camera/walk.h"
 #include "ovimap/synth/furniture/furniture_catalog.h"
 #include "ovimap/synth/procedural/made_model.h"

@@ -7,10 +7,8 @@
 #include <cmath>
 #include <optional>
 
-#include "ovimap/base/config.h"
 #include "ovimap/base/error.h"
 #include "ovimap/base/parallel.h"
-#include "ovimap/synth/buildings/plan_rooms.h"
 #include "ovimap/synth/buildings/room_builder.h"
 #include "ovimap/synth/camera/walk.h"
 #include "ovimap/synth/procedural/made_model.h"

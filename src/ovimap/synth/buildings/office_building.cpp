@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/synth/buildings/office_building.h"
 
-#include "ovimap/base/config.h"
 #include "ovimap/base/error.h"
 #include "ovimap/synth/buildings/made_requests.h"
 

@@ -9,7 +9,6 @@
 #include "ovimap/base/error.h"
 #include "ovimap/synth/buildings/floor_plan.h"
 #include "ovimap/synth/buildings/office_building.h"
-#include "ovimap/synth/rooms/rooms_v1.h"
 
 namespace ovimap {
 namespace {

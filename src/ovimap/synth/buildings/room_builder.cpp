@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ovimap/base/error.h"
 #include "ovimap/synth/buildings/strewn.h"
 #include "ovimap/synth/furniture/model_store.h"
 #include "ovimap/synth/rooms/room_shell.h"

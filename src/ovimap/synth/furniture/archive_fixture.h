@@ -4,7 +4,6 @@
 
 // For tests only: a furniture library written by hand, so that they need no package.
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstring>
 #include <map>
-#include <optional>
 
 #include <assimp/config.h>
 #include <assimp/postprocess.h>

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "ovimap/base/error_fixture.h"
-#include "ovimap/frames/recording/sequence_fixture.h"
+#include "ovimap/base/temporary_folder_fixture.h"
 #include "ovimap/synth/furniture/archive_fixture.h"
 #include "ovimap/synth/furniture/furniture_catalog.h"
 #include "ovimap/synth/furniture/furniture_model.h"

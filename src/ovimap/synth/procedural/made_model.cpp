@@ -43,10 +43,6 @@ std::vector<std::string> made_kinds() {
   return kinds;
 }
 
-bool is_made_kind(const std::string& kind) {
-  return makers().count(kind) > 0;
-}
-
 MadeModel make_model(const std::string& kind, Split split, Random& random) {
   const auto found = makers().find(kind);
   if (found == makers().end())

@@ -37,7 +37,6 @@ struct MadeModel {
 
 /// The kinds that can be made, in alphabetical order.
 std::vector<std::string> made_kinds();
-bool is_made_kind(const std::string& kind);
 
 /// A thing of the kind: each call another one, in shape, size, texture and colour. Throws Error for
 /// an unknown kind, with the nearest known one.

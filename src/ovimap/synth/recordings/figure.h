@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "ovimap/geometry/pose.h"
 #include "ovimap/synth/camera/trajectory.h"
 #include "ovimap/synth/render/renderer.h"
 #include "ovimap/synth/rooms/room.h"

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/synth/recordings/little_seen.h"
 
-#include <algorithm>
-
 #include <Eigen/Geometry>
 
 namespace ovimap {

@@ -3,7 +3,6 @@
 #include "ovimap/synth/render/motion_blur.h"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "ovimap/base/parallel.h"

@@ -6,7 +6,6 @@
 
 #include "ovimap/synth/rooms/room.h"
 #include "ovimap/synth/rooms/room_spec.h"
-#include "ovimap/synth/shapes/oriented_box.h"
 
 namespace ovimap {
 

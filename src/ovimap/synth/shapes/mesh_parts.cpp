@@ -3,7 +3,6 @@
 #include "ovimap/synth/shapes/mesh_parts.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 namespace ovimap {

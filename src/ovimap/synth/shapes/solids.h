@@ -3,12 +3,10 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "ovimap/synth/shapes/surface_patterns.h"
 #include "ovimap/synth/shapes/texture.h"
 
 namespace ovimap {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "ovimap/base/config.h"
 #include "ovimap/track/alignment/residuals.h"

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "ovimap/base/median.h"
-#include "ovimap/base/parallel.h"
 #include "ovimap/map/rays/ray_cast.h"
 
 namespace ovimap {

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "ovimap/track/alignment/normal_equations.h"
 #include "ovimap/track/room_camera_fixture.h"
 
 namespace ovimap {
