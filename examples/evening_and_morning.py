@@ -7,7 +7,10 @@ import pathlib
 import subprocess
 import sys
 
-from PIL import Image
+try:
+    from PIL import Image
+except ImportError:
+    sys.exit("the picture needs Pillow: pip install pillow")
 
 QUESTIONS = ["what moved", "where was the mug", "what is gone"]
 PICTURE_WIDTH = 1200
