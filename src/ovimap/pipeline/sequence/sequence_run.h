@@ -33,10 +33,10 @@ using SequenceProgress =
     std::function<bool(std::size_t done, std::size_t total, const FrameReport* report)>;
 
 /// Feeds the frames at `positions` to the mapper, reading and preparing the next frame while one is
-/// mapped. Bad frames are skipped and listed, and so are those whose masks are bad once a frame
-/// went well. Throws Error when no frame was usable, naming the commonest fault, and what else the
-/// mask source throws. Throws Error as well when every frame has the same pose (unless
-/// MapperConfig::allow_still_camera).
+/// mapped, where more than one thread is allowed (allowed_threads). Bad frames are skipped and
+/// listed, and so are those whose masks are bad once a frame went well. Throws Error when no frame
+/// was usable, naming the commonest fault, and what else the mask source throws. Throws Error as
+/// well when every frame has the same pose (unless MapperConfig::allow_still_camera).
 /// `begun`: what an earlier run did that this one goes on with. `checkpoints` may be null.
 /// `finder`: finds the poses; what it cannot place is skipped. Null: frames have theirs.
 SequenceResult run_sequence(const FrameSource& source, const std::vector<std::int64_t>& positions,
