@@ -152,6 +152,9 @@ Ablation schedule() {
                        of_periods("masks 6 a second", 1. / 6, 0),
                        of_periods("masks 1 a second", 1, 0),
                        of_periods("paper: masks 1, views 3 a second", 1, 1. / 3)};
+  AblationVariant by_itself;
+  by_itself.name = "by motion (default)";
+  ablation.variants.push_back(by_itself);
   ablation.published = published_schedule();
   return ablation;
 }

@@ -50,8 +50,8 @@ class MapCorrections : public ::testing::Test {
       block.palette = {0, label};
       for (std::size_t v = 0; v < 64; ++v) {
         block.weight[v] = 1.f;
-        block.label[0][v] = 1;
-        block.support[0][v] = 2;
+        block.slot(0).label[v] = 1;
+        block.slot(0).support[v] = 2;
       }
     }
     for (const auto& [id, labels] :

@@ -41,10 +41,11 @@ inline void fill_randomly(VoxelBlock& block, const LabelForest& forest, std::mt1
     block.weight[v] = static_cast<float>(1 + below(100000)) * 1e-3f;
     for (auto& channel : block.color) channel[v] = static_cast<std::uint16_t>(random());
     for (std::size_t s = 0; s < kLabelSlots; ++s) {
-      block.label[s][v] =
+      const auto position =
           static_cast<std::uint8_t>(below(static_cast<std::uint32_t>(block.palette.size())));
-      if (block.label[s][v] != 0)
-        block.support[s][v] = static_cast<std::uint16_t>(below(3) == 0 ? 0 : random());
+      if (position == 0) continue;
+      block.slot(s).label[v] = position;
+      block.slot(s).support[v] = static_cast<std::uint16_t>(below(3) == 0 ? 0 : random());
     }
   }
 }
@@ -184,9 +185,8 @@ inline std::string dump_of(VoxelMapConfig map, InstanceConfig instance) {
 
 inline bool same_block(const VoxelBlock& a, const VoxelBlock& b) {
   return a.index == b.index && a.forest_epoch == b.forest_epoch && a.palette == b.palette &&
-         a.tsdf == b.tsdf && a.weight == b.weight && a.color == b.color && a.label == b.label &&
-         a.support == b.support && a.doubted() == b.doubted() &&
-         (!a.doubted() || a.doubts == b.doubts);
+         a.tsdf == b.tsdf && a.weight == b.weight && a.color == b.color && a.slots == b.slots &&
+         a.doubted() == b.doubted() && (!a.doubted() || a.doubts == b.doubts);
 }
 
 inline bool same_voxels(const VoxelMap& a, const VoxelMap& b) {

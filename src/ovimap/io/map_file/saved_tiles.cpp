@@ -50,7 +50,7 @@ void SavedTiles::load(const VoxelMap& map, std::uint32_t slot) {
 
 void SavedTiles::trim(const VoxelMap& map) {
   const std::lock_guard lock(placing_);
-  if (map.blocks_in_memory() * sizeof(VoxelBlock) <= max_bytes_) return;
+  if (map.blocks_in_memory() * VoxelBlock::kMostBytes <= max_bytes_) return;
   for (const std::uint64_t key : in_memory_) map.evict(tile_at(map, key).slots);
   in_memory_.clear();
 }

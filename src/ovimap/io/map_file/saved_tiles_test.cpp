@@ -38,7 +38,7 @@ TEST_F(SavedTilesTest, BlocksAreThoseOfTheWholeMap) {
 TEST_F(SavedTilesTest, KeepsWhatTheBoundAllows) {
   const std::filesystem::path path = root_ / "a.ovimap";
   save_map(path, random_document(60, 3));
-  const MapDocument document = load_map_by_tiles(path, 60 * sizeof(VoxelBlock));
+  const MapDocument document = load_map_by_tiles(path, 60 * VoxelBlock::kMostBytes);
   for (std::uint32_t slot = 0; slot < document.map.block_count(); ++slot) document.map.block(slot);
   document.map.trim();
   EXPECT_EQ(document.map.blocks_in_memory(), document.map.block_count());

@@ -126,7 +126,7 @@ bool stored(const VoxelBlock& block, std::size_t v) {
   std::uint32_t any =
       static_cast<std::uint16_t>(block.tsdf[v]) | std::bit_cast<std::uint32_t>(block.weight[v]);
   for (const auto& channel : block.color) any |= channel[v];
-  for (const auto& slot : block.label) any |= slot[v];
+  for (const LabelSlot& slot : block.slots) any |= slot.label[v];
   return any != 0;
 }
 
@@ -172,8 +172,8 @@ void put_voxels(const std::vector<SavedPlace>& places, std::uint8_t* body, const
   std::uint8_t* label = body + at.labels;
   for (std::size_t s = 0; s < kLabelSlots; ++s) {
     for (const auto [block, v] : places) {
-      *label++ = block->label[s][v];
-      if (block->label[s][v] != 0) support.put(block->support[s][v]);
+      *label = s < block->slots.size() ? block->slots[s].label[v] : std::uint8_t{0};
+      if (*label++ != 0) support.put(block->slots[s].support[v]);
     }
   }
 }
@@ -232,8 +232,11 @@ bool take_labels(const std::vector<LoadedPlace>& places, std::uint8_t* body, con
   for (std::size_t s = 0; s < kLabelSlots; ++s) {
     for (const auto [block, v] : places) {
       if (*label >= block->palette.size()) return false;
-      block->label[s][v] = *label;
-      if (*label++ != 0) block->support[s][v] = support.take();
+      const std::uint8_t position = *label++;
+      if (position == 0) continue;
+      LabelSlot& slot = block->slot(s);
+      slot.label[v] = position;
+      slot.support[v] = support.take();
     }
   }
   return true;
@@ -296,7 +299,7 @@ Bytes TileEncoder::encode(std::span<const VoxelBlock* const> blocks) {
   const std::vector<SavedPlace> places = put_heads(blocks, body_);
   std::size_t supports = 0;
   for (const auto [block, v] : places)
-    for (const auto& slot : block->label) supports += slot[v] != 0;
+    for (const LabelSlot& slot : block->slots) supports += slot.label[v] != 0;
   const BodyLayout layout(body_.size(), places.size(), supports);
   const bool doubts = doubted(blocks);  // a plane of their own at the end, mostly left out
   body_.resize(layout.end + (doubts ? places.size() : 0));

@@ -107,8 +107,10 @@ TEST(MapFileBlocks, ExtremeBlocksReturnBitForBit) {
     full.weight[v] =
         v % 2 == 0 ? std::numeric_limits<float>::max() : std::numeric_limits<float>::denorm_min();
     for (auto& channel : full.color) channel[v] = v % 3 == 0 ? 0 : 0xffff;
-    for (auto& slot : full.label) slot[v] = static_cast<std::uint8_t>(255 - v % 256);
-    for (auto& slot : full.support) slot[v] = v % 256 == 255 ? 0 : 0xffff;
+    for (std::size_t s = 0; s < kLabelSlots; ++s) {
+      full.slot(s).label[v] = static_cast<std::uint8_t>(255 - v % 256);
+      full.slot(s).support[v] = v % 256 == 255 ? 0 : 0xffff;
+    }
   }
   VoxelBlock& lone =
       map.writable_block(map.find_or_create({2, 0, 0}));  // one voxel, known by its colour alone

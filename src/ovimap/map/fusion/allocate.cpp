@@ -43,9 +43,9 @@ void check_room(const VoxelMap& map, const std::vector<std::uint64_t>& keys) {
              static_cast<std::size_t>(std::count_if(keys.begin(), keys.end(), [&](auto key) {
                return map.find_slot(unpack_index(key)) == kNoBlock;
              }));
-  if (blocks <= map.room_bytes() / sizeof(VoxelBlock)) return;
+  if (blocks <= map.room_bytes() / VoxelBlock::kMostBytes) return;
   throw FrameError(concat("with what the frame shows the map takes ",
-                          blocks * sizeof(VoxelBlock) / kMegabyte, " MB of memory, and ",
+                          blocks * VoxelBlock::kMostBytes / kMegabyte, " MB of memory, and ",
                           map.room_bytes() / kMegabyte,
                           " MB are its room; if its depth is not noise, take larger voxels "
                           "(map.voxel_size_m) or bound the memory (--max-memory)"));

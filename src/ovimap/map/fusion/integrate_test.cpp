@@ -261,7 +261,7 @@ TEST(AllocateBlocks, LeavesTheMapAsItWasWhereMemoryHasNoRoom) {
   VoxelMap map;
   const std::size_t blocks =
       allocate_blocks(map, {.depth = near, .camera = camera, .world_from_camera = pose}).size();
-  map.set_room(2 * blocks * sizeof(VoxelBlock));
+  map.set_room(2 * blocks * VoxelBlock::kMostBytes);
   const Observation large{.depth = far, .camera = camera, .world_from_camera = pose};
   EXPECT_THROW(allocate_blocks(map, large), FrameError);
   EXPECT_EQ(map.block_count(), blocks);

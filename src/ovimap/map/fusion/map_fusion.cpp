@@ -161,15 +161,17 @@ void fuse_labels(VoxelBlock& block, int voxel, const VoxelLabels& added, Label o
   std::stable_sort(all.begin(), all.end(),
                    [](const auto& a, const auto& b) { return a.support > b.support; });
   constexpr std::uint32_t kMost = std::numeric_limits<std::uint16_t>::max();
-  std::array<std::pair<std::uint8_t, std::uint16_t>, kLabelSlots> slots{};
+  const auto v = static_cast<std::size_t>(voxel);
   std::size_t used = 0;
+  const auto put = [&](std::uint8_t position, std::uint32_t support) {
+    LabelSlot& slot = block.slot(used++);
+    slot.label[v] = position;
+    slot.support[v] = static_cast<std::uint16_t>(std::min(support, kMost));
+  };
   for (std::size_t i = 0; i < all.size() && used < kLabelSlots; ++i)
     if (const std::uint8_t position = palette_position(block, all[i].label); position != 0)
-      slots[used++] = {position, static_cast<std::uint16_t>(std::min(all[i].support, kMost))};
-  for (std::size_t s = 0; s < kLabelSlots; ++s) {
-    block.label[s][static_cast<std::size_t>(voxel)] = slots[s].first;
-    block.support[s][static_cast<std::size_t>(voxel)] = slots[s].second;
-  }
+      put(position, all[i].support);
+  while (used < block.slots.size()) put(0, 0);
 }
 
 void fuse_voxel(const VoxelMap& map, VoxelBlock& block, int voxel, const Sample& sample,

@@ -18,10 +18,11 @@ constexpr std::size_t kTilesPerTask = 2;
 void discount(const PastEvidenceConfig& config, VoxelBlock& block) {
   for (std::size_t v = 0; v < kBlockVoxels; ++v) {
     block.weight[v] = std::min(block.weight[v], config.most_weight);
-    const int strongest = block.support[0][v];
+    const int strongest = block.slots.empty() ? 0 : block.slots.front().support[v];
     if (strongest <= config.most_support) continue;
-    for (auto& slot : block.support)
-      slot[v] = static_cast<std::uint16_t>(slot[v] * config.most_support / strongest);
+    for (LabelSlot& slot : block.slots)
+      slot.support[v] =
+          static_cast<std::uint16_t>(slot.support[v] * config.most_support / strongest);
   }
 }
 

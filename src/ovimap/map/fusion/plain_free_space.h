@@ -59,8 +59,7 @@ inline void doubt(VoxelBlock& block, std::size_t voxel, int frames) {
   block.tsdf[voxel] = 0;
   block.weight[voxel] = 0.f;
   for (auto& channel : block.color) channel[voxel] = 0;
-  for (auto& slot : block.label) slot[voxel] = 0;
-  for (auto& slot : block.support) slot[voxel] = 0;
+  for (LabelSlot& slot : block.slots) slot.label[voxel] = slot.support[voxel] = 0;
 }
 
 /// As clear_free_space, over every voxel of the map and without asking what the frame confirms.

@@ -18,8 +18,8 @@ constexpr std::size_t kPaletteLimit = 256;
 void compact_palette(VoxelBlock& block) {
   std::array<bool, kPaletteLimit> used{};
   used[0] = true;
-  for (const auto& slot : block.label)
-    for (std::uint8_t position : slot) used[position] = true;
+  for (const LabelSlot& slot : block.slots)
+    for (std::uint8_t position : slot.label) used[position] = true;
   std::array<std::uint8_t, kPaletteLimit> moved{};
   std::vector<Label> palette;
   for (std::size_t position = 0; position < block.palette.size(); ++position) {
@@ -28,25 +28,25 @@ void compact_palette(VoxelBlock& block) {
     palette.push_back(block.palette[position]);
   }
   block.palette = std::move(palette);
-  for (auto& slot : block.label)
-    for (std::uint8_t& position : slot) position = moved[position];
+  for (LabelSlot& slot : block.slots)
+    for (std::uint8_t& position : slot.label) position = moved[position];
 }
 
-void swap_slots(VoxelBlock& block, int voxel, int a, int b) {
-  const auto v = static_cast<std::size_t>(voxel), i = static_cast<std::size_t>(a),
-             j = static_cast<std::size_t>(b);
-  std::swap(block.label[i][v], block.label[j][v]);
-  std::swap(block.support[i][v], block.support[j][v]);
-}
-
-/// Moves a slot forward past weaker ones.
-void promote(VoxelBlock& block, int voxel, int slot) {
-  const auto v = static_cast<std::size_t>(voxel);
+/// Moves a voxel's label forward past weaker ones.
+void promote(VoxelBlock& block, std::size_t v, std::size_t slot) {
   for (; slot > 0; --slot) {
-    const auto s = static_cast<std::size_t>(slot);
-    if (block.support[s][v] <= block.support[s - 1][v]) return;
-    swap_slots(block, voxel, slot, slot - 1);
+    LabelSlot &stronger = block.slots[slot - 1], &weaker = block.slots[slot];
+    if (weaker.support[v] <= stronger.support[v]) return;
+    std::swap(weaker.label[v], stronger.label[v]);
+    std::swap(weaker.support[v], stronger.support[v]);
   }
+}
+
+/// Merged labels need fewer.
+void drop_empty_slots(VoxelBlock& block) {
+  const auto empty = [](const LabelSlot& slot) { return slot == LabelSlot(); };
+  while (!block.slots.empty() && empty(block.slots.back())) block.slots.pop_back();
+  block.slots.shrink_to_fit();
 }
 
 }  // namespace
@@ -55,14 +55,14 @@ VoxelLabels voxel_labels(const VoxelBlock& block, int voxel, const LabelForest& 
   const auto v = static_cast<std::size_t>(voxel);
   VoxelLabels result{};
   std::size_t count = 0;
-  for (std::size_t s = 0; s < kLabelSlots; ++s) {
-    if (block.label[s][v] == 0) continue;
-    const Label label = forest.root(block.palette[block.label[s][v]]);
+  for (const LabelSlot& slot : block.slots) {
+    if (slot.label[v] == 0) continue;
+    const Label label = forest.root(block.palette[slot.label[v]]);
     const auto same =
         std::find_if(result.begin(), result.begin() + static_cast<std::ptrdiff_t>(count),
                      [label](const LabelSupport& held) { return held.label == label; });
     if (same == result.begin() + static_cast<std::ptrdiff_t>(count)) result[count++].label = label;
-    same->support += block.support[s][v];
+    same->support += slot.support[v];
   }
   // Insertion sort: it is stable, and std::stable_sort would allocate for four items.
   for (std::size_t i = 1; i < count; ++i)
@@ -73,7 +73,7 @@ VoxelLabels voxel_labels(const VoxelBlock& block, int voxel, const LabelForest& 
 
 Label voxel_label(const VoxelBlock& block, int voxel, const LabelForest& forest) {
   if (block.forest_epoch == forest.epoch())
-    return block.palette[block.label[0][static_cast<std::size_t>(voxel)]];
+    return block.palette[block.strongest(static_cast<std::size_t>(voxel))];
   return voxel_labels(block, voxel, forest)[0].label;
 }
 
@@ -87,14 +87,15 @@ void resolve_labels(VoxelBlock& block, const LabelForest& forest) {
       labels[static_cast<std::size_t>(v)] = voxel_labels(block, v, forest);
     for (Label& label : block.palette) label = forest.root(label);
     for (std::size_t v = 0; v < kBlockVoxels; ++v) {
-      for (std::size_t s = 0; s < kLabelSlots; ++s) {
+      for (std::size_t s = 0; s < block.slots.size(); ++s) {
         const auto found =
             std::find(block.palette.begin(), block.palette.end(), labels[v][s].label);
-        block.label[s][v] = static_cast<std::uint8_t>(found - block.palette.begin());
-        block.support[s][v] = static_cast<std::uint16_t>(std::min<std::uint32_t>(
+        block.slots[s].label[v] = static_cast<std::uint8_t>(found - block.palette.begin());
+        block.slots[s].support[v] = static_cast<std::uint16_t>(std::min<std::uint32_t>(
             labels[v][s].support, std::numeric_limits<std::uint16_t>::max()));
       }
     }
+    drop_empty_slots(block);
     compact_palette(block);
   }
   block.forest_epoch = forest.epoch();
@@ -112,21 +113,27 @@ std::uint8_t palette_position(VoxelBlock& block, Label label) {
 void add_support(VoxelBlock& block, int voxel, std::uint8_t position, std::uint16_t votes) {
   OVIMAP_ASSERT(position != 0 && votes > 0);
   const auto v = static_cast<std::size_t>(voxel);
-  for (std::size_t s = 0; s < kLabelSlots; ++s) {
-    if (block.label[s][v] != position) continue;
-    block.support[s][v] = static_cast<std::uint16_t>(
-        std::min<int>(block.support[s][v] + votes, std::numeric_limits<std::uint16_t>::max()));
-    return promote(block, voxel, static_cast<int>(s));
+  for (std::size_t s = 0; s < block.slots.size(); ++s) {
+    LabelSlot& slot = block.slots[s];
+    if (slot.label[v] != position) continue;
+    slot.support[v] = static_cast<std::uint16_t>(
+        std::min<int>(slot.support[v] + votes, std::numeric_limits<std::uint16_t>::max()));
+    return promote(block, v, s);
   }
+  const auto support = [&](std::size_t s) {
+    return s < block.slots.size() ? block.slots[s].support[v] : std::uint16_t{0};
+  };
   constexpr std::size_t kLast = kLabelSlots - 1;  // slots are ordered, so the last is the weakest
-  const std::uint16_t lost = std::min(votes, block.support[kLast][v]);
-  for (auto& slot : block.support) slot[v] = static_cast<std::uint16_t>(slot[v] - lost);
+  const std::uint16_t lost = std::min(votes, support(kLast));
+  for (LabelSlot& slot : block.slots)
+    slot.support[v] = static_cast<std::uint16_t>(slot.support[v] - lost);
   if (votes == lost) return;
-  std::size_t slot = kLast;
-  while (slot > 0 && block.support[slot - 1][v] == 0) --slot;
-  block.label[slot][v] = position;
-  block.support[slot][v] = static_cast<std::uint16_t>(votes - lost);
-  promote(block, voxel, static_cast<int>(slot));
+  std::size_t s = kLast;
+  while (s > 0 && support(s - 1) == 0) --s;
+  LabelSlot& slot = block.slot(s);
+  slot.label[v] = position;
+  slot.support[v] = static_cast<std::uint16_t>(votes - lost);
+  promote(block, v, s);
 }
 
 }  // namespace ovimap

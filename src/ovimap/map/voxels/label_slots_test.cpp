@@ -57,6 +57,22 @@ TEST(LabelSlots, FewLabelsAreCountedExactly) {
     EXPECT_EQ(held.support, votes[held.label]);
 }
 
+TEST(LabelSlots, ABlockHasAsManyAsAVoxelNeeds) {
+  VoxelBlock block({0, 0, 0});
+  LabelForest forest;
+  const Label first = forest.create(), second = forest.create();
+  EXPECT_EQ(voxel_label(block, 0, forest), kNoLabel);
+  vote(block, first, 3);
+  EXPECT_EQ(block.slots.size(), 1u);
+  vote(block, second);
+  EXPECT_EQ(block.slots.size(), 2u);
+  EXPECT_EQ(voxel_label(block, 1, forest), kNoLabel) << "of another voxel nothing is known";
+  forest.merge(first, second);
+  resolve_labels(block, forest);
+  EXPECT_EQ(block.slots.size(), 1u) << "what was two labels is one";
+  EXPECT_EQ(voxel_labels(block, 0, forest)[0].support, 4u);
+}
+
 TEST(LabelSlots, MergedLabelsAddUpBeforeAndAfterTheyAreWritten) {
   VoxelBlock block({0, 0, 0});
   LabelForest forest;

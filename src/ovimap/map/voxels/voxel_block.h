@@ -64,8 +64,18 @@ inline int voxel_offset(int x, int y, int z) {
   return x + kBlockSide * (y + kBlockSide * z);
 }
 
+/// One label of each voxel of a block, as a position in the block's palette (0: none), and the
+/// votes behind it.
+struct LabelSlot {
+  std::array<std::uint8_t, kBlockVoxels> label{};
+  std::array<std::uint16_t, kBlockVoxels> support{};
+
+  bool operator==(const LabelSlot&) const = default;
+};
+
 /// 8 x 8 x 8 voxels, one array per attribute: a stage touches only the cache lines it needs.
-/// 24 bytes a voxel, and a palette of the labels that occur in the block.
+/// 12 bytes a voxel, 3 more for each label that some voxel of the block holds, and a palette of
+/// the labels that occur in it.
 struct VoxelBlock {
   using Tsdf = std::int16_t;
   static constexpr float kTsdfScale = 32767.f;  ///< stored distance 32767 = one truncation distance
@@ -74,8 +84,6 @@ struct VoxelBlock {
     tsdf.fill(0);
     weight.fill(0.f);
     for (auto& channel : color) channel.fill(0);
-    for (auto& slot : label) slot.fill(0);
-    for (auto& slot : support) slot.fill(0);
   }
 
   BlockIndex index;
@@ -89,9 +97,8 @@ struct VoxelBlock {
   std::array<float, kBlockVoxels> weight;  ///< 0 = never observed
   std::array<std::array<std::uint16_t, kBlockVoxels>, 3>
       color;  ///< RGB, 8.8 fixed point; all 0 = none yet
-  /// Label slots, strongest first: palette position and support (number of frames).
-  std::array<std::array<std::uint8_t, kBlockVoxels>, kLabelSlots> label;
-  std::array<std::array<std::uint16_t, kBlockVoxels>, kLabelSlots> support;
+  /// Strongest first. As many as a voxel needed so far, at most kLabelSlots: few blocks need all.
+  std::vector<LabelSlot> slots;
   /// In how many frames on end the voxel's surface was seen through (clear_free_space); empty: in
   /// none, as in most blocks.
   std::vector<std::uint8_t> doubts;
@@ -103,15 +110,38 @@ struct VoxelBlock {
     tsdf[voxel] = 0;
     weight[voxel] = 0.f;
     for (auto& channel : color) channel[voxel] = 0;
-    for (auto& slot : label) slot[voxel] = 0;
-    for (auto& slot : support) slot[voxel] = 0;
+    for (LabelSlot& slot : slots) slot.label[voxel] = slot.support[voxel] = 0;
     if (!doubts.empty()) doubts[voxel] = 0;
+  }
+
+  /// The position in the palette of the strongest label of a voxel.
+  std::uint8_t strongest(std::size_t voxel) const {
+    return slots.empty() ? std::uint8_t{0} : slots.front().label[voxel];
+  }
+  /// To write to it; added where there is none yet.
+  LabelSlot& slot(std::size_t number) {
+    if (number >= slots.size()) {
+      slots.reserve(number + 1);  // not twice as many
+      slots.resize(number + 1);
+    }
+    return slots[number];
   }
 
   /// Whether any voxel is doubted.
   bool doubted() const {
     return std::any_of(doubts.begin(), doubts.end(), [](std::uint8_t count) { return count != 0; });
   }
+
+  /// Of memory, its palette included.
+  std::size_t bytes() const {
+    return sizeof(VoxelBlock) + slots.capacity() * sizeof(LabelSlot) +
+           palette.capacity() * sizeof(Label) + doubts.capacity();
+  }
+  /// What a block of voxels with all labels takes: by this memory is bounded, since nobody knows
+  /// how many labels frames will show.
+  static const std::size_t kMostBytes;
 };
+inline constexpr std::size_t VoxelBlock::kMostBytes =
+    sizeof(VoxelBlock) + kLabelSlots * sizeof(LabelSlot);
 
 }  // namespace ovimap

@@ -195,11 +195,10 @@ std::size_t VoxelMap::index_bytes() const {
 }
 
 std::size_t VoxelMap::bytes() const {
-  std::size_t extras = 0;
+  std::size_t bytes = index_bytes();
   for (const BlockPlace& place : blocks_)
-    if (const VoxelBlock* block = place.get())
-      extras += block->palette.capacity() * sizeof(Label) + block->doubts.capacity();
-  return in_memory_ * sizeof(VoxelBlock) + extras + index_bytes();
+    if (const VoxelBlock* block = place.get()) bytes += block->bytes();
+  return bytes;
 }
 
 std::uint64_t VoxelMap::content_hash() const {

@@ -79,8 +79,12 @@ TEST(VoxelMap, ContentHashIgnoresCreationOrderAndSeesEveryVoxel) {
   EXPECT_NE(a.content_hash(), b.content_hash());
 }
 
-TEST(VoxelBlock, TakesTwentyFourBytesAVoxel) {
-  EXPECT_LE(sizeof(VoxelBlock), 24u * kBlockVoxels + 72u);
+TEST(VoxelBlock, TakesTwelveBytesAVoxelAndThreeMoreForEachLabel) {
+  VoxelBlock block({0, 0, 0});
+  EXPECT_LE(block.bytes(), 12u * kBlockVoxels + 112u);
+  block.slot(2).label[7] = 1;
+  EXPECT_LE(block.bytes(), (12u + 3 * 3) * kBlockVoxels + 112u);
+  EXPECT_LE(VoxelBlock::kMostBytes, 24u * kBlockVoxels + 112u);
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ TEST(LiveFaults, AFrameOfNoiseIsLeftOut) {
   EXPECT_NE(done.frame_fault.find("its room"), std::string::npos) << done.frame_fault;
   EXPECT_EQ(mapper.frames().size(), 4u);
   const Mapper mapped = mapper.take();
-  EXPECT_LE(mapped.map().blocks_in_memory() * sizeof(VoxelBlock), kRoom);
+  EXPECT_LE(mapped.map().blocks_in_memory() * VoxelBlock::kMostBytes, kRoom);
   EXPECT_EQ(mapped.frames(), 4);
 }
 

@@ -117,8 +117,7 @@ TEST(MovedFusion, WhatNoMovedFrameTouchesStaysBitForBit) {
   for (std::uint32_t slot = 0; slot < blocks.size(); ++slot) {
     const VoxelBlock &was = blocks[slot], &is = map.block(slot);
     const bool same = was.tsdf == is.tsdf && was.weight == is.weight && was.color == is.color &&
-                      was.label == is.label && was.support == is.support &&
-                      was.palette == is.palette && was.doubts == is.doubts;
+                      was.slots == is.slots && was.palette == is.palette && was.doubts == is.doubts;
     EXPECT_TRUE(same || anew.contains(slot)) << slot;
     changed += !same;
   }

@@ -90,7 +90,7 @@ std::vector<Tile> TileKeeper::take_changed(const VoxelMap& map) {
 }
 
 std::size_t TileKeeper::used_bytes(const VoxelMap& map) const {
-  return map.index_bytes() + map.blocks_in_memory() * sizeof(VoxelBlock);
+  return map.index_bytes() + map.blocks_in_memory() * VoxelBlock::kMostBytes;
 }
 
 std::size_t TileKeeper::bound_bytes() const {
@@ -146,7 +146,7 @@ std::vector<std::uint64_t> TileKeeper::choose_tiles(const VoxelMap& map) const {
   for (auto next = order.begin(); next != order.end() && bytes > full_bytes(); ++next) {
     chosen.push_back(next->second);
     for (const std::uint32_t slot : tile_at(map, next->second).slots)
-      if (map.in_memory(slot)) bytes -= sizeof(VoxelBlock);
+      if (map.in_memory(slot)) bytes -= VoxelBlock::kMostBytes;
   }
   return chosen;
 }
@@ -156,7 +156,7 @@ void TileKeeper::trim(const VoxelMap& map) {
   if (bounded()) {
     const std::size_t used = used_bytes(map),
                       bound = static_cast<std::size_t>(memory_.max_mb) * kMegabyte;
-    map.keep_spares(used < bound ? (bound - used) / sizeof(VoxelBlock) : 0);
+    map.keep_spares(used < bound ? (bound - used) / VoxelBlock::kMostBytes : 0);
   }
   ++now_;
 }

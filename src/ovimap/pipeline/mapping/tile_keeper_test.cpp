@@ -157,7 +157,7 @@ TEST_F(TileKeeperTest, ABoundDoesNotChangeTheMap) {
     EXPECT_EQ(run.bytes, expected.bytes) << "checkpoints every " << every << " frames";
     EXPECT_GT(run.evicted, 100u);
     EXPECT_GT(run.loaded, 60u);
-    EXPECT_LE(run.most_blocks * sizeof(VoxelBlock), kBound_mb * 1000000u);
+    EXPECT_LE(run.most_blocks * VoxelBlock::kMostBytes, kBound_mb * 1000000u);
     EXPECT_GT(expected.most_blocks, 2 * run.most_blocks) << "the bound was too easy";
     EXPECT_FALSE(fs::exists(partial_));
   }
@@ -203,7 +203,7 @@ TEST_F(TileKeeperTest, FramesAreFusedAgainWithinTheBound) {
   const auto [whole, whole_blocks] = corrected(0);
   const auto [bounded, bounded_blocks] = corrected(kBound_mb);
   EXPECT_EQ(whole, bounded);
-  EXPECT_LE(bounded_blocks * sizeof(VoxelBlock), kBound_mb * 1000000u);
+  EXPECT_LE(bounded_blocks * VoxelBlock::kMostBytes, kBound_mb * 1000000u);
   EXPECT_GT(whole_blocks, 2 * bounded_blocks) << "the bound was too easy";
 }
 
@@ -262,12 +262,13 @@ TEST_F(TileKeeperTest, ASavedMapGoesOnWithinTheBound) {
   document.map.keep_in(tiles);
   const std::uint64_t stored_hash = load_map(saved).map.content_hash();
   EXPECT_EQ(document.map.content_hash(), stored_hash);
-  EXPECT_LE(document.map.blocks_in_memory() * sizeof(VoxelBlock), kBound_mb * 1000000u);
+  EXPECT_LE(document.map.blocks_in_memory() * VoxelBlock::kMostBytes, kBound_mb * 1000000u);
   constexpr int kLess_mb = kBound_mb / 3;
   tiles->set_bound({kLess_mb});
   document.map.trim();
   const std::size_t spares = document.map.keep_spares(std::numeric_limits<std::size_t>::max());
-  EXPECT_LE((document.map.blocks_in_memory() + spares) * sizeof(VoxelBlock), kLess_mb * 1000000u)
+  EXPECT_LE((document.map.blocks_in_memory() + spares) * VoxelBlock::kMostBytes,
+            kLess_mb * 1000000u)
       << "what left is given back";
 }
 
