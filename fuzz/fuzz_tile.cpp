@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The voxels of a tile as the map file has them. The first 9 bytes choose which blocks exist; what
 // follows is the body, compressed here when the ninth byte is odd, so that changes reach the layout
-// behind the compression.
+// behind the compression; its next bit chooses the schema.
 #include <zstd.h>
 
 #include "ovimap/io/map_tables/map_file_blocks.h"
@@ -25,7 +25,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   map.labels().merge(3, 7);
   const std::uint64_t key = ovimap::pack_index({0, -1, 2});
   const ovimap::Tile tile = ovimap::create_tile(map, key, present);
+  const int schema = ovimap::kSchemaWithSteps - data[8] / 2 % 2;  // weights as now, and before
   ovimap::TileDecoder decoder;
-  if (decoder.decode(body, tile, map).empty()) (void)map.content_hash();
+  if (decoder.decode(body, schema, tile, map).empty()) (void)map.content_hash();
   return 0;
 }

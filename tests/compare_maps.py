@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
 """Holds two maps of one recording, made on different processors, against each other: all tables but those in which rounding shows are
-the same, and a distance differs by one of its 32767 steps at most, a weight by one of its 4096ths. Usage: compare_maps.py TITLE MAP MAP"""
+the same, and a distance differs by one of its 32767 steps at most, a weight by one of its 1024ths. Usage: compare_maps.py TITLE MAP MAP"""
 import sys
 
 import numpy as np
@@ -15,7 +15,7 @@ PER_MACHINE = {"timings", "source", "version", "content_hash"}
 
 def voxels(map_file):
     """By tile and block: distances in steps, weights in steps, and everything else."""
-    return {(tile, place): (distance.astype(np.int16), 4096 * weight.view(np.float32),
+    return {(tile, place): (distance.astype(np.int16), 1024 * weight.view(np.float32),
                             (palette.tobytes(), doubts.tobytes(), *(part.tobytes() for part in (*colors, *slots, *supports))))
             for tile, present, _, data in map_file.rows("blocks")
             for place, palette, distance, weight, colors, slots, supports, doubts in read_tile(present, data)}

@@ -140,7 +140,7 @@ class Cursor:
         return part
 
 
-def read_tile(present, data):
+def read_tile(present, data, schema=7):
     """The blocks of a tile: (place in the tile, palette, distance, weight, rgb, slots, supports, doubts)."""
     bits = [bit for bit in range(64) if unsigned(present) >> bit & 1]
     count = len(bits)
@@ -156,7 +156,9 @@ def read_tile(present, data):
     distance_high, weight_high = cursor.take(voxels), cursor.take(voxels)
     color_high = [cursor.take(voxels) for _ in range(3)]
     distance = undo_differences([cursor.take(voxels), distance_high], 16)
-    weight = undo_differences([cursor.take(voxels), cursor.take(voxels), cursor.take(voxels), weight_high], 32)
+    weight = undo_differences([cursor.take(voxels), cursor.take(voxels), cursor.take(voxels), weight_high], 32).astype(np.uint32)
+    if schema >= 7:
+        weight = (weight / 1024).astype(np.float32).view(np.uint32)
     green, red, blue = (undo_differences([cursor.take(voxels), high], 16) for high in color_high)
     doubts = cursor.take(voxels) if cursor.at < len(cursor.body) else np.zeros(voxels, np.uint8)
     assert cursor.at == len(cursor.body)

@@ -22,7 +22,7 @@ using namespace map_tables;
 
 class MapExaminer {
  public:
-  explicit MapExaminer(SQLite::Database& database) : database_(database) {}
+  MapExaminer(SQLite::Database& database, int schema) : database_(database), schema_(schema) {}
 
   MapCheck examine() {
     note("the file", [&] { ask_sqlite(); });
@@ -100,7 +100,7 @@ class MapExaminer {
     if (check_.blocks != meta.blocks)
       add(concat("the voxels have ", check_.blocks, " blocks, but ", meta.blocks, " were written"));
     if (check_.faults.size() != faults_before || check_.blocks != meta.blocks) return;
-    (void)read_voxels(database_, meta, forest);  // the hash of the whole
+    (void)read_voxels(database_, schema_, meta, forest);  // the hash of the whole
   }
 
   std::string tile_fault(std::int64_t key, std::uint64_t present, std::int64_t hash,
@@ -111,10 +111,12 @@ class MapExaminer {
     if (stored_hash(data) != hash) return "it is not what was written";
     VoxelMap map(meta.map_config);
     map.labels() = forest;
-    return decoder_.decode(data, create_tile(map, static_cast<std::uint64_t>(key), present), map);
+    const Tile tile = create_tile(map, static_cast<std::uint64_t>(key), present);
+    return decoder_.decode(data, schema_, tile, map);
   }
 
   SQLite::Database& database_;
+  int schema_;
   TileDecoder decoder_;
   MapCheck check_;
 };
@@ -140,7 +142,9 @@ MapCheck check_map(const std::filesystem::path& path) {
   MapCheck check;
   try {
     OpenMap file(path);
-    file.read([&](SQLite::Database& database) { check = MapExaminer(database).examine(); });
+    file.read([&](SQLite::Database& database) {
+      check = MapExaminer(database, file.schema()).examine();
+    });
   } catch (const DamagedMap& fault) {  // so badly that its tables cannot even be listed
     check.faults.emplace_back(fault.what());
   }

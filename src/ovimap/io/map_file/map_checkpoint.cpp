@@ -10,6 +10,7 @@
 
 #include "ovimap/base/error.h"
 #include "ovimap/io/corrections/map_edit_log.h"
+#include "ovimap/io/map_file/map_file.h"
 #include "ovimap/io/map_file/map_file_access.h"
 #include "ovimap/io/map_file/map_file_guard.h"
 #include "ovimap/io/map_tables/map_file_blocks.h"
@@ -79,11 +80,17 @@ void CheckpointFile::open(Start start) {
     remove_map(path_);
   }
   database_ = open_growing_map(path_);
-  if (start == Start::kGoOn)
+  if (start == Start::kGoOn) {
+    if (database_->execAndGet("PRAGMA user_version").getInt() != kMapSchema)
+      throw Error(
+          concat("'", path_.string(),
+                 "' was begun by an older ovimap, whose voxels are written otherwise; go on "
+                 "with that one, or begin anew without --resume"));
     read_as_map(path_, *database_, [&](SQLite::Database& database) {
       check_schema(database);
       note_stored_tiles();
     });
+  }
   create_table(*database_, kBlocks);
 }
 

@@ -124,6 +124,18 @@ TEST_F(Checkpoints, TilesPutInBetweenCountFromTheNextOn) {
   EXPECT_EQ(difference(document, load_map(path)), "");
 }
 
+TEST_F(Checkpoints, OneOfAnOlderProgramIsNotGoneOnWith) {
+  const MapDocument document = random_document(4, 3);
+  const fs::path path = root_ / "a.partial";
+  CheckpointFile(path, CheckpointFile::Start::kAnew)
+      .write(checkpoint_of(document, document.map.ordered_slots()));
+  SQLite::Database(path.string(), SQLite::OPEN_READWRITE)
+      .exec(concat("PRAGMA user_version = ", kMapSchema - 1));
+  const std::string fault = fault_of([&] { CheckpointFile(path, CheckpointFile::Start::kGoOn); });
+  EXPECT_NE(fault.find("begun by an older ovimap"), std::string::npos) << fault;
+  EXPECT_TRUE(fs::exists(path)) << "for the program that began it";
+}
+
 TEST_F(Checkpoints, AFinishedRunsFileHoldsNone) {
   const fs::path path = root_ / "room.ovimap.partial", copy = root_ / "killed.partial";
   const MapDocument document = random_document(20, 1);

@@ -79,7 +79,9 @@ MapEdit edit_map(const std::filesystem::path& path, MapEdit edit) {
   std::optional<VoxelMap> map;
   const VoxelSource voxels = [&]() -> const VoxelMap& {
     if (!map)
-      change.read([&](SQLite::Database& database) { map = read_voxels(database, meta, forest); });
+      change.read([&](SQLite::Database& database) {
+        map = read_voxels(database, change.schema(), meta, forest);
+      });
     return *map;
   };
   edit = append_edit(found, forest, voxels, std::move(edit));

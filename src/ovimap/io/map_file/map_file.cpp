@@ -62,13 +62,13 @@ struct StoredTileRow {
   Bytes data;
 };
 
-void decode_tiles(const std::vector<StoredTileRow>& stored, VoxelMap& map) {
+void decode_tiles(const std::vector<StoredTileRow>& stored, int schema, VoxelMap& map) {
   std::vector<std::string> faults(stored.size());
   parallel_for_ranges(stored.size(), kTilesPerTask, [&](std::size_t begin, std::size_t end) {
     TileDecoder decoder;
     for (std::size_t i = begin; i < end; ++i) {
       const auto& [tile, hash, data] = stored[i];
-      faults[i] = stored_hash(data) == hash ? decoder.decode(data, tile, map)
+      faults[i] = stored_hash(data) == hash ? decoder.decode(data, schema, tile, map)
                                             : "it is not what was written";
     }
   });
@@ -106,7 +106,7 @@ class TilePlaces {
   std::int64_t last_key_ = -1;
 };
 
-void read_blocks(SQLite::Database& database, std::uint64_t blocks, VoxelMap& map) {
+void read_blocks(SQLite::Database& database, int schema, std::uint64_t blocks, VoxelMap& map) {
   TilePlaces places(blocks, map);
   std::vector<StoredTileRow> batch;
   RowReader rows(database, kBlocks);
@@ -121,7 +121,7 @@ void read_blocks(SQLite::Database& database, std::uint64_t blocks, VoxelMap& map
       batch.push_back({std::move(tile), hash, Bytes(data.begin(), data.end())});
     }
     if (!more || batch.size() == kTilesPerBatch) {
-      decode_tiles(batch, map);
+      decode_tiles(batch, schema, map);
       batch.clear();
     }
   }
@@ -220,12 +220,14 @@ MapInfo read_info(SQLite::Database& database, const OpenMap& file) {
   return info;
 }
 
-VoxelMap read_voxels(SQLite::Database& database, const MapMeta& meta, const LabelForest& forest) {
+VoxelMap read_voxels(SQLite::Database& database, int schema, const MapMeta& meta,
+                     const LabelForest& forest) {
   VoxelMap map(meta.map_config);
   map.labels() = forest;
-  read_blocks(database, meta.blocks, map);
+  read_blocks(database, schema, meta.blocks, map);
   // Checkpoints have no hash over all voxels, which would take longer than they may.
-  if (!meta.unfinished && map.content_hash() != meta.content_hash)
+  const bool hashed = !meta.unfinished && schema >= kSchemaWithSteps;
+  if (hashed && map.content_hash() != meta.content_hash)
     throw Error("its voxels are not those that were written");
   return map;
 }
@@ -303,7 +305,7 @@ MapDocument load_map(const std::filesystem::path& path) {
   file.read([&](SQLite::Database& database) {
     LabelForest forest = read_forest(database);
     const MapMeta meta = read_found(database, file.schema(), forest, document);
-    document.map = read_voxels(database, meta, forest);
+    document.map = read_voxels(database, file.schema(), meta, forest);
   });
   return document;
 }

@@ -9,7 +9,7 @@
 namespace ovimap {
 
 /// The newest file layout this program writes and reads; docs/map-format.md describes it.
-inline constexpr int kMapSchema = 6;
+inline constexpr int kMapSchema = 7;
 
 /// What a map file tells without its voxels.
 struct MapInfo {

@@ -264,7 +264,7 @@ std::unique_ptr<SQLite::Database> open_growing_map(const fs::path& path) {
   database->exec(
       "PRAGMA page_size = 4096; PRAGMA locking_mode = EXCLUSIVE; PRAGMA journal_mode = WAL; "
       "PRAGMA synchronous = FULL");
-  mark_as_map(*database);
+  if (pragma(*database, "user_version") == 0) mark_as_map(*database);
   return database;
 }
 

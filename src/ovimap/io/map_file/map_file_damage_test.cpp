@@ -147,10 +147,10 @@ TEST_F(MapFileDamage, SaysWhenItIsNoMap) {
 }
 
 TEST_F(MapFileDamage, SaysWhenItIsTooNew) {
-  const std::string fault = fault_after("PRAGMA user_version = 7");
+  const std::string fault = fault_after("PRAGMA user_version = 8");
   EXPECT_NE(
       fault.find(
-          "was written by a newer ovimap (schema 7, this program reads up to 6); update ovimap"),
+          "was written by a newer ovimap (schema 8, this program reads up to 7); update ovimap"),
       std::string::npos)
       << fault;
 }

@@ -38,8 +38,10 @@ inline void fill_randomly(VoxelBlock& block, const LabelForest& forest, std::mt1
   for (std::size_t v = 0; v < kBlockVoxels; ++v) {
     if (below(2) == 0) continue;
     block.tsdf[v] = static_cast<std::int16_t>(random());
-    block.weight[v] = static_cast<float>(1 + below(100000)) * 1e-3f;
-    for (auto& channel : block.color) channel[v] = static_cast<std::uint16_t>(random());
+    block.weight[v] = static_cast<float>(1 + below(100000)) / kWeightSteps;
+    FixedColor color;
+    for (std::uint16_t& channel : color) channel = static_cast<std::uint16_t>(random());
+    block.color[v] = pack_color(color);
     for (std::size_t s = 0; s < kLabelSlots; ++s) {
       const auto position =
           static_cast<std::uint8_t>(below(static_cast<std::uint32_t>(block.palette.size())));

@@ -14,7 +14,8 @@ namespace ovimap {
 MapMeta read_found(SQLite::Database& database, int schema, LabelForest& forest, MapRecord& record);
 
 /// The voxels, verified.
-VoxelMap read_voxels(SQLite::Database& database, const MapMeta& meta, const LabelForest& forest);
+VoxelMap read_voxels(SQLite::Database& database, int schema, const MapMeta& meta,
+                     const LabelForest& forest);
 
 /// What read_map_info() reads.
 MapInfo read_info(SQLite::Database& database, const OpenMap& file);

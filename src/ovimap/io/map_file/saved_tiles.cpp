@@ -38,7 +38,7 @@ void SavedTiles::load(const VoxelMap& map, std::uint32_t slot) {
   thread_local TileDecoder decoder;
   const std::string fault = stored.present != tile.present
                                 ? "it has other blocks than when the map was opened"
-                                : decoder.decode(stored.data, places, map.labels());
+                                : decoder.decode(stored.data, file_.schema(), places, map.labels());
   if (!fault.empty())
     throw DamagedMap(concat("map '", path_.string(), "' is damaged: tile ", key,
                             " of its voxels: ", fault, "; see to the disk and map again"));

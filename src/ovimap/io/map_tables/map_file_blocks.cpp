@@ -125,7 +125,7 @@ Planes<std::uint16_t> support_planes(std::uint8_t* body, const BodyLayout& at) {
 bool stored(const VoxelBlock& block, std::size_t v) {
   std::uint32_t any =
       static_cast<std::uint16_t>(block.tsdf[v]) | std::bit_cast<std::uint32_t>(block.weight[v]);
-  for (const auto& channel : block.color) any |= channel[v];
+  any |= block.color[v];
   for (const LabelSlot& slot : block.slots) any |= slot.label[v];
   return any != 0;
 }
@@ -158,15 +158,16 @@ void put_voxels(const std::vector<SavedPlace>& places, std::uint8_t* body, const
   Planes<std::uint16_t> tsdf = tsdf_planes(body, at);
   for (const auto [block, v] : places) tsdf.put(static_cast<std::uint16_t>(block->tsdf[v]));
   Planes<std::uint32_t> weight = weight_planes(body, at);
-  for (const auto [block, v] : places) weight.put(std::bit_cast<std::uint32_t>(block->weight[v]));
+  for (const auto [block, v] : places)
+    weight.put(static_cast<std::uint32_t>(block->weight[v] * kWeightSteps + 0.5f));
   // Green, then red and blue as differences to it: the three channels rise and fall together.
   Planes<std::uint16_t> green = color_planes(body, at, 0), red = color_planes(body, at, 1),
                         blue = color_planes(body, at, 2);
   for (const auto [block, v] : places) {
-    const auto& [r, g, b] = block->color;
-    green.put(g[v]);
-    red.put(static_cast<std::uint16_t>(r[v] - g[v]));
-    blue.put(static_cast<std::uint16_t>(b[v] - g[v]));
+    const auto [r, g, b] = unpack_color(block->color[v]);
+    green.put(g);
+    red.put(static_cast<std::uint16_t>(r - g));
+    blue.put(static_cast<std::uint16_t>(b - g));
   }
   Planes<std::uint16_t> support = support_planes(body, at);
   std::uint8_t* label = body + at.labels;
@@ -242,25 +243,33 @@ bool take_labels(const std::vector<LoadedPlace>& places, std::uint8_t* body, con
   return true;
 }
 
+/// A weight as it is stored; negative when it is none.
+float read_weight(std::uint32_t stored, int schema) {
+  constexpr float kMost = 1u << 21;  // twice what a map's settings allow
+  if (schema >= kSchemaWithSteps) return std::min(static_cast<float>(stored) / kWeightSteps, kMost);
+  const auto weight = std::bit_cast<float>(stored);
+  if (!(weight >= 0.f && weight <= std::numeric_limits<float>::max())) return -1.f;
+  return weight > 0.f ? round_weight(std::min(weight, kMost)) : 0.f;
+}
+
 /// Reads distances, weights and colours; false when a weight is none.
-bool take_voxels(const std::vector<LoadedPlace>& places, std::uint8_t* body, const BodyLayout& at) {
+bool take_voxels(const std::vector<LoadedPlace>& places, int schema, std::uint8_t* body,
+                 const BodyLayout& at) {
   Planes<std::uint16_t> tsdf = tsdf_planes(body, at);
   for (const auto [block, v] : places) block->tsdf[v] = static_cast<std::int16_t>(tsdf.take());
   Planes<std::uint32_t> weight = weight_planes(body, at);
   bool weights_valid = true;
   for (const auto [block, v] : places) {
-    const float value = std::bit_cast<float>(weight.take());
-    weights_valid = weights_valid && value >= 0.f && value <= std::numeric_limits<float>::max();
-    block->weight[v] = value;
+    block->weight[v] = read_weight(weight.take(), schema);
+    weights_valid = weights_valid && block->weight[v] >= 0.f;
     block->note_observed(v);
   }
   Planes<std::uint16_t> green = color_planes(body, at, 0), red = color_planes(body, at, 1),
                         blue = color_planes(body, at, 2);
   for (const auto [block, v] : places) {
-    auto& [r, g, b] = block->color;
-    g[v] = green.take();
-    r[v] = static_cast<std::uint16_t>(red.take() + g[v]);
-    b[v] = static_cast<std::uint16_t>(blue.take() + g[v]);
+    const std::uint16_t g = green.take();
+    block->color[v] = pack_color({static_cast<std::uint16_t>(red.take() + g), g,
+                                  static_cast<std::uint16_t>(blue.take() + g)});
   }
   return weights_valid;
 }
@@ -327,14 +336,14 @@ TileDecoder::TileDecoder()
     : context_(ZSTD_createDCtx(), [](ZSTD_DCtx* context) { ZSTD_freeDCtx(context); }) {}
 TileDecoder::~TileDecoder() = default;
 
-std::string TileDecoder::decode(std::span<const std::uint8_t> data, const Tile& tile,
+std::string TileDecoder::decode(std::span<const std::uint8_t> data, int schema, const Tile& tile,
                                 VoxelMap& map) {
   std::vector<VoxelBlock*> blocks;
   for (const std::uint32_t slot : tile.slots) blocks.push_back(&map.writable_block(slot));
-  return decode(data, blocks, map.labels());
+  return decode(data, schema, blocks, map.labels());
 }
 
-std::string TileDecoder::decode(std::span<const std::uint8_t> data,
+std::string TileDecoder::decode(std::span<const std::uint8_t> data, int schema,
                                 std::span<VoxelBlock* const> blocks, const LabelForest& forest) {
   constexpr std::size_t kMostBlockBytes =
       6 + 4 * kPaletteLimit + kMaskBytes + kVoxelBytes * kBlockVoxels;
@@ -354,7 +363,8 @@ std::string TileDecoder::decode(std::span<const std::uint8_t> data,
   if (layout.end != size && !doubts)
     return concat("it has ", size, " bytes where ", layout.end, " are expected");
   if (!take_labels(places, body_.data(), layout)) return "a label slot points beyond its palette";
-  if (!take_voxels(places, body_.data(), layout)) return "a weight is negative or not finite";
+  if (!take_voxels(places, schema, body_.data(), layout))
+    return "a weight is negative or not finite";
   if (doubts) take_doubts(places, body_.data() + layout.end);
   return {};
 }

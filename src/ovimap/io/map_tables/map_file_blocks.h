@@ -20,6 +20,10 @@ struct ZSTD_DCtx_s;
 
 namespace ovimap {
 
+/// From this schema on weights and colours are in steps (kWeightSteps, PackedColor) and weights
+/// stored as numbers of steps. What older maps say is rounded.
+inline constexpr int kSchemaWithSteps = 7;
+
 /// A tile as the table `blocks` has it.
 struct StoredTile {
   std::uint64_t present = 0;
@@ -49,12 +53,12 @@ class TileDecoder {
   ~TileDecoder();
 
   /// Fills `blocks`, which must be fresh, in the order of their bits, and returns what is wrong
-  /// with `data`; empty when nothing is. `forest`: the labels that there are.
-  [[nodiscard]] std::string decode(std::span<const std::uint8_t> data,
+  /// with `data`; empty when nothing is. `forest`: the labels that there are; `schema`: the map's.
+  [[nodiscard]] std::string decode(std::span<const std::uint8_t> data, int schema,
                                    std::span<VoxelBlock* const> blocks, const LabelForest& forest);
   /// The same for the blocks of a map's tile. Different tiles of one map may be filled at the same
   /// time.
-  [[nodiscard]] std::string decode(std::span<const std::uint8_t> data, const Tile& tile,
+  [[nodiscard]] std::string decode(std::span<const std::uint8_t> data, int schema, const Tile& tile,
                                    VoxelMap& map);
 
  private:

@@ -15,11 +15,9 @@ namespace ovimap {
 
 namespace {
 
-// Weights are whole multiples of 1/4096, so that their sums are exact and their last bytes zeros,
-// which a map file need not store. Up to the weight of a surface 3 cm away, a sum with this number
-// has its last bit there.
-constexpr float kWeightRounder = 3072.f;
-constexpr float kColorScale = 256.f;            ///< 8.8 fixed point
+// A sum with this number has its last bit at a step of a weight, up to weights of 4096.
+constexpr float kWeightRounder = 12.f * kWeightSteps;
+static_assert(kWeightSteps == 1024.f);
 constexpr float kLeastColorShare = 1.f / 64.f;  ///< colours go on following the view
 constexpr float kLeastSlope = 0.1f;  ///< surfaces seen at more than 84 degrees: a guess at best
 
@@ -58,7 +56,7 @@ OVIMAP_INLINE Ints on_surface(const FusionView& view, const ObservedRow& seen) {
          (magnitude(seen.distance_m) <= larger(broadcast(view.label_band_m), seen.sigma_m));
 }
 
-/// Distances and weights, in steps of 1/4096, falling to zero over the last voxels of the band
+/// Distances and weights, in whole steps, falling to zero over the last voxels of the band
 /// behind the surface, as many as there are from one voxel to the truncation; below half a step
 /// they are 0. Returns whether any voxel is observed.
 OVIMAP_INLINE bool observe(const FusionView& view, const ProjectedRow& row, ObservedRow& seen) {
@@ -104,22 +102,29 @@ OVIMAP_INLINE std::int32_t color_word(const RgbImage& image, std::int32_t pixel)
   return word;
 }
 
+/// Rounds to the nearest step, so that with shares of 1/64 what differs by four levels or less
+/// (blue: by eight) changes nothing any more.
 OVIMAP_INLINE void blend_colors(const RgbImage& image, const ProjectedRow& row, Floats share,
-                                std::uint16_t* const color[3]) {
+                                PackedColor* colors) {
   const Ints& p = row.pixel;
   const Ints words = {color_word(image, p[0]), color_word(image, p[1]), color_word(image, p[2]),
                       color_word(image, p[3]), color_word(image, p[4]), color_word(image, p[5]),
                       color_word(image, p[6]), color_word(image, p[7])};
-  const Floats old[3] = {load_integers(color[0]), load_integers(color[1]), load_integers(color[2])};
-  const Ints first = old[0] + old[1] + old[2] == 0.f;
+  Ints old;
+  std::memcpy(&old, colors, sizeof(old));
   const Ints known = (words & 0xffffff) != 0;  // black is unknown
-  const Floats mix = first ? broadcast(1.f) : larger(share, broadcast(kLeastColorShare));
+  const Floats mix = old == 0 ? broadcast(1.f) : larger(share, broadcast(kLeastColorShare));
   const Floats shares = (known & (share > 0.f)) ? mix : Floats{};
-  for (int channel = 0; channel < 3; ++channel) {
+  Ints packed = {};
+  for (std::size_t c = 0; c < kColorFields.size(); ++c) {
+    const ColorField& field = kColorFields[c];
+    const Floats was = __builtin_convertvector(
+        old >> field.shift & static_cast<std::int32_t>(field.mask()), Floats);
     const Floats target =
-        __builtin_convertvector((words >> (8 * channel)) & 0xff, Floats) * kColorScale;
-    store_integers(old[channel] + shares * (target - old[channel]), color[channel]);
+        __builtin_convertvector(words >> static_cast<int>(8 * c) & 0xff, Floats) * field.steps();
+    packed |= __builtin_convertvector(was + shares * (target - was) + 0.5f, Ints) << field.shift;
   }
+  std::memcpy(colors, &packed, sizeof(packed));
 }
 
 /// Votes of a block's voxels for the labels of the segments they see.
@@ -161,7 +166,7 @@ FusionView::FusionView(const VoxelMapConfig& config, const Observation& observat
       truncation_m(config.truncation_m()),
       inverse_falloff(1.f / (truncation_m - config.voxel_size_m)),
       to_tsdf(VoxelBlock::kTsdfScale / truncation_m),
-      max_weight(config.max_weight),
+      max_weight(round_weight(config.max_weight)),
       label_band_m(config.label_band_voxels * config.voxel_size_m),
       voxels_per_m(1.f / config.voxel_size_m),
       voxel_size_m_(config.voxel_size_m),
@@ -225,9 +230,7 @@ OVIMAP_VECTORIZE void update_block(const FusionView& view, VoxelBlock& block) {
   for_each_row(view, block, [&](int first, const ProjectedRow& row, const ObservedRow& seen) {
     const Floats share =
         blend_distance(view, seen, block.tsdf.data() + first, block.weight.data() + first);
-    std::uint16_t* const color[3] = {block.color[0].data() + first, block.color[1].data() + first,
-                                     block.color[2].data() + first};
-    if (view.frame.color) blend_colors(*view.frame.color, row, share, color);
+    if (view.frame.color) blend_colors(*view.frame.color, row, share, block.color.data() + first);
     if (view.frame.segment_ids) voter.vote(row, seen, first);
     if (!block.doubts.empty()) end_doubts(view, seen, block.doubts.data() + first);
     block.note_observed(static_cast<std::size_t>(first));

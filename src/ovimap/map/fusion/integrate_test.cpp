@@ -45,7 +45,7 @@ TEST(Integrate, SurfaceVoxelsTakeColourAndLabel) {
     for (int v = 0; v < kBlockVoxels; ++v) {
       if (voxel_label(block, v, map.labels()) == kNoLabel) continue;
       ++labelled;
-      EXPECT_EQ(block.color[0][static_cast<std::size_t>(v)] >> 8, 200);
+      EXPECT_EQ(color_levels(block.color[static_cast<std::size_t>(v)])[0], 200);
       EXPECT_LE(voxel_labels(block, v, map.labels())[0].support, 4u) << "one vote a frame";
     }
   }

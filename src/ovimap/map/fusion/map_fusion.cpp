@@ -55,10 +55,9 @@ class Sampler {
     Sample sample;
     sample.distance_m = finder_.distance_m();
     sample.weight = block.weight[v];
-    for (std::size_t c = 0; c < 3; ++c) {
-      sample.color[c] = block.color[c][v];
-      sample.colored = sample.colored || block.color[c][v] != 0;
-    }
+    const FixedColor color = unpack_color(block.color[v]);
+    std::copy(color.begin(), color.end(), sample.color.begin());
+    sample.colored = block.color[v] != 0;
     if (with_labels) sample.labels = voxel_labels(block, finder_.voxel(), other_.labels());
     return sample;
   }
@@ -132,13 +131,14 @@ Eigen::Vector3i voxel_of(const BlockIndex& block, int v) {
 
 void fuse_color(VoxelBlock& block, std::size_t v, const Sample& sample, float own_weight) {
   if (!sample.colored) return;
-  const bool colored = block.color[0][v] != 0 || block.color[1][v] != 0 || block.color[2][v] != 0;
-  const float share = colored ? sample.weight / (own_weight + sample.weight) : 1.f;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const float own = block.color[c][v];
+  const float share = block.color[v] != 0 ? sample.weight / (own_weight + sample.weight) : 1.f;
+  FixedColor color = unpack_color(block.color[v]);
+  for (std::size_t c = 0; c < color.size(); ++c) {
+    const float own = color[c];
     const float mixed = own + share * (sample.color[c] - own);
-    block.color[c][v] = static_cast<std::uint16_t>(std::clamp(std::lround(mixed), 0l, 65535l));
+    color[c] = static_cast<std::uint16_t>(std::clamp(std::lround(mixed), 0l, 65535l));
   }
+  block.color[v] = pack_color(color);
 }
 
 /// Sums the supports of both and keeps the strongest; of equals those that were there.
@@ -184,7 +184,7 @@ void fuse_voxel(const VoxelMap& map, VoxelBlock& block, int voxel, const Sample&
   const float units = VoxelBlock::kTsdfScale * std::clamp(distance / truncation, -1.f, 1.f);
   block.tsdf[v] = static_cast<VoxelBlock::Tsdf>(std::lround(units));
   fuse_color(block, v, sample, own);
-  block.weight[v] = std::min(total, map.config().max_weight);
+  block.weight[v] = round_weight(std::min(total, map.config().max_weight));
   block.note_observed(v);
   if (!block.doubts.empty()) block.doubts[v] = 0;
   fuse_labels(block, voxel, sample.labels, offset, map.labels());

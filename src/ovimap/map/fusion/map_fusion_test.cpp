@@ -55,7 +55,7 @@ TEST(FuseMap, TwoHalvesMakeTheWhole) {
       ASSERT_NEAR(fused->weight[i], expected.weight[i], 1e-3f * expected.weight[i]);
       ASSERT_TRUE(fused->weight[i] <= 0.f || fused->observed_rows >> i / kBlockSide & 1);
       ASSERT_NEAR(fused->tsdf[i], expected.tsdf[i], 20);  // rounded after every frame
-      ASSERT_NEAR(fused->color[0][i], expected.color[0][i], 40);
+      ASSERT_NEAR(unpack_color(fused->color[i])[0], unpack_color(expected.color[i])[0], 64);
       const LabelSupport a = voxel_labels(*fused, v, left.labels())[0],
                          b = voxel_labels(expected, v, whole.labels())[0];
       ASSERT_EQ(a.label, b.label);

@@ -17,7 +17,7 @@ constexpr std::size_t kTilesPerTask = 2;
 
 void discount(const PastEvidenceConfig& config, VoxelBlock& block) {
   for (std::size_t v = 0; v < kBlockVoxels; ++v) {
-    block.weight[v] = std::min(block.weight[v], config.most_weight);
+    block.weight[v] = std::min(block.weight[v], round_weight(config.most_weight));
     const int strongest = block.slots.empty() ? 0 : block.slots.front().support[v];
     if (strongest <= config.most_support) continue;
     for (LabelSlot& slot : block.slots)

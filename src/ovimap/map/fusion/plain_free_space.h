@@ -58,7 +58,7 @@ inline void doubt(VoxelBlock& block, std::size_t voxel, int frames) {
   block.doubts[voxel] = 0;
   block.tsdf[voxel] = 0;
   block.weight[voxel] = 0.f;
-  for (auto& channel : block.color) channel[voxel] = 0;
+  block.color[voxel] = 0;
   for (LabelSlot& slot : block.slots) slot.label[voxel] = slot.support[voxel] = 0;
 }
 

@@ -68,7 +68,7 @@ class VoxelFusion {
     if (depth <= 0.f || in_front * in_front * range_squared >= reach * reach) return;
     const float distance = in_front * slope(pixel);
     const float falloff = std::min(1.f, (distance + band) * view_.inverse_falloff);
-    const float weight = std::nearbyint(falloff / variance(pixel) * 4096.f) / 4096.f;
+    const float weight = std::nearbyint(falloff / variance(pixel) * kWeightSteps) / kWeightSteps;
     if (weight <= 0.f) return;
     const float sum = block_.weight[voxel] + weight, share = weight / sum;
     constexpr float kMost = VoxelBlock::kTsdfScale;
@@ -87,14 +87,15 @@ class VoxelFusion {
 
   void blend_color(std::size_t voxel, const Rgb8& color, float share) {
     if (color == Rgb8{}) return;  // unknown
-    const bool first =
-        (block_.color[0][voxel] | block_.color[1][voxel] | block_.color[2][voxel]) == 0;
-    const float mix = first ? 1.f : std::max(share, 1.f / 64.f);
+    const PackedColor old = block_.color[voxel];
+    const float mix = old == 0 ? 1.f : std::max(share, 1.f / 64.f);
     const std::uint8_t channels[3] = {color.r, color.g, color.b};
+    block_.color[voxel] = 0;
     for (std::size_t c = 0; c < 3; ++c) {
-      const float old = block_.color[c][voxel];
-      const float target = static_cast<float>(channels[c]) * 256.f;
-      block_.color[c][voxel] = static_cast<std::uint16_t>(rounded(old + mix * (target - old)));
+      const auto& [shift, bits, fraction_bits] = kColorFields[c];
+      const auto was = static_cast<float>(old >> shift & ((1u << bits) - 1));
+      const auto target = static_cast<float>(channels[c] << fraction_bits);
+      block_.color[voxel] |= static_cast<PackedColor>(rounded(was + mix * (target - was))) << shift;
     }
   }
 

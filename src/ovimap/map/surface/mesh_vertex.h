@@ -43,8 +43,7 @@ inline MeshVertex mesh_vertex(const VoxelMap& map, const MeshEdge& edge) {
   for (const MeshEdgeEnd& end : {nearer, farther}) {
     const auto voxel = static_cast<std::size_t>(end.voxel);
     if (vertex.color == std::array<std::uint8_t, 3>{})
-      for (std::size_t c = 0; c < 3; ++c)
-        vertex.color[c] = static_cast<std::uint8_t>(end.block->color[c][voxel] >> 8);
+      vertex.color = color_levels(end.block->color[voxel]);
     if (vertex.label == kNoLabel) vertex.label = voxel_label(*end.block, end.voxel, map.labels());
   }
   return vertex;

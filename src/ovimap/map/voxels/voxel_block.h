@@ -10,6 +10,8 @@
 
 #include <Eigen/Core>
 
+#include "ovimap/map/voxels/packed_color.h"
+
 namespace ovimap {
 
 using Label = std::uint32_t;  ///< super-point label; 0 = none
@@ -64,6 +66,13 @@ inline int voxel_offset(int x, int y, int z) {
   return x + kBlockSide * (y + kBlockSide * z);
 }
 
+/// Weights are whole numbers of such steps, so that sums are exact and take little room in a file.
+inline constexpr float kWeightSteps = 1024.f;  ///< in a weight of 1
+/// To the nearest step; to one step at least.
+inline float round_weight(float weight) {
+  return std::max(1.f, std::round(weight * kWeightSteps)) / kWeightSteps;
+}
+
 /// One label of each voxel of a block, as a position in the block's palette (0: none), and the
 /// votes behind it.
 struct LabelSlot {
@@ -74,7 +83,7 @@ struct LabelSlot {
 };
 
 /// 8 x 8 x 8 voxels, one array per attribute: a stage touches only the cache lines it needs.
-/// 12 bytes a voxel, 3 more for each label that some voxel of the block holds, and a palette of
+/// 10 bytes a voxel, 3 more for each label that some voxel of the block holds, and a palette of
 /// the labels that occur in it.
 struct VoxelBlock {
   using Tsdf = std::int16_t;
@@ -83,7 +92,7 @@ struct VoxelBlock {
   explicit VoxelBlock(const BlockIndex& block_index) : index(block_index) {
     tsdf.fill(0);
     weight.fill(0.f);
-    for (auto& channel : color) channel.fill(0);
+    color.fill(0);
   }
 
   BlockIndex index;
@@ -94,9 +103,8 @@ struct VoxelBlock {
   std::vector<Label> palette{kNoLabel};  ///< labels of the block; slots hold positions in it
 
   std::array<Tsdf, kBlockVoxels> tsdf;     ///< signed distance in truncations, positive in front
-  std::array<float, kBlockVoxels> weight;  ///< 0 = never observed
-  std::array<std::array<std::uint16_t, kBlockVoxels>, 3>
-      color;  ///< RGB, 8.8 fixed point; all 0 = none yet
+  std::array<float, kBlockVoxels> weight;  ///< kWeightSteps; 0 = never observed
+  std::array<PackedColor, kBlockVoxels> color;
   /// Strongest first. As many as a voxel needed so far, at most kLabelSlots: few blocks need all.
   std::vector<LabelSlot> slots;
   /// In how many frames on end the voxel's surface was seen through (clear_free_space); empty: in
@@ -109,7 +117,7 @@ struct VoxelBlock {
   void forget(std::size_t voxel) {
     tsdf[voxel] = 0;
     weight[voxel] = 0.f;
-    for (auto& channel : color) channel[voxel] = 0;
+    color[voxel] = 0;
     for (LabelSlot& slot : slots) slot.label[voxel] = slot.support[voxel] = 0;
     if (!doubts.empty()) doubts[voxel] = 0;
   }

@@ -22,7 +22,12 @@ std::uint64_t block_hash(const VoxelBlock& block, const LabelForest& forest) {
   XXH64_hash_t hash = XXH64(block.index.data(), sizeof(int) * 3, 0);
   hash = XXH64(block.tsdf.data(), sizeof(block.tsdf), hash);
   hash = XXH64(block.weight.data(), sizeof(block.weight), hash);
-  hash = XXH64(block.color.data(), sizeof(block.color), hash);
+  std::array<std::array<std::uint16_t, kBlockVoxels>, 3> colors;
+  for (std::size_t v = 0; v < kBlockVoxels; ++v) {
+    const FixedColor color = unpack_color(block.color[v]);
+    for (std::size_t c = 0; c < colors.size(); ++c) colors[c][v] = color[c];
+  }
+  hash = XXH64(colors.data(), sizeof(colors), hash);
   std::vector<LabelSupport> labels;
   labels.reserve(kBlockVoxels * kLabelSlots);
   for (int v = 0; v < kBlockVoxels; ++v)

@@ -79,12 +79,27 @@ TEST(VoxelMap, ContentHashIgnoresCreationOrderAndSeesEveryVoxel) {
   EXPECT_NE(a.content_hash(), b.content_hash());
 }
 
-TEST(VoxelBlock, TakesTwelveBytesAVoxelAndThreeMoreForEachLabel) {
+TEST(PackedColor, IsReadAsItWasPackedToAQuarterOfALevel) {
+  for (int level = 0; level < 256; ++level) {
+    const auto fixed = static_cast<std::uint16_t>(level * 256 + 96);
+    const FixedColor read = unpack_color(pack_color({fixed, fixed, fixed}));
+    EXPECT_EQ(read[0], fixed);
+    EXPECT_EQ(read[1], fixed);
+    EXPECT_NEAR(read[2], fixed, 32);
+    EXPECT_EQ(pack_color(read), pack_color({fixed, fixed, fixed}));
+  }
+  const auto brightest = color_levels(pack_color({0xffff, 0xffff, 0xffff}));
+  EXPECT_EQ(brightest, (std::array<std::uint8_t, 3>{255, 255, 255}));
+  EXPECT_EQ(color_levels(pack_color({200 << 8, 1 << 8, 50 << 8})),
+            (std::array<std::uint8_t, 3>{200, 1, 50}));
+}
+
+TEST(VoxelBlock, TakesTenBytesAVoxelAndThreeMoreForEachLabel) {
   VoxelBlock block({0, 0, 0});
-  EXPECT_LE(block.bytes(), 12u * kBlockVoxels + 112u);
+  EXPECT_LE(block.bytes(), 10u * kBlockVoxels + 110u);
   block.slot(2).label[7] = 1;
-  EXPECT_LE(block.bytes(), (12u + 3 * 3) * kBlockVoxels + 112u);
-  EXPECT_LE(VoxelBlock::kMostBytes, 24u * kBlockVoxels + 112u);
+  EXPECT_LE(block.bytes(), (10u + 3 * 3) * kBlockVoxels + 110u);
+  EXPECT_LE(VoxelBlock::kMostBytes, 22u * kBlockVoxels + 110u);
 }
 
 }  // namespace

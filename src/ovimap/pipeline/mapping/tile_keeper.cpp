@@ -127,7 +127,8 @@ void TileKeeper::load(const VoxelMap& map, std::uint32_t slot) {
     blocks.push_back(map.spare_block(map.block_index(part)));
     places.push_back(blocks.back().get());
   }
-  if (const std::string fault = decoder_.decode(stored.data, places, map.labels()); !fault.empty())
+  if (const std::string fault = decoder_.decode(stored.data, kMapSchema, places, map.labels());
+      !fault.empty())
     throw Error(concat("map '", path_.string(), "' is damaged: tile ", key,
                        " of its voxels: ", fault, "; see to the disk and map again"));
   for (std::size_t i = 0; i < blocks.size(); ++i)

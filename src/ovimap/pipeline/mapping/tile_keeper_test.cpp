@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Twice what a frame shows: each also sees through what its neighbours put before it.
-constexpr int kBound_mb = 24;
+constexpr int kBound_mb = 22;
 
 /// The desk seen by a camera that walks by a row of them, and comes back: tiles leave memory, and
 /// later frames need them again.

@@ -22,7 +22,7 @@ constexpr std::size_t kMostPoints = 400;
 
 /// Adds a colour of 16 bits a channel to the cells around it, by how near it is to their middles:
 /// one that lies between two cells, and is a little lighter elsewhere, is still the same.
-void add_color(const std::array<std::uint16_t, 3>& color, std::array<float, 64>& shares) {
+void add_color(const FixedColor& color, std::array<float, 64>& shares) {
   std::array<std::size_t, 3> lower;
   std::array<float, 3> upper_share;
   for (std::size_t channel = 0; channel < color.size(); ++channel) {
@@ -50,11 +50,9 @@ std::array<float, 64> colors_at(const VoxelMap& map, const std::vector<Eigen::Ve
   for (const Eigen::Vector3f& point : points) {
     if (!finder.seek(point)) continue;
     const auto v = static_cast<std::size_t>(finder.voxel());
-    std::array<std::uint16_t, 3> color;
-    for (std::size_t channel = 0; channel < color.size(); ++channel)
-      color[channel] = finder.block().color[channel][v];
-    if (color == std::array<std::uint16_t, 3>{}) continue;
-    add_color(color, shares);
+    const PackedColor color = finder.block().color[v];
+    if (color == 0) continue;
+    add_color(unpack_color(color), shares);
     known += 1;
   }
   for (float& share : shares) share /= std::max(known, 1.f);

@@ -65,9 +65,8 @@ ThingLook painted(int red, int green, int blue) {
   constexpr InstanceId kThing = 3;
   MapDocument map;
   VoxelBlock& block = map.map.writable_block(map.map.find_or_create({0, 0, 0}));
-  const std::array<int, 3> color = {red, green, blue};
-  for (std::size_t channel = 0; channel < color.size(); ++channel)
-    block.color[channel].fill(static_cast<std::uint16_t>(color[channel] << 8));
+  const auto fixed = [](int level) { return static_cast<std::uint16_t>(level << 8); };
+  block.color.fill(pack_color({fixed(red), fixed(green), fixed(blue)}));
   map.surfaces[kThing] = {Eigen::Vector3f::Constant(0.01f), Eigen::Vector3f::Constant(0.03f)};
   return thing_look(map, kThing, Eigen::Vector3f::UnitZ());
 }

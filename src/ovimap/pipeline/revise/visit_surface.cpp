@@ -20,20 +20,13 @@ constexpr std::uint32_t kBlocksPerPart = 4096;  // then maps may make room
 
 /// The colour of the voxel at a point, sRGB; all 0 where it has none.
 std::array<std::uint8_t, 3> color_at(VoxelFinder& finder, const Eigen::Vector3f& point) {
-  std::array<std::uint8_t, 3> color{};
-  if (!finder.seek(point)) return color;
-  const auto v = static_cast<std::size_t>(finder.voxel());
-  for (std::size_t channel = 0; channel < color.size(); ++channel)
-    color[channel] = static_cast<std::uint8_t>(finder.block().color[channel][v] >> 8);
-  return color;
+  if (!finder.seek(point)) return {};
+  return color_levels(finder.block().color[static_cast<std::size_t>(finder.voxel())]);
 }
 
 /// Whether a voxel is as the visit found it. Supports of labels say no more than its distance.
 bool is_untouched(const VoxelBlock& was, const VoxelBlock& is, std::size_t v) {
-  return was.tsdf[v] == is.tsdf[v] && was.weight[v] == is.weight[v] &&
-         std::all_of(is.color.begin(), is.color.end(), [&](const auto& channel) {
-           return channel[v] == was.color[static_cast<std::size_t>(&channel - is.color.data())][v];
-         });
+  return was.tsdf[v] == is.tsdf[v] && was.weight[v] == is.weight[v] && was.color[v] == is.color[v];
 }
 
 /// The voxels of a block that changed, without labels, which are another map's; whether there are
