@@ -5,6 +5,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include "ovimap/semantics/query/query_matcher.h"
 #include "ovimap/semantics/query/verdict.h"
 #include "ovimap/semantics/words/thing_sizes.h"
 
@@ -54,6 +55,48 @@ BENCHMARK(answer_query)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime()
     ->ArgsProduct({{100, 1000, 10000, 100000}, {384, 768}});
+
+/// A direction of its own for each text, at no cost.
+class HashEncoder : public ImageTextEncoder {
+ public:
+  explicit HashEncoder(int dimension) : identity_{"hash", dimension, ""} {}
+
+  const EncoderIdentity& identity() const override { return identity_; }
+  std::optional<MatchCalibration> calibration() const override { return std::nullopt; }
+  Embeddings encode_images(std::span<const RgbImage>) override { return {}; }
+  Embeddings encode_texts(std::span<const std::string> texts) override {
+    Embeddings rows(static_cast<Eigen::Index>(texts.size()), identity_.dimension);
+    for (std::size_t i = 0; i < texts.size(); ++i) {
+      std::minstd_rand engine(static_cast<std::uint32_t>(std::hash<std::string>()(texts[i])));
+      std::normal_distribution<float> normal;
+      auto row = rows.row(static_cast<Eigen::Index>(i));
+      for (float& number : row) number = normal(engine);
+      row.normalize();
+    }
+    return rows;
+  }
+
+ private:
+  EncoderIdentity identity_;
+};
+
+/// The same with what size and place say, and against all other household words.
+void answer_with_evidence(benchmark::State& state) {
+  const SearchIndex index = random_index(state.range(0), state.range(1));
+  std::minstd_rand engine(2);
+  std::uniform_real_distribution<float> metres(0.05f, 2.f);
+  std::vector<ObjectMeasures> measures(index.size());
+  for (ObjectMeasures& object : measures)
+    object = {metres(engine), metres(engine), metres(engine), metres(engine), 0.5f, 0.3f};
+  HashEncoder encoder(static_cast<int>(state.range(1)));
+  const TextMatcher matcher(index, encoder, {}, {}, measures);
+  for (auto _ : state)
+    benchmark::DoNotOptimize(index.best(matcher.match({"chair"}, {}).standard, kTop));
+}
+BENCHMARK(answer_with_evidence)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->ArgsProduct({{100, 1000, 10000}, {384}});
 
 /// How one object's measures fit all names: what opening a map costs for each object.
 void fit_sizes(benchmark::State& state) {
