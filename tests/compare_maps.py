@@ -18,7 +18,7 @@ def voxels(map_file):
     return {(tile, place): (distance.astype(np.int16), 1024 * weight.view(np.float32),
                             (palette.tobytes(), doubts.tobytes(), *(part.tobytes() for part in (*colors, *slots, *supports))))
             for tile, present, _, data in map_file.rows("blocks")
-            for place, palette, distance, weight, colors, slots, supports, doubts in read_tile(present, data)}
+            for place, palette, distance, weight, colors, slots, supports, doubts in read_tile(present, data, map_file.pragma("user_version"))}
 
 
 def steps(ours, theirs, part):

@@ -210,7 +210,7 @@ def content_hash(map_file):
     for key, present, stored, data in map_file.rows("blocks"):
         assert xxhash.xxh64_intdigest(data, seed=0) == unsigned(stored)
         tile = unpack_tile(key)
-        for place, palette, distance, weight, colors, slots, supports, doubts in read_tile(present, data):
+        for place, palette, distance, weight, colors, slots, supports, doubts in read_tile(present, data, map_file.pragma("user_version")):
             index = [4 * tile[axis] + place[axis] for axis in range(3)]
             parts = [struct.pack("<3i", *index), distance.tobytes(), weight.tobytes(),
                      b"".join(channel.tobytes() for channel in colors),

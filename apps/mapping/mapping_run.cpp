@@ -8,6 +8,7 @@
 #include "apps/command/same_settings.h"
 #include "find_start.h"
 #include "ovimap/base/thread_priority.h"
+#include "ovimap/io/map_file/map_checkpoint.h"
 #include "ovimap/io/map_file/map_edits.h"
 #include "ovimap/io/map_file/map_file.h"
 #include "ovimap/map/fusion/past_evidence.h"
@@ -61,6 +62,7 @@ BegunRun find_begun(const RunTarget& target, const MemoryConfig& memory) {
     throw Error(concat("an unfinished run left '", partial.string(), "' with ",
                        read_map_info(partial).frames,
                        " frames; --resume goes on with it, or delete it to begin anew"));
+  if (unfinished) require_own_checkpoint(partial, read_map_info(partial).schema);
   begun.tiles = std::make_shared<TileKeeper>(
       partial, unfinished ? TileKeeper::Start::kGoOn : TileKeeper::Start::kAnew, memory);
   const bool finished =

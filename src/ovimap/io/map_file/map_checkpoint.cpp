@@ -10,7 +10,6 @@
 
 #include "ovimap/base/error.h"
 #include "ovimap/io/corrections/map_edit_log.h"
-#include "ovimap/io/map_file/map_file.h"
 #include "ovimap/io/map_file/map_file_access.h"
 #include "ovimap/io/map_file/map_file_guard.h"
 #include "ovimap/io/map_tables/map_file_blocks.h"
@@ -62,6 +61,13 @@ bool holds_checkpoint(const std::filesystem::path& path) {
   return found;
 }
 
+void require_own_checkpoint(const std::filesystem::path& path, int schema) {
+  if (schema < kSchemaWithSteps)
+    throw Error(concat("'", path.string(),
+                       "' was begun by an older ovimap, which writes voxels in another way; go on "
+                       "with that one, or delete the file to begin anew"));
+}
+
 CheckpointFile::CheckpointFile(std::filesystem::path path, Start start) : path_(std::move(path)) {
   reporting_write_faults(path_, nullptr, [&] { open(start); });
 }
@@ -81,11 +87,7 @@ void CheckpointFile::open(Start start) {
   }
   database_ = open_growing_map(path_);
   if (start == Start::kGoOn) {
-    if (database_->execAndGet("PRAGMA user_version").getInt() != kMapSchema)
-      throw Error(
-          concat("'", path_.string(),
-                 "' was begun by an older ovimap, whose voxels are written otherwise; go on "
-                 "with that one, or begin anew without --resume"));
+    require_own_checkpoint(path_, database_->execAndGet("PRAGMA user_version").getInt());
     read_as_map(path_, *database_, [&](SQLite::Database& database) {
       check_schema(database);
       note_stored_tiles();
@@ -190,6 +192,7 @@ void CheckpointFile::put_all(const std::filesystem::path& map) {
   std::exception_ptr fault;  // to write is no fault of the map that is read
   OpenMap file(map);
   file.read([&](SQLite::Database& database) {
+    const LabelForest forest = read_forest(database);
     RowReader rows(database, kBlocks);
     while (!fault && rows.next()) {
       const auto key = rows.integer<std::int64_t>(), present = rows.integer<std::int64_t>(),
@@ -197,9 +200,11 @@ void CheckpointFile::put_all(const std::filesystem::path& map) {
       const std::span<const std::uint8_t> data = rows.blob();
       if (stored_hash(data) != hash)
         rows.fail(concat("has a tile ", key, " that is not what was written"));
+      StoredTile tile{static_cast<std::uint64_t>(present), Bytes(data.begin(), data.end())};
+      if (const std::string wrong = renew_tile(tile, file.schema(), forest); !wrong.empty())
+        rows.fail(concat("has a tile ", key, " that cannot be read: ", wrong));
       try {
-        put(static_cast<std::uint64_t>(key),
-            {static_cast<std::uint64_t>(present), Bytes(data.begin(), data.end())});
+        put(static_cast<std::uint64_t>(key), tile);
       } catch (const Error&) {
         fault = std::current_exception();
       }

@@ -159,7 +159,7 @@ void put_voxels(const std::vector<SavedPlace>& places, std::uint8_t* body, const
   for (const auto [block, v] : places) tsdf.put(static_cast<std::uint16_t>(block->tsdf[v]));
   Planes<std::uint32_t> weight = weight_planes(body, at);
   for (const auto [block, v] : places)
-    weight.put(static_cast<std::uint32_t>(block->weight[v] * kWeightSteps + 0.5f));
+    weight.put(static_cast<std::uint32_t>(block->weight[v] * kWeightSteps));  // exact
   // Green, then red and blue as differences to it: the three channels rise and fall together.
   Planes<std::uint16_t> green = color_planes(body, at, 0), red = color_planes(body, at, 1),
                         blue = color_planes(body, at, 2);
@@ -367,6 +367,17 @@ std::string TileDecoder::decode(std::span<const std::uint8_t> data, int schema,
     return "a weight is negative or not finite";
   if (doubts) take_doubts(places, body_.data() + layout.end);
   return {};
+}
+
+std::string renew_tile(StoredTile& tile, int schema, const LabelForest& forest) {
+  if (schema >= kSchemaWithSteps) return {};
+  std::vector<VoxelBlock> blocks(static_cast<std::size_t>(std::popcount(tile.present)),
+                                 VoxelBlock({0, 0, 0}));
+  std::vector<VoxelBlock*> places;
+  for (VoxelBlock& block : blocks) places.push_back(&block);
+  std::string fault = TileDecoder().decode(tile.data, schema, places, forest);
+  if (fault.empty()) tile.data = TileEncoder().encode({places.begin(), places.end()});
+  return fault;
 }
 
 std::optional<StoredTile> read_tile(SQLite::Database& database, std::uint64_t tile) {

@@ -66,4 +66,8 @@ class TileDecoder {
   Bytes body_;
 };
 
+/// Makes a tile of a map of that schema one as this program writes them; returns what is wrong with
+/// it.
+[[nodiscard]] std::string renew_tile(StoredTile& tile, int schema, const LabelForest& forest);
+
 }  // namespace ovimap

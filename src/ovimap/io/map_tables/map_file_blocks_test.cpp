@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/io/map_tables/map_file_blocks.h"
 
+#include <bit>
 #include <limits>
 
 #include <zstd.h>
@@ -105,7 +106,7 @@ TEST(MapFileBlocks, ExtremeBlocksReturnBitForBit) {
   for (std::size_t v = 0; v < kBlockVoxels; ++v) {
     full.tsdf[v] = v % 2 == 0 ? std::numeric_limits<std::int16_t>::min()
                               : std::numeric_limits<std::int16_t>::max();
-    full.weight[v] = v % 2 == 0 ? 1e6f : 1.f / kWeightSteps;
+    full.weight[v] = v % 2 == 0 ? 1e6f : static_cast<float>(8388608 + v) / kWeightSteps;
     full.color[v] = v % 3 == 0 ? 0 : 0xffffffff;
     for (std::size_t s = 0; s < kLabelSlots; ++s) {
       full.slot(s).label[v] = static_cast<std::uint8_t>(255 - v % 256);
@@ -140,6 +141,43 @@ class TileBody : public ::testing::Test {
   const Tile tile_;
   Bytes body_;
 };
+
+/// Of a tile with one voxel, whose weight is written as maps before schema 7 have it; negative:
+/// refused.
+float weight_of_old_tile(float written) {
+  VoxelBlock block({0, 0, 0});
+  block.weight[0] = 1.f;
+  const VoxelBlock* one = &block;
+  Bytes body(4096);
+  const Bytes data = TileEncoder().encode(std::span(&one, 1));
+  body.resize(ZSTD_decompress(body.data(), body.size(), data.data(), data.size()));
+  const auto bits = std::bit_cast<std::int32_t>(written);
+  const std::uint32_t code = static_cast<std::uint32_t>(bits) << 1 ^ (bits < 0 ? ~0u : 0u);
+  const std::size_t low = body.size() - 7;  // distance, weight 3, colour 3
+  for (std::size_t i = 0; i < 3; ++i) body[low + 1 + i] = static_cast<std::uint8_t>(code >> 8 * i);
+  body[low - 4] = static_cast<std::uint8_t>(code >> 24);  // before the colours' high bytes
+
+  StoredTile tile{1, Bytes(ZSTD_compressBound(body.size()))};
+  tile.data.resize(ZSTD_compress(tile.data.data(), tile.data.size(), body.data(), body.size(), 1));
+  if (!renew_tile(tile, kSchemaWithSteps - 1, LabelForest()).empty()) return -1.f;
+  VoxelBlock read({0, 0, 0});
+  VoxelBlock* place = &read;
+  EXPECT_EQ(TileDecoder().decode(tile.data, kSchemaWithSteps, std::span(&place, 1), LabelForest()),
+            "");
+  return read.weight[0];
+}
+
+TEST(OldTiles, HaveTheirWeightsAsFloats) {
+  EXPECT_EQ(weight_of_old_tile(0.f), 0.f);
+  EXPECT_EQ(weight_of_old_tile(-0.f), 0.f);
+  EXPECT_EQ(weight_of_old_tile(12.5f), 12.5f);
+  EXPECT_EQ(weight_of_old_tile(1.f / 4096), 1.f / kWeightSteps) << "it was observed";
+  EXPECT_EQ(weight_of_old_tile(1e6f), 1e6f);
+  EXPECT_GT(weight_of_old_tile(std::numeric_limits<float>::max()), 1e6f);
+  EXPECT_EQ(weight_of_old_tile(-1.f), -1.f);
+  EXPECT_EQ(weight_of_old_tile(std::numeric_limits<float>::infinity()), -1.f);
+  EXPECT_EQ(weight_of_old_tile(std::numeric_limits<float>::quiet_NaN()), -1.f);
+}
 
 TEST_F(TileBody, NoChangeCrashesTheDecoder) {
   EXPECT_EQ(fault(body_), "");

@@ -102,7 +102,7 @@ OVIMAP_INLINE std::int32_t color_word(const RgbImage& image, std::int32_t pixel)
   return word;
 }
 
-/// Rounds to the nearest step, so that with shares of 1/64 what differs by four levels or less
+/// Rounds to the nearest step, so that with shares of 1/64 what differs by less than four levels
 /// (blue: by eight) changes nothing any more.
 OVIMAP_INLINE void blend_colors(const RgbImage& image, const ProjectedRow& row, Floats share,
                                 PackedColor* colors) {

@@ -145,8 +145,8 @@ struct VoxelBlock {
     return sizeof(VoxelBlock) + slots.capacity() * sizeof(LabelSlot) +
            palette.capacity() * sizeof(Label) + doubts.capacity();
   }
-  /// What a block of voxels with all labels takes: by this memory is bounded, since nobody knows
-  /// how many labels frames will show.
+  /// What a block of voxels with all labels takes, but for its palette and doubts: by this memory
+  /// is bounded, since nobody knows how many labels frames will show.
   static const std::size_t kMostBytes;
 };
 inline constexpr std::size_t VoxelBlock::kMostBytes =

@@ -272,6 +272,15 @@ TEST_F(TileKeeperTest, ASavedMapGoesOnWithinTheBound) {
       << "what left is given back";
 }
 
+TEST_F(TileKeeperTest, AMapOfAnOlderProgramGoesOnWithinTheBound) {
+  const fs::path old = fs::path(OVIMAP_SOURCE_DIR) / "tests/maps/schema6.ovimap";
+  const auto tiles =
+      std::make_shared<TileKeeper>(partial_, TileKeeper::Start::kAnew, MemoryConfig{kBound_mb});
+  const MapDocument document = load_map_in(tiles, old);
+  EXPECT_EQ(document.map.blocks_in_memory(), 0u);
+  EXPECT_EQ(document.map.content_hash(), load_map(old).map.content_hash());
+}
+
 TEST_F(TileKeeperTest, ABoundBelowWhatOneFrameSeesIsRefused) {
   const std::string fault = error_of([&] { bounded(2, 0); });  // a frame of the desk takes more
   EXPECT_NE(fault.find("give --max-memory"), std::string::npos) << fault;

@@ -34,7 +34,7 @@ bool is_untouched(const VoxelBlock& was, const VoxelBlock& is, std::size_t v) {
 bool keep_touched(const VoxelBlock* was, VoxelBlock& block) {
   bool any = false;
   block.palette = {kNoLabel};
-  block.slots.clear();
+  block.slots = {};
   for (std::size_t v = 0; v < kBlockVoxels; ++v) {
     if (was != nullptr && is_untouched(*was, block, v)) block.forget(v);
     any |= block.weight[v] > 0.f;
