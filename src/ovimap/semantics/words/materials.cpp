@@ -25,40 +25,23 @@ constexpr std::array<std::string_view, 40> kMaterialWords{
 
 constexpr std::array<std::string_view, 6> kAfterThing{"of", "with", "without", "for", "full", "to"};
 
-struct Reading {
-  std::vector<std::string> materials;
-  std::string rest;
-};
-
-/// From the front on: "old wooden table" keeps "old", "wooden spoon" all.
-Reading read(std::string_view text, const Concepts& concepts) {
-  std::vector<std::string> words;
-  std::istringstream parts{std::string(text)};
-  for (std::string word; parts >> word;) words.push_back(word);
-  Reading reading;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    std::string from_here;
-    for (std::size_t k = i; k < words.size(); ++k) from_here += (k > i ? " " : "") + words[k];
-    const std::string word = lower_case(words[i]);
-    const bool named = i + 1 == words.size() || is_one_of(lower_case(words[i + 1]), kAfterThing) ||
-                       concepts.knows(from_here);
-    if (named || !is_one_of(word, kMaterialWords))
-      reading.rest += (reading.rest.empty() ? "" : " ") + (named ? from_here : words[i]);
-    else
-      reading.materials.push_back(word);
-    if (named) break;
-  }
-  return reading;
-}
-
 }  // namespace
 
 std::vector<std::string> material_words(std::string_view text, const Concepts& concepts) {
-  return read(text, concepts).materials;
-}
-
-std::string without_materials(std::string_view text, const Concepts& concepts) {
-  return read(text, concepts).rest;
+  std::vector<std::string> words, materials;
+  std::istringstream parts{std::string(text)};
+  for (std::string word; parts >> word;) words.push_back(word);
+  // From the front on: of "old wooden table" it is "wooden", of "wooden spoon" nothing.
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    std::string from_here;
+    for (std::size_t k = i; k < words.size(); ++k) from_here += (k > i ? " " : "") + words[k];
+    const bool named = i + 1 == words.size() || is_one_of(lower_case(words[i + 1]), kAfterThing) ||
+                       concepts.knows(from_here);
+    if (named) break;
+    if (const std::string word = lower_case(words[i]); is_one_of(word, kMaterialWords))
+      materials.push_back(word);
+  }
+  return materials;
 }
 
 }  // namespace ovimap

@@ -16,7 +16,4 @@ namespace ovimap {
 /// apart.
 std::vector<std::string> material_words(std::string_view text, const Concepts& concepts);
 
-/// The text without these words before its thing.
-std::string without_materials(std::string_view text, const Concepts& concepts);
-
 }  // namespace ovimap
