@@ -75,7 +75,7 @@ RecognizerIdentity AppearanceBuilder::recognizer() const {
 
 int AppearanceBuilder::choose(const Frame& frame, const SeenObjects& seen,
                               const InstanceRegistry& registry, const LabelForest& forest) {
-  apply(queue_.take(), forest);
+  take_answers(forest);
   std::shared_ptr<const RgbImage> picture;
   TellingPixels telling(frame, config_.telling);
   for (ChosenView& chosen : selector_.select(seen, registry, looks_)) {

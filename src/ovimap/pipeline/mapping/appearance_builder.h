@@ -70,6 +70,8 @@ class AppearanceBuilder {
   /// Whether the encoder's queue is at most half full.
   bool keeps_up() const { return 2 * queue_.waiting() <= config_.queue.capacity; }
 
+  /// Takes in what the encoder has answered by now.
+  void take_answers(const LabelForest& forest) { apply(queue_.take(), forest); }
   /// Waits until the encoder has answered for every view handed to it. Throws as rethrow_failure.
   void catch_up(const LabelForest& forest);
   /// The same for every chosen view, after the last frame; called again, it does not throw.

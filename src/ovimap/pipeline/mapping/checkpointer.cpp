@@ -105,6 +105,7 @@ void Checkpointer::freeze_changes(VoxelMap& map) {
 }
 
 void Checkpointer::go_on_writing(Mapper& mapper) {
+  if (looks_ && !looks_->complete()) mapper.take_embeddings();  // in a pause nobody else does
   if (writing_.valid()) {
     if (writing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
     auto t = mapper.timers().measure("checkpoint_end");

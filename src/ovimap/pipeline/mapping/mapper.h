@@ -122,6 +122,8 @@ class Mapper {
   /// embedding.
   void forgive_encoder() { builder_->forgive_encoder(); }
   EncoderFailures encoder_failures() const { return builder_->encoder_failures(); }
+  /// Takes in what the encoder has answered by now, as every look at objects does.
+  void take_embeddings() { builder_->take_answers(map_.labels()); }
   /// Waits until every view chosen so far is embedded. Throws what the encoder threw.
   void await_encoder();
   /// The same after the last frame. Called again after it threw, it finishes without the views that
