@@ -62,7 +62,7 @@ BegunRun find_begun(const RunTarget& target, const MemoryConfig& memory) {
     throw Error(concat("an unfinished run left '", partial.string(), "' with ",
                        read_map_info(partial).frames,
                        " frames; --resume goes on with it, or delete it to begin anew"));
-  if (unfinished) require_own_checkpoint(partial, read_map_info(partial).schema);
+  if (unfinished) require_own_checkpoint(partial);
   begun.tiles = std::make_shared<TileKeeper>(
       partial, unfinished ? TileKeeper::Start::kGoOn : TileKeeper::Start::kAnew, memory);
   const bool finished =

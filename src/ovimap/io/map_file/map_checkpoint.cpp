@@ -61,11 +61,19 @@ bool holds_checkpoint(const std::filesystem::path& path) {
   return found;
 }
 
-void require_own_checkpoint(const std::filesystem::path& path, int schema) {
+namespace {
+
+void require_own_schema(const std::filesystem::path& path, int schema) {
   if (schema < kSchemaWithSteps)
     throw Error(concat("'", path.string(),
                        "' was begun by an older ovimap, which writes voxels in another way; go on "
                        "with that one, or delete the file to begin anew"));
+}
+
+}  // namespace
+
+void require_own_checkpoint(const std::filesystem::path& path) {
+  require_own_schema(path, OpenMap(path).schema());
 }
 
 CheckpointFile::CheckpointFile(std::filesystem::path path, Start start) : path_(std::move(path)) {
@@ -87,7 +95,7 @@ void CheckpointFile::open(Start start) {
   }
   database_ = open_growing_map(path_);
   if (start == Start::kGoOn) {
-    require_own_checkpoint(path_, database_->execAndGet("PRAGMA user_version").getInt());
+    require_own_schema(path_, database_->execAndGet("PRAGMA user_version").getInt());
     read_as_map(path_, *database_, [&](SQLite::Database& database) {
       check_schema(database);
       note_stored_tiles();

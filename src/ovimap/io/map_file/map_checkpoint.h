@@ -41,9 +41,9 @@ std::filesystem::path checkpoint_path(const std::filesystem::path& map);
 /// Error when it is in use or no map.
 bool holds_checkpoint(const std::filesystem::path& path);
 
-/// Throws Error for a checkpoint of that schema that an older ovimap began: it would get voxels
-/// that are written in two ways.
-void require_own_checkpoint(const std::filesystem::path& path, int schema);
+/// Throws Error for a checkpoint that an older ovimap began: it would get voxels that are written
+/// in two ways.
+void require_own_checkpoint(const std::filesystem::path& path);
 
 /// The file that checkpoints go to: a map file of its own (docs/map-format.md, "Checkpoints") that
 /// each write() takes from one whole state to the next. Whatever ends the program in between, the

@@ -87,8 +87,8 @@ struct MapRecord : MapHeader {
   int mask_frames = 0;               ///< frames with 2D masks
   bool unfinished = false;  ///< a checkpoint: `instances`, `surfaces` and `up` are yet to be found
   std::string version;      ///< of the program that wrote the map
-  std::uint64_t content_hash =
-      0;  ///< VoxelMap::content_hash when it was written; set by load_map, ignored by save_map
+  /// VoxelMap::content_hash when it was written; set by load_map, ignored by save_map.
+  std::uint64_t content_hash = 0;
 };
 
 /// The highest instance id ever given, by mapping or by people.

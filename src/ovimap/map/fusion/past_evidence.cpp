@@ -16,8 +16,9 @@ namespace {
 constexpr std::size_t kTilesPerTask = 2;
 
 void discount(const PastEvidenceConfig& config, VoxelBlock& block) {
+  const float most_weight = round_weight(config.most_weight);
   for (std::size_t v = 0; v < kBlockVoxels; ++v) {
-    block.weight[v] = std::min(block.weight[v], round_weight(config.most_weight));
+    block.weight[v] = std::min(block.weight[v], most_weight);
     const int strongest = block.slots.empty() ? 0 : block.slots.front().support[v];
     if (strongest <= config.most_support) continue;
     for (LabelSlot& slot : block.slots)

@@ -54,12 +54,7 @@ inline int pixel_of(const PinholeCamera& camera, const Eigen::Vector3f& point) {
 
 inline void doubt(VoxelBlock& block, std::size_t voxel, int frames) {
   block.doubts.resize(kBlockVoxels);
-  if (++block.doubts[voxel] < frames) return;
-  block.doubts[voxel] = 0;
-  block.tsdf[voxel] = 0;
-  block.weight[voxel] = 0.f;
-  block.color[voxel] = 0;
-  for (LabelSlot& slot : block.slots) slot.label[voxel] = slot.support[voxel] = 0;
+  if (++block.doubts[voxel] >= frames) block.forget(voxel);
 }
 
 /// As clear_free_space, over every voxel of the map and without asking what the frame confirms.

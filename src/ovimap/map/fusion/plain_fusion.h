@@ -92,10 +92,11 @@ class VoxelFusion {
     const std::uint8_t channels[3] = {color.r, color.g, color.b};
     block_.color[voxel] = 0;
     for (std::size_t c = 0; c < 3; ++c) {
-      const auto& [shift, bits, fraction_bits] = kColorFields[c];
-      const auto was = static_cast<float>(old >> shift & ((1u << bits) - 1));
-      const auto target = static_cast<float>(channels[c] << fraction_bits);
-      block_.color[voxel] |= static_cast<PackedColor>(rounded(was + mix * (target - was))) << shift;
+      const ColorField& field = kColorFields[c];
+      const auto was = static_cast<float>(old >> field.shift & field.mask());
+      const float target = static_cast<float>(channels[c]) * field.steps();
+      const auto steps = static_cast<PackedColor>(rounded(was + mix * (target - was)));
+      block_.color[voxel] |= steps << field.shift;
     }
   }
 
