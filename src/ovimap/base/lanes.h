@@ -14,26 +14,27 @@ inline constexpr int kLanes = 8;
 using Floats = float __attribute__((vector_size(kLanes * sizeof(float))));
 using Ints = std::int32_t __attribute__((vector_size(kLanes * sizeof(std::int32_t))));
 
-// Always inlined, so that it does not matter how a processor passes vectors.
-#define OVIMAP_LANES_INLINE inline __attribute__((always_inline))
+/// Of functions on lanes: always inlined, so that it does not matter how a processor passes
+/// vectors.
+#define OVIMAP_INLINE inline __attribute__((always_inline))
 
-OVIMAP_LANES_INLINE Floats broadcast(float value) {
+OVIMAP_INLINE Floats broadcast(float value) {
   return Floats{} + value;
 }
 
-OVIMAP_LANES_INLINE Floats load(const float* values) {
+OVIMAP_INLINE Floats load(const float* values) {
   Floats lanes;
   std::memcpy(&lanes, values, sizeof(lanes));
   return lanes;
 }
 
-OVIMAP_LANES_INLINE void store(Floats lanes, float* values) {
+OVIMAP_INLINE void store(Floats lanes, float* values) {
   std::memcpy(values, &lanes, sizeof(lanes));
 }
 
 /// Eight stored 16-bit integers.
 template <class Stored>
-OVIMAP_LANES_INLINE Floats load_integers(const Stored* values) {
+OVIMAP_INLINE Floats load_integers(const Stored* values) {
   typedef Stored Packed __attribute__((vector_size(kLanes * sizeof(std::int16_t))));
   static_assert(sizeof(Stored) == sizeof(std::int16_t));
   Packed packed;
@@ -43,7 +44,7 @@ OVIMAP_LANES_INLINE Floats load_integers(const Stored* values) {
 
 /// Rounds to nearest, halves away from zero.
 template <class Stored>
-OVIMAP_LANES_INLINE void store_integers(Floats lanes, Stored* values) {
+OVIMAP_INLINE void store_integers(Floats lanes, Stored* values) {
   typedef Stored Packed __attribute__((vector_size(kLanes * sizeof(std::int16_t))));
   static_assert(sizeof(Stored) == sizeof(std::int16_t));
   const Floats half = lanes < 0.f ? broadcast(-0.5f) : broadcast(0.5f);
@@ -52,22 +53,32 @@ OVIMAP_LANES_INLINE void store_integers(Floats lanes, Stored* values) {
   std::memcpy(values, &packed, sizeof(packed));
 }
 
-OVIMAP_LANES_INLINE Floats smaller(Floats a, Floats b) {
+OVIMAP_INLINE Floats smaller(Floats a, Floats b) {
   return a < b ? a : b;
 }
-OVIMAP_LANES_INLINE Floats larger(Floats a, Floats b) {
+OVIMAP_INLINE Floats larger(Floats a, Floats b) {
   return a > b ? a : b;
 }
-OVIMAP_LANES_INLINE Floats magnitude(Floats a) {
+OVIMAP_INLINE Floats magnitude(Floats a) {
   return a < 0.f ? -a : a;
 }
 
-OVIMAP_LANES_INLINE bool any(Ints mask) {
+/// `value(lane)` of every lane; lambdas should be always_inline.
+template <class Value>
+OVIMAP_INLINE Ints ints_by_lane(Value&& value) {
+  return Ints{value(0), value(1), value(2), value(3), value(4), value(5), value(6), value(7)};
+}
+
+/// The largest integers not above the values.
+OVIMAP_INLINE Ints floor_of(Floats values) {
+  const Ints truncated = __builtin_convertvector(values, Ints);
+  return truncated + (__builtin_convertvector(truncated, Floats) > values);  // a mask is -1
+}
+
+OVIMAP_INLINE bool any(Ints mask) {
   std::uint64_t words[kLanes / 2];
   std::memcpy(words, &mask, sizeof(words));
   return (words[0] | words[1] | words[2] | words[3]) != 0;
 }
-
-#undef OVIMAP_LANES_INLINE
 
 }  // namespace ovimap

@@ -20,8 +20,6 @@ struct ProjectedRow {
   Ints inside;           ///< mask
 };
 
-#define OVIMAP_INLINE inline __attribute__((always_inline))
-
 /// `start`: camera coordinates of the first; `steps`: FusionView::voxel_steps.
 OVIMAP_INLINE void project(const PinholeCamera& camera, const Eigen::Vector3f& start,
                            const Eigen::Matrix3f& steps, ProjectedRow& row) {

@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "ovimap/base/parallel.h"
 #include "ovimap/base/vectorize.h"
 #include "ovimap/map/rays/pixel_rays.h"
-#include "ovimap/map/rays/surface_lookup.h"
+#include "ovimap/map/rays/voxel_lanes.h"
 #include "ovimap/map/voxels/tile_ranges.h"
 
 namespace ovimap {
@@ -19,132 +18,182 @@ namespace {
 
 constexpr std::size_t kCastRowsPerTask = 8;
 
-/// Marches one ray after another; one per thread.
+/// Marches eight rays at once, each at its own pace; one per thread.
 class RayMarcher {
  public:
   RayMarcher(const VoxelMap& map, const Eigen::Vector3f& origin)
-      : finder_(map),
+      : voxels_(map),
         origin_(origin),
         unobserved_step_(map.config().voxel_size_m *
-                         static_cast<float>(std::max(1, map.config().truncation_voxels - 2))),
+                         static_cast<float>(map.config().truncation_voxels + 1)),
         voxel_(map.config().voxel_size_m),
         inverse_voxel_(1.f / map.config().voxel_size_m),
-        block_(map.config().block_size_m()) {}
+        block_(map.config().block_size_m()),
+        metres_per_unit_(map.config().truncation_m() / VoxelBlock::kTsdfScale) {}
 
-  struct Hit {
-    float range_m;
-    VoxelRef voxel;
+  /// Unit directions, and between which ranges to look, metres.
+  struct Rays {
+    Floats x, y, z, near_m, far_m;
+  };
+  struct Hits {
+    Floats range_m;     ///< 0 where there is none
+    Ints slot, offset;  ///< of the voxel there
   };
 
-  /// First crossing from positive to negative distance along the unit `direction`, between two
-  /// ranges; range 0 when there is none.
-  Hit march(const Eigen::Vector3f& direction, float min_range_m, float max_range_m) {
-    const Eigen::Vector3f inverse = direction.cwiseInverse();
-    float last_distance = 0.f, last_range = 0.f;  // last_distance > 0: in front of a surface
-    for (float range = min_range_m; range < max_range_m;) {
-      const Eigen::Vector3f point = origin_ + direction * range;
-      if (!finder_.seek(point)) {
-        last_distance = 0.f;
-        range += leap(point, inverse);
-        continue;
+  /// First crossings from positive to negative distance.
+  OVIMAP_INLINE Hits march(const Rays& rays) {
+    const Inverse inverse(rays);
+    Bracket bracket{};
+    Floats range = rays.near_m, last_range = range;
+    Floats last_distance = {};  // > 0: in front of a surface
+    Ints blind = {};            // the last voxel was never observed
+    Floats careful_to = {};     // so far a step over such voxels was too long
+    for (Ints active = range < rays.far_m; any(active); active &= range < rays.far_m) {
+      const Points at = points(rays, range);
+      const VoxelLanes::Coordinates coordinates = coordinates_of(at);
+      const Voxels voxels = voxels_.seek(coordinates, active);
+      const Ints stored = voxels_.distances(voxels);
+      const Ints observed = stored != VoxelLanes::kUnobserved;
+      const Floats distance =
+          observed ? __builtin_convertvector(stored, Floats) * metres_per_unit_ : Floats{};
+      const Ints behind = active & observed & (distance <= 0.f);
+      const Ints hit = behind & (last_distance > 0.f);
+      if (any(hit)) {
+        bracket.take(hit, {last_range, last_distance, range, distance, hit, voxels});
+        active &= ~hit;
       }
-      if (!finder_.observed()) {
-        last_distance = 0.f;
-        range += unobserved_step_;
-        continue;
-      }
-      const float distance = finder_.distance_m();
-      if (distance <= 0.f && last_distance > 0.f)
-        return refine(direction, last_range, last_distance, range, distance);
-      last_distance = distance, last_range = range;
-      range += std::max(std::fabs(distance), 0.5f * voxel_);
+      const Ints empty = voxels.slot < 0, too_far = behind & blind & (range > careful_to);
+      Floats step = range < careful_to ? broadcast(voxel_) : broadcast(unobserved_step_);
+      step = observed ? larger(magnitude(distance), broadcast(0.5f * voxel_)) : step;
+      if (any(empty & active))
+        step = empty ? leap(at, coordinates, voxels.in_region, rays, inverse) : step;
+      step = too_far ? last_range + voxel_ - range : step;  // once more, voxel by voxel
+      careful_to = too_far ? range : careful_to;
+      blind = ~observed & ~empty;
+      last_range = range, last_distance = distance;
+      range = active ? range + step : range;
     }
-    return {0.f, {}};
+    return any(bracket.found) ? refine(rays, bracket) : Hits{};
   }
 
  private:
+  using Voxels = VoxelLanes::Voxels;
+  struct Points {
+    Floats x, y, z;
+  };
+  /// Of directions; 0 where rays run along a wall of blocks.
+  struct Inverse {
+    explicit OVIMAP_INLINE Inverse(const Rays& rays)
+        : x(inverse_of(rays.x)), y(inverse_of(rays.y)), z(inverse_of(rays.z)) {}
+    static OVIMAP_INLINE Floats inverse_of(Floats values) {
+      return magnitude(values) > 1e-9f ? 1.f / values : Floats{};
+    }
+    Floats x, y, z;
+  };
+  /// Between which ranges a ray meets the surface, and the voxels' distances there.
+  struct Bracket {
+    Floats front, front_distance, back, back_distance;
+    Ints found;
+    Voxels behind;
+
+    OVIMAP_INLINE void take(Ints hit, const Bracket& other) {
+      front = hit ? other.front : front;
+      front_distance = hit ? other.front_distance : front_distance;
+      back = hit ? other.back : back;
+      back_distance = hit ? other.back_distance : back_distance;
+      found |= hit;
+      behind.slot = hit ? other.behind.slot : behind.slot;
+      behind.offset = hit ? other.behind.offset : behind.offset;
+    }
+  };
   /// Distance to the surface at a place of a ray, metres, and how it changes along the ray.
   struct Sample {
-    float distance_m, slope;
+    Floats distance_m, slope;
+    Ints known;
   };
+
+  OVIMAP_INLINE Points points(const Rays& rays, Floats range) const {
+    return {origin_.x() + rays.x * range, origin_.y() + rays.y * range,
+            origin_.z() + rays.z * range};
+  }
+  OVIMAP_INLINE VoxelLanes::Coordinates coordinates_of(const Points& at) const {
+    return {floor_of(at.x * inverse_voxel_), floor_of(at.y * inverse_voxel_),
+            floor_of(at.z * inverse_voxel_)};
+  }
 
   /// The crossing between two ranges: first by the distances of the voxels there, then by
   /// interpolated distances and slopes (Newton). Voxels' own distances are off by up to half a
   /// voxel, so it may lie a little outside. Within one cell a step needs no second look.
-  Hit refine(const Eigen::Vector3f& direction, float front, float front_distance, float back,
-             float back_distance) {
-    const VoxelRef behind = finder_.ref();
-    float crossing = front + (back - front) * front_distance / (front_distance - back_distance);
-    for (int step = 0; step < kRefinements; ++step) {
-      const std::optional<Sample> at = interpolate(origin_ + direction * crossing, direction);
-      if (!at || at->slope >= 0.f) break;
-      const float moved = std::clamp(-at->distance_m / at->slope, -voxel_, voxel_);
-      crossing += moved;
-      if (std::fabs(moved) < kCloseEnough * voxel_) break;
+  OVIMAP_INLINE Hits refine(const Rays& rays, const Bracket& bracket) {
+    Floats crossing =
+        bracket.found ? bracket.front + (bracket.back - bracket.front) * bracket.front_distance /
+                                            (bracket.front_distance - bracket.back_distance)
+                      : Floats{};
+    Ints moving = bracket.found;
+    for (int step = 0; step < kRefinements && any(moving); ++step) {
+      const Sample at = interpolate(rays, crossing, moving);
+      moving &= at.known & (at.slope < 0.f);
+      const Floats moved =
+          smaller(larger(-at.distance_m / at.slope, broadcast(-voxel_)), broadcast(voxel_));
+      crossing = moving ? crossing + moved : crossing;
+      moving &= magnitude(moved) >= kCloseEnough * voxel_;
     }
-    const bool found = finder_.seek(Eigen::Vector3f(origin_ + direction * crossing));
-    return {crossing, found ? finder_.ref() : behind};
+    const Voxels there = voxels_.seek(coordinates_of(points(rays, crossing)), bracket.found);
+    const Ints nowhere = there.slot < 0;
+    return {crossing, nowhere ? bracket.behind.slot : there.slot,
+            nowhere ? bracket.behind.offset : there.offset};
   }
 
-  /// Trilinear; nullopt when one of the eight voxels was never observed.
-  std::optional<Sample> interpolate(const Eigen::Vector3f& point,
-                                    const Eigen::Vector3f& direction) {
-    const Eigen::Vector3f grid = point.array() * inverse_voxel_ - 0.5f;
-    const Eigen::Vector3i low = floor_to_int(grid);
-    const Eigen::Vector3f share = grid - low.cast<float>();
-    float value[8], slope[8] = {};  // of corners, edges, faces, then of the point
-    if (!read_cell(low, value)) return std::nullopt;
+  /// Trilinear.
+  OVIMAP_INLINE Sample interpolate(const Rays& rays, Floats range, Ints wanted) {
+    const Points at = points(rays, range);
+    const Floats grid[3] = {at.x * inverse_voxel_ - 0.5f, at.y * inverse_voxel_ - 0.5f,
+                            at.z * inverse_voxel_ - 0.5f};
+    const VoxelLanes::Coordinates low{floor_of(grid[0]), floor_of(grid[1]), floor_of(grid[2])};
+    const Floats share[3] = {grid[0] - __builtin_convertvector(low.x, Floats),
+                             grid[1] - __builtin_convertvector(low.y, Floats),
+                             grid[2] - __builtin_convertvector(low.z, Floats)};
+    const Floats direction[3] = {rays.x, rays.y, rays.z};
+    Floats value[8], slope[8] = {};  // of corners, edges, faces, then of the point
+    const Ints known = voxels_.read_cells(low, wanted, value);
     for (int axis = 0, width = 1; axis < 3; ++axis, width *= 2) {
-      const float moving = direction[axis] * inverse_voxel_;
+      const Floats moving = direction[axis] * inverse_voxel_;
       for (int i = 0; i < 8; i += 2 * width) {
-        const float rise = value[i + width] - value[i];
+        const Floats rise = value[i + width] - value[i];
         slope[i] += share[axis] * (slope[i + width] - slope[i]) + moving * rise;
         value[i] += share[axis] * rise;
       }
     }
-    return Sample{value[0], slope[0]};
+    return {value[0] * metres_per_unit_, slope[0] * metres_per_unit_, known};
   }
 
-  /// Distances of the eight voxels from `low` upwards; false when one was never observed.
-  bool read_cell(const Eigen::Vector3i& low, float* corners) {
-    if ((low.x() & 7) < 7 && (low.y() & 7) < 7 && (low.z() & 7) < 7) {  // all in one block
-      if (!finder_.seek(low)) return false;
-      bool observed = true;
-      for (int corner = 0; corner < 8; ++corner)
-        observed &= finder_.read(voxel_offset(corner & 1, corner >> 1 & 1, corner >> 2 & 1),
-                                 corners[corner]);
-      return observed;
-    }
-    for (int corner = 0; corner < 8; ++corner) {
-      const Eigen::Vector3i offset(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
-      if (!finder_.seek(Eigen::Vector3i(low + offset)) || !finder_.read(0, corners[corner]))
-        return false;
-    }
-    return true;
-  }
-
-  /// Distance along the ray to the far side of the empty block, or of the empty cube of blocks, at
-  /// `point`, where the finder is.
-  float leap(const Eigen::Vector3f& point, const Eigen::Vector3f& inverse_direction) const {
-    const BlockIndex& index = finder_.block_index();
-    const bool empty_region = !finder_.in_region();
-    const float side = empty_region ? block_ * kRegionBlocks : block_;
-    float exit = std::numeric_limits<float>::max();
-    for (int axis = 0; axis < 3; ++axis) {
-      if (!std::isfinite(inverse_direction[axis])) continue;
-      const int cell = empty_region ? index[axis] >> 3 : index[axis];
-      const float wall = static_cast<float>(cell + (inverse_direction[axis] > 0.f ? 1 : 0)) * side;
-      exit = std::min(exit, (wall - point[axis]) * inverse_direction[axis]);
-    }
-    return std::max(exit, 0.f) + 0.01f * voxel_;  // a hair beyond the wall
+  /// Distances along the rays to the far side of the empty block, or of the empty cube of blocks.
+  OVIMAP_INLINE Floats leap(const Points& at, const VoxelLanes::Coordinates& voxel, Ints in_region,
+                            const Rays& rays, const Inverse& inverse) const {
+    const Floats side = in_region ? broadcast(block_) : broadcast(block_ * kRegionBlocks);
+    Floats exit = broadcast(std::numeric_limits<float>::max());
+    const auto meet = [&](Floats place, Ints coordinate, Floats direction, Floats inverse_direction)
+        __attribute__((always_inline)) {
+      const Ints cell = in_region ? coordinate >> 3 : coordinate >> 6;
+      const Ints beyond = cell - (direction > 0.f);  // a mask is -1
+      const Floats away =
+          (__builtin_convertvector(beyond, Floats) * side - place) * inverse_direction;
+      exit = inverse_direction != 0.f ? smaller(exit, away) : exit;
+    };
+    meet(at.x, voxel.x, rays.x, inverse.x);
+    meet(at.y, voxel.y, rays.y, inverse.y);
+    meet(at.z, voxel.z, rays.z, inverse.z);
+    return larger(exit, Floats{}) + 0.01f * voxel_;  // a hair beyond the wall
   }
 
   static constexpr int kRefinements = 3;
   static constexpr float kCloseEnough = 0.5f;  ///< voxels; a shorter step of Newton is the last
-  VoxelFinder finder_;
+  VoxelLanes voxels_;
   Eigen::Vector3f origin_;
-  float unobserved_step_;  ///< shorter than the band in front of a surface, so none is stepped over
-  float voxel_, inverse_voxel_, block_;
+  /// Shorter than the band around a surface. Where it leads over the half in front, a ray goes
+  /// back.
+  float unobserved_step_;
+  float voxel_, inverse_voxel_, block_, metres_per_unit_;
 };
 
 /// What all rays of a projection have in common.
@@ -164,18 +213,48 @@ struct View {
   TileRanges ranges;
 };
 
+/// Rays of pixels of one row, gathered until there are as many as are marched together.
+struct RayBatch {
+  int count = 0;
+  int column[kLanes] = {};
+  float stretch[kLanes] = {};  ///< how long the ray of unit depth is
+  float x[kLanes] = {}, y[kLanes] = {}, z[kLanes] = {}, near_m[kLanes] = {}, far_m[kLanes] = {};
+
+  OVIMAP_INLINE void add(int pixel, const Eigen::Vector3f& ray, const TileRanges::Range& depths,
+                         float max_range_m) {
+    const float length = ray.norm();
+    column[count] = pixel, stretch[count] = length;
+    x[count] = ray.x() / length, y[count] = ray.y() / length, z[count] = ray.z() / length;
+    near_m[count] = depths.near_m * length;
+    far_m[count] = std::min(depths.far_m * length, max_range_m);
+    ++count;
+  }
+  /// Lanes that no ray was added to end where they begin.
+  OVIMAP_INLINE RayMarcher::Rays rays() {
+    for (int i = count; i < kLanes; ++i) near_m[i] = far_m[i] = 0.f;
+    return {load(x), load(y), load(z), load(near_m), load(far_m)};
+  }
+};
+
 /// Casts the rays of a row's pixels that `depth` has no answer for yet.
 OVIMAP_VECTORIZE void cast_row(const View& view, int y, int width, RayMarcher& marcher,
                                float* depth, Label* labels) {
+  RayBatch batch;
   for (int x = 0; x < width; ++x) {
     const TileRanges::Range& range = view.ranges.at_pixel(x, y);
-    if (depth[x] > 0.f || range.near_m > range.far_m) continue;
-    const Eigen::Vector3f ray = view.rays.at(x, y);
-    const float stretch = ray.norm();
-    const RayMarcher::Hit hit = marcher.march(ray / stretch, range.near_m * stretch,
-                                              std::min(range.far_m * stretch, view.max_range_m));
-    depth[x] = hit.range_m / stretch;
-    labels[x] = view.map.label(hit.voxel);
+    if (depth[x] <= 0.f && range.near_m <= range.far_m)
+      batch.add(x, view.rays.at(x, y), range, view.max_range_m);
+    if (batch.count < kLanes && (x + 1 < width || batch.count == 0)) continue;
+    const RayMarcher::Hits hits = marcher.march(batch.rays());
+    for (int i = 0; i < batch.count; ++i) {
+      const int column = batch.column[i];
+      depth[column] = hits.range_m[i] / batch.stretch[i];
+      labels[column] = hits.range_m[i] > 0.f
+                           ? view.map.label(VoxelRef::of(static_cast<std::uint32_t>(hits.slot[i]),
+                                                         hits.offset[i]))
+                           : kNoLabel;
+    }
+    batch.count = 0;
   }
 }
 

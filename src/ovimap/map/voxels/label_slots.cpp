@@ -71,12 +71,6 @@ VoxelLabels voxel_labels(const VoxelBlock& block, int voxel, const LabelForest& 
   return result;
 }
 
-Label voxel_label(const VoxelBlock& block, int voxel, const LabelForest& forest) {
-  if (block.forest_epoch == forest.epoch())
-    return block.palette[block.strongest(static_cast<std::size_t>(voxel))];
-  return voxel_labels(block, voxel, forest)[0].label;
-}
-
 void resolve_labels(VoxelBlock& block, const LabelForest& forest) {
   if (block.forest_epoch == forest.epoch()) return;
   const bool merged = std::any_of(block.palette.begin(), block.palette.end(),

@@ -20,7 +20,11 @@ using VoxelLabels = std::array<LabelSupport, kLabelSlots>;
 VoxelLabels voxel_labels(const VoxelBlock& block, int voxel, const LabelForest& forest);
 
 /// argmax of the supports: the label of the voxel (paper section 3.1), 0 when it has none.
-Label voxel_label(const VoxelBlock& block, int voxel, const LabelForest& forest);
+inline Label voxel_label(const VoxelBlock& block, int voxel, const LabelForest& forest) {
+  if (block.forest_epoch == forest.epoch())
+    return block.palette[block.strongest(static_cast<std::size_t>(voxel))];
+  return voxel_labels(block, voxel, forest)[0].label;
+}
 
 /// Writes merges into the block's palette and slots. Needed before add_support.
 void resolve_labels(VoxelBlock& block, const LabelForest& forest);

@@ -9,11 +9,11 @@
 
 namespace ovimap {
 
-/// Between which depths the blocks of the map lie, for every tile of 16 x 16 pixels: rays need be
+/// Between which depths the blocks of the map lie, for every tile of 8 x 8 pixels: rays need be
 /// marched only there. Costs one projection per block in view, not per ray.
 class TileRanges {
  public:
-  static constexpr int kTile_px = 16;
+  static constexpr int kTile_px = 8;
   struct Range {
     float near_m, far_m;  ///< along the optical axis; near > far: no block in this tile
   };

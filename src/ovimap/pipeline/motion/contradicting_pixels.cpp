@@ -25,12 +25,6 @@ struct CellsOfPixels {
   BlockIndex at(int lane) const { return {x[lane], y[lane], z[lane]}; }
 };
 
-/// As floor_to_int.
-__attribute__((always_inline)) inline Ints floor_of(Floats values) {
-  const Ints truncated = __builtin_convertvector(values, Ints);
-  return truncated + (__builtin_convertvector(truncated, Floats) > values);  // a mask is -1
-}
-
 OVIMAP_VECTORIZE void find_cells(const PixelRays::Row& ray, const Eigen::Vector3f& origin,
                                  float inverse_cell, const float* depth_m, int x,
                                  CellsOfPixels& cells) {
