@@ -28,7 +28,6 @@ class RayMarcher {
                          static_cast<float>(map.config().truncation_voxels + 1)),
         voxel_(map.config().voxel_size_m),
         inverse_voxel_(1.f / map.config().voxel_size_m),
-        block_(map.config().block_size_m()),
         metres_per_unit_(map.config().truncation_m() / VoxelBlock::kTsdfScale) {}
 
   /// Unit directions, and between which ranges to look, metres.
@@ -66,7 +65,7 @@ class RayMarcher {
       Floats step = range < careful_to ? broadcast(voxel_) : broadcast(unobserved_step_);
       step = observed ? larger(magnitude(distance), broadcast(0.5f * voxel_)) : step;
       if (any(empty & active))
-        step = empty ? leap(at, coordinates, voxels.in_region, rays, inverse) : step;
+        step = empty ? leap(at, coordinates, voxels.empty_bits, rays, inverse) : step;
       step = too_far ? last_range + voxel_ - range : step;  // once more, voxel by voxel
       careful_to = too_far ? range : careful_to;
       blind = ~observed & ~empty;
@@ -168,13 +167,13 @@ class RayMarcher {
   }
 
   /// Distances along the rays to the far side of the empty block, or of the empty cube of blocks.
-  OVIMAP_INLINE Floats leap(const Points& at, const VoxelLanes::Coordinates& voxel, Ints in_region,
+  OVIMAP_INLINE Floats leap(const Points& at, const VoxelLanes::Coordinates& voxel, Ints empty_bits,
                             const Rays& rays, const Inverse& inverse) const {
-    const Floats side = in_region ? broadcast(block_) : broadcast(block_ * kRegionBlocks);
+    const Floats side = __builtin_convertvector((Ints{} + 1) << empty_bits, Floats) * voxel_;
     Floats exit = broadcast(std::numeric_limits<float>::max());
     const auto meet = [&](Floats place, Ints coordinate, Floats direction, Floats inverse_direction)
         __attribute__((always_inline)) {
-      const Ints cell = in_region ? coordinate >> 3 : coordinate >> 6;
+      const Ints cell = coordinate >> empty_bits;
       const Ints beyond = cell - (direction > 0.f);  // a mask is -1
       const Floats away =
           (__builtin_convertvector(beyond, Floats) * side - place) * inverse_direction;
@@ -193,7 +192,7 @@ class RayMarcher {
   /// Shorter than the band around a surface. Where it leads over the half in front, a ray goes
   /// back.
   float unobserved_step_;
-  float voxel_, inverse_voxel_, block_, metres_per_unit_;
+  float voxel_, inverse_voxel_, metres_per_unit_;
 };
 
 /// What all rays of a projection have in common.

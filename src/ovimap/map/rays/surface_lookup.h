@@ -51,10 +51,6 @@ class VoxelFinder {
     return observed(v);
   }
 
-  const BlockIndex& block_index() const { return block_index_; }
-  /// Whether the region around the last block has blocks at all.
-  bool in_region() const { return region_ != nullptr; }
-
  private:
   bool observed(std::size_t voxel) const {
     return block_->tsdf[voxel] != 0 || block_->weight[voxel] > 0.f;

@@ -44,5 +44,27 @@ TEST(SurfaceVoxels, FollowsANoisyPointBackToTheSurface) {
       << "beyond the band";
 }
 
+/// Eight pixels are looked up at once; what a row has beyond, and narrow images, alike.
+TEST(SurfaceVoxels, AnyWidthGivesTheSameVoxels) {
+  const SphereScene scene;
+  VoxelMap map;
+  scene.integrate_views(map, 8, map.labels().create());
+  const DepthImage depth = scene.depth();
+  const auto whole = surface_voxels(map, depth, scene.camera, scene.pose(0));
+  for (const int width : {1, 7, 8, 13, 40}) {
+    constexpr int kLeft = 70;
+    PinholeCamera camera = scene.camera;
+    camera.width = width, camera.cx -= kLeft;
+    DepthImage part(width, depth.height());
+    for (int y = 0; y < depth.height(); ++y)
+      for (int x = 0; x < width; ++x) part.at(x, y) = depth.at(kLeft + x, y);
+    const auto surface = surface_voxels(map, part, camera, scene.pose(0));
+    for (int y = 0; y < depth.height(); ++y)
+      for (int x = 0; x < width; ++x)
+        ASSERT_EQ(surface.at(x, y).value, whole.at(kLeft + x, y).value)
+            << width << " pixels wide, at " << x << ", " << y;
+  }
+}
+
 }  // namespace
 }  // namespace ovimap

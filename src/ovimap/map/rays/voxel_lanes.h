@@ -21,9 +21,9 @@ class VoxelLanes {
     Ints x, y, z;
   };
   struct Voxels {
-    Ints slot;       ///< of the block; -1 where the map has none, and in lanes not asked for
-    Ints offset;     ///< in the block
-    Ints in_region;  ///< mask: the region has blocks
+    Ints slot;        ///< of the block; -1 where the map has none, and in lanes not asked for
+    Ints offset;      ///< in the block
+    Ints empty_bits;  ///< where there is no block: of as many voxels (log2) a side is what is empty
     const VoxelBlock* block = nullptr;  ///< if all lanes are in one that there is
   };
 
@@ -31,7 +31,7 @@ class VoxelLanes {
     const Coordinates region{at.x >> kRegionBits, at.y >> kRegionBits, at.z >> kRegionBits};
     const Ints position =  // of BlockRegion
         (at.x >> 3 & 7) | (at.y >> 3 & 7) << 3 | (at.z >> 3 & 7) << 6;
-    Voxels result{Ints{} - 1, (at.x & 7) | (at.y & 7) << 3 | (at.z & 7) << 6, Ints{}};
+    Voxels result{Ints{} - 1, (at.x & 7) | (at.y & 7) << 3 | (at.z & 7) << 6, Ints{} + kRegionBits};
     const Ints elsewhere = (region.x != region_index_.x()) | (region.y != region_index_.y()) |
                            (region.z != region_index_.z());
     if (any(wanted & elsewhere)) [[unlikely]] {
@@ -39,14 +39,19 @@ class VoxelLanes {
       return result;
     }
     if (!region_) return result;
-    result.in_region = wanted;
     if (any(position != position[0])) {
       result.slot = ~wanted | ints_by_lane([&](int lane) __attribute__((always_inline)) {
         return slot_at(position[lane]);
       });
+      if (any(result.slot < 0))
+        result.empty_bits = ints_by_lane([&](int lane) __attribute__((always_inline)) {
+          return empty_bits_at(position[lane]);
+        });
     } else if (const std::int32_t slot = slot_at(position[0]); slot >= 0) {
       result.slot = ~wanted | slot;
       result.block = &map_.block(static_cast<std::uint32_t>(slot));
+    } else {
+      result.empty_bits = Ints{} + empty_bits_at(position[0]);
     }
     return result;
   }
@@ -107,12 +112,15 @@ class VoxelLanes {
   }
 
  private:
-  static constexpr int kRegionBits = 6;  ///< 8 blocks of 8 voxels
+  static constexpr int kBlockBits = 3, kRegionBits = 6;
   static constexpr int kCellSpan = 1 + 1 + kBlockSide + kBlockSide * kBlockSide;
   static constexpr VoxelBlock::Tsdf kNothing[kCellSpan] = {};
 
   const VoxelBlock& block(std::int32_t slot) const {
     return map_.block(static_cast<std::uint32_t>(slot));
+  }
+  std::int32_t empty_bits_at(std::int32_t position) const {
+    return (region_->groups >> BlockRegion::group(position) & 1) != 0 ? kBlockBits : kBlockBits + 1;
   }
   std::int32_t slot_at(std::int32_t position) const {
     return static_cast<std::int32_t>(region_->slots[static_cast<std::size_t>(position)]);
@@ -141,7 +149,7 @@ class VoxelLanes {
       seek_region({region.x[lane], region.y[lane], region.z[lane]});
       if (!region_) continue;
       result.slot[lane] = slot_at(position[lane]);
-      result.in_region[lane] = -1;
+      result.empty_bits[lane] = empty_bits_at(position[lane]);
     }
   }
   void seek_region(const BlockIndex& index) {

@@ -79,10 +79,6 @@ BlockRegion& VoxelMap::find_or_create_region(const BlockIndex& region) {
   return *regions_[found->second];
 }
 
-std::uint32_t& VoxelMap::place_of(const BlockIndex& index) {
-  return find_or_create_region(BlockRegion::index_of(index)).slots[BlockRegion::position(index)];
-}
-
 std::uint32_t VoxelMap::add_slot(const BlockIndex& index, BlockPlace block) {
   if (blocks_.size() >= most_blocks_)
     throw Error(concat("a map has at most ", most_blocks_, " blocks of voxels of ",
@@ -95,14 +91,14 @@ std::uint32_t VoxelMap::add_slot(const BlockIndex& index, BlockPlace block) {
 }
 
 std::uint32_t VoxelMap::find_or_create(const BlockIndex& index) {
-  std::uint32_t& slot = place_of(index);
-  if (slot == kNoBlock) {
+  BlockRegion& region = find_or_create_region(BlockRegion::index_of(index));
+  if (region.slot(index) == kNoBlock) {
     auto block = spare_block(index);
     block->forest_epoch = labels_.epoch();
-    slot = add_slot(index, BlockPlace(std::move(block)));
+    region.put(index, add_slot(index, BlockPlace(std::move(block))));
     ++in_memory_;
   }
-  return slot;
+  return region.slot(index);
 }
 
 void VoxelMap::empty_blocks(const BlockChoice& chosen) {
@@ -122,9 +118,9 @@ void VoxelMap::empty_blocks(const BlockChoice& chosen) {
 }
 
 void VoxelMap::create_away(const BlockIndex& index) {
-  std::uint32_t& slot = place_of(index);
-  OVIMAP_ASSERT(slot == kNoBlock);
-  slot = add_slot(index, BlockPlace());
+  BlockRegion& region = find_or_create_region(BlockRegion::index_of(index));
+  OVIMAP_ASSERT(region.slot(index) == kNoBlock);
+  region.put(index, add_slot(index, BlockPlace()));
 }
 
 VoxelBlock* VoxelMap::load(std::uint32_t slot) const {

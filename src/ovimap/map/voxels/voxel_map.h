@@ -72,8 +72,17 @@ struct BlockRegion {
     return region * kRegionBlocks + BlockIndex(p & 7, p >> 3 & 7, p >> 6);
   }
   std::uint32_t slot(const BlockIndex& block) const { return slots[position(block)]; }
+  void put(const BlockIndex& block, std::uint32_t slot) {
+    slots[position(block)] = slot;
+    groups |= std::uint64_t{1} << group(static_cast<int>(position(block)));
+  }
+  /// Of 2 x 2 x 2 blocks, the one that the position is in: a bit of `groups`.
+  static int group(int position) {
+    return (position >> 1 & 3) | (position >> 4 & 3) << 2 | (position >> 7 & 3) << 4;
+  }
 
-  BlockIndex index;  ///< covers the blocks [index * 8, index * 8 + 8) along each axis
+  BlockIndex index;          ///< covers the blocks [index * 8, index * 8 + 8) along each axis
+  std::uint64_t groups = 0;  ///< in which there is a block
   std::array<std::uint32_t, kRegionBlocks * kRegionBlocks * kRegionBlocks> slots;
 };
 
@@ -235,7 +244,6 @@ class VoxelMap {
   BlockRegion& find_or_create_region(const BlockIndex& region);
   void replace_frozen(std::uint32_t slot);
 
-  std::uint32_t& place_of(const BlockIndex& index);
   std::uint32_t add_slot(const BlockIndex& index, BlockPlace block);
   [[gnu::noinline]] VoxelBlock* load(std::uint32_t slot) const;
 
