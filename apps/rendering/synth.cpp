@@ -229,6 +229,12 @@ Action add_synth(CLI::App& command) {
       ->capture_default_str();
   command
       .add_option(
+          "--models", options->room.models,
+          "of a room: JSON with the catalogue ids to draw from, {\"chair\": [\"Scopia/chair3\"]}; "
+          "pieces of other classes are left out")
+      ->check(CLI::ExistingFile);
+  command
+      .add_option(
           "--set", options->settings,
           "one setting of how frames are made, as sensor.sigma_base_m=0.003; may be repeated")
       ->type_size(1)

@@ -5,12 +5,14 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/command/box_json.h"
+#include "ovimap/base/bounded_json.h"
 #include "ovimap/image/codec.h"
 #include "ovimap/io/truth/replica_pack.h"
 #include "ovimap/synth/buildings/benchmark_scenes.h"
 #include "ovimap/synth/buildings/floor_plan.h"
 #include "ovimap/synth/buildings/room_builder.h"
 #include "ovimap/synth/buildings/visits.h"
+#include "ovimap/synth/furniture/furniture_palette.h"
 #include "ovimap/synth/recordings/little_seen.h"
 #include "ovimap/synth/rooms/rooms_v1.h"
 
@@ -18,6 +20,7 @@ namespace ovimap::apps {
 
 namespace {
 
+constexpr std::size_t kMostModelBytes = 1 << 20;
 constexpr int kPlanWidth_px = 640, kPlanHeight_px = 480;
 
 PinholeCamera camera_of(const RoomOptions& options) {
@@ -26,11 +29,28 @@ PinholeCamera camera_of(const RoomOptions& options) {
                                                 : room_spec(options.room, options.seed).camera;
 }
 
+ModelChoice read_models(const std::filesystem::path& path) {
+  ModelChoice models;
+  try {
+    models = read_json(path, kMostModelBytes).get<ModelChoice>();
+  } catch (const nlohmann::json::exception&) {
+    throw Error(concat("models ", path.string(), ": expected lists of catalogue ids by class, as ",
+                       R"({"chair": ["Scopia/chair3"]})"));
+  }
+  for (const auto& [class_name, ids] : models) {
+    room_class_id(class_name);
+    if (ids.empty()) throw Error(concat("models ", path.string(), ": no model of ", class_name));
+  }
+  return models;
+}
+
 SynthRoom make_room(const RoomOptions& options) {
   if (options.scene) return build_benchmark_scene(*options.scene, options.seed, options.furniture);
   if (!options.plan.empty())
     return build_plan(floor_plan(options.plan, options.seed), options.furniture);
-  return build_room(room_spec(options.room, options.seed), options.furniture);
+  RoomSpec spec = room_spec(options.room, options.seed);
+  if (!options.models.empty()) spec.models = read_models(options.models);
+  return build_room(spec, options.furniture);
 }
 
 SynthSequence make_sequence(SynthRoom room, const RoomOptions& options) {

@@ -17,8 +17,9 @@ namespace ovimap::apps {
 
 struct RoomOptions {
   std::filesystem::path furniture = default_furniture_folder();
-  std::string room = "tiny";  ///< one of room_names
-  int frames = 0;             ///< 0: as the room says
+  std::string room = "tiny";     ///< one of room_names
+  std::filesystem::path models;  ///< of a room: JSON of RoomSpec::models; empty: any
+  int frames = 0;                ///< 0: as the room says
   std::uint64_t seed = 1;
   SynthSequenceConfig frames_as;        ///< exact, or as some sensor sees them
   std::string plan;                     ///< one of floor_plan_names, with a video; empty: the room

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "ovimap/synth/buildings/strewn.h"
+#include "ovimap/synth/furniture/furniture_palette.h"
 #include "ovimap/synth/furniture/model_store.h"
 #include "ovimap/synth/rooms/room_shell.h"
 #include "ovimap/synth/shapes/mesh_parts.h"
@@ -158,6 +160,19 @@ class Arranger {
   int lamps_ = 0;
 };
 
+bool made_by_rule(const FurnitureRequest& request) {
+  return request.model.starts_with(made_id("")) || models_of_class(request.class_name).empty();
+}
+
+/// The id of the model to draw, empty for any of the class; nothing where a choice has none.
+std::optional<std::string> chosen_model(const FurnitureRequest& request, const ModelChoice& choice,
+                                        Random& random) {
+  if (choice.empty() || made_by_rule(request)) return request.model;
+  const auto found = choice.find(request.class_name);
+  if (found == choice.end()) return std::nullopt;
+  return found->second[random.index(found->second.size())];
+}
+
 std::vector<Piece> pick_models(const RoomSpec& spec, ModelStore& store) {
   Random random(spec.seed, kModelStream);
   std::vector<Piece> pieces;
@@ -167,8 +182,11 @@ std::vector<Piece> pick_models(const RoomSpec& spec, ModelStore& store) {
         request.placement == Placement::kAround || request.placement == Placement::kOnCeiling;
     std::shared_ptr<const RoomModel> model;
     for (int i = 0; i < request.count; ++i) {
-      if (!model || !alike)
-        model = store.get(request.class_name, request.model, spec.size_m, random);
+      if (!model || !alike) {
+        const auto id = chosen_model(request, spec.models, random);
+        if (!id) break;
+        model = store.get(request.class_name, *id, spec.size_m, random);
+      }
       pieces.push_back({&request, model});
     }
   }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,6 +41,9 @@ struct FurnitureRequest {
                                        ///< rule; empty: any model of the class
   std::optional<float> bottom_m = {};  ///< for kOnWall: its lower edge; else centred at eye height
 };
+
+/// Catalogue ids of models, by class.
+using ModelChoice = std::map<std::string, std::vector<std::string>>;
 
 /// An opening in a wall that one walks through.
 struct Doorway {
@@ -80,6 +84,9 @@ struct RoomSpec {
   std::vector<Doorway> doorways = {};
   std::array<bool, 4> may_have_windows = {true, true, true, true};  ///< by wall
   Split split = Split::kTuned;  ///< which things the made ones are
+  /// Catalogue ids by class, to be drawn from instead of models_of_class: pieces of other classes
+  /// are left out. Empty: as the palette says.
+  ModelChoice models = {};
   std::vector<Clutter> clutter = {};
   RoomLight light = {};
   int frames = 200;

@@ -52,6 +52,21 @@ INSTANTIATE_TEST_SUITE_P(EveryRoom, RoomsV1, testing::ValuesIn(rooms_v1_names())
                            return name;
                          });
 
+TEST(RoomModels, AreDrawnFromTheChoiceAndOtherPiecesAreLeftOut) {
+  if (!std::filesystem::exists(default_furniture_folder()))
+    GTEST_SKIP() << "the Debian package sweethome3d-furniture is not installed";
+  RoomSpec spec = room_spec("office");
+  spec.models = {{"desk", {"BlendSwap-CC-0/lbDesk"}}, {"office chair", {"Scopia/office_chair"}}};
+  std::set<std::string> with_maker, classes;
+  for (const RoomObject& object : build_room(spec).objects) {
+    classes.insert(object.class_name);
+    if (!object.source.empty()) with_maker.insert(object.source);
+  }
+  EXPECT_EQ(with_maker.size(), 2u) << "two models of the catalogue";
+  EXPECT_TRUE(classes.contains("desk") && classes.contains("office chair"));
+  EXPECT_TRUE(classes.contains("picture")) << "made up, so no model of it is needed";
+}
+
 TEST(SoftModels, FillTheirSizeWithOutwardNormals) {
   const Eigen::Vector3f size(0.5f, 0.4f, 0.14f);
   for (const TexturedMesh& mesh : {pillow_model(size, 3), blanket_model(size, 3)}) {
