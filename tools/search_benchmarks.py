@@ -14,6 +14,7 @@ import argparse
 import datetime
 import json
 import pathlib
+import shutil
 import subprocess
 import tempfile
 
@@ -221,10 +222,35 @@ def evidence_section(program, rooms, work, unseen=()):
     def ask(map_file, texts, *options):
         return query(program, map_file, texts, "--set", "query.grammar=false", *options)
 
-    text = [search_evidence.HEAD, "", measured_at(), "", *search_evidence.evidence_section(ask, rooms, map_of, ranks_of, unseen)]
+    def section(places, others):
+        return search_evidence.evidence_section(ask, places, map_of, ranks_of, others, taught_by_others(program, places, map_of, work))
+
+    text = [search_evidence.HEAD, "", measured_at(), "", *section(rooms, unseen)]
     if unseen:
-        text += ["", "Places that nothing was chosen by:", "", *search_evidence.evidence_section(ask, unseen, map_of, ranks_of, rooms)]
+        text += ["", "Places that nothing was chosen by:", "", *section(unseen, rooms)]
     return text
+
+
+def taught_by_others(program, rooms, map_of, work):
+    """Names the things of every room in a copy of its map; returns what teaches a room: the lines of all other copies."""
+    with tempfile.TemporaryDirectory(dir=work) as folder:
+        taught = pathlib.Path(folder) / "taught.json"
+        for room in rooms:
+            named = pathlib.Path(folder) / map_of(room).name
+            shutil.copy(map_of(room), named)
+            names = search_evidence.room_names(room)
+            for instance in run_json(program, "info", named)["instances"]:
+                if str(instance["id"]) in names:
+                    run_json(program, "edit", named, "--teach", taught, "rename", instance["id"], names[str(instance["id"])])
+        lessons = json.loads(taught.read_text())
+
+    def options(room):
+        things = [thing for thing in lessons["things"] if pathlib.Path(thing["map"]).name != map_of(room).name]
+        others = work / "others.json"
+        others.write_text(json.dumps({**lessons, "things": things}))
+        return ["--teach", others]
+
+    return options
 
 
 def kitchen_evidence(program, map_file):

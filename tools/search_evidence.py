@@ -8,6 +8,7 @@ import pathlib
 DATA = pathlib.Path(__file__).resolve().parents[1] / "src/ovimap/semantics/data"
 HEAD = "## What each piece of evidence adds"
 UNCLEAR = "object"
+TAUGHT = "all, taught what the other places' things are called"
 WIDE = 3  # household words below a word that is called wide ("seat")
 NO_SIZE, NO_RIVALS, NO_THINGS = (["--set", f"query.evidence.{weight}=0"] for weight in ("size_weight", "competition", "thing_weight"))
 PLAIN_STRUCTURE = ["--set", "query.evidence.structure_weight=0.5", "--set", "query.evidence.most_structure_ratio=3"]  # as other things
@@ -92,18 +93,21 @@ def room_names(room):
     return json.loads((room / "labels.json").read_text())["instances"]
 
 
-def evidence_section(query, rooms, map_of, ranks_of, words_of=()):
+def evidence_section(query, rooms, map_of, ranks_of, words_of=(), taught=None):
     """`query(map, texts, *options)` answers texts, `map_of(room)` is a room's map, `ranks_of(answers, names)` ranks of the
-    first right objects. `words_of`: other rooms whose words are asked as well."""
+    first right objects. `words_of`: other rooms whose words are asked as well. `taught(room)`: options with which other
+    rooms' named things teach this one."""
     everywhere = sorted({name for room in [*rooms, *words_of] for name in room_names(room).values()})
     text = [f"{', '.join(sorted('-'.join(room.parts[-2:]) for room in rooms))}: true instances; mean over the rooms. Words: the classes "
             "in the room, floor, walls and ceiling too. Found: of these words, those answered \"found\" with a right object first; of all answered \"found\" among them and "
             "as many absent ones (classes of the other rooms, scaled), those that are right; absent ones answered \"found\".", "",
             "| evidence | MRR | first | found and right | right of found | absent, found |", "| --- | --- | --- | --- | --- | --- |"]
     totals = {}
-    for piece, options in PIECES:
+    pieces = [(piece, lambda _, chosen=options: chosen) for piece, options in PIECES]
+    for piece, options_of in [*pieces, *([(TAUGHT, taught)] if taught else [])]:
         rows = []
         for room in rooms:
+            options = options_of(room)
             names = room_names(room)
             present = sorted(set(names.values()))
             absent = [word for word in everywhere if not any(concepts().compatible(word, name) for name in present)]

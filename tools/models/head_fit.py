@@ -15,6 +15,7 @@ import numpy as np
 
 COVARIANCE_SHRINKAGE = 0.3
 ANCHOR_PROBABILITY = 0.6
+MAP_SHARE = 0.8
 BISECTIONS, MOST_STEPS = 25, 200.0
 
 
@@ -78,14 +79,19 @@ def ridge(inputs, targets, weights, strength):
     return solution, target_mean - input_mean @ solution
 
 
-def fit_head(settings, features, targets, weights, anchors, anchor_targets):
-    """The ridge regression over pictures and anchors; `weights` of pictures, of any scale."""
-    return ridge(
-        np.concatenate([features, anchors]),
-        np.concatenate([targets, anchor_targets]),
-        np.concatenate([weights / weights.mean(), np.full(len(anchors), settings.anchor_weight)]),
-        settings.ridge,
-    )
+def fit_head(settings, pictures, crops, anchors):
+    """The ridge regression over three kinds of (features, targets, weights), weights of any scale: of pictures and crops
+    together the crops have MAP_SHARE of the weight, of anchors the weights are ignored. `crops` may be None."""
+    share = MAP_SHARE if crops else 0.0
+    parts = [(*pictures[:2], scaled(pictures[2], (1 - share) * len(pictures[2])))]
+    if crops:
+        parts.append((*crops[:2], scaled(crops[2], share * len(pictures[2]))))
+    parts.append((*anchors, np.full(len(anchors[0]), settings.anchor_weight)))
+    return ridge(*(np.concatenate(column) for column in zip(*parts)), settings.ridge)
+
+
+def scaled(weights, total):
+    return weights * (total / weights.sum())
 
 
 def ranks(embeddings, words, accepted):

