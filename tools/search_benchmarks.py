@@ -8,7 +8,8 @@ Usage: tools/search_benchmarks.py PROGRAM [--rooms build/benchmarks/rooms/noisy]
        tools/search_benchmarks.py PROGRAM --only-evidence [--rooms ...] [--kitchen-map MAP] [--out ...]
 --rooms: where rooms-v1 with noise is, or goes. FOLDER is 7-Scenes "red kitchen" (every 5th frame); without it only the
 rendered rooms are measured. --keep-rooms: the page's figures of the rooms stay as they are. The section on evidence is made by
---only-evidence, which leaves the rest of the page as it is; the rooms must be there. MAP: of the kitchen, as `ovimap run KITCHEN --masks sam` makes it.
+--only-evidence, which leaves the rest of the page as it is; the rooms must be there. MAP: of the kitchen, as `ovimap run
+KITCHEN --masks sam --set crops.kept_size_px=640` makes it and `ovimap read` reads it.
 """
 import argparse
 import datetime
@@ -30,6 +31,7 @@ VIEWS_HEAD = "## Which views to embed"
 PARTS = [(variant, pathlib.Path(f".models/default-encoder-{variant}")) for variant in ("classifier", "head")]
 VIEWS = ["default", "viewcov", "paper", "vis"]
 # One scale of crops, plain and without background, is enough to compare with.
+WITHOUT_WRITING = ("all but writing", ["--set", "query.evidence.writing_weight=0"])
 FEW_CROPS = ["--set", "crops.scales=1"]
 
 
@@ -254,9 +256,9 @@ def taught_by_others(program, rooms, map_of, work):
 
 
 def kitchen_evidence(program, map_file):
-    text = ["", "The kitchen: the 32 phrases below, and twice 50 words.", "",
+    text = ["", "The kitchen: the 32 phrases below, and twice 50 words. Writing: `ovimap read` before.", "",
             "| evidence | first | among five | present, not found | absent, found |", "| --- | --- | --- | --- | --- |"]
-    for piece, options in search_evidence.PIECES:
+    for piece, options in [*search_evidence.PIECES, WITHOUT_WRITING]:
         ranks = [rank for _, rank, _, _ in kitchen_ranks(program, map_file, *options)]
         wrong = verdict_rates(program, map_file, *options)
         text.append(f"| {piece} | {recall(ranks, 1):.2f} | {recall(ranks, 5):.2f} | {len(wrong['present']) / 50:.0%} "

@@ -6,7 +6,7 @@ OUT/NAME (the scene) and OUT/NAME.ovimap, which keeps the crops that a map shows
 Rooms hold models of training_furniture.json, desks what is made by rule for the tuned half of the benchmarks: nothing that
 is in a place which is held out.
 
-    python3 tools/models/training_places.py build/release/bin/ovimap places        # 21 minutes on two cores
+    python3 tools/models/training_places.py build/release/bin/ovimap places        # a quarter of an hour on two cores
 """
 
 import argparse
