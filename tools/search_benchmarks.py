@@ -31,8 +31,8 @@ VIEWS_HEAD = "## Which views to embed"
 PARTS = [(variant, pathlib.Path(f".models/default-encoder-{variant}")) for variant in ("classifier", "head")]
 VIEWS = ["default", "viewcov", "paper", "vis"]
 # One scale of crops, plain and without background, is enough to compare with.
-WITHOUT_WRITING = ("all but writing", ["--set", "query.evidence.writing_weight=0"])
 FEW_CROPS = ["--set", "crops.scales=1"]
+WITHOUT_WRITING = ("all but writing", ["--set", "query.evidence.writing_weight=0"])
 
 
 def run_json(*command, accepted=(0,)):
