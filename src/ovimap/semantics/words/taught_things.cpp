@@ -13,22 +13,26 @@ namespace ovimap {
 namespace {
 
 // How much more often looks of one kind are so alike than looks of different kinds, as logarithm,
-// of the standard deviations above the mean of different things
-// (tools/models/calibrate_teaching.py).
-constexpr float kSquare = 0.45f, kLinear = 0.9f, kConstant = -0.6f;
-constexpr float kLeastAlike = -1.f;          // below that nothing more is told
+// of the standard deviations by which their angle is smaller than that of different things in the
+// mean (tools/models/calibrate_teaching.py). Angles, since cosines are crowded where looks are
+// nearly the same.
+constexpr float kSlope = 2.f, kConstant = -1.5f;
+constexpr float kLeastRatio = -1.f;          // an unlike look may be another side of the same
 constexpr Eigen::Index kLeastStrangers = 8;  // objects that say how alike different things are
 constexpr Eigen::Index kMostStrangers = 512;
-constexpr float kLeastDeviation = 1e-3f;  // of cosines
+constexpr float kLeastDeviation = 1e-3f;  // radians
 
-/// How alike different things of a map are: mean and standard deviation of the cosines of pairs.
+float angle_of(float cosine) {
+  return std::acos(std::clamp(cosine, -1.f, 1.f));
+}
+
+/// How alike different things of a map are: mean and standard deviation of the angles of pairs.
 struct Strangers {
   float mean = 0, deviation = 0;
   bool known = false;
 
   float log_ratio(float cosine) const {
-    const float alike = std::max((cosine - mean) / deviation, kLeastAlike);
-    return (kSquare * alike + kLinear) * alike + kConstant;
+    return std::max(kSlope * (mean - angle_of(cosine)) / deviation + kConstant, kLeastRatio);
   }
 };
 
@@ -42,11 +46,11 @@ Strangers strangers_of(const Embeddings& looks) {
   Embeddings some(std::min(known, kMostStrangers), looks.cols());
   for (Eigen::Index row = 0; row < some.rows(); ++row)
     some.row(row) = looks.row(seen[static_cast<std::size_t>(row * known / some.rows())]);
-  const Eigen::MatrixXf cosines = some * some.transpose();
+  const Eigen::MatrixXf angles = (some * some.transpose()).unaryExpr(&angle_of);
   const auto pairs = static_cast<float>(some.rows() * (some.rows() - 1));
   Strangers found;
-  found.mean = (cosines.sum() - cosines.trace()) / pairs;
-  const Eigen::MatrixXf apart = (cosines.array() - found.mean).square().matrix();
+  found.mean = (angles.sum() - angles.trace()) / pairs;
+  const Eigen::MatrixXf apart = (angles.array() - found.mean).square().matrix();
   found.deviation = std::max(std::sqrt((apart.sum() - apart.trace()) / pairs), kLeastDeviation);
   found.known = true;
   return found;
