@@ -111,7 +111,8 @@ def kitchen_section(program, kitchen, work):
 def known_kitchen_section(program, map_file):
     """Of a map of the kitchen that was made before, by the default encoder alone."""
     count = len(run_json(program, "info", map_file)["instances"])
-    how = ["    ovimap run KITCHEN --masks sam --set crops.scales=1 -o kitchen.ovimap", "", f"{count} objects."]
+    how = ["    ovimap run KITCHEN --masks sam --set crops.kept_size_px=640 -o kitchen.ovimap", "    ovimap read kitchen.ovimap", "",
+           f"{count} objects."]
     return kitchen_phrases(program, [("both (default)", map_file, [])], how) + [""] + relation_section(program, map_file)
 
 
