@@ -45,6 +45,9 @@ ModelChoice read_models(const std::filesystem::path& path) {
 }
 
 SynthRoom make_room(const RoomOptions& options) {
+  if (!options.models.empty() && (options.scene || !options.plan.empty()))
+    throw Error(
+        "--models is of a room; places of benchmarks and plans have furniture of their own");
   if (options.scene) return build_benchmark_scene(*options.scene, options.seed, options.furniture);
   if (!options.plan.empty())
     return build_plan(floor_plan(options.plan, options.seed), options.furniture);

@@ -80,8 +80,8 @@ def ridge(inputs, targets, weights, strength):
 
 
 def fit_head(settings, pictures, crops, anchors):
-    """The ridge regression over three kinds of (features, targets, weights), weights of any scale: of pictures and crops
-    together the crops have MAP_SHARE of the weight, of anchors the weights are ignored. `crops` may be None."""
+    """The ridge regression over `pictures` and `crops` (features, targets, weights of any scale), of whose weight the crops
+    have MAP_SHARE, and `anchors` (features, targets), which weigh settings.anchor_weight each. `crops` may be None."""
     share = MAP_SHARE if crops else 0.0
     parts = [(*pictures[:2], scaled(pictures[2], (1 - share) * len(pictures[2])))]
     if crops:

@@ -245,7 +245,7 @@ def write_notice(models):
 
 
 def check_places(places, models):
-    """What the scenes' notices name as furniture is in no benchmark."""
+    """Exits where a scene's notice names a model that benchmarks show."""
     tested = {m.id for m in models if m.room_class}
     for notice in places.glob("*/*/NOTICE.md"):
         shown = sorted(tested & set(re.findall(r"\((\w[^()]*/[^()]*)\) by ", notice.read_text())))

@@ -27,8 +27,7 @@ class RayMarcher {
         unobserved_step_(map.config().voxel_size_m *
                          static_cast<float>(map.config().truncation_voxels + 1)),
         voxel_(map.config().voxel_size_m),
-        inverse_voxel_(1.f / map.config().voxel_size_m),
-        metres_per_unit_(map.config().truncation_m() / VoxelBlock::kTsdfScale) {}
+        inverse_voxel_(1.f / map.config().voxel_size_m) {}
 
   /// Unit directions, and between which ranges to look, metres.
   struct Rays {
@@ -51,10 +50,7 @@ class RayMarcher {
       const Points at = points(rays, range);
       const VoxelLanes::Coordinates coordinates = coordinates_of(at);
       const Voxels voxels = voxels_.seek(coordinates, active);
-      const Ints stored = voxels_.distances(voxels);
-      const Ints observed = stored != VoxelLanes::kUnobserved;
-      const Floats distance =
-          observed ? __builtin_convertvector(stored, Floats) * metres_per_unit_ : Floats{};
+      const auto [distance, observed] = voxels_.distances(voxels);
       const Ints behind = active & observed & (distance <= 0.f);
       const Ints hit = behind & (last_distance > 0.f);
       if (any(hit)) {
@@ -163,7 +159,7 @@ class RayMarcher {
         value[i] += share[axis] * rise;
       }
     }
-    return {value[0] * metres_per_unit_, slope[0] * metres_per_unit_, known};
+    return {value[0] * voxels_.metres_per_unit(), slope[0] * voxels_.metres_per_unit(), known};
   }
 
   /// Distances along the rays to the far side of the empty block, or of the empty cube of blocks.
@@ -192,7 +188,7 @@ class RayMarcher {
   /// Shorter than the band around a surface. Where it leads over the half in front, a ray goes
   /// back.
   float unobserved_step_;
-  float voxel_, inverse_voxel_, metres_per_unit_;
+  float voxel_, inverse_voxel_;
 };
 
 /// What all rays of a projection have in common.

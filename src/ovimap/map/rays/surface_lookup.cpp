@@ -25,8 +25,7 @@ class RowLookup {
         finder_(map),
         rays_(rays),
         origin_(origin),
-        voxel_(map.config().voxel_size_m),
-        metres_per_unit_(map.config().truncation_m() / VoxelBlock::kTsdfScale) {}
+        voxel_(map.config().voxel_size_m) {}
 
   OVIMAP_VECTORIZE void look_up(const float* depth, int y, int width, VoxelRef* found) {
     const PixelRays::Row row = rays_.row(y);
@@ -48,14 +47,12 @@ class RowLookup {
     const Ints wanted = depth > 0.f;
     const VoxelLanes::Voxels voxels = lanes_.seek(
         {along(row.column_x, 0), along(row.column_y, 1), along(row.column_z, 2)}, wanted);
-    const Ints stored = lanes_.distances(voxels);
-    const Ints observed = wanted & (stored != VoxelLanes::kUnobserved);
-    const Floats distance = __builtin_convertvector(stored, Floats) * metres_per_unit_;
-    const Ints on_surface = observed & (magnitude(distance) < voxel_);
+    const auto [distance, observed] = lanes_.distances(voxels);
+    const Ints on_surface = wanted & observed & (magnitude(distance) < voxel_);
     const Ints refs = on_surface ? voxels.slot * kBlockVoxels + voxels.offset : Ints{} - 1;
     static_assert(sizeof(VoxelRef) == sizeof(refs[0]) && VoxelRef{}.value + 1 == 0);
     std::memcpy(static_cast<void*>(found + x), &refs, sizeof(refs));
-    if (const Ints off = observed & ~on_surface; any(off))
+    if (const Ints off = wanted & observed & ~on_surface; any(off))
       for (int lane = 0; lane < kLanes; ++lane)
         if (off[lane]) found[x + lane] = look_up_moved(x + lane, y, depth[lane], distance[lane]);
   }
@@ -79,7 +76,7 @@ class RowLookup {
   VoxelFinder finder_;
   const PixelRays& rays_;
   Eigen::Vector3f origin_;
-  float voxel_, metres_per_unit_;
+  float voxel_;
 };
 
 }  // namespace

@@ -14,7 +14,10 @@ namespace ovimap {
 /// neighbours: mostly they are in one region. One per thread; in OVIMAP_VECTORIZE functions.
 class VoxelLanes {
  public:
-  explicit VoxelLanes(const VoxelMap& map) : map_(map), finder_(map) {}
+  explicit VoxelLanes(const VoxelMap& map)
+      : map_(map),
+        finder_(map),
+        metres_per_unit_(map.config().truncation_m() / VoxelBlock::kTsdfScale) {}
 
   /// Global voxel coordinates.
   struct Coordinates {
@@ -56,23 +59,17 @@ class VoxelLanes {
     return result;
   }
 
-  /// Signed distances in stored units; `kUnobserved` where there is no block or a voxel was never
-  /// observed.
-  static constexpr int kUnobserved = 1 << 16;
-  OVIMAP_INLINE Ints distances(const Voxels& voxels) const {
-    if (voxels.block)
-      return distances(
-          voxels.offset, [&](int) __attribute__((always_inline))->const VoxelBlock& {
-            return *voxels.block;
-          });
-    const VoxelBlock* blocks[kLanes];
-    for (int lane = 0; lane < kLanes; ++lane)
-      blocks[lane] = voxels.slot[lane] < 0 ? nothing_.get() : &block(voxels.slot[lane]);
-    return distances(
-        voxels.offset, [&](int lane) __attribute__((always_inline))->const VoxelBlock& {
-          return *blocks[lane];
-        });
+  /// Signed distances; 0 where there is no block or a voxel was never observed.
+  struct Distances {
+    Floats metres;
+    Ints observed;  ///< mask
+  };
+  OVIMAP_INLINE Distances distances(const Voxels& voxels) const {
+    const Ints stored = stored_distances(voxels), observed = stored != kUnobserved;
+    const Floats metres = __builtin_convertvector(stored, Floats) * metres_per_unit_;
+    return {observed ? metres : Floats{}, observed};
   }
+  float metres_per_unit() const { return metres_per_unit_; }
 
   /// Signed distances of a cube of two voxels a side, stored units: `at[i]` of the voxel at offset
   /// (i & 1, i >> 1 & 1, i >> 2). False in lanes where one of the eight was never observed.
@@ -126,8 +123,24 @@ class VoxelLanes {
     return static_cast<std::int32_t>(region_->slots[static_cast<std::size_t>(position)]);
   }
 
+  static constexpr int kUnobserved = 1 << 16;  ///< more than any stored distance
+  OVIMAP_INLINE Ints stored_distances(const Voxels& voxels) const {
+    if (voxels.block)
+      return stored_distances(
+          voxels.offset, [&](int) __attribute__((always_inline))->const VoxelBlock& {
+            return *voxels.block;
+          });
+    const VoxelBlock* blocks[kLanes];
+    for (int lane = 0; lane < kLanes; ++lane)
+      blocks[lane] = voxels.slot[lane] < 0 ? nothing_.get() : &block(voxels.slot[lane]);
+    return stored_distances(
+        voxels.offset, [&](int lane) __attribute__((always_inline))->const VoxelBlock& {
+          return *blocks[lane];
+        });
+  }
+
   template <class BlockOf>
-  OVIMAP_INLINE static Ints distances(Ints offset, BlockOf&& block_of) {
+  OVIMAP_INLINE static Ints stored_distances(Ints offset, BlockOf&& block_of) {
     const Ints stored = ints_by_lane([&](int lane) __attribute__((always_inline)) {
       return block_of(lane).tsdf[static_cast<std::size_t>(offset[lane])];
     });
@@ -180,6 +193,7 @@ class VoxelLanes {
 
   const VoxelMap& map_;
   VoxelFinder finder_;
+  float metres_per_unit_;  ///< of a stored distance
   /// Stands for blocks that the map does not have.
   std::unique_ptr<const VoxelBlock> nothing_ = std::make_unique<VoxelBlock>(BlockIndex::Zero());
   BlockIndex region_index_ = BlockIndex::Constant(1 << 24);  // outside every map
