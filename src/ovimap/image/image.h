@@ -24,6 +24,13 @@ class Image {
   Image() = default;
   Image(int width, int height, Pixel fill = Pixel{})
       : width_(width), height_(height), pixels_(count(width, height), fill) {}
+  /// For images of which every pixel is written next: these hold what memory held.
+  static Image unset(int width, int height) {
+    Image image;
+    image.width_ = width, image.height_ = height;
+    image.pixels_.resize(count(width, height));
+    return image;
+  }
 
   int width() const { return width_; }
   int height() const { return height_; }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <new>
 
 namespace ovimap {
 
@@ -24,6 +25,11 @@ struct PooledAllocator {
   T* allocate(std::size_t count) { return static_cast<T*>(detail::take_buffer(count * sizeof(T))); }
   void deallocate(T* buffer, std::size_t count) noexcept {
     detail::give_buffer(buffer, count * sizeof(T));
+  }
+  /// What is added without a value stays as memory had it, where its type allows that.
+  template <class Other>
+  void construct(Other* item) {
+    ::new (static_cast<void*>(item)) Other;
   }
   template <class Other>
   bool operator==(const PooledAllocator<Other>&) const noexcept {

@@ -73,7 +73,7 @@ DepthUnits::DepthUnits(const CameraRig& rig, const FrameSourceConfig& config)
 }
 
 DepthImage DepthUnits::metres(const Image<std::uint16_t>& stored) const {
-  DepthImage depth(stored.width(), stored.height());
+  auto depth = DepthImage::unset(stored.width(), stored.height());
   for (std::size_t i = 0; i < depth.size(); ++i) depth[i] = metres_[stored[i]];
   return depth;
 }

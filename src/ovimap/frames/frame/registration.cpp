@@ -94,7 +94,7 @@ class DepthProjection {
 
 Projected project(const Frame& frame, const DepthImage& depth) {
   const int width = depth.width(), height = depth.height();
-  Projected seen{Image<std::int32_t>(width, height), Image<float>(width, height)};
+  Projected seen{Image<std::int32_t>::unset(width, height), Image<float>::unset(width, height)};
   const DepthProjection projection(frame, depth);
   parallel_for(static_cast<std::size_t>(height), kRegisteredRowsPerTask, [&](std::size_t row) {
     const int v = static_cast<int>(row);
@@ -139,13 +139,13 @@ class NearestSurface {
 
 template <class Pixel>
 Image<Pixel> look_up(const Image<Pixel>& image, const Image<std::int32_t>& index) {
-  Image<Pixel> result(index.width(), index.height());
-  parallel_for_ranges(index.size(),
-                      kRegisteredRowsPerTask * static_cast<std::size_t>(index.width()),
-                      [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t i = begin; i < end; ++i)
-                          if (index[i] >= 0) result[i] = image[static_cast<std::size_t>(index[i])];
-                      });
+  auto result = Image<Pixel>::unset(index.width(), index.height());
+  parallel_for_ranges(
+      index.size(), kRegisteredRowsPerTask * static_cast<std::size_t>(index.width()),
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+          result[i] = index[i] >= 0 ? image[static_cast<std::size_t>(index[i])] : Pixel{};
+      });
   return result;
 }
 
@@ -154,7 +154,7 @@ Image<Pixel> look_up(const Image<Pixel>& image, const Image<std::int32_t>& index
 Registration::Registration(const Frame& frame, const DepthImage& depth, float occlusion_margin_m)
     : color_width_(frame.color_camera.width),
       color_height_(frame.color_camera.height),
-      color_index_(depth.width(), depth.height(), kNoColor) {
+      color_index_(Image<std::int32_t>::unset(depth.width(), depth.height())) {
   OVIMAP_ASSERT(depth.same_size(frame.depth));
   const std::size_t grain = kRegisteredRowsPerTask * static_cast<std::size_t>(depth.width());
   if (frame.registered()) {
@@ -168,8 +168,8 @@ Registration::Registration(const Frame& frame, const DepthImage& depth, float oc
   const int color_width = frame.color_camera.width;
   parallel_for(color_index_.size(), grain, [&](std::size_t i) {
     const std::int32_t pixel = seen.pixel[i];
-    if (pixel == kOutside || surface.at(pixel) < seen.z_m[i] - occlusion_margin_m) return;
-    color_index_[i] = packed_y(pixel) * color_width + packed_x(pixel);
+    const bool hidden = pixel == kOutside || surface.at(pixel) < seen.z_m[i] - occlusion_margin_m;
+    color_index_[i] = hidden ? kNoColor : packed_y(pixel) * color_width + packed_x(pixel);
   });
 }
 

@@ -277,11 +277,10 @@ Projection cast_rays(const VoxelMap& map, const PinholeCamera& camera,
 Projection cast_rays_with_depth(const VoxelMap& map, const DepthImage& sensor_depth,
                                 const Image<VoxelRef>& surface, const PinholeCamera& camera,
                                 const Pose& world_from_camera, float max_range_m) {
-  Projection result{DepthImage(camera.width, camera.height),
-                    Image<Label>(camera.width, camera.height)};
+  Projection result{DepthImage::unset(camera.width, camera.height),
+                    Image<Label>::unset(camera.width, camera.height)};
   parallel_for(surface.size(), kCastRowsPerTask * 640, [&](std::size_t i) {
-    if (!surface[i]) return;
-    result.depth[i] = sensor_depth[i];
+    result.depth[i] = surface[i] ? sensor_depth[i] : 0.f;
     result.labels[i] = map.label(surface[i]);
   });
   cast(View(map, camera, world_from_camera, max_range_m), result);
