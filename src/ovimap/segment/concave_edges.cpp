@@ -8,6 +8,7 @@
 
 #include "ovimap/base/parallel.h"
 #include "ovimap/base/vectorize.h"
+#include "ovimap/image/set_bytes.h"
 #include "ovimap/segment/task_rows.h"
 
 namespace ovimap {
@@ -51,8 +52,7 @@ class FoldMeasure {
   float least() const { return 0.999f * threshold_.least(); }
 
   float operator()(int x1, int y1, int x2, int y2) const {
-    const Eigen::Vector3f& n1 = surface_.normals.at(x1, y1);
-    const Eigen::Vector3f& n2 = surface_.normals.at(x2, y2);
+    const Eigen::Vector3f n1 = surface_.normals.at(x1, y1), n2 = surface_.normals.at(x2, y2);
     const float strength = 1.f - n1.dot(n2);
     const float depth = surface_.smooth_depth_m.at(x1, y1);
     // A zero normal (no plane) has a dot product of 0 with everything: not a fold.
@@ -72,19 +72,35 @@ class FoldMeasure {
   FoldThreshold threshold_;
 };
 
+/// A row of normals, axis by axis.
+struct NormalRow {
+  NormalRow(const NormalImage& normals, int row, int first = 0)
+      : x(normals.row(0, row) + first),
+        y(normals.row(1, row) + first),
+        z(normals.row(2, row) + first) {}
+  const float *x, *y, *z;
+};
+
 /// Marks the pixels of a row whose window is cut, or whose normals at the ends of a whole window
 /// differ enough for a fold: the few that are worth a closer look. `before` and `after` are the
 /// normals at the ends of the window of pixel 0, `arm1` and `arm2` its arms.
-OVIMAP_VECTORIZE void mark_fold_candidates(const float* before, const float* after,
+OVIMAP_VECTORIZE void mark_fold_candidates(const NormalRow& before, const NormalRow& after,
                                            const std::uint8_t* arm1, const std::uint8_t* arm2,
                                            int radius, float least, int begin, int end,
                                            std::uint8_t* candidates) {
+  const float *x1 = before.x, *y1 = before.y, *z1 = before.z;
+  const float *x2 = after.x, *y2 = after.y, *z2 = after.z;
+  OVIMAP_NO_OVERLAP
   for (int x = begin; x < end; ++x) {
-    const float dot = before[3 * x] * after[3 * x] + before[3 * x + 1] * after[3 * x + 1] +
-                      before[3 * x + 2] * after[3 * x + 2];
+    const float dot = x1[x] * x2[x] + y1[x] * y2[x] + z1[x] * z2[x];
     const bool cut = (arm1[x] != radius) | (arm2[x] != radius);
     candidates[x] = cut | (1.f - dot >= least);
   }
+}
+
+OVIMAP_VECTORIZE void mark_folds(const float* across, const float* down, int width,
+                                 std::uint8_t* folds) {
+  for (int x = 0; x < width; ++x) folds[x] = (across[x] > 0.f) | (down[x] > 0.f);
 }
 
 struct FoldImages {
@@ -104,25 +120,27 @@ class RowFolds {
 
   void across(int y, float* strength) {
     const std::uint8_t *left = surface_.left_px.row(y), *right = surface_.right_px.row(y);
-    const float* normals = surface_.normals.row(y)->data();
     std::fill(candidates_.begin(), candidates_.end(), std::uint8_t{1});
-    mark_fold_candidates(normals - 3 * radius_, normals + 3 * radius_, left, right, radius_,
+    mark_fold_candidates(NormalRow(surface_.normals, y, -radius_),
+                         NormalRow(surface_.normals, y, radius_), left, right, radius_,
                          fold_.least(), radius_, width_ - radius_, candidates_.data());
-    for (int x = 0; x < width_; ++x)
-      if (candidates_[static_cast<std::size_t>(x)] && left[x] + right[x] >= radius_)
-        strength[x] = fold_(x - left[x], y, x + right[x], y);
+    std::fill_n(strength, width_, 0.f);
+    for_each_set(candidates_.data(), width_, [&](int x) {
+      if (left[x] + right[x] >= radius_) strength[x] = fold_(x - left[x], y, x + right[x], y);
+    });
   }
 
   void down(int y, float* strength) {
     const std::uint8_t *up = surface_.up_px.row(y), *down = surface_.down_px.row(y);
     std::fill(candidates_.begin(), candidates_.end(), std::uint8_t{1});
     if (y >= radius_ && y + radius_ < surface_.breaks.height())
-      mark_fold_candidates(surface_.normals.row(y - radius_)->data(),
-                           surface_.normals.row(y + radius_)->data(), up, down, radius_,
+      mark_fold_candidates(NormalRow(surface_.normals, y - radius_),
+                           NormalRow(surface_.normals, y + radius_), up, down, radius_,
                            fold_.least(), 0, width_, candidates_.data());
-    for (int x = 0; x < width_; ++x)
-      if (candidates_[static_cast<std::size_t>(x)] && up[x] + down[x] >= radius_)
-        strength[x] = fold_(x, y - up[x], x, y + down[x]);
+    std::fill_n(strength, width_, 0.f);
+    for_each_set(candidates_.data(), width_, [&](int x) {
+      if (up[x] + down[x] >= radius_) strength[x] = fold_(x, y - up[x], x, y + down[x]);
+    });
   }
 
  private:
@@ -134,7 +152,7 @@ class RowFolds {
 
 FoldImages measure_folds(const DepthSurface& surface, const FoldMeasure& fold) {
   const int width = surface.breaks.width(), height = surface.breaks.height();
-  FoldImages folds{Image<float>(width, height), Image<float>(width, height)};
+  FoldImages folds{Image<float>::unset(width, height), Image<float>::unset(width, height)};
   parallel_for_ranges(static_cast<std::size_t>(height), kPixelRowsPerTask,
                       [&](std::size_t begin, std::size_t end) {
                         RowFolds row(surface, fold);
@@ -153,7 +171,7 @@ Image<std::uint8_t> find_concave_edges(const DepthSurface& surface, const Pinhol
   const FoldImages folds = measure_folds(surface, FoldMeasure(surface, camera, config));
   const int width = surface.breaks.width(), height = surface.breaks.height();
   const int reach = std::max(1, surface.radius_px / 3);
-  Image<std::uint8_t> edges(width, height);
+  auto edges = Image<std::uint8_t>::unset(width, height);
   const auto is_ridge = [&](const Image<float>& fold, int x, int y, int dx, int dy) {
     const float strength = fold.at(x, y);
     if (strength <= 0.f) return false;
@@ -164,11 +182,11 @@ Image<std::uint8_t> find_concave_edges(const DepthSurface& surface, const Pinhol
   };
   parallel_for(static_cast<std::size_t>(height), kPixelRowsPerTask, [&](std::size_t row) {
     const int y = static_cast<int>(row);
-    const float *across = folds.across.row(y), *down = folds.down.row(y);
     std::uint8_t* edge = edges.row(y);
-    for (int x = 0; x < width; ++x)
-      if (across[x] > 0.f || down[x] > 0.f)
-        edge[x] = is_ridge(folds.across, x, y, 1, 0) || is_ridge(folds.down, x, y, 0, 1);
+    mark_folds(folds.across.row(y), folds.down.row(y), width, edge);
+    for_each_set(edge, width, [&](int x) {
+      edge[x] = is_ridge(folds.across, x, y, 1, 0) || is_ridge(folds.down, x, y, 0, 1);
+    });
   });
   return edges;
 }

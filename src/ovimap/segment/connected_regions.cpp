@@ -72,9 +72,10 @@ Image<std::uint32_t> connected_regions(const Image<std::uint8_t>& mask) {
   for (std::uint32_t run = 0; run < id.size(); ++run)
     id[run] = sets.find(run) == run ? ++last_id : id[sets.find(run)];
 
-  Image<std::uint32_t> ids(mask.width(), mask.height());
+  auto ids = Image<std::uint32_t>::unset(mask.width(), mask.height());
   parallel_for(rows, 32, [&](std::size_t y) {
     std::uint32_t* out = ids.row(static_cast<int>(y));
+    std::fill_n(out, mask.width(), 0u);
     for (std::size_t i = 0; i < runs[y].size(); ++i)
       std::fill(out + runs[y][i].begin, out + runs[y][i].end, id[first[y] + i]);
   });

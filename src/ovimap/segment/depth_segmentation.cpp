@@ -75,7 +75,7 @@ DepthRegions pack(const Image<std::uint32_t>& labels, int min_region_px) {
     components[label].extent_px.extend(Eigen::Vector2i(end - 1, y));
   });
   std::vector<std::uint16_t> id_of(components.size(), 0);
-  DepthRegions result{IdImage(labels.width(), labels.height()), {}};
+  DepthRegions result{IdImage::unset(labels.width(), labels.height()), {}};
   for (std::size_t label = 1; label < components.size(); ++label) {
     if (components[label].area_px < min_region_px ||
         result.regions.size() == std::numeric_limits<std::uint16_t>::max())

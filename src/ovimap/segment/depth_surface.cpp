@@ -14,17 +14,11 @@ namespace ovimap {
 namespace {
 
 DepthSurface allocate(int width, int height, int radius_px) {
-  const Image<std::uint8_t> bytes(width, height);
-  return {radius_px,
-          bytes,
-          bytes,
-          bytes,
-          bytes,
-          bytes,
-          Image<float>(width, height),
-          Image<Eigen::Vector3f>(width, height, Eigen::Vector3f::Zero()),
-          Image<float>(width, height),
-          FrameNoise{}};
+  const auto bytes = [&] { return Image<std::uint8_t>::unset(width, height); };
+  const auto numbers = [&] { return Image<float>::unset(width, height); };
+  return {radius_px, bytes(),     bytes(),   bytes(),
+          bytes(),   bytes(),     numbers(), NormalImage::unset(width, height),
+          numbers(), FrameNoise{}};
 }
 
 }  // namespace

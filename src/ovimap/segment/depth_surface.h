@@ -4,11 +4,10 @@
 
 #include <cstdint>
 
-#include <Eigen/Core>
-
 #include "ovimap/geometry/camera.h"
 #include "ovimap/image/image.h"
 #include "ovimap/segment/frame_noise.h"
+#include "ovimap/segment/normal_image.h"
 
 namespace ovimap {
 
@@ -47,11 +46,10 @@ struct DepthSurface {
   Image<std::uint8_t> left_px;  ///< unbroken pixels to the left, at most radius_px
   Image<std::uint8_t> right_px, up_px, down_px;  ///< likewise to the other sides
   Image<float> smooth_depth_m;  ///< depth of the fitted plane; 0 where depth is invalid
-  Image<Eigen::Vector3f>
-      normals;               ///< unit, towards the camera, camera frame; 0 where no plane fits
-  Image<float> plane_slope;  ///< metres off the plane per metre of depth along the pixel's ray:
-                             ///< |normal . ray|, the ray with unit depth; 0 where no plane fits
-  FrameNoise noise;          ///< in multiples of DepthSurfaceConfig::noise
+  NormalImage normals;          ///< unit, towards the camera, camera frame; 0 where no plane fits
+  Image<float> plane_slope;     ///< metres off the plane per metre of depth along the pixel's ray:
+                                ///< |normal . ray|, the ray with unit depth; 0 where no plane fits
+  FrameNoise noise;             ///< in multiples of DepthSurfaceConfig::noise
 };
 
 /// Fits a plane to the unbroken neighbourhood of every pixel of `depth` (metres, 0 = invalid).

@@ -78,7 +78,9 @@ TEST(DepthSurface, BreaksAtAStepAndNotOnASteepPlane) {
 
 TEST(DepthSurface, InvalidDepthHasNoSurface) {
   const DepthSurface surface = fit_depth_surface(DepthImage(32, 32), kQqvgaCamera, {});
-  for (const auto& normal : surface.normals) EXPECT_TRUE(normal.isZero());
+  for (int y = 0; y < surface.normals.height(); ++y)
+    for (int x = 0; x < surface.normals.width(); ++x)
+      EXPECT_TRUE(surface.normals.at(x, y).isZero());
   for (float depth : surface.smooth_depth_m) EXPECT_EQ(depth, 0.f);
 }
 

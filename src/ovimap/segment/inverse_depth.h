@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+
 #include "ovimap/base/parallel.h"
 #include "ovimap/image/image.h"
 #include "ovimap/segment/task_rows.h"
@@ -13,7 +15,8 @@ namespace ovimap {
 class InverseDepth {
  public:
   explicit InverseDepth(const DepthImage& depth)
-      : padded_(depth.width() + 2 * kBorder, depth.height() + 2 * kBorder) {
+      : padded_(Image<float>::unset(depth.width() + 2 * kBorder, depth.height() + 2 * kBorder)) {
+    for (int y = -kBorder; y < height() + kBorder; ++y) clear_border(y);
     parallel_for(static_cast<std::size_t>(depth.height()), kPixelRowsPerTask, [&](std::size_t y) {
       const float* in = depth.row(static_cast<int>(y));
       float* out = padded_.row(static_cast<int>(y) + kBorder) + kBorder;
@@ -27,6 +30,12 @@ class InverseDepth {
 
  private:
   static constexpr int kBorder = 2;
+  void clear_border(int y) {
+    float* out = padded_.row(y + kBorder);
+    const bool outside = y < 0 || y >= height();
+    std::fill_n(out, outside ? padded_.width() : kBorder, 0.f);
+    std::fill_n(out + padded_.width() - kBorder, kBorder, 0.f);
+  }
   Image<float> padded_;
 };
 

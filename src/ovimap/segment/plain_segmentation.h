@@ -59,8 +59,8 @@ inline Plane fit_plane(const DepthImage& depth, const DepthSurface& surface,
 inline float fold(const DepthSurface& surface, const PinholeCamera& camera,
                   const SegmentDepthConfig& config, const Eigen::Vector2i& a,
                   const Eigen::Vector2i& b) {
-  const Eigen::Vector3f &n1 = surface.normals.at(a.x(), a.y()),
-                        &n2 = surface.normals.at(b.x(), b.y());
+  const Eigen::Vector3f n1 = surface.normals.at(a.x(), a.y()),
+                        n2 = surface.normals.at(b.x(), b.y());
   if (n1.isZero() || n2.isZero()) return 0.f;
   const float depth = surface.smooth_depth_m.at(a.x(), a.y());
   const float step_m = 0.05f;  // thresholds go by steps of depth

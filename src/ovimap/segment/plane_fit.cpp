@@ -115,7 +115,7 @@ OVIMAP_VECTORIZE void subtract(const std::uint32_t* bottom, const std::uint32_t*
 
 /// One row of what a fit gives.
 struct FittedRow {
-  float* normals;  ///< x, y, z of each pixel
+  float *normal_x, *normal_y, *normal_z;
   float* smooth_depth_m;
   float* plane_slope;
 };
@@ -128,7 +128,9 @@ OVIMAP_VECTORIZE void solve_planes(const std::uint32_t* sums, const std::uint32_
   const float fx = camera.fx, fy = camera.fy, cx = camera.cx,
               dv = camera.cy - static_cast<float>(y);
   const auto plane = static_cast<std::size_t>(width);
-  float* __restrict normals = fitted.normals;
+  float* __restrict normal_x = fitted.normal_x;
+  float* __restrict normal_y = fitted.normal_y;
+  float* __restrict normal_z = fitted.normal_z;
   float* __restrict smooth_depth = fitted.smooth_depth_m;
   float* __restrict slopes = fitted.plane_slope;
   const auto real = [](std::uint32_t bits) {
@@ -161,7 +163,7 @@ OVIMAP_VECTORIZE void solve_planes(const std::uint32_t* sums, const std::uint32_
     const float norm = std::sqrt(nx * nx + ny * ny + nz * nz);
     const bool valid = (center_q[x] > 0.f) & (det > kFlat) & (norm > 0.f) & (c > 0.f);
     const float scale = valid ? -1.f / norm : 0.f;
-    normals[3 * x] = nx * scale, normals[3 * x + 1] = ny * scale, normals[3 * x + 2] = nz * scale;
+    normal_x[x] = nx * scale, normal_y[x] = ny * scale, normal_z[x] = nz * scale;
     smooth_depth[x] = center_q[x] > 0.f ? 1.f / (valid ? c : center_q[x]) : 0.f;
     slopes[x] = -scale * c;  // n . ray = c for the ray of this pixel
   }
@@ -212,10 +214,11 @@ class RowFitter {
       begin = end;
     }
     to_units(inverse_.row(y), width_, 1.f / unit_, center_units_.data());
-    solve_planes(sums_.row(0), center_units_.data(), inverse_.row(y), unit_, camera_,
-                 static_cast<std::uint32_t>(y), width_,
-                 {surface_.normals.row(y)->data(), surface_.smooth_depth_m.row(y),
-                  surface_.plane_slope.row(y)});
+    solve_planes(
+        sums_.row(0), center_units_.data(), inverse_.row(y), unit_, camera_,
+        static_cast<std::uint32_t>(y), width_,
+        {surface_.normals.row(0, y), surface_.normals.row(1, y), surface_.normals.row(2, y),
+         surface_.smooth_depth_m.row(y), surface_.plane_slope.row(y)});
   }
 
   const InverseDepth& inverse_;

@@ -37,19 +37,60 @@ OVIMAP_VECTORIZE void mark_breaks(const float* q0, const float* q1, const float*
   }
 }
 
-void find_row_arms(const std::uint8_t* breaks, int width, int radius, std::uint8_t* left,
-                   std::uint8_t* right) {
-  int arm = 0;
-  for (int x = 0; x < width; ++x) {
-    left[x] = static_cast<std::uint8_t>(arm);
-    arm = breaks[x] & DepthSurface::kRight ? 0 : std::min(arm + 1, radius);
-  }
-  arm = 0;
-  for (int x = width - 1; x >= 0; --x) {
-    if (x + 1 < width) arm = breaks[x] & DepthSurface::kRight ? 0 : std::min(arm + 1, radius);
-    right[x] = static_cast<std::uint8_t>(arm);
+/// Whether each pixel's surface goes on to its left and right neighbour: arms of one pixel.
+OVIMAP_VECTORIZE void find_first_arms(const std::uint8_t* breaks, int width, std::uint8_t* left,
+                                      std::uint8_t* right) {
+  left[0] = right[width - 1] = 0;
+  for (int x = 0; x + 1 < width; ++x) {
+    const bool goes_on = (breaks[x] & DepthSurface::kRight) == 0;
+    left[x + 1] = right[x] = goes_on;
   }
 }
+
+/// Arms of up to reach + more pixels from those of up to `reach`, more <= reach: where an arm is as
+/// long as it can be, that of its last pixel follows, which lies `beyond`.
+OVIMAP_VECTORIZE void lengthen_arms(const std::uint8_t* arms, const std::uint8_t* beyond,
+                                    std::uint8_t reach, std::uint8_t more, int width,
+                                    std::uint8_t* longer) {
+  OVIMAP_NO_OVERLAP
+  for (int x = 0; x < width; ++x) {
+    const std::uint8_t arm = arms[x], next = beyond[x], rest = next < more ? next : more;
+    longer[x] = static_cast<std::uint8_t>(arm + (arm == reach ? rest : 0));
+  }
+}
+
+/// Arms along rows, as long as twice the last at a time. Beyond a row's ends there are none.
+class RowArms {
+ public:
+  RowArms(int width, int radius)
+      : width_(width),
+        radius_(radius),
+        left_(static_cast<std::size_t>(width + 2 * radius)),
+        right_(left_.size()),
+        longer_(left_.size()) {}
+
+  void find(const std::uint8_t* breaks, std::uint8_t* left, std::uint8_t* right) {
+    find_first_arms(breaks, width_, left_.data() + radius_, right_.data() + radius_);
+    lengthen(left_, -1, left);
+    lengthen(right_, 1, right);
+  }
+
+ private:
+  void lengthen(std::vector<std::uint8_t>& arms, int side, std::uint8_t* result) {
+    for (int reach = 1; reach < radius_;) {
+      const int more = std::min(reach, radius_ - reach);
+      const std::uint8_t* here = arms.data() + radius_;
+      lengthen_arms(here, here + side * reach, static_cast<std::uint8_t>(reach),
+                    static_cast<std::uint8_t>(more), width_, longer_.data() + radius_);
+      std::swap(arms, longer_);
+      reach += more;
+    }
+    std::copy_n(arms.begin() + radius_, width_, result);
+  }
+
+  int width_, radius_;
+  std::vector<std::uint8_t> left_, right_, longer_;
+};
 
 /// The arm of a row's pixels from that of the row before, with the breaks between both.
 OVIMAP_VECTORIZE void extend_column_arms(const std::uint8_t* last, const std::uint8_t* breaks,
@@ -91,15 +132,17 @@ void find_breaks(const InverseDepth& inverse, const DepthSurfaceConfig& config,
                  DepthSurface& surface) {
   const int width = inverse.width();
   const auto rows = static_cast<std::size_t>(inverse.height());
-  parallel_for(rows, kPixelRowsPerTask, [&](std::size_t row) {
-    const int y = static_cast<int>(row);
-    const float* q = inverse.row(y);
-    std::uint8_t* breaks = surface.breaks.row(y);
-    mark_breaks(q - 1, q, q + 1, q + 2, width, config, DepthSurface::kRight, breaks);
-    mark_breaks(inverse.row(y - 1), q, inverse.row(y + 1), inverse.row(y + 2), width, config,
-                DepthSurface::kBelow, breaks);
-    find_row_arms(breaks, width, surface.radius_px, surface.left_px.row(y),
-                  surface.right_px.row(y));
+  parallel_for_ranges(rows, kPixelRowsPerTask, [&](std::size_t begin, std::size_t end) {
+    RowArms arms(width, surface.radius_px);
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      const float* q = inverse.row(y);
+      std::uint8_t* breaks = surface.breaks.row(y);
+      std::fill_n(breaks, width, std::uint8_t{0});
+      mark_breaks(q - 1, q, q + 1, q + 2, width, config, DepthSurface::kRight, breaks);
+      mark_breaks(inverse.row(y - 1), q, inverse.row(y + 1), inverse.row(y + 2), width, config,
+                  DepthSurface::kBelow, breaks);
+      arms.find(breaks, surface.left_px.row(y), surface.right_px.row(y));
+    }
   });
   parallel_for_ranges(rows, kPixelRowsPerTask, [&](std::size_t begin, std::size_t end) {
     find_column_arms(surface, static_cast<int>(begin), static_cast<int>(end));
