@@ -9,6 +9,7 @@ DATA = pathlib.Path(__file__).resolve().parents[1] / "src/ovimap/semantics/data"
 HEAD = "## What each piece of evidence adds"
 UNCLEAR = "object"
 TAUGHT = "all, taught what the other places' things are called"
+RELIABILITY = (0, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 1)
 WIDE = 3  # household words below a word that is called wide ("seat")
 NO_SIZE, NO_RIVALS, NO_THINGS = (["--set", f"query.evidence.{weight}=0"] for weight in ("size_weight", "competition", "thing_weight"))
 PLAIN_STRUCTURE = ["--set", "query.evidence.structure_weight=0.5", "--set", "query.evidence.most_structure_ratio=3"]  # as other things
@@ -89,6 +90,30 @@ def name_counts(titles, names):
     return counts
 
 
+def claims_of(answers, present, names):
+    """Of each answer: the probability shown for its best object, whether that is such a thing (a chair is a seat), and a
+    weight by which present and absent words count the same."""
+    absent = len(answers) - len(present)
+    for answer in answers:
+        best = answer["instances"][0]
+        name = names.get(str(best["id"]))
+        yield (best["probability"], name is not None and concepts().compatible(answer["query"], name),
+               1 / (len(present) if answer["query"] in present else absent))
+
+
+def reliability(claims):
+    """How often objects that a probability was shown for are what was asked for."""
+    text = ["", "Probabilities shown for the best object of an answer, by all evidence, present and absent words in equal parts: so often it is such a thing (a chair is a seat).", "",
+            "| probability | answers | mean | right |", "| --- | --- | --- | --- |"]
+    for low, high in zip(RELIABILITY, RELIABILITY[1:]):
+        among = [claim for claim in claims if low <= claim[0] < high or claim[0] == high == 1]
+        weight = sum(weight for _, _, weight in among)
+        if among:
+            mean, right = (sum(claim[column] * claim[2] for claim in among) / weight for column in (0, 1))
+            text.append(f"| {low:.2f} to {high:.2f} | {len(among)} | {mean:.2f} | {right:.2f} |")
+    return text
+
+
 def room_names(room):
     return json.loads((room / "labels.json").read_text())["instances"]
 
@@ -102,7 +127,7 @@ def evidence_section(query, rooms, map_of, ranks_of, words_of=(), taught=None):
             "in the room, floor, walls and ceiling too. Found: of these words, those answered \"found\" with a right object first; of all answered \"found\" among them and "
             "as many absent ones (classes of the other rooms, scaled), those that are right; absent ones answered \"found\".", "",
             "| evidence | MRR | first | found and right | right of found | absent, found |", "| --- | --- | --- | --- | --- | --- |"]
-    totals = {}
+    totals, claims = {}, []
     pieces = [(piece, lambda _, chosen=options: chosen) for piece, options in PIECES]
     for piece, options_of in [*pieces, *([(TAUGHT, taught)] if taught else [])]:
         rows = []
@@ -118,6 +143,7 @@ def evidence_section(query, rooms, map_of, ranks_of, words_of=(), taught=None):
             rows.append((sum(1 / rank for rank in ranks) / len(ranks), sum(rank == 1 for rank in ranks) / len(ranks),
                          right / len(present), right / max(1e-9, right + wrong + false), false / len(present)))
             if not options:
+                claims += claims_of(answers, set(present), names)
                 titles = {hit["id"]: hit["title"] for hit in answers[0]["instances"]}
                 for key, count in name_counts(titles, names).items():
                     totals[key] = totals.get(key, 0) + count
@@ -126,4 +152,4 @@ def evidence_section(query, rooms, map_of, ranks_of, words_of=(), taught=None):
     objects = sum(totals.values())
     text += ["", "What the viewer calls the objects of these rooms, by all evidence: " + ", ".join(
         f"{key} {count / objects:.0%}" for key, count in totals.items()) + f" of {objects}."]
-    return text
+    return text + reliability(claims)
