@@ -9,6 +9,7 @@
 #include "ovimap/map/fusion/free_tiles.h"
 #include "ovimap/map/rays/ray_cast.h"
 #include "ovimap/map/rays/surface_lookup.h"
+#include "ovimap/map/voxels/regions_in_view.h"
 
 namespace ovimap {
 
@@ -83,7 +84,7 @@ std::vector<BlockAhead> blocks_ahead(const VoxelMap& map, const Observation& obs
   const auto half_depth_m = static_cast<float>(
       camera_from_world.linear().row(2).cwiseAbs().sum() * block_m / 2 + kRounding_m);
   std::vector<BlockAhead> ahead;
-  map.for_each_region([&](const BlockRegion& region) {
+  const auto add_region = [&](const BlockRegion& region) {
     const Eigen::Vector3f center = middle(region.index, region_m);
     if (region_tiles.furthest(center, radius * kRegionBlocks) <= 0.f) return;
     for (const std::uint32_t slot : region.slots) {
@@ -92,7 +93,9 @@ std::vector<BlockAhead> blocks_ahead(const VoxelMap& map, const Observation& obs
       const float free = tiles.furthest(block, radius);
       if (free > 0.f && block.z() - half_depth_m < free) ahead.push_back({slot, free});
     }
-  });
+  };
+  for_each_region_in_view(map, observation.camera, observation.world_from_camera, tiles.most_m(),
+                          add_region);
   std::sort(ahead.begin(), ahead.end(), [&map](const BlockAhead& a, const BlockAhead& b) {
     return pack_index(map.block_index(a.slot)) < pack_index(map.block_index(b.slot));
   });

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "ovimap/map/voxels/regions_in_view.h"
+
 namespace ovimap {
 
 namespace {
@@ -32,7 +34,7 @@ TileRanges::TileRanges(const VoxelMap& map, const PinholeCamera& camera,
     return std::fabs(c.x()) <= corner * c.z() + radius * std::sqrt(1.f + corner * corner) &&
            std::fabs(c.y()) <= side * c.z() + radius * std::sqrt(1.f + side * side);
   };
-  map.for_each_region([&](const BlockRegion& blocks) {
+  const auto add_region = [&](const BlockRegion& blocks) {
     const Eigen::Vector3d center =
         (blocks.index.cast<double>() + Eigen::Vector3d::Constant(0.5)) * region;
     if (!in_view((camera_from_world * center).cast<float>(), region_radius)) return;
@@ -44,7 +46,8 @@ TileRanges::TileRanges(const VoxelMap& map, const PinholeCamera& camera,
       if (in_view(c, static_cast<float>(block) * kCubeHalfDiagonal))
         add_block(c, static_cast<float>(block) / 2);
     }
-  });
+  };
+  for_each_region_in_view(map, camera, world_from_camera, max_depth_m, add_region);
 }
 
 void TileRanges::add_block(const Eigen::Vector3f& center, float half_side) {
