@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "ovimap/geometry/camera.h"
+#include "ovimap/geometry/pose.h"
 
 namespace ovimap {
 
@@ -34,6 +35,17 @@ inline Eigen::AlignedBox2f pixels_around(const PinholeCamera& camera, const Eige
                           camera.cy + camera.fy * lowest(center.y() - radius)),
           Eigen::Vector2f(camera.cx + camera.fx * highest(center.x() + radius),
                           camera.cy + camera.fy * highest(center.y() + radius))};
+}
+
+/// A box of the world around what shows in the image up to `far_m` along the camera's axis, the
+/// camera included.
+inline Eigen::AlignedBox3d box_of_view(const PinholeCamera& camera, const Pose& world_from_camera,
+                                       float far_m) {
+  Eigen::AlignedBox3d box(world_from_camera.translation());
+  for (const float u : {0.f, static_cast<float>(camera.width - 1)})
+    for (const float v : {0.f, static_cast<float>(camera.height - 1)})
+      box.extend(world_from_camera * camera.unproject(u, v, far_m).cast<double>());
+  return box;
 }
 
 }  // namespace ovimap

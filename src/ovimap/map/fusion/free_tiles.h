@@ -138,11 +138,7 @@ class LeastTiles {
 
   /// A box of the world around the part of the view that may be free.
   Eigen::AlignedBox3d reach(const Pose& world_from_camera) const {
-    Eigen::AlignedBox3d box(world_from_camera.translation());
-    for (const float u : {0.f, static_cast<float>(camera_.width - 1)})
-      for (const float v : {0.f, static_cast<float>(camera_.height - 1)})
-        box.extend(world_from_camera * camera_.unproject(u, v, least_.most_m()).cast<double>());
-    return box;
+    return box_of_view(camera_, world_from_camera, least_.most_m());
   }
 
  private:
