@@ -9,7 +9,7 @@
 
 #include "ovimap/geometry/camera.h"
 #include "ovimap/geometry/pose.h"
-#include "ovimap/geometry/sphere_in_view.h"
+#include "ovimap/geometry/view_bounds.h"
 #include "ovimap/image/image.h"
 
 namespace ovimap {

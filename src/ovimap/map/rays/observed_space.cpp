@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "ovimap/base/config.h"
-#include "ovimap/geometry/sphere_in_view.h"
+#include "ovimap/geometry/view_bounds.h"
 #include "ovimap/map/rays/ray_cast.h"
 
 namespace ovimap {

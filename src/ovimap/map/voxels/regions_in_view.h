@@ -6,7 +6,7 @@
 
 #include "ovimap/geometry/camera.h"
 #include "ovimap/geometry/pose.h"
-#include "ovimap/geometry/sphere_in_view.h"
+#include "ovimap/geometry/view_bounds.h"
 #include "ovimap/map/voxels/voxel_map.h"
 
 namespace ovimap {

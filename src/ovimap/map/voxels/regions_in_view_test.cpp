@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ovimap/geometry/sphere_in_view.h"
+#include "ovimap/geometry/view_bounds.h"
 
 namespace ovimap {
 namespace {
