@@ -47,7 +47,7 @@ ObjectFacts describe(SavedMap& map, InstanceId id) {
   facts.height_m = shape.height_m();
   facts.footprint_m2 = area_m2(shape.footprint);
   if (map.scene().colors)
-    for (const auto& [color, share] : main_colors(map.scene().colors->shares()[position]))
+    for (const auto& [color, share] : main_colors(map.scene().colors->surfaces()[position].shares))
       facts.colors.emplace_back(color_name(color), share);
   for (const std::size_t p : map.scene().parts_of(position)) {
     const Eigen::AlignedBox3f& box = map.scene().parts->index.object(p).box;

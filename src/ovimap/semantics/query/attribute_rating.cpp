@@ -17,12 +17,19 @@ std::string with_anchor(const std::string& clause, const std::string& anchor_evi
   return anchor_evidence.empty() ? clause : clause + ", which is " + anchor_evidence;
 }
 
-void rate_color(const ColorShares& shares, Color color, AttributeRating& rating) {
+void rate_color(const SurfaceColors& surface, const ShadedColor& wanted, AttributeRating& rating) {
   constexpr float kPlain = 0.5f, kLeast = 0.05f;
-  const float share = shares[static_cast<std::size_t>(color)];
-  rating.score *= std::clamp(share / kPlain, kLeast, 1.f);
-  add_evidence(rating.evidence,
-               concat(static_cast<int>(std::lround(100.f * share)), " % ", color_name(color)));
+  const auto color = static_cast<std::size_t>(wanted.color);
+  const float share = surface.shares[color];
+  float score = std::min(share / kPlain, 1.f);
+  std::string shown =
+      concat(static_cast<int>(std::lround(100.f * share)), " % ", color_name(wanted.color));
+  if (wanted.shade) {
+    score *= shade_rating(wanted.color, surface.lightness[color], *wanted.shade);
+    shown += concat(", ", std::lround(100.f * surface.lightness[color]), " % light");
+  }
+  rating.score *= std::max(score, kLeast);
+  add_evidence(rating.evidence, shown);
 }
 
 void rate_size(const ObjectMeasures& measures, const SizeBound& size, AttributeRating& rating) {

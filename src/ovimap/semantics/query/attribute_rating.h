@@ -24,7 +24,7 @@ void add_evidence(std::string& evidence, const std::string& clause);
 std::string with_anchor(const std::string& clause, const std::string& anchor_evidence);
 
 /// Plainly of a colour is what shows it on half of its surface; on a quarter is the border.
-void rate_color(const ColorShares& shares, Color color, AttributeRating& rating);
+void rate_color(const SurfaceColors& surface, const ShadedColor& wanted, AttributeRating& rating);
 
 /// Sizes are known to some per cent: the border is the bound itself.
 void rate_size(const ObjectMeasures& measures, const SizeBound& size, AttributeRating& rating);

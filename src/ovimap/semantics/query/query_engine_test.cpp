@@ -249,6 +249,7 @@ class AttributesTest : public ::testing::Test {
       std::vector<StoredCrop> crops(index_.size(), plain_crop({235, 235, 235}));
       crops[0] = plain_crop({190, 30, 35});
       crops[1] = plain_crop({40, 80, 180});
+      crops[7] = plain_crop({25, 40, 100});
       return crops;
     });
     QueryConfig config;
@@ -284,6 +285,14 @@ TEST_F(AttributesTest, ColorsAreThoseOfTheSurface) {
   const QueryAnswer red = engine_->find({"red chair", {}});
   EXPECT_EQ(red.verdict, Verdict::kFound);
   EXPECT_NE(red.matches[0].evidence.find("% red"), std::string::npos);
+}
+
+TEST_F(AttributesTest, ShadesAreHowLightTheColorIs) {
+  const QueryAnswer dark = engine_->find({"dark blue sofa", {}});
+  EXPECT_EQ(dark.verdict, Verdict::kFound);
+  EXPECT_NE(dark.matches[0].evidence.find("% light"), std::string::npos);
+  EXPECT_EQ(engine_->find({"light blue sofa", {}}).verdict, Verdict::kNotInMap);
+  EXPECT_EQ(engine_->find({"blue sofa", {}}).verdict, Verdict::kFound);
 }
 
 TEST_F(AttributesTest, SizesAreMeasured) {

@@ -17,15 +17,17 @@ std::optional<QueryPhrase> parse_words(Words words, const QueryAbilities& can);
 
 /// Takes "red" or "dark red" off the front, where one thing follows: of "red chair, sofa" only the
 /// chair is red, which is left to the encoder.
-std::optional<Color> take_color(Words& words) {
+std::optional<ShadedColor> take_color(Words& words) {
   for (const std::string& word : words)
     if (word.front() != '"' && word.find(',') != std::string::npos) return std::nullopt;
   const bool shaded = words.size() > 2 && plays(words[0], WordRole::kShade);
   const std::size_t at = shaded ? 1 : 0;
   if (at + 1 >= words.size()) return std::nullopt;
   const std::optional<Color> color = color_of_word(lower_case(words[at]));
-  if (color) words = words.subspan(at + 1);
-  return color;
+  if (!color) return std::nullopt;
+  const auto shade = shaded ? shade_of_word(lower_case(words[0])) : std::nullopt;
+  words = words.subspan(at + 1);
+  return ShadedColor{*color, shade};
 }
 
 /// `[number] [superlative] [color] things [size] [text:"WRITING"]`, at least one thing or writing.
@@ -157,7 +159,8 @@ std::string describe(const QueryPhrase& phrase) {
   if (phrase.how_many) text += "how many ";
   if (phrase.count > 0) text += concat(phrase.count, " ");
   if (phrase.superlative) text += std::string(superlative_name(*phrase.superlative)) + " ";
-  if (phrase.color) text += concat(color_name(*phrase.color), " ");
+  if (phrase.color && phrase.color->shade) text += concat(shade_name(*phrase.color->shade), " ");
+  if (phrase.color) text += concat(color_name(phrase.color->color), " ");
   text += "[" + phrase.things + "]";
   if (phrase.size)
     text += concat(phrase.size->more ? " more" : " less", " than ", phrase.size->bound_m, " m ",

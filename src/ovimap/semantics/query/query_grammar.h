@@ -21,13 +21,19 @@ struct SizeBound {
   float bound_m = 0;
 };
 
+/// "red", "dark blue".
+struct ShadedColor {
+  Color color = Color::kBlack;
+  std::optional<Shade> shade = std::nullopt;
+};
+
 /// A query as understood: `[number] [superlative] [color] things [size] [text:"WRITING"] [[not]
 /// relation anchor [and anchor]]`. With things alone it is free text.
 struct QueryPhrase {
   bool how_many = false;  ///< "how many chairs"
   int count = 0;          ///< "two chairs"; 0: not said
   std::optional<Superlative> superlative;
-  std::optional<Color> color;
+  std::optional<ShadedColor> color;
   std::optional<SizeBound> size;
   std::string writing;    ///< what is written on it: text:"exit"; empty: not said
   std::string things;     ///< what is looked for; terms may be separated by commas

@@ -39,7 +39,9 @@ TEST(QueryGrammar, ReadsSuperlatives) {
 
 TEST(QueryGrammar, ReadsColors) {
   EXPECT_EQ(reading("red chair"), "red [chair]");
-  EXPECT_EQ(reading("the dark blue mug on the white table"), "blue [mug] on white [table]");
+  EXPECT_EQ(reading("the dark blue mug on the white table"), "dark blue [mug] on white [table]");
+  EXPECT_EQ(reading("pale green bright blue mug"), "light green [bright blue mug]");
+  EXPECT_EQ(reading("bright blue mug"), "blue [mug]");
   EXPECT_EQ(reading("gray office chair"), "grey [office chair]");
   for (const char* text :
        {"red", "dark red", "orange", "red chair, armchair", "\"white wine\" glass"})

@@ -188,7 +188,7 @@ void PhraseSearch::apply_attributes(const QueryPhrase& phrase, PhraseMatch& resu
   if (!phrase.writing.empty()) require_writing(phrase.writing);
   for (const std::size_t i : result.possible()) {
     AttributeRating rating;
-    if (colored) rate_color(scene_.colors->shares()[i], *phrase.color, rating);
+    if (colored) rate_color(scene_.colors->surfaces()[i], *phrase.color, rating);
     if (phrase.size) rate_size(scene_.shapes.measures()[i], *phrase.size, rating);
     if (!phrase.writing.empty()) rate_writing(written, scene_.writing[i], rating);
     result.score(i) *= rating.score;

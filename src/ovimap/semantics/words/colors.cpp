@@ -30,6 +30,13 @@ constexpr std::array kColorWords{
     ColorWord{"teal", Color::kTurquoise}, ColorWord{"cyan", Color::kTurquoise},
     ColorWord{"magenta", Color::kPink},   ColorWord{"cream", Color::kBeige}};
 
+struct ShadeWord {
+  std::string_view word;
+  Shade shade;
+};
+constexpr std::array kShadeWords{ShadeWord{"dark", Shade::kDark}, ShadeWord{"light", Shade::kLight},
+                                 ShadeWord{"deep", Shade::kDark}, ShadeWord{"pale", Shade::kLight}};
+
 struct FocalColor {
   Color color;
   std::uint8_t r, g, b;
@@ -52,7 +59,8 @@ constexpr std::array kFocal{
 
 constexpr float kLightnessWeight = 0.6f;
 constexpr float kNameDeviation = 0.05f;  // in OKLab: about twice what is seen at a glance
-constexpr int kMostSamples = 400;        // of one object
+constexpr float kSeenLightness = 0.5f * kNameDeviation / kLightnessWeight;  // at a glance
+constexpr int kMostSamples = 400;                                           // of one object
 constexpr float kGreyNorm = 6.f;
 constexpr float kMostTint = 1.6f;  // of the light, between channels
 constexpr float kBright = 0.75f, kLeastExposure = 0.8f, kMostExposure = 3.f;
@@ -74,6 +82,20 @@ const std::vector<Eigen::Vector3f>& focal_oklab() {
     return all;
   }();
   return points;
+}
+
+/// The lightness below which a colour is dark, and above which it is light: between the darkest and
+/// the lightest of its focal colours, with a third in the middle that is neither.
+std::pair<float, float> plain_lightness(Color color) {
+  float darkest = 1.f, lightest = 0.f;
+  for (std::size_t k = 0; k < kFocal.size(); ++k) {
+    if (kFocal[k].color != color) continue;
+    darkest = std::min(darkest, focal_oklab()[k].x());
+    lightest = std::max(lightest, focal_oklab()[k].x());
+  }
+  const float middle = (darkest + lightest) / 2.f;
+  const float half = std::max((lightest - darkest) / 6.f, kSeenLightness);
+  return {middle - half, middle + half};
 }
 
 /// Empty where the picture cannot be read: it costs one object its colours, not all of them.
@@ -129,6 +151,16 @@ std::optional<Color> color_of_word(std::string_view word) {
   return std::nullopt;
 }
 
+const char* shade_name(Shade shade) {
+  return kShadeWords[static_cast<std::size_t>(shade)].word.data();  // the first are in their order
+}
+
+std::optional<Shade> shade_of_word(std::string_view word) {
+  for (const ShadeWord& known : kShadeWords)
+    if (known.word == word) return known.shade;
+  return std::nullopt;
+}
+
 Eigen::Vector3f oklab(const Eigen::Vector3f& linear_rgb) {
   Eigen::Matrix3f cones, lab;
   cones << 0.4122214708f, 0.5363325363f, 0.0514459929f, 0.2119034982f, 0.6806995451f, 0.1073969566f,
@@ -139,8 +171,8 @@ Eigen::Vector3f oklab(const Eigen::Vector3f& linear_rgb) {
   return lab * responses.unaryExpr([](float value) { return std::cbrt(value); });
 }
 
-ColorShares name_colors(std::span<const Eigen::Vector3f> linear_rgb) {
-  ColorShares shares{};
+SurfaceColors name_colors(std::span<const Eigen::Vector3f> linear_rgb) {
+  SurfaceColors surface;
   for (const Eigen::Vector3f& pixel : linear_rgb) {
     const Eigen::Vector3f seen = oklab(pixel);
     std::array<float, kFocal.size()> distances{};
@@ -153,27 +185,38 @@ ColorShares name_colors(std::span<const Eigen::Vector3f> linear_rgb) {
     float sum = 0.f;
     for (float& distance : distances)
       sum += distance = std::exp((nearest - distance) / (2.f * kNameDeviation * kNameDeviation));
-    for (std::size_t k = 0; k < kFocal.size(); ++k)
-      shares[static_cast<std::size_t>(kFocal[k].color)] +=
-          distances[k] / sum / static_cast<float>(linear_rgb.size());
+    for (std::size_t k = 0; k < kFocal.size(); ++k) {
+      const auto color = static_cast<std::size_t>(kFocal[k].color);
+      const float share = distances[k] / sum / static_cast<float>(linear_rgb.size());
+      surface.shares[color] += share;
+      surface.lightness[color] += share * seen.x();
+    }
   }
-  return shares;
+  for (std::size_t color = 0; color < kColorCount; ++color)
+    if (surface.shares[color] > 0.f) surface.lightness[color] /= surface.shares[color];
+  return surface;
 }
 
-const std::vector<ColorShares>& ObjectColors::shares() const {
+float shade_rating(Color color, float lightness, Shade shade) {
+  const auto [dark, light] = plain_lightness(color);
+  const float beyond = shade == Shade::kLight ? lightness - light : dark - lightness;
+  return 1.f / (1.f + std::exp(-beyond / kSeenLightness));
+}
+
+const std::vector<SurfaceColors>& ObjectColors::surfaces() const {
   std::call_once(once_, [&] {
     const std::vector<StoredCrop> crops = crops_();
     std::vector<std::vector<Eigen::Vector3f>> samples(crops.size());
     parallel_for(crops.size(), kCropsPerTask,
                  [&](std::size_t i) { samples[i] = samples_of(crops[i]); });
     const Eigen::Array3f gain = light_gain(samples);
-    shares_.resize(crops.size());
+    surfaces_.resize(crops.size());
     parallel_for(crops.size(), kCropsPerTask, [&](std::size_t i) {
       for (Eigen::Vector3f& sample : samples[i]) sample = (sample.array() * gain).min(1.f).matrix();
-      shares_[i] = name_colors(samples[i]);
+      surfaces_[i] = name_colors(samples[i]);
     });
   });
-  return shares_;
+  return surfaces_;
 }
 
 }  // namespace ovimap

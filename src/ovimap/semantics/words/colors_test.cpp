@@ -30,7 +30,8 @@ StoredCrop patch(Rgb8 color, float red_light = 1.f, float blue_light = 1.f) {
   return store_crop(crop, config);
 }
 
-std::string main_color(const ColorShares& shares) {
+std::string main_color(const SurfaceColors& surface) {
+  const ColorShares& shares = surface.shares;
   const auto best = std::max_element(shares.begin(), shares.end());
   return *best > 0.f ? color_name(static_cast<Color>(best - shares.begin())) : "";
 }
@@ -48,8 +49,8 @@ TEST(ObjectColors, NamesPlainColors) {
     return crops;
   });
   for (std::size_t i = 0; i < kPatches.size(); ++i)
-    EXPECT_EQ(main_color(colors.shares()[i]), kPatches[i].first);
-  EXPECT_EQ(main_color(colors.shares().back()), "");
+    EXPECT_EQ(main_color(colors.surfaces()[i]), kPatches[i].first);
+  EXPECT_EQ(main_color(colors.surfaces().back()), "");
 }
 
 TEST(ObjectColors, ADamagedPictureCostsItsOwnObjectAlone) {
@@ -61,8 +62,8 @@ TEST(ObjectColors, ADamagedPictureCostsItsOwnObjectAlone) {
     return crops;
   });
   for (std::size_t i = 0; i < kPatches.size(); ++i)
-    EXPECT_EQ(main_color(colors.shares()[i]), kPatches[i].first);
-  EXPECT_EQ(main_color(colors.shares().back()), "");
+    EXPECT_EQ(main_color(colors.surfaces()[i]), kPatches[i].first);
+  EXPECT_EQ(main_color(colors.surfaces().back()), "");
 }
 
 TEST(ObjectColors, TakesWarmLightOut) {
@@ -72,9 +73,50 @@ TEST(ObjectColors, TakesWarmLightOut) {
     return all;
   };
   const ObjectColors colors([&] { return crops(1.f, 0.8f); });
-  EXPECT_EQ(main_color(colors.shares()[4]), "white");
-  EXPECT_EQ(main_color(colors.shares()[6]), "grey");
-  EXPECT_EQ(main_color(colors.shares()[2]), "blue");
+  EXPECT_EQ(main_color(colors.surfaces()[4]), "white");
+  EXPECT_EQ(main_color(colors.surfaces()[6]), "grey");
+  EXPECT_EQ(main_color(colors.surfaces()[2]), "blue");
+}
+
+TEST(ObjectColors, KnowsShadesOfAColor) {
+  const std::vector<std::pair<Color, Rgb8>> dark{{Color::kBlue, {25, 40, 100}},
+                                                 {Color::kGreen, {25, 75, 35}},
+                                                 {Color::kRed, {120, 20, 28}},
+                                                 {Color::kGrey, {90, 90, 92}}};
+  const std::vector<std::pair<Color, Rgb8>> light{{Color::kBlue, {120, 180, 235}},
+                                                  {Color::kGreen, {140, 200, 110}},
+                                                  {Color::kPurple, {165, 120, 215}},
+                                                  {Color::kGrey, {185, 185, 187}}};
+  const ObjectColors colors([&] {
+    std::vector<StoredCrop> crops;
+    for (const auto& [color, shown] : dark) crops.push_back(patch(shown));
+    for (const auto& [color, shown] : light) crops.push_back(patch(shown));
+    crops.push_back(patch({60, 115, 215}));   // neither
+    crops.push_back(patch({250, 250, 250}));  // what the light is told by
+    return crops;
+  });
+  const auto rated = [&](std::size_t i, Color color, Shade shade) {
+    return shade_rating(color, colors.surfaces()[i].lightness[static_cast<std::size_t>(color)],
+                        shade);
+  };
+  for (std::size_t i = 0; i < dark.size(); ++i) {
+    EXPECT_GT(rated(i, dark[i].first, Shade::kDark), 0.5f) << i;
+    EXPECT_LT(rated(i, dark[i].first, Shade::kLight), 0.2f) << i;
+  }
+  for (std::size_t i = 0; i < light.size(); ++i) {
+    EXPECT_GT(rated(dark.size() + i, light[i].first, Shade::kLight), 0.5f) << i;
+    EXPECT_LT(rated(dark.size() + i, light[i].first, Shade::kDark), 0.2f) << i;
+  }
+  EXPECT_LT(rated(8, Color::kBlue, Shade::kDark), 0.5f);
+  EXPECT_LT(rated(8, Color::kBlue, Shade::kLight), 0.5f);
+}
+
+TEST(ShadeOfWord, KnowsSynonyms) {
+  EXPECT_EQ(shade_of_word("deep"), Shade::kDark);
+  EXPECT_EQ(shade_of_word("pale"), Shade::kLight);
+  EXPECT_FALSE(shade_of_word("bright"));
+  for (const Shade shade : {Shade::kDark, Shade::kLight})
+    EXPECT_EQ(shade_of_word(shade_name(shade)), shade);
 }
 
 TEST(Oklab, HasLightnessOneForWhiteAndNoHueForGrey) {

@@ -124,8 +124,8 @@ json instance_json(const MapSnapshot& now, const HistoryDates& dates, std::size_
 
 json colors_json(const QueryScene& scene, std::size_t position) {
   json list = json::array();
-  if (!scene.colors || position >= scene.colors->shares().size()) return list;
-  for (const auto& [color, share] : main_colors(scene.colors->shares()[position]))
+  if (!scene.colors || position >= scene.colors->surfaces().size()) return list;
+  for (const auto& [color, share] : main_colors(scene.colors->surfaces()[position].shares))
     list.push_back({{"name", color_name(color)}, {"share", rounded_json(share)}});
   return list;
 }

@@ -194,7 +194,7 @@ void ServedMap::prepare_search() {
     }
     // Who asks for "red" first shall not wait for the colours of all objects.
     const auto ready = snapshot();
-    if (!ready->live && ready->objects->scene.colors) ready->objects->scene.colors->shares();
+    if (!ready->live && ready->objects->scene.colors) ready->objects->scene.colors->surfaces();
   } catch (const std::exception& error) {
     const std::lock_guard lock(changing_);
     if (encoder_) return;  // only names are lacking
