@@ -305,6 +305,17 @@ const std::vector<Label>& InstanceRegistry::super_points_of(InstanceId id) const
   return found == members_.end() ? kNone : found->second;
 }
 
+bool InstanceRegistry::seen_in(InstanceId id, int frames) const {
+  FrameRuns seen;
+  for (const Label label : super_points_of(id)) {
+    const auto found = super_points_.find(label);
+    if (found == super_points_.end()) continue;
+    if (found->second.seen.count() >= frames) return true;
+    seen |= found->second.seen;
+  }
+  return seen.count() >= frames;
+}
+
 InstanceId InstanceRegistry::instance_of(Label root) const {
   const auto found = super_points_.find(root);
   if (found == super_points_.end()) return 0;

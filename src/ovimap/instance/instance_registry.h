@@ -96,6 +96,9 @@ class InstanceRegistry {
   InstanceRecord record(InstanceId id) const {
     return record_of(super_points_, super_points_of(id));
   }
+  /// Whether at least so many frames showed it, record(id).views; mostly the first super-point that
+  /// is asked tells.
+  bool seen_in(InstanceId id, int frames) const;
 
   const std::map<Label, SuperPoint>& super_points() const { return super_points_; }
   /// Super-points by the instance they are now.

@@ -105,6 +105,9 @@ TEST_F(RegistryTest, APartThatLeavesTakesItsOwnRecordAlong) {
   ASSERT_EQ(registry.instance_of(2), older);
   EXPECT_EQ(registry.super_points_of(older), (std::vector<Label>{1, 2}));
   EXPECT_EQ(registry.record(older).views, 3);
+  EXPECT_TRUE(registry.seen_in(older, 3)) << "by both its super-points, by neither alone";
+  EXPECT_FALSE(registry.seen_in(older, 4));
+  EXPECT_TRUE(registry.seen_in(older, 0));
   EXPECT_EQ(registry.record(older).last_frame, 2);
   for (int i = 0; i < 3; ++i) see(registry, {{2, 6, 400}, {1, 5, 500}});  // apart after all
   const InstanceId younger = registry.instance_of(2);

@@ -135,7 +135,7 @@ std::vector<ViewSelector::Candidate> ViewSelector::find_candidates(const SeenObj
     object.known = appearance_of(looks, super_points);
     return object.depth_px <
                (object.known.offered > 0 ? config_.min_depth_px : config_.min_first_depth_px) ||
-           super_points.empty() || registry.record(object.id).views < config_.min_frames_seen;
+           super_points.empty() || !registry.seen_in(object.id, config_.min_frames_seen);
   });
   std::sort(objects.begin(), objects.end(),
             [](const Candidate& a, const Candidate& b) { return a.id < b.id; });
