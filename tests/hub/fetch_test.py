@@ -208,6 +208,23 @@ class WhatIsFetched(Fetches):
         self.assertIn("not tried here", rows[0])
 
 
+class Hints(Fetches):
+    """Whoever has the small default encoder alone is told of a better one, by the demo only where it could be fetched."""
+
+    def demo(self, hub):
+        done = subprocess.run([PROGRAM, "demo", "shown", "--masks", "gt"], capture_output=True, text=True, cwd=self.scratch,
+                              timeout=300, env=self.environment(HF_ENDPOINT=hub))
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn("words go by the small default encoder; a better one: ovimap models fetch siglip-base-224", done.stderr)
+        return done.stdout.splitlines()
+
+    def test_the_demo_says_how_to_get_better_words(self):
+        self.assertRegex(self.demo(self.hub.address)[-1], r"^Better +words: ovimap models fetch siglip-base-224")
+
+    def test_the_demo_names_nothing_that_cannot_be_fetched(self):
+        self.assertFalse([line for line in self.demo("http://127.0.0.1:9") if line.startswith("Better")])
+
+
 class Transfers(Fetches):
     def test_a_broken_transfer_is_gone_on_with(self):
         self.hub.faults.where, self.hub.faults.cut_after = NETWORK, [30000, 40000]
