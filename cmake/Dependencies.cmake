@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
-# Every dependency is found here and nowhere else. System packages first (tools/debian-packages.txt);
-# ONNX Runtime may also live in .deps/onnxruntime, where tools/setup.sh puts it.
+# Every dependency is found here and nowhere else: system packages (tools/debian-packages.txt), and ONNX Runtime where
+# tools/setup.sh put it, .deps/onnxruntime, or else of the system.
 find_package(PkgConfig REQUIRED)
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
@@ -28,9 +28,9 @@ pkg_check_modules(SENTENCEPIECE REQUIRED IMPORTED_TARGET sentencepiece)
 pkg_check_modules(UTF8PROC REQUIRED IMPORTED_TARGET libutf8proc)
 
 find_path(ONNXRUNTIME_INCLUDE_DIR onnxruntime_cxx_api.h
-  PATHS "${PROJECT_SOURCE_DIR}/.deps/onnxruntime/include"
+  HINTS "${PROJECT_SOURCE_DIR}/.deps/onnxruntime/include"
   PATH_SUFFIXES onnxruntime onnxruntime/core/session)
-find_library(ONNXRUNTIME_LIBRARY onnxruntime PATHS "${PROJECT_SOURCE_DIR}/.deps/onnxruntime/lib")
+find_library(ONNXRUNTIME_LIBRARY onnxruntime HINTS "${PROJECT_SOURCE_DIR}/.deps/onnxruntime/lib")
 if(NOT ONNXRUNTIME_INCLUDE_DIR OR NOT ONNXRUNTIME_LIBRARY)
   message(FATAL_ERROR "ONNX Runtime was not found. Run tools/setup.sh, or set "
     "ONNXRUNTIME_INCLUDE_DIR and ONNXRUNTIME_LIBRARY.")

