@@ -43,14 +43,14 @@ class Steps {
 
   std::int64_t size() const { return source_->size(); }
 
-  /// Readies a frame, outside all timing, and writes it for the other side.
-  void load(std::int64_t position) {
+  /// Readies a frame and writes it for the other side; what its depth segmentation took.
+  double load(std::int64_t position) {
     FrameRead read = source_->read(position);
     if (!read.frame) throw Error(read.fault);
-    StageTimers ignored;
+    StageTimers timers;
     frame_ = std::make_unique<PreparedFrame>(
-        prepare_frame(std::make_shared<const Frame>(std::move(*read.frame)), config_, ignored));
-    cut_ = *cut_segments(*frame_, nullptr, config_, ignored);
+        prepare_frame(std::make_shared<const Frame>(std::move(*read.frame)), config_, timers));
+    cut_ = *cut_segments(*frame_, nullptr, config_, timers);
     const Frame& frame = *frame_->frame;
     write_raw(folder_ / "depth", frame.depth.data(), frame.depth.size());
     write_raw(folder_ / "color", frame_->color.data(), frame_->color.size());
@@ -59,6 +59,8 @@ class Steps {
     const PinholeCamera& c = frame.depth_camera;
     const double camera[] = {double(c.width), double(c.height), c.fx, c.fy, c.cx, c.cy};
     write_raw(folder_ / "camera", camera, 6);
+    const auto stages = timers.summary();
+    return stages.at("surface").total_ms + stages.at("regions").total_ms;
   }
 
   /// Association by votes, then fusion of distance, colour and labels.
@@ -118,7 +120,7 @@ int serve(Steps& steps) {
     std::string command, argument;
     words >> command >> argument;
     double answer = 0;
-    if (command == "load") steps.load(std::stoll(argument));
+    if (command == "load") answer = steps.load(std::stoll(argument));
     if (command == "fuse") answer = steps.fuse();
     if (command == "guided") answer = steps.cast_guided();
     if (command == "cast") answer = steps.cast_all();

@@ -71,12 +71,12 @@ def surface_gap(mesh, other):
 
 
 def measure(program, recording, frames):
-    times = {name: [] for name in ("ours_fuse", "ours_guided", "ours_cast", "theirs_fuse", "theirs_cast")}
+    times = {name: [] for name in ("ours_segment", "ours_fuse", "ours_guided", "ours_cast", "theirs_fuse", "theirs_cast")}
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         ours, theirs = Ours(program, recording, folder), Theirs()
         for position in range(min(frames, ours.frames)):
-            ours.do("load", position)
+            times["ours_segment"].append(ours.do("load", position))
             theirs.load(ours)
             times["ours_fuse"].append(ours.do("fuse"))
             times["theirs_fuse"].append(theirs.fuse())

@@ -192,8 +192,8 @@ OnnxSession::OnnxSession(const std::filesystem::path& file, const RuntimeConfig&
     throw Error(concat("network file ", file.string(), " does not exist; fetch the model again"));
   try {
     Ort::Env& env = runtime();  // before the options, which log
-    impl_ = std::make_unique<Impl>(
-        Impl{Ort::Session(env, file.c_str(), session_options(config, use))});
+    impl_ =
+        std::make_unique<Impl>(Impl{Ort::Session(env, file.c_str(), session_options(config, use))});
     const Ort::AllocatorWithDefaultOptions allocator;
     for (std::size_t i = 0; i < impl_->session.GetInputCount(); ++i)
       inputs_.push_back(to_info(impl_->session.GetInputNameAllocated(i, allocator).get(),
