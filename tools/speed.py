@@ -14,7 +14,7 @@ import statistics
 import subprocess
 import tempfile
 
-CORRIDOR_FRAMES = 10000
+CORRIDOR_FRAMES, CORRIDOR_MEMORY = 10000, "150M"
 RIVALS = pathlib.Path("build/rivals")
 TARGET_FUSE_MS, TARGET_CAST_MS = 22, 73  # Open3D's, where the targets were set
 
@@ -158,8 +158,17 @@ def stage_ratio(walk, name):
     return last / first
 
 
+def walk_corridor(program, *options):
+    return run_json(program, "bench", "--corridor", CORRIDOR_FRAMES, "--masks", "gt", *options)
+
+
+def growth_line(name, walk):
+    return f"- {name}: {walk['growth']:.2f} times, {walk['parts'][0]['cpu_ms']:.1f} ms of processor time a frame at first, {walk['parts'][-1]['cpu_ms']:.1f} at the end; peak memory {walk['peak_rss_mb']:.0f} MB"
+
+
 def corridor_lines(program):
-    walks = sorted((run_json(program, "bench", "--corridor", CORRIDOR_FRAMES, "--masks", "gt") for _ in range(3)), key=lambda walk: walk["growth"])
+    walks = sorted((walk_corridor(program) for _ in range(3)), key=lambda walk: walk["growth"])
+    tracked, bound = walk_corridor(program, "--track"), walk_corridor(program, "--max-memory", CORRIDOR_MEMORY)
     walk = walks[1]
     first, last = walk["parts"][0], walk["parts"][-1]
     touched = last["blocks_touched"] / first["blocks_touched"]
@@ -172,7 +181,9 @@ def corridor_lines(program):
         frame = part["stages"]["frame"]
         lines.append(f"| {part['frames']} | {frame['p50_ms']:.2f} | {frame['p95_ms']:.2f} | {part['cpu_ms']:.2f} | {part['stages']['projection']['p50_ms']:.2f} "
                      f"| {part['blocks_touched']:.0f} | {part['map_mb']:.0f} | {part['surface_m2']:.0f} | {part['objects']} |")
-    lines += ["", "A frame's stages, milliseconds by the clock (`masks` computes the true ones), of the walk in the middle; the ratio is the median of the three walks.", "",
+    lines += ["", "The same, one walk each:", "", growth_line(f"poses found (`--track`; lost in {tracked['frames_lost']} frames)", tracked),
+              growth_line(f"`--max-memory {CORRIDOR_MEMORY}`", bound),
+              "", "A frame's stages, milliseconds by the clock (`masks` computes the true ones), of the walk in the middle; the ratio is the median of the three walks.", "",
               "| stage | first tenth | last tenth | ratio |", "| --- | --- | --- | --- |"]
     per_frame = CORRIDOR_FRAMES / len(walk["parts"])
     for name, stage in first["stages"].items():
