@@ -82,10 +82,24 @@ void append_provider(Ort::SessionOptions& options, ExecutionProvider provider) {
   }
 }
 
+/// One arena for all networks: each of its own would keep what its largest run ever took.
+void share_memory(Ort::Env& env) {
+  const auto memory = Ort::MemoryInfo::CreateCpu(OrtArenaAllocator, OrtMemTypeDefault);
+  try {
+    env.CreateAndRegisterAllocator(memory, Ort::ArenaCfg(0, -1, -1, -1));
+  } catch (const Ort::Exception&) {
+    // Somebody else in this process registered one, which serves as well.
+  }
+}
+
 Ort::Env& runtime() {
   // The runtime allows one environment a process; warnings would go to stderr, which is the
   // caller's.
-  static Ort::Env env(ORT_LOGGING_LEVEL_FATAL, "ovimap");
+  static Ort::Env env = [] {
+    Ort::Env made(ORT_LOGGING_LEVEL_FATAL, "ovimap");
+    share_memory(made);
+    return made;
+  }();
   return env;
 }
 
@@ -114,6 +128,7 @@ Ort::SessionOptions session_options(const RuntimeConfig& config, SessionUse use)
   options.SetExecutionMode(ORT_SEQUENTIAL);
   options.SetGraphOptimizationLevel(ORT_ENABLE_ALL);
   options.AddConfigEntry("session.intra_op.allow_spinning", config.spin ? "1" : "0");
+  options.AddConfigEntry(kOrtSessionOptionsConfigUseEnvAllocators, "1");
   if (use == SessionUse::kFewRuns)
     options.AddConfigEntry(kOrtSessionOptionsDisableSpecifiedOptimizers, "ConstantFolding");
   start_provider(options, config.execution_provider);
