@@ -127,7 +127,9 @@ def open3d_lines(open3d):
     return [f"Beside Open3D {open3d['open3d']} (VoxelBlockGrid on the same frames, frame by frame in turn, medians of {open3d['frames']}): "
             f"association and fusion {open3d['ours_fuse']:.1f} ms against {open3d['theirs_fuse']:.1f} ms, which knows no labels; "
             f"ray cast {open3d['ours_cast']:.1f} ms (guided by depth {open3d['ours_guided']:.1f} ms) against {open3d['theirs_cast']:.1f} ms. "
-            f"The two surfaces lie {open3d['gap_median_mm']:.1f} mm apart in the median, {open3d['gap_p95_mm']:.1f} mm at 95 %.", "",
+            f"The two surfaces lie {open3d['gap_median_mm']:.1f} mm apart in the median, {open3d['gap_p95_mm']:.1f} mm at 95 %. "
+            f"OpenCV {open3d['opencv']} in the same turns (`cv2.Volume` of kind HashTSDF, distances alone, neither colour nor labels): fusion {open3d['opencv_fuse']:.1f} ms, ray cast {open3d['opencv_cast']:.1f} ms, "
+            f"which lies {open3d['opencv_error_mm']:.1f} mm from the depth images in the median.", "",
             f"The targets in milliseconds were set for a machine on which Open3D took {TARGET_FUSE_MS} ms to allocate and integrate and "
             f"{TARGET_CAST_MS} ms to cast rays. This one took {open3d['theirs_fuse'] / TARGET_FUSE_MS:.2f} and "
             f"{open3d['theirs_cast'] / TARGET_CAST_MS:.2f} times as long. The column 'scaled' divides times by the geometric mean of both, "

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The ovimap authors
 # SPDX-License-Identifier: Apache-2.0
-"""Open3D's VoxelBlockGrid against ovimap's map: the same frames, voxel size and truncation, frame by frame in turn.
+"""Open3D's VoxelBlockGrid and OpenCV's HashTSDF against ovimap's map: the same frames, voxel size and truncation, frame by frame in turn.
 
 Usage: open3d_fusion.py FUSION_STEPS RECORDING [--frames N] [--json]
-Needs open3d and numpy. Prints medians and ratios, and how far apart both surfaces are: speed counts only when they
+Needs open3d, cv2 and numpy. Prints medians and ratios, and how far apart both surfaces are: speed counts only when they
 are the same surface.
 """
 import argparse
@@ -17,6 +17,7 @@ import time
 import numpy
 import open3d
 import open3d.core as core
+from opencv_fusion import OpenCv
 from ours import MAX_RANGE_M, Ours
 
 VOXEL_M, TRUNCATION_VOXELS = 0.01, 5.0
@@ -71,17 +72,20 @@ def surface_gap(mesh, other):
 
 
 def measure(program, recording, frames):
-    times = {name: [] for name in ("ours_segment", "ours_fuse", "ours_guided", "ours_cast", "theirs_fuse", "theirs_cast")}
+    times = {name: [] for name in ("ours_segment", "ours_fuse", "ours_guided", "ours_cast", "theirs_fuse", "theirs_cast", "opencv_fuse", "opencv_cast")}
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
-        ours, theirs = Ours(program, recording, folder), Theirs()
+        ours, theirs, opencv = Ours(program, recording, folder), Theirs(), OpenCv(VOXEL_M, TRUNCATION_VOXELS)
         for position in range(min(frames, ours.frames)):
             times["ours_segment"].append(ours.do("load", position))
             theirs.load(ours)
+            opencv.load(ours)
             times["ours_fuse"].append(ours.do("fuse"))
             times["theirs_fuse"].append(theirs.fuse())
+            times["opencv_fuse"].append(opencv.fuse())
             times["ours_cast"].append(ours.do("cast"))
             times["theirs_cast"].append(theirs.cast())
+            times["opencv_cast"].append(opencv.cast())
             times["ours_guided"].append(ours.do("guided"))
         mesh_file = folder / "mesh.ply"
         ours.do("mesh", mesh_file)
@@ -94,7 +98,8 @@ def measure(program, recording, frames):
                    "cast_ratio": result["ours_cast"] / result["theirs_cast"],
                    "guided_ratio": result["ours_guided"] / result["theirs_cast"],
                    "gap_median_mm": 1e3 * max(gap[0] for gap in gaps), "gap_p95_mm": 1e3 * max(gap[1] for gap in gaps),
-                   "frames": len(times["ours_fuse"]), "open3d": open3d.__version__})
+                   "frames": len(times["ours_fuse"]), "open3d": open3d.__version__,
+                   "opencv": OpenCv.VERSION, "opencv_error_mm": statistics.median(opencv.errors_mm)})
     return result
 
 
@@ -113,6 +118,8 @@ def main():
     print(f"fuse     ours {result['ours_fuse']:.1f}, theirs {result['theirs_fuse']:.1f}: {result['fuse_ratio']:.2f}x")
     print(f"ray cast ours {result['ours_cast']:.1f}, theirs {result['theirs_cast']:.1f}: {result['cast_ratio']:.2f}x")
     print(f"  guided ours {result['ours_guided']:.1f}: {result['guided_ratio']:.2f}x")
+    print(f"OpenCV {result['opencv']}: fuse {result['opencv_fuse']:.1f}, ray cast {result['opencv_cast']:.1f}, "
+          f"{result['opencv_error_mm']:.1f} mm from the depth images in the median")
     print(f"surfaces apart: median {result['gap_median_mm']:.1f} mm, 95 % {result['gap_p95_mm']:.1f} mm")
 
 
