@@ -20,12 +20,13 @@ std::optional<QueryPhrase> parse_words(Words words, const QueryAbilities& can);
 std::optional<ShadedColor> take_color(Words& words) {
   for (const std::string& word : words)
     if (word.front() != '"' && word.find(',') != std::string::npos) return std::nullopt;
-  const bool shaded = words.size() > 2 && plays(words[0], WordRole::kShade);
-  const std::size_t at = shaded ? 1 : 0;
+  std::optional<Shade> shade;
+  if (words.size() > 2) shade = shade_of_word(lower_case(words[0]));
+  const bool strong = words.size() > 2 && plays(words[0], WordRole::kStrength);
+  const std::size_t at = shade || strong ? 1 : 0;
   if (at + 1 >= words.size()) return std::nullopt;
   const std::optional<Color> color = color_of_word(lower_case(words[at]));
   if (!color) return std::nullopt;
-  const auto shade = shaded ? shade_of_word(lower_case(words[0])) : std::nullopt;
   words = words.subspan(at + 1);
   return ShadedColor{*color, shade};
 }

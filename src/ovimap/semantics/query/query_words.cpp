@@ -119,7 +119,8 @@ constexpr std::array kLengthUnits{
 constexpr std::array<std::string_view, 9> kNumbers{"two",   "three", "four", "five", "six",
                                                    "seven", "eight", "nine", "ten"};
 constexpr int kFirstNumber = 2, kMostCount = 1000;
-constexpr std::array<std::string_view, 5> kShades{"dark", "light", "bright", "pale", "deep"};
+// Before a colour, beside its shades: how strong or how light it is.
+constexpr std::array<std::string_view, 1> kStrengths{"bright"};
 // What may follow the thing in "how many chairs are there in the room".
 constexpr std::array<std::string_view, 5> kCountFillers{"are", "is", "there", "here", "visible"};
 
@@ -168,8 +169,8 @@ bool plays(const std::string& word, WordRole role) {
       return is_one_of(lower, kFillers);
     case WordRole::kPair:
       return is_one_of(lower, kPair);
-    case WordRole::kShade:
-      return is_one_of(lower, kShades);
+    case WordRole::kStrength:
+      return is_one_of(lower, kStrengths);
     case WordRole::kCountFiller:
       return is_one_of(lower, kCountFillers);
   }

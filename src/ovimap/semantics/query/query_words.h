@@ -20,7 +20,7 @@ std::vector<std::string> words_of(std::string_view text);
 std::string joined(Words words);
 
 /// What words mean to the grammar, in any case of letters.
-enum class WordRole { kArticle, kAnything, kFiller, kPair, kShade, kCountFiller };
+enum class WordRole { kArticle, kAnything, kFiller, kPair, kStrength, kCountFiller };
 bool plays(const std::string& word, WordRole role);
 
 Words without_articles(Words words);
