@@ -82,11 +82,16 @@ void append_provider(Ort::SessionOptions& options, ExecutionProvider provider) {
   }
 }
 
+const Ort::MemoryInfo& arena_memory() {
+  static const Ort::MemoryInfo memory =
+      Ort::MemoryInfo::CreateCpu(OrtArenaAllocator, OrtMemTypeDefault);
+  return memory;
+}
+
 /// One arena for all networks: each of its own would keep what its largest run ever took.
 void share_memory(Ort::Env& env) {
-  const auto memory = Ort::MemoryInfo::CreateCpu(OrtArenaAllocator, OrtMemTypeDefault);
   try {
-    env.CreateAndRegisterAllocator(memory, Ort::ArenaCfg(0, -1, -1, -1));
+    env.CreateAndRegisterAllocator(arena_memory(), Ort::ArenaCfg(0, -1, -1, -1));
   } catch (const Ort::Exception&) {
     // Somebody else in this process registered one, which serves as well.
   }
@@ -155,15 +160,13 @@ TensorInfo to_info(std::string name, const Ort::TypeInfo& type) {
 }
 
 Ort::Value to_value(const TensorInput& input) {
-  static const Ort::MemoryInfo memory =
-      Ort::MemoryInfo::CreateCpu(OrtArenaAllocator, OrtMemTypeDefault);
   return std::visit(
       [&input](auto values) {
         using Element = std::remove_const_t<typename decltype(values)::element_type>;
         // The runtime takes a mutable pointer but only reads inputs.
-        return Ort::Value::CreateTensor<Element>(memory, const_cast<Element*>(values.data()),
-                                                 values.size(), input.shape.data(),
-                                                 input.shape.size());
+        return Ort::Value::CreateTensor<Element>(arena_memory(),
+                                                 const_cast<Element*>(values.data()), values.size(),
+                                                 input.shape.data(), input.shape.size());
       },
       input.values);
 }
