@@ -245,6 +245,10 @@ TEST_F(ProgramTest, MeasuresWhatATenthOfACorridorCosts) {
   EXPECT_GT(walk["parts"][9]["blocks_touched"], 0);
   EXPECT_GT(walk["parts"][9]["stages"]["registry"]["total_ms"], 0);
   EXPECT_EQ(walk["frames_lost"], 0);
+  const auto twice = run_json("bench --corridor 20 --masks gt --again --json");
+  ASSERT_EQ(twice["again"]["parts"].size(), 10u);
+  EXPECT_EQ(twice["again"]["parts"][9]["surface_m2"], twice["again"]["parts"][0]["surface_m2"]);
+  expect_complaint("bench recording --again", {"--again", "--corridor"});
   EXPECT_EQ(run_json("bench --corridor 20 --track --max-memory 16M --json")["parts"].size(), 10u);
 }
 

@@ -23,6 +23,7 @@ struct BenchOptions {
   MappingOptions mapping;
   int project_every = 5;
   int corridor = 0;    ///< frames; 0: measure SOURCE
+  bool again = false;  ///< walk it once more
   bool track = false;  ///< find the poses instead of taking the recording's
   bool json = false;
 };
@@ -127,7 +128,8 @@ int bench(const BenchOptions& options) {
         "name a SOURCE to measure, or --corridor N (where the program was built with rooms)");
 #ifdef OVIMAP_SYNTH
   if (options.corridor > 0)
-    return bench_corridor(options.corridor, config, options.mapping, options.track, options.json);
+    return bench_corridor({options.corridor, options.again, options.track, options.json}, config,
+                          options.mapping);
 #endif
   config.masks.runtime.threads = network_threads(config, options.mapping);
   if (options.track) config.source.poses = PoseNeed::kNone;
@@ -210,11 +212,16 @@ Action add_bench(CLI::App& command) {
   command.add_flag("--track", options->track, "find the poses as well, as run --poses track does");
   add_max_memory(command, options->mapping);
 #ifdef OVIMAP_SYNTH
+  auto* corridor = command
+                       .add_option("--corridor", options->corridor,
+                                   "walk N frames down a generated corridor instead, with 4 cm "
+                                   "voxels: does mapping slow down?")
+                       ->check(CLI::Range(10, 1000000));
   command
-      .add_option("--corridor", options->corridor,
-                  "walk N frames down a generated corridor instead, with 4 cm voxels: "
-                  "does mapping slow down?")
-      ->check(CLI::Range(10, 1000000));
+      .add_flag("--again", options->again, "... and once more, as another visit of the same map")
+      ->needs(corridor)
+      ->excludes("--track")
+      ->excludes("--max-memory");
 #endif
   command.add_flag("--json", options->json, "print one JSON object");
   return [options] { return bench(*options); };

@@ -11,9 +11,16 @@ namespace ovimap::apps {
 /// when there is no bound.
 std::unique_ptr<Checkpointer> bound_memory(const MemoryConfig& memory);
 
+struct CorridorBench {
+  int frames;
+  bool again;  ///< walk it once more, as another visit of the map
+  bool track;  ///< poses are found
+  bool json;
+};
+
 /// Walks down a generated corridor with voxels of 4 cm, and reports for every tenth of the frames
-/// what one costs, stage by stage, and how large the map is. `track`: poses are found.
-int bench_corridor(int frames, ProgramConfig config, const MappingOptions& options, bool track,
-                   bool json);
+/// what one costs, stage by stage, and how large the map is.
+int bench_corridor(const CorridorBench& wanted, ProgramConfig config,
+                   const MappingOptions& options);
 
 }  // namespace ovimap::apps

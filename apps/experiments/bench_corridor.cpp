@@ -5,7 +5,9 @@
 #include <utility>
 
 #include "bench.h"
-#include "ovimap/pipeline/sequence/pose_finder.h"
+#include "ovimap/map/fusion/past_evidence.h"
+#include "ovimap/pipeline/revise/visit_history.h"
+#include "ovimap/pipeline/sequence/sequence_run.h"
 #include "ovimap/synth/recordings/corridor.h"
 
 namespace ovimap::apps {
@@ -26,11 +28,7 @@ struct CorridorRow {
   std::size_t blocks, objects;
 };
 
-struct CorridorWalk {
-  std::vector<CorridorRow> rows;
-  StageTimers tiles;      ///< what leaving memory and coming back took
-  std::int64_t lost = 0;  ///< frames whose pose was not found
-};
+using CorridorRows = std::vector<CorridorRow>;
 
 /// Square metres of observed surface, by its voxels.
 double surface_m2(const VoxelMap& map) {
@@ -52,31 +50,53 @@ class CorridorWalker {
   CorridorWalker(const CorridorSource& corridor, const ProgramConfig& config,
                  std::shared_ptr<MaskSource> masks, bool track)
       : corridor_(corridor),
-        mapper_(config.mapper, std::move(masks)),
+        config_(config),
+        masks_(std::move(masks)),
+        mapper_(config.mapper, masks_),
         checkpoints_(bound_memory(config.memory)) {
     if (track) finder_.emplace(Tracker(config.track), config.loops);
   }
 
-  CorridorWalk walk() {
+  CorridorRows walk() {
     Progress progress("walking");
     const std::int64_t part = corridor_.size() / kParts;
-    CorridorWalk walked;
+    CorridorRows rows;
     for (std::int64_t i = 0; i < part * kParts && !interrupted(); ++i) {
       step(*corridor_.read(i).frame);
       progress.show(static_cast<std::size_t>(i + 1), static_cast<std::size_t>(corridor_.size()));
-      if ((i + 1) % part == 0) walked.rows.push_back(end_part(i + 1, part));
+      if ((i + 1) % part == 0) rows.push_back(end_part(i + 1, part));
     }
-    if (checkpoints_) checkpoints_->report(walked.tiles);
-    walked.lost = corridor_.size() - static_cast<std::int64_t>(frames_.size());
-    return walked;
+    return rows;
   }
+
+  /// The next walk goes on with the map as another visit, as `run --continue` does.
+  void begin_visit() {
+    MapHeader header{"corridor", ""};
+    MapDocument document =
+        make_document(std::move(mapper_), {frames_, {}, corridor_.camera()}, header);
+    discount_past(document.map, config_.visit.past);
+    document.seen_free.clear();
+    ovimap::begin_visit(document, header);
+    mapper_ = Mapper(config_.mapper, masks_);
+    mapper_.restore(std::move(document));
+    mapper_.number_from(header.history.visits.back().first_index);
+  }
+
+  /// What leaving memory and coming back took.
+  StageTimers tiles() const {
+    StageTimers tiles;
+    if (checkpoints_) checkpoints_->report(tiles);
+    return tiles;
+  }
+  /// Frames of one walk whose pose was not found.
+  std::int64_t lost() const { return corridor_.size() - static_cast<std::int64_t>(frames_.size()); }
 
  private:
   void map(Frame& frame) {
     if (finder_ && !finder_->locate(frame, mapper_).tracked) return;
     const FrameReport report = mapper_.process(frame);
     frames_.push_back(
-        {frame.index, frame.timestamp_s, frame.name, frame.world_from_camera, report.labelled});
+        {mapper_.number_of(frame), frame.timestamp_s, frame.name, frame.world_from_camera, report.labelled});
     if (finder_) finder_->close_loops(mapper_, frames_, frame.depth_camera);
     if (checkpoints_) checkpoints_->after_frame(mapper_, frames_, frame.depth_camera);
   }
@@ -113,6 +133,8 @@ class CorridorWalker {
   }
 
   const CorridorSource& corridor_;
+  const ProgramConfig& config_;
+  std::shared_ptr<MaskSource> masks_;
   Mapper mapper_;
   std::unique_ptr<Checkpointer> checkpoints_;
   std::optional<PoseFinder> finder_;
@@ -131,7 +153,18 @@ nlohmann::json row_json(const CorridorRow& row) {
           {"surface_m2", row.wall_m2}, {"objects", row.objects}};
 }
 
-void print_rows(const std::vector<CorridorRow>& rows) {
+double growth_of(const CorridorRows& rows) {
+  return rows.empty() ? 0 : rows.back().cpu_ms / rows.front().cpu_ms;
+}
+
+nlohmann::json rows_json(const CorridorRows& rows) {
+  nlohmann::json parts = nlohmann::json::array();
+  for (const CorridorRow& row : rows) parts.push_back(row_json(row));
+  return {{"parts", parts}, {"growth", growth_of(rows)}};
+}
+
+void print_rows(const CorridorRows& rows) {
+  if (rows.empty()) return;
   std::printf("%8s %9s %9s %9s %11s %9s %9s %9s %10s %8s\n", "frames", "p50 ms", "p95 ms", "cpu ms",
               "project ms", "touched", "map MB", "blocks", "surface m2", "objects");
   for (const CorridorRow& row : rows)
@@ -146,41 +179,47 @@ void print_rows(const std::vector<CorridorRow>& rows) {
       std::printf("%-16s %16.0f %15.0f %6.2f\n", stage.c_str(), first.total_ms,
                   last->second.total_ms, last->second.total_ms / first.total_ms);
   }
+  std::printf("the last tenth of the frames takes %.2f times the processor time of the first\n",
+              growth_of(rows));
 }
 
 }  // namespace
 
-int bench_corridor(int frames, ProgramConfig config, const MappingOptions& options, bool track,
-                   bool json) {
+int bench_corridor(const CorridorBench& wanted, ProgramConfig config,
+                   const MappingOptions& options) {
   watch_for_interrupt();
   config.mapper.map.voxel_size_m = kVoxel_m;
-  const CorridorSource corridor({.frames = frames, .hung = true});
+  const CorridorSource corridor({.frames = wanted.frames, .hung = true});
   CorridorWalker walker(
       corridor, config,
-      make_mask_source(options.masks, config.masks, {&corridor, options.model_dirs}), track);
-  const auto [rows, tiles, lost] = walker.walk();
-  const double growth = rows.empty() ? 0 : rows.back().cpu_ms / rows.front().cpu_ms;
-  if (json) {
-    nlohmann::json parts = nlohmann::json::array();
-    for (const CorridorRow& row : rows) parts.push_back(row_json(row));
-    print_json({{"parts", parts},
-                {"stages", stages_json(tiles)},
-                {"growth", growth},
-                {"frames_lost", lost},
-                {"interrupted", interrupted()},
-                {"peak_rss_mb", peak_rss_mb()}});
+      make_mask_source(options.masks, config.masks, {&corridor, options.model_dirs}), wanted.track);
+  const CorridorRows rows = walker.walk();
+  const std::int64_t lost = walker.lost();
+  CorridorRows again;
+  if (wanted.again && !interrupted()) {
+    walker.begin_visit();
+    again = walker.walk();
+  }
+  const StageTimers tiles = walker.tiles();
+  if (wanted.json) {
+    nlohmann::json walk = rows_json(rows);
+    walk.update({{"stages", stages_json(tiles)},
+                 {"frames_lost", lost},
+                 {"interrupted", interrupted()},
+                 {"peak_rss_mb", peak_rss_mb()}});
+    if (wanted.again) walk["again"] = rows_json(again);
+    print_json(walk);
     return kDone;
   }
-  if (rows.empty()) return kDone;
   print_rows(rows);
+  if (!again.empty()) std::printf("\nagain, as another visit:\n");
+  print_rows(again);
   for (const auto& [stage, s] : tiles.summary())
     std::printf("%s: %.2f ms, p95 %.2f ms, %zu times\n", stage.c_str(), s.p50_ms, s.p95_ms,
                 s.count);
-  if (track) std::printf("the camera was lost in %lld frames\n", static_cast<long long>(lost));
-  std::printf(
-      "the last tenth of the frames takes %.2f times the processor time of the first; peak memory "
-      "%.0f MB\n",
-      growth, peak_rss_mb());
+  if (wanted.track)
+    std::printf("the camera was lost in %lld frames\n", static_cast<long long>(lost));
+  std::printf("peak memory %.0f MB\n", peak_rss_mb());
   return kDone;
 }
 

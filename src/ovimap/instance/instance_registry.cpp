@@ -7,7 +7,6 @@
 #include <set>
 
 #include "ovimap/base/config.h"
-#include "ovimap/instance/instance_aliases.h"
 
 namespace ovimap {
 
@@ -192,9 +191,8 @@ void InstanceRegistry::group(std::vector<RegroupedObject> objects) {
 
 /// That which a super-point got when it was first seen in an entity; 0: a map file may lack it.
 InstanceId InstanceRegistry::own_id(Label root) const {
-  const auto found = super_points_.find(root);
-  if (found == super_points_.end() || found->second.votes.empty()) return 0;
-  return found->second.votes.begin()->first;
+  const SuperPoint* const point = super_points_.find(root);
+  return point == nullptr || point->votes.empty() ? 0 : point->votes.begin()->first;
 }
 
 void InstanceRegistry::merge_super_points(std::span<const SegmentAssociation> associations,
@@ -243,22 +241,23 @@ void InstanceRegistry::absorb(Label keep, Label drop) {
 }
 
 bool InstanceRegistry::owns_super_point(InstanceId id) const {
-  return std::any_of(super_points_.begin(), super_points_.end(),
+  return std::any_of(super_points().begin(), super_points().end(),
                      [&](const auto& entry) { return instance_of(entry.first) == id; });
 }
 
 /// The younger id becomes an alias of the older, with everything it had.
 void InstanceRegistry::unify(InstanceId a, InstanceId b) {
   const InstanceId keep = std::min(a, b), drop = std::max(a, b);
+  for (const auto& [id, target] : aliases())
+    if (target == drop) aliases_[id] = keep;
   aliases_[drop] = keep;
-  for (auto& [id, target] : aliases_)
-    if (target == drop) target = keep;
   std::vector<Label> changed = super_points_of(drop);
-  for (auto& [label, point] : super_points_) {
+  for (const auto& [label, point] : super_points()) {
     const auto found = point.votes.find(drop);
     if (found == point.votes.end()) continue;
-    point.votes[keep] += found->second;
-    point.votes.erase(drop);
+    auto& votes = super_points_[label].votes;
+    votes[keep] += found->second;
+    votes.erase(drop);
     changed.push_back(label);
   }
   for (const Label root : changed) regroup(root);
@@ -293,38 +292,37 @@ void InstanceRegistry::regroup(Label root) {
 void InstanceRegistry::leave(Label root) {
   const auto known = member_of_.find(root);
   if (known == member_of_.end()) return;
-  const auto members = members_.find(known->second);
-  std::erase(members->second, root);
-  if (members->second.empty()) members_.erase(members);
+  std::vector<Label>& members = members_[known->second];
+  std::erase(members, root);
+  if (members.empty()) members_.erase(known->second);
   member_of_.erase(known);
 }
 
 const std::vector<Label>& InstanceRegistry::super_points_of(InstanceId id) const {
   static const std::vector<Label> kNone;
-  const auto found = members_.find(id);
-  return found == members_.end() ? kNone : found->second;
+  const std::vector<Label>* const found = members_.find(id);
+  return found == nullptr ? kNone : *found;
 }
 
 bool InstanceRegistry::seen_in(InstanceId id, int frames) const {
   FrameRuns seen;
   for (const Label label : super_points_of(id)) {
-    const auto found = super_points_.find(label);
-    if (found == super_points_.end()) continue;
-    if (found->second.seen.count() >= frames) return true;
-    seen |= found->second.seen;
+    const SuperPoint* const point = super_points_.find(label);
+    if (point == nullptr) continue;
+    if (point->seen.count() >= frames) return true;
+    seen |= point->seen;
   }
   return seen.count() >= frames;
 }
 
 InstanceId InstanceRegistry::instance_of(Label root) const {
-  const auto found = super_points_.find(root);
-  if (found == super_points_.end()) return 0;
-  const SuperPoint& point = found->second;
+  const SuperPoint* const point = super_points_.find(root);
+  if (point == nullptr) return 0;
   InstanceId best = 0;
   int most = 0;
-  for (const auto& [id, votes] : point.votes)
+  for (const auto& [id, votes] : point->votes)
     if (votes > most) best = id, most = votes;
-  return supported(point, most) ? resolve(best) : 0;
+  return supported(*point, most) ? resolve(best) : 0;
 }
 
 /// Whether enough of the frames that showed the super-point voted so.
@@ -342,25 +340,26 @@ std::vector<InstanceId> InstanceRegistry::instance_table(const LabelForest& fore
 }
 
 InstanceId InstanceRegistry::resolve(InstanceId id) const {
-  return resolve_alias(aliases_, id);
+  for (auto found = aliases_.find(id); found != nullptr; found = aliases_.find(id)) id = *found;
+  return id;
 }
 
 void InstanceRegistry::restore(State state) {
-  super_points_ = std::move(state.super_points);
-  aliases_ = std::move(state.aliases);
+  super_points_ = IndexedMap(std::move(state.super_points));
+  aliases_ = IndexedMap(std::move(state.aliases));
   merging_.restore(std::move(state.pair_counts));
   std::map<InstanceId, Label> object_with;
   std::map<Label, Label> object_of;
-  for (const auto& [root, point] : super_points_)
+  for (const auto& [root, point] : super_points())
     if (!point.votes.empty())
       object_of[root] = object_with.try_emplace(resolve(own_id(root)), root).first->second;
   consensus_.restore(std::move(state.entity_sightings),
                      static_cast<std::uint32_t>(state.entity_frames), object_of);
   frames_ = static_cast<std::uint32_t>(state.frames);
   last_id_ = state.last_id;
-  members_.clear();
+  members_ = {};
   member_of_.clear();
-  for (const auto& [root, point] : super_points_) regroup(root);
+  for (const auto& [root, point] : super_points()) regroup(root);
 }
 
 }  // namespace ovimap

@@ -10,6 +10,7 @@
 #include "ovimap/instance/association.h"
 #include "ovimap/instance/consensus/entity_consensus.h"
 #include "ovimap/instance/frame_runs.h"
+#include "ovimap/instance/indexed_map.h"
 #include "ovimap/instance/super_point_merging.h"
 
 namespace ovimap {
@@ -94,16 +95,16 @@ class InstanceRegistry {
   /// The roots of which an instance consists now, ascending; none when it is none.
   const std::vector<Label>& super_points_of(InstanceId id) const;
   InstanceRecord record(InstanceId id) const {
-    return record_of(super_points_, super_points_of(id));
+    return record_of(super_points(), super_points_of(id));
   }
   /// Whether at least so many frames showed it, record(id).views; mostly the first super-point that
   /// is asked tells.
   bool seen_in(InstanceId id, int frames) const;
 
-  const std::map<Label, SuperPoint>& super_points() const { return super_points_; }
+  const std::map<Label, SuperPoint>& super_points() const { return super_points_.ordered(); }
   /// Super-points by the instance they are now.
-  const std::map<InstanceId, std::vector<Label>>& instances() const { return members_; }
-  const std::map<InstanceId, InstanceId>& aliases() const { return aliases_; }
+  const std::map<InstanceId, std::vector<Label>>& instances() const { return members_.ordered(); }
+  const std::map<InstanceId, InstanceId>& aliases() const { return aliases_.ordered(); }
   /// In which 2D entities each root was seen; nothing by other readings than kConsensus.
   const EntitySightings& entity_sightings() const { return consensus_.sightings(); }
   const SuperPointMerging& merging() const { return merging_; }
@@ -120,8 +121,8 @@ class InstanceRegistry {
     InstanceId last_id = 0;
   };
   State state() const {
-    return {super_points_,
-            aliases_,
+    return {super_points(),
+            aliases(),
             merging_.counts(),
             consensus_.sightings(),
             static_cast<int>(consensus_.frames()),
@@ -154,10 +155,10 @@ class InstanceRegistry {
   InstanceConfig config_;
   SuperPointMerging merging_;
   EntityConsensus consensus_;
-  std::map<Label, SuperPoint> super_points_;  ///< by root
-  std::map<InstanceId, InstanceId> aliases_;
-  std::map<InstanceId, std::vector<Label>> members_;
-  std::map<Label, InstanceId> member_of_;  ///< the inverse of members_
+  IndexedMap<SuperPoint> super_points_;  ///< by root
+  IndexedMap<InstanceId> aliases_;
+  IndexedMap<std::vector<Label>> members_;
+  tsl::robin_map<Label, InstanceId> member_of_;  ///< the inverse of members_
   std::uint32_t frames_ = 0;
   InstanceId last_id_ = 0;
 };

@@ -93,7 +93,7 @@ std::vector<Presences> EntityConsensus::presences_in(const Graph& graph) const {
   std::set<std::uint32_t> frames;
   for (Node node = 0; node < graph.parts.size(); ++node) {
     if (graph.parts[node].resting) continue;
-    const std::vector<EntitySighting>& all = sightings_.at(graph.parts[node].oldest);
+    const std::vector<EntitySighting>& all = *sightings_.find(graph.parts[node].oldest);
     const std::size_t recent =
         std::min(all.size(), static_cast<std::size_t>(config_.recent_sightings));
     for (const EntitySighting& sighting : std::span(all).last(recent)) {
@@ -151,25 +151,25 @@ void EntityConsensus::move(Label root, Object object) {
   const Object before = std::exchange(object_of_[root], object);
   if (before == object) return;
   if (const auto left = members_.find(before); left != members_.end()) {
-    left->second.erase(root);
+    left.value().erase(root);
     if (left->second.empty()) members_.erase(left);
   }
   members_[object].insert(root);
 }
 
 std::map<Label, Label> EntityConsensus::settle() {
-  return regrouped(contract_edges(take_all(), sightings_, config_.apart_weight));
+  return regrouped(contract_edges(take_all(), sightings(), config_.apart_weight));
 }
 
 std::map<Label, Label> EntityConsensus::settle(const SuperPointShapes& shapes, bool masked) {
-  return regrouped(contract_by_judge(take_all(), sightings_, masked, shapes, config_.apart_weight));
+  return regrouped(contract_by_judge(take_all(), sightings(), masked, shapes, config_.apart_weight));
 }
 
 /// Every root; none waits for update() any more.
 std::vector<Label> EntityConsensus::take_all() {
   shown_.clear();
   std::vector<Label> all;
-  for (const auto& [root, seen] : sightings_) all.push_back(root);
+  for (const auto& [root, seen] : sightings()) all.push_back(root);
   return all;
 }
 

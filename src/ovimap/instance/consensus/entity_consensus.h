@@ -12,6 +12,7 @@
 
 #include "ovimap/instance/consensus/edge_contraction.h"
 #include "ovimap/instance/consensus/super_point_shapes.h"
+#include "ovimap/instance/indexed_map.h"
 
 namespace ovimap {
 
@@ -64,7 +65,7 @@ class EntityConsensus {
   /// Of all super-points by a judge that looks at their surfaces as well (contract_by_judge).
   std::map<Label, Label> settle(const SuperPointShapes& shapes, bool masked);
 
-  const EntitySightings& sightings() const { return sightings_; }
+  const EntitySightings& sightings() const { return sightings_.ordered(); }
   /// The roots of the object that a root is in, ascending.
   const std::set<Label>& object_with(Label root) const { return members_.at(object_of_.at(root)); }
   std::uint32_t frames() const { return frames_; }
@@ -93,11 +94,11 @@ class EntityConsensus {
   void move(Label root, Object object);
 
   ConsensusConfig config_;
-  EntitySightings sightings_;
+  IndexedMap<std::vector<EntitySighting>> sightings_;
   std::vector<std::vector<Shown>> shown_in_;  ///< the same by frame
   std::set<Label> shown_;                     ///< since update()
   tsl::robin_map<Label, Object> object_of_;
-  std::map<Object, std::set<Label>> members_;
+  tsl::robin_map<Object, std::set<Label>> members_;
   Object last_object_ = 0;
   std::uint32_t frames_ = 0;
 };

@@ -11,15 +11,14 @@
 
 namespace ovimap {
 
-/// Calls `visit(region)` for all regions of the map that may show in a view up to `far_m` along its
-/// axis, and for some around it. In a map of many these are looked up one by one, so that a frame
+/// Calls `visit(region)` for all regions of the map of which a block may show in a view up to
+/// `far_m` along its axis, and for some around it. In a map of many these are looked up one by one, so that a frame
 /// costs what it shows, however large the map has become.
 template <class Visit>
 void for_each_region_in_view(const VoxelMap& map, const PinholeCamera& camera,
                              const Pose& world_from_camera, float far_m, const Visit& visit) {
   constexpr double kBlocksOfRegion = 60;  // that surface fills, about
-  constexpr double kMargin =
-      3;  // spheres around regions, which callers ask about, reach out by two
+  constexpr double kMargin = 1;  // blocks beside the view lie in its regions or the next ones
   const double region_m = map.config().block_size_m() * kRegionBlocks;
   const Eigen::AlignedBox3d view = box_of_view(camera, world_from_camera, far_m);
   const Eigen::Array3d low = (view.min() / region_m).array().floor() - kMargin,

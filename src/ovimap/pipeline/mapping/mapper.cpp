@@ -99,6 +99,7 @@ Mapper::Mapper(const MapperConfig& config, std::shared_ptr<MaskSource> masks,
 
 Mapper::~Mapper() = default;
 Mapper::Mapper(Mapper&&) noexcept = default;
+Mapper& Mapper::operator=(Mapper&&) noexcept = default;
 
 FrameReport Mapper::process(const Frame& frame) {
   const std::shared_ptr<const Frame> borrowed(std::shared_ptr<const Frame>(), &frame);

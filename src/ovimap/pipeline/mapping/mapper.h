@@ -56,6 +56,7 @@ class Mapper {
 
   ~Mapper();
   Mapper(Mapper&&) noexcept;
+  Mapper& operator=(Mapper&&) noexcept;
 
   /// From now on views are also shown to what recognizes things; null: to nothing.
   void recognize_with(std::shared_ptr<const ThingRecognizer> recognizer) {

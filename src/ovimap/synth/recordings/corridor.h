@@ -31,6 +31,7 @@ class CorridorSource : public FrameSource {
   [[nodiscard]] FrameRead read(std::int64_t position) const override;
   [[nodiscard]] std::optional<IdImage> truth_ids(std::int64_t position) const override;
 
+  const PinholeCamera& camera() const { return camera_; }
   const std::vector<Eigen::AlignedBox3f>& boxes() const { return boxes_; }
 
  private:
