@@ -167,6 +167,7 @@ def walk_corridor(program, *options):
 def corridor_lines(program):
     walks = sorted((walk_corridor(program) for _ in range(3)), key=lambda walk: walk["growth"])
     tracked = walk_corridor(program, "--track")
+    again = walk_corridor(program, "--again")["again"]
     walk = walks[1]
     first, last = walk["parts"][0], walk["parts"][-1]
     touched = last["blocks_touched"] / first["blocks_touched"]
@@ -180,7 +181,8 @@ def corridor_lines(program):
         lines.append(f"| {part['frames']} | {frame['p50_ms']:.2f} | {frame['p95_ms']:.2f} | {part['cpu_ms']:.2f} | {part['stages']['projection']['p50_ms']:.2f} "
                      f"| {part['blocks_touched']:.0f} | {part['map_mb']:.0f} | {part['surface_m2']:.0f} | {part['objects']} |")
     lines += ["", f"The same with poses found (`--track`, one walk; lost in {tracked['frames_lost']} frames): {tracked['growth']:.2f} times, {tracked['parts'][0]['cpu_ms']:.1f} ms of processor time a frame at first, "
-              f"{tracked['parts'][-1]['cpu_ms']:.1f} at the end; peak memory {tracked['peak_rss_mb']:.0f} MB. Under a bound on memory: \"What a map that lasts costs\".",
+              f"{tracked['parts'][-1]['cpu_ms']:.1f} at the end; peak memory {tracked['peak_rss_mb']:.0f} MB. "
+              f"Walked once more, as another visit of the whole map (`--again`): {again['growth']:.2f} times, {again['parts'][0]['cpu_ms']:.1f} ms at first, {again['parts'][-1]['cpu_ms']:.1f} at the end. Under a bound on memory: \"What a map that lasts costs\".",
               "", "A frame's stages, milliseconds by the clock (`masks` computes the true ones), of the walk in the middle; the ratio is the median of the three walks.", "",
               "| stage | first tenth | last tenth | ratio |", "| --- | --- | --- | --- |"]
     per_frame = CORRIDOR_FRAMES / len(walk["parts"])
