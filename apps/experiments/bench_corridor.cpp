@@ -95,8 +95,8 @@ class CorridorWalker {
   void map(Frame& frame) {
     if (finder_ && !finder_->locate(frame, mapper_).tracked) return;
     const FrameReport report = mapper_.process(frame);
-    frames_.push_back(
-        {mapper_.number_of(frame), frame.timestamp_s, frame.name, frame.world_from_camera, report.labelled});
+    frames_.push_back({mapper_.number_of(frame), frame.timestamp_s, frame.name,
+                       frame.world_from_camera, report.labelled});
     if (finder_) finder_->close_loops(mapper_, frames_, frame.depth_camera);
     if (checkpoints_) checkpoints_->after_frame(mapper_, frames_, frame.depth_camera);
   }

@@ -162,7 +162,8 @@ std::map<Label, Label> EntityConsensus::settle() {
 }
 
 std::map<Label, Label> EntityConsensus::settle(const SuperPointShapes& shapes, bool masked) {
-  return regrouped(contract_by_judge(take_all(), sightings(), masked, shapes, config_.apart_weight));
+  return regrouped(
+      contract_by_judge(take_all(), sightings(), masked, shapes, config_.apart_weight));
 }
 
 /// Every root; none waits for update() any more.

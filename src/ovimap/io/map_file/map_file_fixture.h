@@ -37,7 +37,7 @@ inline void fill_randomly(VoxelBlock& block, const LabelForest& forest, std::mt1
     if (below(3) == 0) block.palette.push_back(label);
   for (std::size_t v = 0; v < kBlockVoxels; ++v) {
     if (below(2) == 0) continue;
-    block.tsdf[v] = static_cast<std::int16_t>(random());
+    block.tsdf[v] = VoxelBlock::stored_distance(static_cast<std::int16_t>(random()));
     block.weight[v] = static_cast<float>(1 + below(100000)) / kWeightSteps;
     FixedColor color;
     for (std::uint16_t& channel : color) channel = static_cast<std::uint16_t>(random());

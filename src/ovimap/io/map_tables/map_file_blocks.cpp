@@ -262,6 +262,8 @@ bool take_voxels(const std::vector<LoadedPlace>& places, int schema, std::uint8_
   for (const auto [block, v] : places) {
     block->weight[v] = read_weight(weight.take(), schema);
     weights_valid = weights_valid && block->weight[v] >= 0.f;
+    if (block->weight[v] > 0.f)  // older files have observed voxels with a distance of 0
+      block->tsdf[v] = VoxelBlock::stored_distance(block->tsdf[v]);
     block->note_observed(v);
   }
   Planes<std::uint16_t> green = color_planes(body, at, 0), red = color_planes(body, at, 1),

@@ -79,10 +79,19 @@ TEST(MapFileBlocks, RowsWithObservedVoxelsAreNoted) {
                   map.block(slot).observed_rows >> v / kBlockSide & 1);
 }
 
+TEST(MapFileBlocks, ADistanceOfZeroIsReadAsOneWhereTheVoxelWasObserved) {
+  VoxelMap map;
+  VoxelBlock& block = map.writable_block(map.find_or_create({0, 0, 0}));
+  block.weight[7] = 1.f;  // as older programs wrote it
+  const VoxelMap read = through_tiles(map);
+  EXPECT_EQ(read.block(0).tsdf[7], 1);
+  EXPECT_EQ(read.block(0).tsdf[8], 0);
+}
+
 TEST(MapFileBlocks, DoubtsTakeNoSpaceWhereThereAreNone) {
   VoxelMap map;
   VoxelBlock& block = map.writable_block(map.find_or_create({0, 0, 0}));
-  block.weight[7] = 1.f;
+  block.weight[7] = 1.f, block.tsdf[7] = 5;
   TileEncoder encoder;
   const std::vector<Tile> tiles = tiles_of(map);
   const Bytes without = encoder.encode(blocks_of(map, tiles[0]));

@@ -89,7 +89,9 @@ OVIMAP_INLINE Floats blend_distance(const FusionView& view, const ObservedRow& s
   const Floats share = seen.observed ? seen.weight / sum : Floats{};
   const Floats old = load_integers(tsdf);
   const Floats target = smaller(broadcast(VoxelBlock::kTsdfScale), seen.distance_m * view.to_tsdf);
-  store_integers(old + share * (larger(broadcast(-VoxelBlock::kTsdfScale), target) - old), tsdf);
+  const Floats mean = old + share * (larger(broadcast(-VoxelBlock::kTsdfScale), target) - old);
+  // As VoxelBlock::stored_distance: what would be rounded to 0 is 1.
+  store_integers(seen.observed & (magnitude(mean) < 0.5f) ? broadcast(1.f) : mean, tsdf);
   store(smaller(sum, broadcast(view.max_weight)), weights);
   return share;
 }
@@ -97,8 +99,11 @@ OVIMAP_INLINE Floats blend_distance(const FusionView& view, const ObservedRow& s
 /// Red, green and blue of a pixel in the low bytes of a word; what follows in memory above them.
 OVIMAP_INLINE std::int32_t color_word(const RgbImage& image, std::int32_t pixel) {
   std::int32_t word = 0;
-  const bool last = static_cast<std::size_t>(pixel) + 1 == image.size();  // nothing follows it
-  std::memcpy(&word, image.data() + pixel, last ? sizeof(Rgb8) : sizeof(word));
+  // A copy of either size by one call would be a loop over bytes.
+  if (static_cast<std::size_t>(pixel) + 1 == image.size()) [[unlikely]]  // nothing follows it
+    std::memcpy(&word, image.data() + pixel, sizeof(Rgb8));
+  else
+    std::memcpy(&word, image.data() + pixel, sizeof(word));
   return word;
 }
 

@@ -43,8 +43,7 @@ OVIMAP_VECTORIZE void find_doubted(const FusionView& view, const Image<float>& f
     const Ints before = row.inside & (row.z_m < gather(free_m.data(), row.pixel));
     if (!any(before)) continue;
     const Floats distance = load_integers(block.tsdf.data() + i * kBlockSide);
-    const Ints through =
-        before & (distance < surface) & (load(block.weight.data() + i * kBlockSide) > 0.f);
+    const Ints through = before & (distance < surface) & (distance != 0.f);
     if (!any(through)) continue;
     for (int lane = 0; lane < kLanes; ++lane) {
       if (!through[lane]) continue;

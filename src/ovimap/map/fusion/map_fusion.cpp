@@ -182,7 +182,7 @@ void fuse_voxel(const VoxelMap& map, VoxelBlock& block, int voxel, const Sample&
   const float distance =
       (own * map.distance_m(block, voxel) + sample.weight * sample.distance_m) / total;
   const float units = VoxelBlock::kTsdfScale * std::clamp(distance / truncation, -1.f, 1.f);
-  block.tsdf[v] = static_cast<VoxelBlock::Tsdf>(std::lround(units));
+  block.tsdf[v] = VoxelBlock::stored_distance(std::lround(units));
   fuse_color(block, v, sample, own);
   block.weight[v] = round_weight(std::min(total, map.config().max_weight));
   block.note_observed(v);

@@ -74,7 +74,7 @@ class VoxelFusion {
     constexpr float kMost = VoxelBlock::kTsdfScale;
     const float target = std::clamp(distance * view_.to_tsdf, -kMost, kMost);
     const float old = block_.tsdf[voxel];
-    block_.tsdf[voxel] = static_cast<VoxelBlock::Tsdf>(rounded(old + share * (target - old)));
+    block_.tsdf[voxel] = VoxelBlock::stored_distance(rounded(old + share * (target - old)));
     block_.weight[voxel] = std::min(sum, view_.max_weight);
     block_.note_observed(voxel);
     if (view_.frame.color) blend_color(voxel, (*view_.frame.color)[pixel], share);

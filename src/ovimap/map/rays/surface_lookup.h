@@ -39,8 +39,7 @@ class VoxelFinder {
   const VoxelBlock& block() const { return *block_; }
   int voxel() const { return voxel_; }
   VoxelRef ref() const { return VoxelRef::of(slot_, voxel_); }
-  /// Whether the voxel was ever observed. Distances of voxels never observed are 0, so that the
-  /// weight need be read for few.
+  /// Whether the voxel was ever observed.
   bool observed() const { return observed(static_cast<std::size_t>(voxel_)); }
   float distance_m() const { return map_.distance_m(*block_, voxel_); }
   /// Distance at the voxel that lies `offset` further in the same block; returns whether it was
@@ -52,9 +51,7 @@ class VoxelFinder {
   }
 
  private:
-  bool observed(std::size_t voxel) const {
-    return block_->tsdf[voxel] != 0 || block_->weight[voxel] > 0.f;
-  }
+  bool observed(std::size_t voxel) const { return block_->tsdf[voxel] != 0; }
 
   void seek_block(const BlockIndex& block) {
     block_index_ = block;

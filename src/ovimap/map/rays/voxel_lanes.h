@@ -65,9 +65,8 @@ class VoxelLanes {
     Ints observed;  ///< mask
   };
   OVIMAP_INLINE Distances distances(const Voxels& voxels) const {
-    const Ints stored = stored_distances(voxels), observed = stored != kUnobserved;
-    const Floats metres = __builtin_convertvector(stored, Floats) * metres_per_unit_;
-    return {observed ? metres : Floats{}, observed};
+    const Ints stored = stored_distances(voxels);
+    return {__builtin_convertvector(stored, Floats) * metres_per_unit_, stored != 0};
   }
   float metres_per_unit() const { return metres_per_unit_; }
 
@@ -76,7 +75,7 @@ class VoxelLanes {
   OVIMAP_INLINE Ints read_cells(const Coordinates& low, Ints wanted, Floats* at) {
     const Voxels voxels = seek(low, wanted);
     const Ints within = ((low.x & 7) < 7) & ((low.y & 7) < 7) & ((low.z & 7) < 7);
-    Ints known = voxels.slot >= 0;
+    const Ints known = voxels.slot >= 0;
     VoxelBlock::Tsdf apart[kLanes][kCellSpan];
     const VoxelBlock::Tsdf* rows[kLanes];
     for (int lane = 0; lane < kLanes; ++lane) {
@@ -101,11 +100,7 @@ class VoxelLanes {
       at[2 * pair] = __builtin_convertvector(first, Floats);
       at[2 * pair + 1] = __builtin_convertvector(second, Floats);
     }
-    if (any(zero & known)) [[unlikely]]
-      for (int lane = 0; lane < kLanes; ++lane)
-        if (zero[lane] && known[lane] && !observed({low.x[lane], low.y[lane], low.z[lane]}))
-          known[lane] = 0;
-    return known;
+    return known & ~zero;
   }
 
  private:
@@ -123,7 +118,6 @@ class VoxelLanes {
     return static_cast<std::int32_t>(region_->slots[static_cast<std::size_t>(position)]);
   }
 
-  static constexpr int kUnobserved = 1 << 16;  ///< more than any stored distance
   OVIMAP_INLINE Ints stored_distances(const Voxels& voxels) const {
     if (voxels.block)
       return stored_distances(
@@ -141,18 +135,9 @@ class VoxelLanes {
 
   template <class BlockOf>
   OVIMAP_INLINE static Ints stored_distances(Ints offset, BlockOf&& block_of) {
-    const Ints stored = ints_by_lane([&](int lane) __attribute__((always_inline)) {
+    return ints_by_lane([&](int lane) __attribute__((always_inline)) {
       return block_of(lane).tsdf[static_cast<std::size_t>(offset[lane])];
     });
-    const Ints zero = stored == 0;
-    if (!any(zero)) return stored;
-    // Of voxels never observed; few others have it, and most of their rows know without a weight.
-    const Ints unobserved = ints_by_lane([&](int lane) __attribute__((always_inline)) {
-      const VoxelBlock& block = block_of(lane);
-      const auto v = static_cast<std::size_t>(offset[lane]);
-      return (block.observed_rows >> v / kBlockSide & 1) != 0 && block.weight[v] > 0.f ? 0 : -1;
-    });
-    return zero & unobserved ? Ints{} + kUnobserved : stored;
   }
 
   /// For lanes in several regions.
@@ -181,14 +166,6 @@ class VoxelLanes {
           found ? finder_.block().tsdf[static_cast<std::size_t>(finder_.voxel())]
                 : VoxelBlock::Tsdf{0};
     }
-  }
-  /// Whether all voxels of the cell were.
-  bool observed(const Eigen::Vector3i& low) {
-    for (int corner = 0; corner < 8; ++corner) {
-      const Eigen::Vector3i offset(corner & 1, corner >> 1 & 1, corner >> 2);
-      if (!finder_.seek(Eigen::Vector3i(low + offset)) || !finder_.observed()) return false;
-    }
-    return true;
   }
 
   const VoxelMap& map_;

@@ -12,8 +12,8 @@
 namespace ovimap {
 
 /// Calls `visit(region)` for all regions of the map of which a block may show in a view up to
-/// `far_m` along its axis, and for some around it. In a map of many these are looked up one by one, so that a frame
-/// costs what it shows, however large the map has become.
+/// `far_m` along its axis, and for some around it. In a map of many these are looked up one by one,
+/// so that a frame costs what it shows, however large the map has become.
 template <class Visit>
 void for_each_region_in_view(const VoxelMap& map, const PinholeCamera& camera,
                              const Pose& world_from_camera, float far_m, const Visit& visit) {

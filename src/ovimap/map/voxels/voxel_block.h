@@ -89,6 +89,12 @@ struct VoxelBlock {
   using Tsdf = std::int16_t;
   static constexpr float kTsdfScale = 32767.f;  ///< stored distance 32767 = one truncation distance
 
+  /// What is stored of an observed voxel's distance, rounded to a whole number: not 0, which is
+  /// none.
+  static Tsdf stored_distance(long rounded) {
+    return rounded == 0 ? Tsdf{1} : static_cast<Tsdf>(rounded);
+  }
+
   explicit VoxelBlock(const BlockIndex& block_index) : index(block_index) {
     tsdf.fill(0);
     weight.fill(0.f);
@@ -102,7 +108,9 @@ struct VoxelBlock {
   std::uint64_t observed_rows = 0;
   std::vector<Label> palette{kNoLabel};  ///< labels of the block; slots hold positions in it
 
-  std::array<Tsdf, kBlockVoxels> tsdf;     ///< signed distance in truncations, positive in front
+  /// Signed distance in truncations, positive in front; 0 = never observed (stored_distance), so
+  /// that whoever looks for surface need not read the weights.
+  std::array<Tsdf, kBlockVoxels> tsdf;
   std::array<float, kBlockVoxels> weight;  ///< kWeightSteps; 0 = never observed
   std::array<PackedColor, kBlockVoxels> color;
   /// Strongest first. As many as a voxel needed so far, at most kLabelSlots: few blocks need all.
