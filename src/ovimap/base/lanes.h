@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 
@@ -61,6 +62,11 @@ OVIMAP_INLINE Floats larger(Floats a, Floats b) {
 }
 OVIMAP_INLINE Floats magnitude(Floats a) {
   return a < 0.f ? -a : a;
+}
+OVIMAP_INLINE Floats square_root(Floats a) {
+  Floats roots;
+  for (int lane = 0; lane < kLanes; ++lane) roots[lane] = std::sqrt(a[lane]);
+  return roots;
 }
 
 /// `value(lane)` of every lane; lambdas should be always_inline.

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "ovimap/base/error.h"
 #include "ovimap/base/memory/buffer_pool.h"
@@ -28,14 +27,14 @@ class Image {
   static Image unset(int width, int height) {
     Image image;
     image.width_ = width, image.height_ = height;
-    image.pixels_.resize(count(width, height));
+    image.pixels_ = PooledBuffer<Pixel>(count(width, height));
     return image;
   }
 
   int width() const { return width_; }
   int height() const { return height_; }
   std::size_t size() const { return pixels_.size(); }
-  bool empty() const { return pixels_.empty(); }
+  bool empty() const { return pixels_.size() == 0; }
   bool contains(int x, int y) const { return x >= 0 && y >= 0 && x < width_ && y < height_; }
   template <class Other>
   bool same_size(const Image<Other>& other) const {
@@ -48,8 +47,8 @@ class Image {
   const Pixel* row(int y) const { return pixels_.data() + offset(y); }
   Pixel* data() { return pixels_.data(); }
   const Pixel* data() const { return pixels_.data(); }
-  Pixel& operator[](std::size_t index) { return pixels_[index]; }
-  const Pixel& operator[](std::size_t index) const { return pixels_[index]; }
+  Pixel& operator[](std::size_t index) { return data()[index]; }
+  const Pixel& operator[](std::size_t index) const { return data()[index]; }
   auto begin() { return pixels_.begin(); }
   auto end() { return pixels_.end(); }
   auto begin() const { return pixels_.begin(); }
@@ -73,7 +72,7 @@ class Image {
   }
 
   int width_ = 0, height_ = 0;
-  std::vector<Pixel, PooledAllocator<Pixel>> pixels_;
+  PooledBuffer<Pixel> pixels_;
 };
 
 using RgbImage = Image<Rgb8>;

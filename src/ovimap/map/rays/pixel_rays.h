@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "ovimap/base/lanes.h"
 #include "ovimap/geometry/camera.h"
 
 namespace ovimap {
@@ -15,7 +16,7 @@ class PixelRays {
   PixelRays(const PinholeCamera& camera, const Eigen::Matrix3f& world_from_camera)
       : camera_(camera),
         rotation_(world_from_camera),
-        column_x_(static_cast<std::size_t>(camera.width)),
+        column_x_(static_cast<std::size_t>(camera.width + kLanes - 1)),
         column_y_(column_x_.size()),
         column_z_(column_x_.size()) {
     for (std::size_t x = 0; x < column_x_.size(); ++x) {
@@ -25,7 +26,8 @@ class PixelRays {
     }
   }
 
-  /// Rays of an image row: columns[x] + part.
+  /// Rays of an image row: columns[x] + part. Those beyond its end that lanes from a pixel on reach
+  /// can be read as well.
   struct Row {
     const float *column_x, *column_y, *column_z;
     Eigen::Vector3f part;
