@@ -244,10 +244,12 @@ TEST_F(ProgramTest, MeasuresWhatATenthOfACorridorCosts) {
   EXPECT_GT(walk["parts"][9]["objects"], walk["parts"][0]["objects"]);
   EXPECT_GT(walk["parts"][9]["blocks_touched"], 0);
   EXPECT_GT(walk["parts"][9]["stages"]["registry"]["total_ms"], 0);
-  EXPECT_EQ(walk["frames_lost"], 0);
+  EXPECT_EQ(walk["parts"][9]["frames_lost"], 0);
   const auto twice = run_json("bench --corridor 20 --masks gt --again --json");
   ASSERT_EQ(twice["again"]["parts"].size(), 10u);
-  EXPECT_EQ(twice["again"]["parts"][9]["surface_m2"], twice["again"]["parts"][0]["surface_m2"]);
+  const double before = twice["parts"][9]["surface_m2"],
+               after = twice["again"]["parts"][9]["surface_m2"];
+  EXPECT_NEAR(after, before, 0.05 * before) << "nothing is new the second time";
   expect_complaint("bench recording --again", {"--again", "--corridor"});
   EXPECT_EQ(run_json("bench --corridor 20 --track --max-memory 16M --json")["parts"].size(), 10u);
 }

@@ -182,8 +182,9 @@ def corridor_lines(program):
         frame = part["stages"]["frame"]
         lines.append(f"| {part['frames']} | {frame['p50_ms']:.2f} | {frame['p95_ms']:.2f} | {part['cpu_ms']:.2f} | {part['stages']['projection']['p50_ms']:.2f} "
                      f"| {part['blocks_touched']:.0f} | {part['map_mb']:.0f} | {part['surface_m2']:.0f} | {part['objects']} |")
-    lines += ["", f"The same with poses found (`--track`, one walk; lost in {tracked['frames_lost']} frames): {tracked['growth']:.2f} times, {tracked['parts'][0]['cpu_ms']:.1f} ms of processor time a frame at first, "
-              f"{tracked['parts'][-1]['cpu_ms']:.1f} at the end; peak memory {tracked['peak_rss_mb']:.0f} MB. "
+    lines += ["", f"The same with poses found (`--track`, one walk): {tracked['growth']:.2f} times, {tracked['parts'][0]['cpu_ms']:.1f} ms of processor time a frame at first, "
+              f"{tracked['parts'][-1]['cpu_ms']:.1f} at the end, a median frame {tracked['parts'][0]['stages']['frame']['p50_ms']:.1f} and {tracked['parts'][-1]['stages']['frame']['p50_ms']:.1f} ms by the clock; "
+              f"lost in {sum(part['frames_lost'] for part in tracked['parts'])} frames, which look for their place, {tracked['parts'][0]['frames_lost']} of the first tenth and {tracked['parts'][-1]['frames_lost']} of the last; peak memory {tracked['peak_rss_mb']:.0f} MB. "
               f"Walked once more, as another visit of the whole map (`--again`): {again['growth']:.2f} times, {again['parts'][0]['cpu_ms']:.1f} ms at first, {again['parts'][-1]['cpu_ms']:.1f} at the end. Under a bound on memory: \"What a map that lasts costs\".",
               "", "A frame's stages, milliseconds by the clock (`masks` computes the true ones), of the walk in the middle; the ratio is the median of the three walks.", "",
               "| stage | first tenth | last tenth | ratio |", "| --- | --- | --- | --- |"]

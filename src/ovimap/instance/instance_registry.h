@@ -9,8 +9,8 @@
 
 #include "ovimap/instance/association.h"
 #include "ovimap/instance/consensus/entity_consensus.h"
+#include "ovimap/instance/consensus/indexed_map.h"
 #include "ovimap/instance/frame_runs.h"
-#include "ovimap/instance/indexed_map.h"
 #include "ovimap/instance/super_point_merging.h"
 
 namespace ovimap {

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "ovimap/instance/consensus/edge_contraction.h"
+#include "ovimap/instance/consensus/indexed_map.h"
 #include "ovimap/instance/consensus/super_point_shapes.h"
-#include "ovimap/instance/indexed_map.h"
 
 namespace ovimap {
 
