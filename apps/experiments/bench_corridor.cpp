@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "bench.h"
-#include "ovimap/map/fusion/past_evidence.h"
 #include "ovimap/pipeline/revise/visit_history.h"
 #include "ovimap/pipeline/sequence/sequence_run.h"
 #include "ovimap/synth/recordings/corridor.h"
@@ -75,9 +74,7 @@ class CorridorWalker {
     MapHeader header{"corridor", ""};
     MapDocument document =
         make_document(std::move(mapper_), {frames_, {}, corridor_.camera()}, header);
-    discount_past(document.map, config_.visit.past);
-    document.seen_free.clear();
-    ovimap::begin_visit(document, header);
+    ovimap::begin_visit(document, config_.visit.past, header);
     mapper_ = Mapper(config_.mapper, masks_);
     mapper_.restore(std::move(document));
     mapper_.number_from(header.history.visits.back().first_index);

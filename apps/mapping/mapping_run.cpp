@@ -102,10 +102,8 @@ SequenceResult resume(BegunRun& begun, MapHeader& header, MappingInputs& inputs,
   if (!begun.document) return sequence;
   if (begun.new_visit) {
     require_fit(*begun.document, inputs, intake);
-    discount_past(begun.document->map, inputs.config.visit.past);
-    begun.document->seen_free.clear();  // between two visits anything may have come
     if (!intake) warn_of_known_recording(*begun.document, header.source);
-    begin_visit(*begun.document, header);
+    begin_visit(*begun.document, inputs.config.visit.past, header);
   } else {
     require_same_source(*begun.document, header.source);
     require_same_settings(begun.document->config_text, header.config_text, "--resume");

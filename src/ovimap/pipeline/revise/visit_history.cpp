@@ -362,6 +362,12 @@ void begin_visit(const MapRecord& begun, MapHeader& header) {
   header.history = std::move(history);
 }
 
+void begin_visit(MapDocument& begun, const PastEvidenceConfig& past, MapHeader& header) {
+  discount_past(begun.map, past);
+  begun.seen_free.clear();
+  begin_visit(begun, header);
+}
+
 void tell_visit(const MapDocument& before, MapDocument& after, const VisitHistoryConfig& config,
                 std::shared_ptr<BlockStore> store) {
   OVIMAP_ASSERT(after.history.visits.size() > 1);

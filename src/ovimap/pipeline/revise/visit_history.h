@@ -3,6 +3,7 @@
 #pragma once
 
 #include "ovimap/io/map_tables/map_document.h"
+#include "ovimap/map/fusion/past_evidence.h"
 #include "ovimap/pipeline/revise/map_diff.h"
 
 namespace ovimap {
@@ -24,6 +25,9 @@ struct VisitHistoryConfig {
 /// Gives a header, which may name one visit with its date, the history of the map that it goes on
 /// with and its own visit after that: the next frames of the map are of it.
 void begin_visit(const MapRecord& begun, MapHeader& header);
+/// The same of a whole map, which mapping goes on with: between two visits anything may have come
+/// and gone, so what earlier ones saw counts less, and no space is known to be free.
+void begin_visit(MapDocument& begun, const PastEvidenceConfig& past, MapHeader& header);
 
 /// Writes down what the last visit of `after` changed against `before`, the same map without that
 /// visit: events of its history, with what each thing was that left its place. An object that is
