@@ -7,6 +7,7 @@
 #include <set>
 
 #include "ovimap/base/config.h"
+#include "ovimap/instance/instance_aliases.h"
 
 namespace ovimap {
 
@@ -340,8 +341,7 @@ std::vector<InstanceId> InstanceRegistry::instance_table(const LabelForest& fore
 }
 
 InstanceId InstanceRegistry::resolve(InstanceId id) const {
-  for (auto found = aliases_.find(id); found != nullptr; found = aliases_.find(id)) id = *found;
-  return id;
+  return resolve_alias_by([this](InstanceId asked) { return aliases_.find(asked); }, id);
 }
 
 void InstanceRegistry::restore(State state) {
