@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstring>
-#include <memory>
 
 #include "ovimap/base/lanes.h"
 #include "ovimap/map/rays/surface_lookup.h"
@@ -81,7 +81,7 @@ class VoxelLanes {
     for (int lane = 0; lane < kLanes; ++lane) {
       rows[lane] = apart[lane];
       if (!known[lane])
-        rows[lane] = kNothing;
+        rows[lane] = kNothing.data();
       else if (within[lane])
         rows[lane] = block(voxels.slot[lane]).tsdf.data() + voxels.offset[lane];
       else
@@ -106,7 +106,8 @@ class VoxelLanes {
  private:
   static constexpr int kBlockBits = 3, kRegionBits = 6;
   static constexpr int kCellSpan = 1 + 1 + kBlockSide + kBlockSide * kBlockSide;
-  static constexpr VoxelBlock::Tsdf kNothing[kCellSpan] = {};
+  /// Distances of blocks that the map does not have.
+  static constexpr std::array<VoxelBlock::Tsdf, kBlockVoxels> kNothing = {};
 
   const VoxelBlock& block(std::int32_t slot) const {
     return map_.block(static_cast<std::uint32_t>(slot));
@@ -119,24 +120,16 @@ class VoxelLanes {
   }
 
   OVIMAP_INLINE Ints stored_distances(const Voxels& voxels) const {
-    if (voxels.block)
-      return stored_distances(
-          voxels.offset, [&](int) __attribute__((always_inline))->const VoxelBlock& {
-            return *voxels.block;
-          });
-    const VoxelBlock* blocks[kLanes];
+    if (const VoxelBlock* const block = voxels.block)
+      return ints_by_lane([&](int lane) __attribute__((always_inline)) {
+        return block->tsdf[static_cast<std::size_t>(voxels.offset[lane])];
+      });
+    const VoxelBlock::Tsdf* distances[kLanes];
     for (int lane = 0; lane < kLanes; ++lane)
-      blocks[lane] = voxels.slot[lane] < 0 ? nothing_.get() : &block(voxels.slot[lane]);
-    return stored_distances(
-        voxels.offset, [&](int lane) __attribute__((always_inline))->const VoxelBlock& {
-          return *blocks[lane];
-        });
-  }
-
-  template <class BlockOf>
-  OVIMAP_INLINE static Ints stored_distances(Ints offset, BlockOf&& block_of) {
+      distances[lane] =
+          voxels.slot[lane] < 0 ? kNothing.data() : block(voxels.slot[lane]).tsdf.data();
     return ints_by_lane([&](int lane) __attribute__((always_inline)) {
-      return block_of(lane).tsdf[static_cast<std::size_t>(offset[lane])];
+      return distances[lane][voxels.offset[lane]];
     });
   }
 
@@ -170,9 +163,7 @@ class VoxelLanes {
 
   const VoxelMap& map_;
   VoxelFinder finder_;
-  float metres_per_unit_;  ///< of a stored distance
-  /// Stands for blocks that the map does not have.
-  std::unique_ptr<const VoxelBlock> nothing_ = std::make_unique<VoxelBlock>(BlockIndex::Zero());
+  float metres_per_unit_;                                    ///< of a stored distance
   BlockIndex region_index_ = BlockIndex::Constant(1 << 24);  // outside every map
   const BlockRegion* region_ = nullptr;
 };
