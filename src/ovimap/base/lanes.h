@@ -75,6 +75,12 @@ OVIMAP_INLINE Ints ints_by_lane(Value&& value) {
   return Ints{value(0), value(1), value(2), value(3), value(4), value(5), value(6), value(7)};
 }
 
+/// `values[indices]`.
+OVIMAP_INLINE Floats gather(const float* values, Ints indices) {
+  return Floats{values[indices[0]], values[indices[1]], values[indices[2]], values[indices[3]],
+                values[indices[4]], values[indices[5]], values[indices[6]], values[indices[7]]};
+}
+
 /// The largest integers not above the values.
 OVIMAP_INLINE Ints floor_of(Floats values) {
   const Ints truncated = __builtin_convertvector(values, Ints);
@@ -85,6 +91,20 @@ OVIMAP_INLINE bool any(Ints mask) {
   std::uint64_t words[kLanes / 2];
   std::memcpy(words, &mask, sizeof(words));
   return (words[0] | words[1] | words[2] | words[3]) != 0;
+}
+
+/// The sum of all lanes, always in the same order.
+OVIMAP_INLINE float sum_of(Floats lanes) {
+  float sum = 0;
+  for (int lane = 0; lane < kLanes; ++lane) sum += lanes[lane];
+  return sum;
+}
+
+/// How many lanes a mask has set.
+OVIMAP_INLINE int count_of(Ints mask) {
+  int count = 0;
+  for (int lane = 0; lane < kLanes; ++lane) count -= mask[lane];
+  return count;
 }
 
 }  // namespace ovimap

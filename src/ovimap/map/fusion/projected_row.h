@@ -36,9 +36,4 @@ OVIMAP_INLINE void project(const PinholeCamera& camera, const Eigen::Vector3f& s
               __builtin_convertvector(row.inside ? u : Floats{}, Ints);
 }
 
-OVIMAP_INLINE Floats gather(const float* image, Ints pixel) {
-  return Floats{image[pixel[0]], image[pixel[1]], image[pixel[2]], image[pixel[3]],
-                image[pixel[4]], image[pixel[5]], image[pixel[6]], image[pixel[7]]};
-}
-
 }  // namespace ovimap

@@ -91,20 +91,69 @@ TEST(Alignment, TellsAWrongPlaceByItsQuality) {
   EXPECT_LT(std::min(found.quality.agreement, found.quality.correlation), 0.5);
 }
 
-TEST(Residuals, AreThoseOfThePlainWalk) {
-  const Scene scene;
-  const Reference reference = scene.reference();
-  const TrackPyramid frame = scene.seen_from(moved(0.01, 0, 0.01, 0, 0.01, 0));
+/// A view from beside the reference: points leave the image at its edge and behind things.
+struct Beside {
+  Beside() : reference(scene.reference()), frame(scene.seen_from(motion)) {
+    scale.geometric = 2, scale.gain = 1.1f, scale.bias = -3;
+  }
+
+  Scene scene;
+  Pose motion = moved(0.1, 0, 0.1, 0, 0.2, 0), guess = moved(0.11, 0, 0.09, 0, 0.21, 0);
+  Reference reference;
+  TrackPyramid frame;
   ResidualScale scale;
-  scale.geometric = 2, scale.gain = 1.1f, scale.bias = -3;
-  for (std::size_t level = 0; level < frame.size(); ++level) {
+};
+
+TEST(Residuals, OfEachPointAreThoseOfThePlainWalk) {
+  const Beside view;
+  const Eigen::Isometry3f forth = view.guess.cast<float>(),
+                          back = view.guess.inverse().cast<float>();
+  std::size_t near = 0, unseen = 0;
+  for (std::size_t level = 0; level < view.frame.size(); ++level) {
+    const ReferenceLevel& reference = view.reference.levels[level];
+    const std::vector<PointResidual> fast =
+        point_residuals(reference, view.frame[level], view.guess, {}, 1.f);
+    ASSERT_EQ(fast.size(), reference.points.size());
+    for (std::size_t i = 0; i < fast.size(); ++i) {
+      const PointResidual plain =
+          plain_residual(reference.points[i], view.frame[level], forth, back, {}, 1.f);
+      ASSERT_EQ(fast[i].seen, plain.seen);
+      ASSERT_EQ(fast[i].measured, plain.measured);
+      ASSERT_EQ(fast[i].near, plain.near);
+      ASSERT_EQ(fast[i].textured, plain.textured);
+      if (plain.textured) {
+        EXPECT_NEAR(fast[i].intensity, plain.intensity, 0.01);
+      }
+      if (plain.measured) {
+        EXPECT_NEAR(fast[i].distance_m, plain.distance_m, 1e-5);
+        EXPECT_NEAR(fast[i].sigma_m, plain.sigma_m, 1e-6);
+      }
+      near += plain.near, unseen += !plain.seen;
+    }
+  }
+  EXPECT_GT(near, 1000U);
+  EXPECT_GT(unseen, 1000U);
+}
+
+TEST(Residuals, AddUpToThoseOfThePlainWalk) {
+  const Beside view;
+  for (std::size_t level = 0; level < view.frame.size(); ++level) {
+    const ReferenceLevel& reference = view.reference.levels[level];
     const ResidualSums plain =
-        plain_sum_residuals(reference.levels[level], frame[level], Pose::Identity(), scale, {});
+        plain_sum_residuals(reference, view.frame[level], view.guess, view.scale, {});
     const ResidualSums fast =
-        sum_residuals(reference.levels[level], frame[level], Pose::Identity(), scale, {}, true);
+        sum_residuals(reference, view.frame[level], view.guess, view.scale, {}, true);
+    EXPECT_EQ(plain.points, fast.points);
+    EXPECT_EQ(plain.seen, fast.seen);
     EXPECT_EQ(plain.measured, fast.measured);
+    EXPECT_EQ(plain.photometric_count, fast.photometric_count);
+    EXPECT_NEAR(plain.agreeing, fast.agreeing, 1);  // a hair off the bound
+    EXPECT_NEAR(plain.products, fast.products, 1e-4 * plain.products);
     EXPECT_LT((plain.h - fast.h).norm(), 1e-3 * plain.h.norm());
     EXPECT_LT((plain.b - fast.b).norm(), 1e-3 * plain.b.norm());
+    const ResidualSums cost =
+        sum_residuals(reference, view.frame[level], view.guess, view.scale, {}, false);
+    EXPECT_NEAR(plain.cost, cost.cost, 1e-4 * plain.cost);
   }
 }
 

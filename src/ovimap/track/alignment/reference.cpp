@@ -91,7 +91,7 @@ ReferencePoint finest_point(const TrackLevel& fine, const InversePlane& plane, i
 /// Points of a level. If `fine` is not null, the pieces are dealt out like the squares of a chess
 /// board: white ones to this level, black ones to the finest.
 void add_points(const TrackLevel& level, const Image<float>& inverse, const TrackLevel* fine,
-                std::vector<ReferencePoint>& points, std::vector<ReferencePoint>* fine_points) {
+                ReferencePoints& points, ReferencePoints* fine_points) {
   for (int y = 0; y < inverse.height(); ++y)
     for (int x = 0; x < inverse.width(); ++x) {
       const InversePlane plane = plane_at(inverse, x, y);
@@ -129,14 +129,34 @@ Image<float> merged(const Image<float>& model, const Image<float>& own) {
   return both;
 }
 
-float median_depth(const std::vector<ReferencePoint>& points) {
+float median_depth(const ReferencePoints& points) {
   if (points.empty()) return 1;
   std::vector<float> depths;
-  for (const ReferencePoint& point : points) depths.push_back(point.point.z());
+  for (std::size_t i = 0; i < points.size(); ++i) depths.push_back(points[i].point.z());
   return median_of(depths);
 }
 
 }  // namespace
+
+void ReferencePoints::push_back(const ReferencePoint& point) {
+  const std::size_t lane = size_++ % kLanes;
+  if (lane == 0) eights_.emplace_back();
+  EightPoints& eight = eights_.back();
+  eight.x[lane] = point.point.x(), eight.y[lane] = point.point.y(), eight.z[lane] = point.point.z();
+  eight.normal_x[lane] = point.normal.x(), eight.normal_y[lane] = point.normal.y(),
+  eight.normal_z[lane] = point.normal.z();
+  eight.intensity[lane] = point.intensity;
+  eight.gradient_x[lane] = point.gradient.x(), eight.gradient_y[lane] = point.gradient.y();
+}
+
+ReferencePoint ReferencePoints::operator[](std::size_t index) const {
+  const EightPoints& eight = eights_[index / kLanes];
+  const std::size_t lane = index % kLanes;
+  return {{eight.x[lane], eight.y[lane], eight.z[lane]},
+          {eight.normal_x[lane], eight.normal_y[lane], eight.normal_z[lane]},
+          eight.intensity[lane],
+          {eight.gradient_x[lane], eight.gradient_y[lane]}};
+}
 
 Image<float> cast_inverse_depth(const VoxelMap& map, const PinholeCamera& camera,
                                 const Pose& world_from_camera, float max_range_m) {

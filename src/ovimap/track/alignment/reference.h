@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
+#include "ovimap/base/lanes.h"
 #include "ovimap/geometry/pose.h"
 #include "ovimap/map/voxels/voxel_map.h"
 #include "ovimap/track/images/track_pyramid.h"
@@ -16,10 +19,34 @@ struct ReferencePoint {
   Eigen::Vector2f gradient;  ///< of the intensity, per pixel of this level
 };
 
+/// Eight reference points side by side, as lanes take them. A place without a point is harmless to
+/// calculate with.
+struct EightPoints {
+  float x[kLanes] = {}, y[kLanes] = {}, z[kLanes] = {1, 1, 1, 1, 1, 1, 1, 1};
+  float normal_x[kLanes] = {}, normal_y[kLanes] = {}, normal_z[kLanes] = {};
+  float intensity[kLanes] = {-1, -1, -1, -1, -1, -1, -1, -1};
+  float gradient_x[kLanes] = {}, gradient_y[kLanes] = {};
+};
+
+/// Many points, eight and eight.
+class ReferencePoints {
+ public:
+  void push_back(const ReferencePoint& point);
+  ReferencePoint operator[](std::size_t index) const;
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+  /// All of them; the last may not be full.
+  const std::vector<EightPoints>& eights() const { return eights_; }
+
+ private:
+  std::vector<EightPoints> eights_;
+  std::size_t size_ = 0;
+};
+
 /// The points of one level.
 struct ReferenceLevel {
   PinholeCamera camera;
-  std::vector<ReferencePoint> points;
+  ReferencePoints points;
 };
 
 /// What frames are aligned to: the map's surface as one pose sees it, with the intensities of the

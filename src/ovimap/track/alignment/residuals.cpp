@@ -7,161 +7,180 @@
 
 #include "ovimap/base/parallel.h"
 #include "ovimap/base/vectorize.h"
+#include "ovimap/track/alignment/point_residuals.h"
 
 namespace ovimap {
 
 namespace {
 
-constexpr std::size_t kPointsPerTask = 1024;  // fixed, so that sums do not depend on threads
-constexpr float kFreedom = 5;                 // degrees of freedom of Student's t
+constexpr std::size_t kEightsPerTask = 128;  // fixed, so that sums do not depend on threads
+constexpr float kFreedom = 5;                // degrees of freedom of Student's t
 constexpr float kAgree_sigmas = 3;
-constexpr float kFar_m = 0.05f, kFarShare = 0.05f;  // farther off is another surface
-constexpr float kMinCosine = 0.15f;
+constexpr float kElsewhere = 2 * kAgree_sigmas;  // another surface: as bad as can be, but bounded
 
-using Vector6f = Eigen::Matrix<float, 6, 1>;
-
-}  // namespace
-
-PointResidual residual_of(const ReferencePoint& point, const TrackLevel& frame,
-                          const Eigen::Isometry3f& reference_from_frame,
-                          const Eigen::Isometry3f& frame_from_reference,
-                          const FrameAlignmentConfig& config, float reach) {
-  PointResidual at;
-  const Eigen::Vector3f in_frame = frame_from_reference * point.point;
-  if (in_frame.z() <= 0.05f) return at;
-  const Eigen::Vector2f pixel = frame.camera.project(in_frame);
-  const auto width = static_cast<float>(frame.camera.width),
-             height = static_cast<float>(frame.camera.height);
-  if (!(pixel.x() > -0.5f && pixel.y() > -0.5f && pixel.x() < width - 0.5f &&
-        pixel.y() < height - 0.5f))
-    return at;
-  const int x = static_cast<int>(pixel.x() + 0.5f), y = static_cast<int>(pixel.y() + 0.5f);
-  at.seen = true;
-  if (point.intensity >= 0) {
-    at.intensity = intensity_at(frame.intensity, pixel.x(), pixel.y());
-    at.textured = at.intensity >= 0;
-  }
-  const float inverse = frame.inverse_depth.row(y)[x];
-  if (inverse == 0) return at;
-  at.measured = true;
-  const float depth = 1 / inverse;
-  const Eigen::Vector3f ray =
-      frame.camera.unproject(static_cast<float>(x), static_cast<float>(y), 1.f);
-  at.hit = reference_from_frame * Eigen::Vector3f(depth * ray);
-  at.distance_m = point.normal.dot(at.hit - point.point);
-  const float cosine =
-      std::max(kMinCosine, std::fabs(point.normal.dot(reference_from_frame.linear() * ray)));
-  const float noise = config.noise.sigma_m(depth) * cosine;
-  at.sigma_m = std::sqrt(noise * noise + config.model_sigma_m * config.model_sigma_m);
-  at.near = std::fabs(depth - in_frame.z()) < reach * (kFar_m + kFarShare * depth);
-  return at;
+OVIMAP_INLINE Floats t_weight(Floats normalised) {
+  return (kFreedom + 1) / (kFreedom + normalised * normalised);
 }
 
-namespace {
+/// Student's t makes a residual cost (kFreedom + 1) / 2 * log(t_factor).
+OVIMAP_INLINE Floats t_factor(Floats normalised) {
+  return 1.f + normalised * normalised / kFreedom;
+}
 
-/// Sums of one task, in single precision; only the upper triangle of H.
+double t_cost(double sum_of_logs) {
+  return (kFreedom + 1) / 2 * sum_of_logs;
+}
+
+/// The sum of the logarithms of factors from 1 on: that of their product, taken before it is too
+/// large for a float.
+class LogSum {
+ public:
+  OVIMAP_INLINE void add(Floats factors) {
+    product_ *= factors;
+    if (any(product_ > kLarge)) sum();
+  }
+  double sum() {
+    for (int lane = 0; lane < kLanes; ++lane) sum_ += std::log(static_cast<double>(product_[lane]));
+    product_ = broadcast(1);
+    return sum_;
+  }
+
+ private:
+  static constexpr float kLarge = 1e19f;  // its square is still a float
+  Floats product_ = broadcast(1);
+  double sum_ = 0;
+};
+
+/// One row of the Jacobian of eight residuals.
+using EightRows = Floats[6];
+
+/// What one task adds up, in single precision; of H the upper triangle alone.
 struct TaskSums {
-  float h[21] = {}, b[6] = {};
+  Floats h[21] = {}, b[6] = {};
+  Floats geometric_squares = {}, photometric_squares = {};
+  Floats frame_sum = {}, frame_squares = {}, reference_sum = {}, reference_squares = {},
+         products = {};
+  int seen = 0, measured = 0, agreeing = 0, near = 0, textured = 0;
+  LogSum geometric, photometric;
 
-  void add(const Vector6f& j, float weight, float residual) {
+  OVIMAP_INLINE void add(const EightRows& j, Floats weight, Floats residual) {
     int k = 0;
     for (int row = 0; row < 6; ++row) {
-      const float weighted = weight * j[row];
+      const Floats weighted = weight * j[row];
       b[row] -= weighted * residual;
       for (int column = row; column < 6; ++column) h[k++] += weighted * j[column];
     }
   }
-  void to(ResidualSums& sums) const {
-    int k = 0;
-    for (int row = 0; row < 6; ++row) {
-      sums.b[row] = b[row];
-      for (int column = row; column < 6; ++column, ++k)
-        sums.h(row, column) = sums.h(column, row) = h[k];
-    }
-  }
 };
 
-float t_weight(float normalised) {
-  return (kFreedom + 1) / (kFreedom + normalised * normalised);
-}
-
-float t_cost(float normalised) {
-  return (kFreedom + 1) / 2 * std::log1p(normalised * normalised / kFreedom);
-}
-
 /// The frame's point off the reference's plane: n . (motion * hit - point).
-void add_geometric(const ReferencePoint& point, const PointResidual& at, const ResidualScale& scale,
-                   bool derivatives, TaskSums& task, ResidualSums& sums) {
-  const float residual = at.distance_m / at.sigma_m;
-  const float normalised = residual / scale.geometric;
-  const float weight = t_weight(normalised);
-  sums.geometric_squares += weight * residual * residual;
-  sums.geometric_weights += 1;
-  if (!derivatives) {
-    sums.cost += t_cost(normalised);
-    return;
-  }
-  Vector6f j;
-  j << point.normal, at.hit.cross(point.normal);
-  j /= at.sigma_m * scale.geometric;
+OVIMAP_INLINE void add_geometric(const EightPoints& points, const EightResiduals& at,
+                                 const ResidualScale& scale, bool derivatives, TaskSums& task) {
+  const Floats residual = at.distance_m / at.sigma_m;
+  const Floats normalised = at.near ? residual / scale.geometric : Floats{};
+  const Floats weight = at.near ? t_weight(normalised) : Floats{};
+  task.geometric_squares += weight * residual * residual;
+  if (!derivatives) return task.geometric.add(t_factor(normalised));
+  const EightVectors normal = normals_of(points), turn = cross(at.hit, normal);
+  const Floats unit = 1.f / (at.sigma_m * scale.geometric);
+  const EightRows j = {normal.x * unit, normal.y * unit, normal.z * unit,
+                       turn.x * unit,   turn.y * unit,   turn.z * unit};
   task.add(j, weight, normalised);
 }
 
 /// The frame's intensity where the point projects: the frame moves one way, the point, seen from
 /// it, the other.
-void add_photometric(const ReferencePoint& point, const PinholeCamera& camera,
-                     const PointResidual& at, const ResidualScale& scale, float emphasis,
-                     bool derivatives, TaskSums& task, ResidualSums& sums) {
-  const float residual = scale.gain * at.intensity + scale.bias - point.intensity;
-  const float normalised = residual / scale.photometric;
-  const float weight = t_weight(normalised) * emphasis;
-  sums.photometric_squares += t_weight(normalised) * residual * residual;
-  sums.photometric_count += 1;
-  if (!derivatives) {
-    sums.cost += emphasis * t_cost(normalised);
-    return;
+OVIMAP_INLINE void add_photometric(const EightPoints& points, const PinholeCamera& camera,
+                                   const EightResiduals& at, Ints compared,
+                                   const ResidualScale& scale, float emphasis, bool derivatives,
+                                   TaskSums& task) {
+  const Floats residual = scale.gain * at.intensity + scale.bias - load(points.intensity);
+  const Floats normalised = compared ? residual / scale.photometric : Floats{};
+  const Floats weight = compared ? t_weight(normalised) : Floats{};
+  task.photometric_squares += weight * residual * residual;
+  if (!derivatives) return task.photometric.add(t_factor(normalised));
+  const EightVectors point = points_of(points);
+  const Floats inverse = 1.f / point.z;
+  const Floats du = load(points.gradient_x) * camera.fx * inverse,
+               dv = load(points.gradient_y) * camera.fy * inverse;
+  const EightVectors by_point = {du, dv, -(du * point.x + dv * point.y) * inverse};
+  const EightVectors turn = cross(point, by_point);
+  const float unit = -1 / scale.photometric;
+  const EightRows j = {by_point.x * unit, by_point.y * unit, by_point.z * unit,
+                       turn.x * unit,     turn.y * unit,     turn.z * unit};
+  task.add(j, weight * emphasis, normalised);
+}
+
+OVIMAP_INLINE void add_statistics(const EightPoints& points, const EightResiduals& at,
+                                  Ints compared, TaskSums& task) {
+  const Floats frame = compared ? at.intensity : Floats{},
+               reference = compared ? load(points.intensity) : Floats{};
+  task.frame_sum += frame, task.frame_squares += frame * frame;
+  task.reference_sum += reference, task.reference_squares += reference * reference;
+  task.products += frame * reference;
+}
+
+/// The lanes of the eight from `begin` on that are before `end`.
+OVIMAP_INLINE Ints lanes_before(std::size_t begin, std::size_t end) {
+  const Ints lane = {0, 1, 2, 3, 4, 5, 6, 7};
+  return lane < static_cast<int>(std::min<std::size_t>(kLanes, end - begin));
+}
+
+OVIMAP_VECTORIZE void sum_range(const ReferenceLevel& reference, std::size_t begin, std::size_t end,
+                                const ResidualView& view, const ResidualScale& scale,
+                                bool derivatives, TaskSums& task) {
+  const float emphasis = view.config.photometric_weight;
+  for (std::size_t i = begin; i < end; ++i) {
+    const EightPoints& points = reference.points.eights()[i];
+    const EightResiduals at =
+        residuals_of(points, lanes_before(i * kLanes, reference.points.size()), view);
+    const Ints agreeing = at.near & (magnitude(at.distance_m) < kAgree_sigmas * at.sigma_m);
+    const Ints compared = at.textured & ~(at.measured & ~at.near);
+    task.seen += count_of(at.seen), task.measured += count_of(at.measured);
+    task.near += count_of(at.near), task.agreeing += count_of(agreeing);
+    task.textured += count_of(compared);
+    add_geometric(points, at, scale, derivatives, task);
+    add_statistics(points, at, compared, task);
+    if (emphasis > 0)
+      add_photometric(points, reference.camera, at, compared, scale, emphasis, derivatives, task);
   }
-  const float inverse = 1 / point.point.z();
-  const float du = point.gradient.x() * camera.fx * inverse,
-              dv = point.gradient.y() * camera.fy * inverse;
-  const Eigen::Vector3f by_point(du, dv, -(du * point.point.x() + dv * point.point.y()) * inverse);
-  Vector6f j;
-  j << -by_point, -point.point.cross(by_point);
-  j /= scale.photometric;
-  task.add(j, weight, normalised);
 }
 
-void add_statistics(const ReferencePoint& point, const PointResidual& at, ResidualSums& sums) {
-  sums.frame_sum += at.intensity, sums.frame_squares += at.intensity * at.intensity;
-  sums.reference_sum += point.intensity,
-      sums.reference_squares += point.intensity * point.intensity;
-  sums.products += at.intensity * point.intensity;
-}
-
-OVIMAP_VECTORIZE ResidualSums sum_range(std::span<const ReferencePoint> points,
-                                        const PinholeCamera& camera, const TrackLevel& frame,
-                                        const Eigen::Isometry3f& reference_from_frame,
-                                        const Eigen::Isometry3f& frame_from_reference,
-                                        const ResidualScale& scale,
-                                        const FrameAlignmentConfig& config, bool derivatives) {
-  ResidualSums sums;
-  TaskSums task;
-  for (const ReferencePoint& point : points) {
-    const PointResidual at =
-        residual_of(point, frame, reference_from_frame, frame_from_reference, config, scale.reach);
-    sums.points += 1, sums.seen += at.seen, sums.measured += at.measured;
-    if (at.near) {
-      sums.agreeing += std::fabs(at.distance_m) < kAgree_sigmas * at.sigma_m;
-      add_geometric(point, at, scale, derivatives, task, sums);
-    } else if (at.measured && !derivatives) {
-      sums.cost += t_cost(2 * kAgree_sigmas);  // another surface: as bad as can be, but bounded
+OVIMAP_VECTORIZE void store_range(const ReferencePoints& points, const ResidualView& view,
+                                  std::vector<PointResidual>& residuals) {
+  for (std::size_t begin = 0; begin < points.size(); begin += kLanes) {
+    const EightResiduals at =
+        residuals_of(points.eights()[begin / kLanes], lanes_before(begin, points.size()), view);
+    const std::size_t end = std::min(begin + kLanes, points.size());
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto lane = static_cast<int>(i - begin);
+      residuals[i] = {at.seen[lane] != 0,  at.measured[lane] != 0,
+                      at.near[lane] != 0,  at.textured[lane] != 0,
+                      at.distance_m[lane], at.sigma_m[lane],
+                      at.intensity[lane],  {at.hit.x[lane], at.hit.y[lane], at.hit.z[lane]}};
     }
-    if (!at.textured || (at.measured && !at.near)) continue;
-    add_statistics(point, at, sums);
-    if (config.photometric_weight > 0)
-      add_photometric(point, camera, at, scale, config.photometric_weight, derivatives, task, sums);
   }
-  task.to(sums);
+}
+
+ResidualSums residual_sums(TaskSums& task, float emphasis, bool derivatives) {
+  ResidualSums sums;
+  int k = 0;
+  for (int row = 0; row < 6; ++row) {
+    sums.b[row] = sum_of(task.b[row]);
+    for (int column = row; column < 6; ++column, ++k)
+      sums.h(row, column) = sums.h(column, row) = sum_of(task.h[k]);
+  }
+  sums.seen = task.seen, sums.measured = task.measured, sums.agreeing = task.agreeing;
+  sums.geometric_squares = sum_of(task.geometric_squares), sums.geometric_weights = task.near;
+  sums.photometric_squares = sum_of(task.photometric_squares);
+  if (emphasis > 0) sums.photometric_count = task.textured;
+  sums.frame_sum = sum_of(task.frame_sum), sums.frame_squares = sum_of(task.frame_squares);
+  sums.reference_sum = sum_of(task.reference_sum);
+  sums.reference_squares = sum_of(task.reference_squares), sums.products = sum_of(task.products);
+  const double elsewhere =
+      (task.measured - task.near) * std::log1p(kElsewhere * kElsewhere / kFreedom);
+  if (!derivatives)
+    sums.cost = t_cost(task.geometric.sum() + elsewhere + emphasis * task.photometric.sum());
   return sums;
 }
 
@@ -202,17 +221,27 @@ ResidualScale ResidualSums::next_scale(const ResidualScale& present) const {
 ResidualSums sum_residuals(const ReferenceLevel& reference, const TrackLevel& frame,
                            const Pose& reference_from_frame, const ResidualScale& scale,
                            const FrameAlignmentConfig& config, bool derivatives) {
-  const Eigen::Isometry3f forth = reference_from_frame.cast<float>();
-  const Eigen::Isometry3f back = reference_from_frame.inverse().cast<float>();
-  const std::span<const ReferencePoint> points(reference.points);
-  std::vector<ResidualSums> parts((points.size() + kPointsPerTask - 1) / kPointsPerTask);
-  parallel_for_ranges(points.size(), kPointsPerTask, [&](std::size_t begin, std::size_t end) {
-    parts[begin / kPointsPerTask] = sum_range(points.subspan(begin, end - begin), reference.camera,
-                                              frame, forth, back, scale, config, derivatives);
+  const ResidualView view(frame, reference_from_frame, config, scale.reach);
+  const std::size_t eights = reference.points.eights().size();
+  std::vector<ResidualSums> parts((eights + kEightsPerTask - 1) / kEightsPerTask);
+  parallel_for_ranges(eights, kEightsPerTask, [&](std::size_t begin, std::size_t end) {
+    TaskSums task;
+    sum_range(reference, begin, end, view, scale, derivatives, task);
+    parts[begin / kEightsPerTask] = residual_sums(task, config.photometric_weight, derivatives);
   });
   ResidualSums sums;
   for (const ResidualSums& part : parts) sums += part;
+  sums.points = static_cast<double>(reference.points.size());
   return sums;
+}
+
+std::vector<PointResidual> point_residuals(const ReferenceLevel& reference, const TrackLevel& frame,
+                                           const Pose& reference_from_frame,
+                                           const FrameAlignmentConfig& config, float reach) {
+  std::vector<PointResidual> residuals(reference.points.size());
+  store_range(reference.points, ResidualView(frame, reference_from_frame, config, reach),
+              residuals);
+  return residuals;
 }
 
 }  // namespace ovimap

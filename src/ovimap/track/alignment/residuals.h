@@ -36,7 +36,7 @@ ResidualSums sum_residuals(const ReferenceLevel& reference, const TrackLevel& fr
                            const Pose& reference_from_frame, const ResidualScale& scale,
                            const FrameAlignmentConfig& config, bool derivatives);
 
-/// Residual of one point; the plain and the fast walk share nothing but this.
+/// What a frame says of one point.
 struct PointResidual {
   bool seen = false;      ///< projects into the frame
   bool measured = false;  ///< which has depth there
@@ -47,9 +47,10 @@ struct PointResidual {
   float intensity = 0;    ///< of the frame
   Eigen::Vector3f hit = Eigen::Vector3f::Zero();  ///< the frame's point, in the reference
 };
-PointResidual residual_of(const ReferencePoint& point, const TrackLevel& frame,
-                          const Eigen::Isometry3f& reference_from_frame,
-                          const Eigen::Isometry3f& frame_from_reference,
-                          const FrameAlignmentConfig& config, float reach = 1);
+
+/// The residuals of all points of a level, in their order.
+std::vector<PointResidual> point_residuals(const ReferenceLevel& reference, const TrackLevel& frame,
+                                           const Pose& reference_from_frame,
+                                           const FrameAlignmentConfig& config, float reach);
 
 }  // namespace ovimap

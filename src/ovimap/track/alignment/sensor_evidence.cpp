@@ -68,11 +68,12 @@ Row photometric_row(const ReferencePoint& point, const PinholeCamera& camera,
 Sums sums_of(const ReferenceLevel& reference, const TrackLevel& frame,
              const Pose& reference_from_frame, const Vector6d& motion_change,
              const ResidualScale& scale, const FrameAlignmentConfig& config) {
-  const Eigen::Isometry3f forth = reference_from_frame.cast<float>(),
-                          back = reference_from_frame.inverse().cast<float>();
+  const std::vector<PointResidual> residuals =
+      point_residuals(reference, frame, reference_from_frame, config, scale.reach);
   Sums sums;
-  for (const ReferencePoint& point : reference.points) {
-    const PointResidual at = residual_of(point, frame, forth, back, config, scale.reach);
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    const ReferencePoint point = reference.points[i];
+    const PointResidual& at = residuals[i];
     if (at.near) {
       const double unit = static_cast<double>(at.sigma_m * scale.geometric);
       sums.add(geometric_row(point, at, reference_from_frame) / unit,

@@ -3,19 +3,17 @@
 #include "ovimap/track/images/track_pyramid.h"
 
 #include <algorithm>
+#include <type_traits>
 
 #include "ovimap/base/parallel.h"
+#include "ovimap/base/vectorize.h"
+#include "ovimap/geometry/eight_vectors.h"
 
 namespace ovimap {
 
 namespace {
 
 constexpr std::size_t kRowsPerTask = 8;
-
-float luma(const Rgb8& color) {
-  return 0.299f * static_cast<float>(color.r) + 0.587f * static_cast<float>(color.g) +
-         0.114f * static_cast<float>(color.b);
-}
 
 /// The camera of an image whose pixels are means of squares of `factor` pixels; a rest at the right
 /// and at the bottom is left out.
@@ -25,84 +23,139 @@ PinholeCamera shrunk(const PinholeCamera& camera, int factor) {
           camera.fy / by,        (camera.cx + 0.5f) / by - 0.5f, (camera.cy + 0.5f) / by - 0.5f};
 }
 
-/// Mean over a square of those inverse depths that are near the greatest, the nearest surface; 0
-/// where none is valid. `inverse(x, y)` gives them.
-template <class Inverse>
-float nearest_surface(int x0, int y0, int side, const Inverse& inverse) {
-  float nearest = 0;
-  for (int y = y0; y < y0 + side; ++y)
-    for (int x = x0; x < x0 + side; ++x) nearest = std::max(nearest, inverse(x, y));
-  if (nearest == 0) return 0;
-  float sum = 0, count = 0;
-  for (int y = y0; y < y0 + side; ++y)
-    for (int x = x0; x < x0 + side; ++x) {
-      const float value = inverse(x, y);
-      const float counts = value > (1 - kOneSurface) * nearest ? 1.f : 0.f;
-      sum += counts * value, count += counts;
-    }
-  return sum / count;
+/// Squares of `side` pixels that begin in one row of an image.
+struct Squares {
+  const float* first;
+  std::ptrdiff_t row_step;
+  int count;
+};
+
+/// Mean over each square of those inverse depths that are near the greatest, the nearest surface; 0
+/// where none is valid.
+template <class Side>
+OVIMAP_INLINE void average_nearest(const Squares& squares, Side side, float* means) {
+  for (int i = 0; i < squares.count; ++i) {
+    const float* square = squares.first + i * side;
+    float nearest = 0;
+    for (int y = 0; y < side; ++y)
+      for (int x = 0; x < side; ++x) nearest = std::max(nearest, square[y * squares.row_step + x]);
+    const float least = (1 - kOneSurface) * nearest;
+    float sum = 0, count = 0;
+    for (int y = 0; y < side; ++y)
+      for (int x = 0; x < side; ++x) {
+        const float value = square[y * squares.row_step + x], counts = value > least ? 1.f : 0.f;
+        sum += counts * value, count += counts;
+      }
+    means[i] = sum / std::max(count, 1.f);
+  }
 }
 
-/// Mean intensity of a square of the colour image; -1 where it is black, which stands for unknown.
-float mean_luma(const RgbImage& color, int x0, int y0, int side) {
-  float sum = 0;
-  for (int y = y0; y < y0 + side; ++y)
-    for (int x = x0; x < x0 + side; ++x) sum += luma(color.row(y)[x]);
-  return sum > 0 ? sum / static_cast<float>(side * side) : -1;
+OVIMAP_VECTORIZE void nearest_surfaces(const Squares& squares, int side, float* means) {
+  if (side == 2) return average_nearest(squares, std::integral_constant<int, 2>(), means);
+  average_nearest(squares, side, means);
 }
 
-/// The intensity that another camera saw at a point of the depth camera.
-float seen_by_color(const Frame& frame, const Eigen::Isometry3f& color_from_depth,
-                    const Eigen::Vector3f& point) {
-  const Eigen::Vector3f in_color = color_from_depth * point;
-  if (in_color.z() <= 0) return -1;
-  const Eigen::Vector2f pixel = frame.color_camera.project(in_color);
-  if (!(pixel.x() >= 0 && pixel.y() >= 0 &&
-        pixel.x() < static_cast<float>(frame.color.width() - 1) &&
-        pixel.y() < static_cast<float>(frame.color.height() - 1)))
-    return -1;
-  const int x = static_cast<int>(pixel.x()), y = static_cast<int>(pixel.y());
-  return mean_luma(frame.color, x, y, 2);
+OVIMAP_VECTORIZE void invert(const float* depths_m, std::size_t count, float* inverse) {
+  for (std::size_t i = 0; i < count; ++i) inverse[i] = depths_m[i] > 0 ? 1 / depths_m[i] : 0.f;
+}
+
+/// Mean of the luma of `count` pixels whose colours are summed; black stands for unknown, -1.
+float mean_luma(int red, int green, int blue, int count) {
+  const float sum = 0.299f * static_cast<float>(red) + 0.587f * static_cast<float>(green) +
+                    0.114f * static_cast<float>(blue);
+  return sum > 0 ? sum / static_cast<float>(count) : -1;
+}
+
+OVIMAP_VECTORIZE void add_bytes(const std::uint8_t* bytes, std::size_t count, std::uint32_t* sums) {
+  for (std::size_t i = 0; i < count; ++i) sums[i] += bytes[i];
+}
+
+/// Mean intensities of squares of the colour image that begin at row `y`.
+void average_luma(const RgbImage& color, int y, int side, int count, float* means) {
+  std::vector<std::uint32_t> columns(3 * static_cast<std::size_t>(side * count));
+  for (int row = y; row < y + side; ++row)
+    add_bytes(&color.row(row)->r, columns.size(), columns.data());
+  const std::uint32_t* at = columns.data();
+  for (int i = 0; i < count; ++i) {
+    std::uint32_t red = 0, green = 0, blue = 0;
+    for (int x = 0; x < side; ++x, at += 3) red += at[0], green += at[1], blue += at[2];
+    means[i] = mean_luma(red, green, blue, side * side);
+  }
+}
+
+/// Mean intensity of four pixels, the upper left of which is given by its index.
+float luma_of_four(const RgbImage& color, int index) {
+  const Rgb8 *upper = color.data() + index, *lower = upper + color.width();
+  return mean_luma(upper[0].r + upper[1].r + lower[0].r + lower[1].r,
+                   upper[0].g + upper[1].g + lower[0].g + lower[1].g,
+                   upper[0].b + upper[1].b + lower[0].b + lower[1].b, 4);
+}
+
+/// The intensities that another camera saw at points of the depth camera: of row `y`, with
+/// `inverse` depths. Both rows hold whole lanes.
+OVIMAP_VECTORIZE void seen_by_color(const Frame& frame, const PinholeCamera& camera, int y,
+                                    const float* inverse, float* intensity) {
+  const Eigen::Isometry3f color_from_depth = frame.color_from_depth.cast<float>();
+  const PinholeCamera& color = frame.color_camera;
+  const float ray_y = (static_cast<float>(y) - camera.cy) / camera.fy;
+  for (int begin = 0; begin < camera.width; begin += kLanes) {
+    const Floats lane = {0.f, 1.f, 2.f, 3.f, 4.f, 5.f, 6.f, 7.f};
+    const Floats ray_x = (static_cast<float>(begin) + lane - camera.cx) / camera.fx;
+    const Floats near = load(inverse + begin);
+    const Floats depth = 1.f / (near > 0.f ? near : broadcast(1));
+    const EightVectors point =
+        transformed(color_from_depth, EightVectors{depth * ray_x, depth * ray_y, depth});
+    const Floats by_z = 1.f / (point.z > 0.f ? point.z : broadcast(1));
+    const Floats u = color.fx * (point.x * by_z) + color.cx,
+                 v = color.fy * (point.y * by_z) + color.cy;
+    const Ints inside = (near > 0.f) & (point.z > 0.f) & (u >= 0.f) & (v >= 0.f) &
+                        (u < static_cast<float>(frame.color.width() - 1)) &
+                        (v < static_cast<float>(frame.color.height() - 1));
+    const Ints pixel = __builtin_convertvector(inside ? v : Floats{}, Ints) * frame.color.width() +
+                       __builtin_convertvector(inside ? u : Floats{}, Ints);
+    for (int i = 0; i < kLanes; ++i)
+      intensity[begin + i] = inside[i] ? luma_of_four(frame.color, pixel[i]) : -1;
+  }
+}
+
+TrackLevel level_of(const PinholeCamera& camera) {
+  return {camera, Image<float>(camera.width, camera.height, -1.f),
+          Image<float>(camera.width, camera.height)};
 }
 
 TrackLevel finest_level(const Frame& frame) {
   const int factor = std::max(1, (frame.depth.width() + kFinestWidth_px / 2) / kFinestWidth_px);
-  TrackLevel level;
-  level.camera = shrunk(frame.depth_camera, factor);
-  level.intensity = Image<float>(level.camera.width, level.camera.height, -1.f);
-  level.inverse_depth = Image<float>(level.camera.width, level.camera.height);
+  TrackLevel level = level_of(shrunk(frame.depth_camera, factor));
+  const auto width = static_cast<std::size_t>(level.camera.width),
+             depth_width = static_cast<std::size_t>(frame.depth.width());
   const bool registered = frame.registered();
-  const Eigen::Isometry3f color_from_depth = frame.color_from_depth.cast<float>();
-  const auto inverse = [&](int x, int y) {
-    const float depth = frame.depth.row(y)[x];
-    return depth > 0 ? 1 / depth : 0.f;
-  };
-  parallel_for(static_cast<std::size_t>(level.camera.height), kRowsPerTask, [&](std::size_t row) {
-    const int y = static_cast<int>(row);
-    for (int x = 0; x < level.camera.width; ++x) {
-      const float near = nearest_surface(x * factor, y * factor, factor, inverse);
-      level.inverse_depth.row(y)[x] = near;
-      if (registered)
-        level.intensity.row(y)[x] = mean_luma(frame.color, x * factor, y * factor, factor);
-      else if (near > 0)
-        level.intensity.row(y)[x] = seen_by_color(
-            frame, color_from_depth,
-            level.camera.unproject(static_cast<float>(x), static_cast<float>(y), 1 / near));
-    }
-  });
+  parallel_for_ranges(
+      static_cast<std::size_t>(level.camera.height), kRowsPerTask,
+      [&](std::size_t begin, std::size_t end) {
+        std::vector<float> inverse(static_cast<std::size_t>(factor) * depth_width);
+        std::vector<float> near(width + kLanes), intensity(width + kLanes);
+        for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+          invert(frame.depth.row(y * factor), inverse.size(), inverse.data());
+          nearest_surfaces({inverse.data(), frame.depth.width(), level.camera.width}, factor,
+                           near.data());
+          if (registered)
+            average_luma(frame.color, y * factor, factor, level.camera.width, intensity.data());
+          else
+            seen_by_color(frame, level.camera, y, near.data(), intensity.data());
+          std::copy_n(near.begin(), width, level.inverse_depth.row(y));
+          std::copy_n(intensity.begin(), width, level.intensity.row(y));
+        }
+      });
   return level;
 }
 
 TrackLevel halved(const TrackLevel& fine) {
-  TrackLevel level;
-  level.camera = shrunk(fine.camera, 2);
-  level.intensity = Image<float>(level.camera.width, level.camera.height, -1.f);
-  level.inverse_depth = Image<float>(level.camera.width, level.camera.height);
-  const auto inverse = [&](int x, int y) { return fine.inverse_depth.row(y)[x]; };
+  TrackLevel level = level_of(shrunk(fine.camera, 2));
   parallel_for(static_cast<std::size_t>(level.camera.height), kRowsPerTask, [&](std::size_t row) {
     const int y = static_cast<int>(row);
+    nearest_surfaces({fine.inverse_depth.row(2 * y), fine.camera.width, level.camera.width}, 2,
+                     level.inverse_depth.row(y));
     for (int x = 0; x < level.camera.width; ++x) {
-      level.inverse_depth.row(y)[x] = nearest_surface(2 * x, 2 * y, 2, inverse);
       const float* upper = fine.intensity.row(2 * y) + 2 * x;
       const float* lower = fine.intensity.row(2 * y + 1) + 2 * x;
       if (std::min({upper[0], upper[1], lower[0], lower[1]}) >= 0)

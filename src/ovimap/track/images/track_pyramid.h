@@ -30,17 +30,4 @@ TrackPyramid make_pyramid(const Frame& frame);
 /// Adds levels until there are kFewestLevels and the next would be narrower than kCoarsestWidth_px.
 void add_coarser_levels(TrackPyramid& pyramid);
 
-/// Intensity between pixels, bilinear; -1 where a neighbour is unknown or outside.
-inline float intensity_at(const Image<float>& image, float u, float v) {
-  const int x = static_cast<int>(u), y = static_cast<int>(v);
-  if (!(u >= 0 && v >= 0) || x + 1 >= image.width() || y + 1 >= image.height()) return -1;
-  const float* upper = image.row(y) + x;
-  const float* lower = image.row(y + 1) + x;
-  if (upper[0] < 0 || upper[1] < 0 || lower[0] < 0 || lower[1] < 0) return -1;
-  const float right = u - static_cast<float>(x), down = v - static_cast<float>(y);
-  const float top = upper[0] + right * (upper[1] - upper[0]);
-  const float bottom = lower[0] + right * (lower[1] - lower[0]);
-  return top + down * (bottom - top);
-}
-
 }  // namespace ovimap
