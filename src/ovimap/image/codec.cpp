@@ -200,7 +200,7 @@ GrayPng decode_gray(std::span<const std::uint8_t> bytes, std::optional<ImageSize
   GrayPng gray;
   gray.bits = header.bit_depth;
   gray.values =
-      Image<std::uint16_t>(static_cast<int>(header.width), static_cast<int>(header.height));
+      Image<std::uint16_t>::unset(static_cast<int>(header.width), static_cast<int>(header.height));
   // SPNG_FMT_PNG delivers 16-bit values in the machine's byte order.
   if (gray.bits == 16) {
     check_png(spng_decode_image(context.get(), gray.values.data(), gray.values.size() * 2,

@@ -9,6 +9,7 @@
 
 #include "ovimap/base/config.h"
 #include "ovimap/base/parallel.h"
+#include "ovimap/map/rays/surface_lookup.h"
 #include "ovimap/map/voxels/label_slots.h"
 
 namespace ovimap {
@@ -33,10 +34,11 @@ std::vector<Votes> count_votes(const Segments& segments, const Image<VoxelRef>& 
   std::vector<std::vector<std::pair<std::uint64_t, int>>> runs(tasks);
   parallel_for(tasks, 1, [&](std::size_t task) {
     const std::size_t end = std::min((task + 1) * kPixelsPerTask, surface.size());
+    LabelReader labels(map);
     for (std::size_t i = task * kPixelsPerTask; i < end; ++i) {
       const std::uint16_t segment = segments.ids[i];
       if (segment == 0 || !surface[i]) continue;
-      const Label label = map.label(surface[i]);
+      const Label label = labels.at(surface[i]);
       if (label == kNoLabel) continue;
       const std::uint64_t key = ballot(segment, label);
       if (!runs[task].empty() && runs[task].back().first == key)

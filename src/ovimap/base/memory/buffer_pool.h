@@ -28,9 +28,11 @@ class PooledBuffer {
 
  public:
   PooledBuffer() = default;
-  /// What is made without a value stays as memory had it, where its type allows that.
+  /// What is made without a value stays as memory had it, where its type allows that. (Values that
+  /// are copied as bytes begin to live with their memory, whatever their constructors do.)
   explicit PooledBuffer(std::size_t count) : PooledBuffer(Room{count}) {
-    std::uninitialized_default_construct_n(data_, count);
+    if constexpr (!std::is_trivially_copyable_v<T>)
+      std::uninitialized_default_construct_n(data_, count);
   }
   PooledBuffer(std::size_t count, const T& value) : PooledBuffer(Room{count}) {
     std::uninitialized_fill_n(data_, count, value);

@@ -129,7 +129,7 @@ Image<float> free_depth(const VoxelMapConfig& map, const Observation& observatio
   const FreeLimits limits{config.margin_voxels * map.voxel_size_m, config.sigmas,
                           config.least_slope, config.unknown_slope};
   const Cells cells(observation, limits, config.guard_px);
-  Image<float> free_m(observation.depth.width(), observation.depth.height());
+  auto free_m = Image<float>::unset(observation.depth.width(), observation.depth.height());
   parallel_for(static_cast<std::size_t>(cells.rows()), kCellRowsPerTask,
                [&](std::size_t row) { cells.write(static_cast<int>(row), config.holes, free_m); });
   return free_m;

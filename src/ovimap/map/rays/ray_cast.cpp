@@ -9,6 +9,7 @@
 #include "ovimap/base/parallel.h"
 #include "ovimap/base/vectorize.h"
 #include "ovimap/map/rays/pixel_rays.h"
+#include "ovimap/map/rays/surface_lookup.h"
 #include "ovimap/map/rays/voxel_lanes.h"
 #include "ovimap/map/voxels/tile_ranges.h"
 
@@ -279,10 +280,14 @@ Projection cast_rays_with_depth(const VoxelMap& map, const DepthImage& sensor_de
                                 const Pose& world_from_camera, float max_range_m) {
   Projection result{DepthImage::unset(camera.width, camera.height),
                     Image<Label>::unset(camera.width, camera.height)};
-  parallel_for(surface.size(), kCastRowsPerTask * 640, [&](std::size_t i) {
-    result.depth[i] = surface[i] ? sensor_depth[i] : 0.f;
-    result.labels[i] = map.label(surface[i]);
-  });
+  parallel_for_ranges(surface.size(), kCastRowsPerTask * 640,
+                      [&](std::size_t begin, std::size_t end) {
+                        LabelReader labels(map);
+                        for (std::size_t i = begin; i < end; ++i) {
+                          result.depth[i] = surface[i] ? sensor_depth[i] : 0.f;
+                          result.labels[i] = labels.at(surface[i]);
+                        }
+                      });
   cast(View(map, camera, world_from_camera, max_range_m), result);
   return result;
 }

@@ -5,6 +5,7 @@
 #include "ovimap/geometry/camera.h"
 #include "ovimap/geometry/pose.h"
 #include "ovimap/image/image.h"
+#include "ovimap/map/voxels/label_slots.h"
 #include "ovimap/map/voxels/voxel_map.h"
 
 namespace ovimap {
@@ -72,6 +73,37 @@ class VoxelFinder {
   const VoxelBlock* block_ = nullptr;
   std::uint32_t slot_ = kNoBlock;
   int voxel_ = 0;
+};
+
+/// Labels of surface voxels in the order of an image's pixels: neighbours are of the same block as
+/// a rule, which is not sought again. (Remembering the voxel as well is slower: whether the next
+/// pixel sees the same one cannot be predicted.)
+class LabelReader {
+ public:
+  explicit LabelReader(const VoxelMap& map) : map_(map) {}
+
+  /// As VoxelMap::label.
+  Label at(VoxelRef ref) {
+    if (!ref) return kNoLabel;
+    if (ref.block() != slot_) seek(ref.block());
+    return palette_ ? palette_[strongest_[ref.voxel()]]
+                    : voxel_label(*block_, ref.voxel(), map_.labels());
+  }
+
+ private:
+  void seek(std::uint32_t slot) {
+    slot_ = slot;
+    block_ = &map_.block(slot);
+    const bool plain = !block_->slots.empty() && block_->forest_epoch == map_.labels().epoch();
+    palette_ = plain ? block_->palette.data() : nullptr;
+    strongest_ = plain ? block_->slots.front().label.data() : nullptr;
+  }
+
+  const VoxelMap& map_;
+  std::uint32_t slot_ = kNoBlock;
+  const VoxelBlock* block_ = nullptr;
+  const Label* palette_ = nullptr;  ///< null where merges are still to be looked up
+  const std::uint8_t* strongest_ = nullptr;
 };
 
 }  // namespace ovimap

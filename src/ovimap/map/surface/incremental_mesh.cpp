@@ -23,65 +23,65 @@ class PatchMesher {
  public:
   explicit PatchMesher(const VoxelMap& map) : map_(map) { vertex_of_edge_.fill(kNoVertex); }
 
-  /// Empty when the surface misses the block.
+  /// Empty when the surface misses the block. Takes no more memory than it needs.
   Mesh extract(std::uint32_t slot) {
     CellRows cells(map_, slot);
-    Mesh mesh;
+    mesh_.vertices.clear(), mesh_.colors.clear(), mesh_.labels.clear(), mesh_.triangles.clear();
     for (int z = 0; z < kBlockSide; ++z)
       for (int y = 0; y < kBlockSide; ++y)
         for (unsigned row = cells.surface_cells(y, z); row != 0; row &= row - 1)
-          add_cell(cells, map_.block_index(slot), {std::countr_zero(row), y, z}, mesh);
+          add_cell(cells, map_.block_index(slot), {std::countr_zero(row), y, z});
     for (const std::size_t edge : used_edges_) vertex_of_edge_[edge] = kNoVertex;
     used_edges_.clear();
-    return mesh;
+    return mesh_;
   }
 
  private:
   static constexpr std::uint16_t kNoVertex = 0xffff;
 
-  void add_cell(const CellRows& cells, const BlockIndex& block, const Eigen::Vector3i& cell,
-                Mesh& mesh) {
+  void add_cell(const CellRows& cells, const BlockIndex& block, const Eigen::Vector3i& cell) {
     const unsigned inside = cells.inside_corners(cell.x(), cell.y(), cell.z());
     const CellTriangles& triangles = marching_cubes_table()[inside];
     for (std::size_t t = 0; t < triangles.count; ++t) {
       std::array<std::uint32_t, 3> indices;
       for (std::size_t k = 0; k < 3; ++k)
-        indices[k] = vertex(cells, block, cell, triangles.edges[t][k], mesh);
-      mesh.triangles.push_back(indices);
+        indices[k] = vertex(cells, block, cell, triangles.edges[t][k]);
+      mesh_.triangles.push_back(indices);
     }
   }
 
   std::uint32_t vertex(const CellRows& cells, const BlockIndex& block, const Eigen::Vector3i& cell,
-                       int edge, Mesh& mesh) {
+                       int edge) {
     const int corner = kEdgeStart[static_cast<std::size_t>(edge)], axis = edge_axis(edge);
     const Eigen::Vector3i start =
         cell + Eigen::Vector3i(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
     const auto key =
         static_cast<std::size_t>(3 * (start.x() + kSide * (start.y() + kSide * start.z())) + axis);
     if (vertex_of_edge_[key] == kNoVertex) {
-      vertex_of_edge_[key] = static_cast<std::uint16_t>(mesh.vertices.size());
+      vertex_of_edge_[key] = static_cast<std::uint16_t>(mesh_.vertices.size());
       used_edges_.push_back(key);
-      add_vertex(cells, block, start, axis, mesh);
+      add_vertex(cells, block, start, axis);
     }
     return vertex_of_edge_[key];
   }
 
   void add_vertex(const CellRows& cells, const BlockIndex& block, const Eigen::Vector3i& start,
-                  int axis, Mesh& mesh) const {
+                  int axis) {
     const auto end_at = [&](const Eigen::Vector3i& at) -> MeshEdgeEnd {
       return {cells.block(at.x(), at.y(), at.z()),
               voxel_offset(at.x() & 7, at.y() & 7, at.z() & 7)};
     };
     const MeshVertex made = mesh_vertex(map_, {block * kBlockSide + start, axis, end_at(start),
                                                end_at(start + Eigen::Vector3i::Unit(axis))});
-    mesh.vertices.push_back(made.position);
-    mesh.colors.push_back(made.color);
-    mesh.labels.push_back(made.label);
+    mesh_.vertices.push_back(made.position);
+    mesh_.colors.push_back(made.color);
+    mesh_.labels.push_back(made.label);
   }
 
   const VoxelMap& map_;
   std::array<std::uint16_t, 3 * kSide * kSide * kSide> vertex_of_edge_;
   std::vector<std::size_t> used_edges_;
+  Mesh mesh_;  ///< of the present block
 };
 
 }  // namespace
