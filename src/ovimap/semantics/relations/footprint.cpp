@@ -22,8 +22,9 @@ Eigen::Vector2f nearest_on_segment(const Eigen::Vector2f& a, const Eigen::Vector
 }
 
 /// The part of `polygon` left of the line a -> b (Sutherland and Hodgman 1974).
-Footprint clipped(const Footprint& polygon, const Eigen::Vector2f& a, const Eigen::Vector2f& b) {
-  Footprint kept;
+void clip(const Footprint& polygon, const Eigen::Vector2f& a, const Eigen::Vector2f& b,
+          Footprint& kept) {
+  kept.clear();
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Eigen::Vector2f &p = polygon[i], &q = next_corner(polygon, i);
     const float side_p = turn(a, b, p), side_q = turn(a, b, q);
@@ -31,13 +32,16 @@ Footprint clipped(const Footprint& polygon, const Eigen::Vector2f& a, const Eige
     if ((side_p > 0.f && side_q < 0.f) || (side_p < 0.f && side_q > 0.f))
       kept.push_back(p + side_p / (side_p - side_q) * (q - p));
   }
-  return kept;
 }
 
 Footprint overlap_of(const Footprint& a, const Footprint& b) {
-  Footprint shared = a;
-  for (std::size_t i = 0; i < b.size() && !shared.empty(); ++i)
-    shared = clipped(shared, b[i], next_corner(b, i));
+  // The one of more corners is clipped: the first edges of the other leave few of them.
+  const Footprint& by = a.size() < b.size() ? a : b;
+  Footprint shared = a.size() < b.size() ? b : a, kept;
+  for (std::size_t i = 0; i < by.size() && !shared.empty(); ++i) {
+    clip(shared, by[i], next_corner(by, i), kept);
+    std::swap(shared, kept);
+  }
   return shared;
 }
 

@@ -44,30 +44,52 @@ float prism_gap_m(const ObjectShape& a, const ObjectShape& b) {
   return std::hypot(distance_m(a.footprint, b.footprint), vertical);
 }
 
+/// Calls `visit(points)` for the runs of a group that `counts(box)`.
+template <class Counts, class Visit>
+void visit_group(const ObjectShape& shape, std::size_t group, const Counts& counts,
+                 const Visit& visit) {
+  if (!counts(shape.groups[group])) return;
+  const std::size_t begin = group * ObjectShape::kRunsOfGroup;
+  for (std::size_t run = begin;
+       run < std::min(begin + ObjectShape::kRunsOfGroup, shape.runs.size()); ++run)
+    if (counts(shape.runs[run])) visit(shape.run_points(run));
+}
+
 /// Smallest distance from a point of the shape's surface to the prism. Squares are compared, and
-/// runs that are farther left out: there may be a hundred thousand points, as of a floor.
+/// what is farther than the nearest so far is left out, group by group.
 float surface_gap_m(const ObjectShape& shape, const ObjectShape& prism) {
   const Eigen::AlignedBox3f bounds = upright_box(prism);
   float smallest2 = std::numeric_limits<float>::max();
-  for (std::size_t run = 0; run < shape.runs.size(); ++run) {
-    if (bounds.squaredExteriorDistance(shape.runs[run]) >= smallest2) continue;
-    for (const Eigen::Vector3f& point : shape.run_points(run)) {
+  const auto nearer = [&](const Eigen::AlignedBox3f& box) {
+    return bounds.squaredExteriorDistance(box) < smallest2;
+  };
+  const auto visit = [&](std::span<const Eigen::Vector3f> points) {
+    for (const Eigen::Vector3f& point : points) {
       if (bounds.squaredExteriorDistance(point) >= smallest2) continue;
       const Eigen::Vector2f flat = point.head<2>();
       const float aside2 = (nearest_point(prism.footprint, flat) - flat).squaredNorm();
       const float vertical = outside(point.z(), prism.bottom_m, prism.top_m);
       smallest2 = std::min(smallest2, aside2 + vertical * vertical);
     }
-  }
+  };
+  // The nearest first: what it holds spares looking into most others.
+  const auto nearest = std::min_element(
+      shape.groups.begin(), shape.groups.end(), [&](const auto& one, const auto& other) {
+        return bounds.squaredExteriorDistance(one) < bounds.squaredExteriorDistance(other);
+      });
+  const auto first = static_cast<std::size_t>(nearest - shape.groups.begin());
+  visit_group(shape, first, nearer, visit);
+  for (std::size_t group = 0; group < shape.groups.size(); ++group)
+    if (group != first) visit_group(shape, group, nearer, visit);
   return std::sqrt(smallest2);
 }
 
-std::vector<Eigen::AlignedBox3f> runs_of(const ObjectShape& shape) {
-  constexpr std::size_t kLength = ObjectShape::kPointsOfRun;
-  std::vector<Eigen::AlignedBox3f> runs((shape.surface.size() + kLength - 1) / kLength);
-  for (std::size_t run = 0; run < runs.size(); ++run)
-    for (const Eigen::Vector3f& point : shape.run_points(run)) runs[run].extend(point);
-  return runs;
+/// Boxes around each `length` of `parts`, points or boxes.
+template <class Part>
+std::vector<Eigen::AlignedBox3f> boxes_around(const std::vector<Part>& parts, std::size_t length) {
+  std::vector<Eigen::AlignedBox3f> boxes((parts.size() + length - 1) / length);
+  for (std::size_t i = 0; i < parts.size(); ++i) boxes[i / length].extend(parts[i]);
+  return boxes;
 }
 
 }  // namespace
@@ -111,7 +133,8 @@ ObjectShape shape_of_points(const Eigen::Matrix3f& ground_from_world,
   shape.centroid /= static_cast<float>(points.size());
   shape.footprint = footprint_of(points, kPointRadius_m);
   shape.surface = std::move(points);
-  shape.runs = runs_of(shape);
+  shape.runs = boxes_around(shape.surface, ObjectShape::kPointsOfRun);
+  shape.groups = boxes_around(shape.runs, ObjectShape::kRunsOfGroup);
   return shape;
 }
 
@@ -136,17 +159,17 @@ ObjectShape shape_of_box(const Eigen::Matrix3f& ground_from_world,
 }
 
 Eigen::AlignedBox3f upright_box(const ObjectShape& shape) {
-  Eigen::AlignedBox3f box;
-  for (const Eigen::Vector2f& corner : shape.footprint) {
-    box.extend(Eigen::Vector3f(corner.x(), corner.y(), shape.bottom_m));
-    box.extend(Eigen::Vector3f(corner.x(), corner.y(), shape.top_m));
-  }
-  return box;
+  Eigen::AlignedBox2f flat;
+  for (const Eigen::Vector2f& corner : shape.footprint) flat.extend(corner);
+  return {Eigen::Vector3f(flat.min().x(), flat.min().y(), shape.bottom_m),
+          Eigen::Vector3f(flat.max().x(), flat.max().y(), shape.top_m)};
 }
 
 float gap_m(const ObjectShape& a, const ObjectShape& b) {
-  // Each of these is at most the true gap (but for the thinning), so the largest is the best.
-  float gap = prism_gap_m(a, b);
+  // Each of these is at most the true gap (but for the thinning), so the largest is the best. A
+  // surface lies within its prism, so its gap is never the smaller one.
+  if (a.surface.empty() && b.surface.empty()) return prism_gap_m(a, b);
+  float gap = 0;
   if (!b.surface.empty()) gap = std::max(gap, surface_gap_m(b, a));
   if (!a.surface.empty()) gap = std::max(gap, surface_gap_m(a, b));
   return gap;
@@ -162,13 +185,16 @@ float support_height_m(const ObjectShape& above, const ObjectShape& below, float
   column.max() += margin;
   column.max().z() = above.middle_m();
   column.min().z() = std::numeric_limits<float>::lowest();
-  for (std::size_t run = 0; run < below.runs.size(); ++run) {
-    if (below.runs[run].max().z() <= highest || !column.intersects(below.runs[run])) continue;
-    for (const Eigen::Vector3f& point : below.run_points(run))
-      if (point.z() > highest && column.contains(point) &&
-          distance_m(above.footprint, point.head<2>()) <= margin_m)
-        highest = point.z();
-  }
+  const auto may_be = [&](const Eigen::AlignedBox3f& box) {
+    return box.max().z() > highest && column.intersects(box);
+  };
+  for (std::size_t group = 0; group < below.groups.size(); ++group)
+    visit_group(below, group, may_be, [&](std::span<const Eigen::Vector3f> points) {
+      for (const Eigen::Vector3f& point : points)
+        if (point.z() > highest && column.contains(point) &&
+            distance_m(above.footprint, point.head<2>()) <= margin_m)
+          highest = point.z();
+    });
   return highest;
 }
 

@@ -21,10 +21,12 @@ struct ObjectShape {
   float bottom_m = 0, top_m = 0;
   Footprint footprint;
   Eigen::Vector3f centroid = Eigen::Vector3f::Zero();
-  std::vector<Eigen::Vector3f> surface;   ///< may be empty: then the prism counts as solid
-  std::vector<Eigen::AlignedBox3f> runs;  ///< around every kPointsOfRun of the surface, one by one
+  std::vector<Eigen::Vector3f> surface;  ///< may be empty: then the prism counts as solid
+  // A floor has a hundred thousand points and is asked about by every object of a building.
+  std::vector<Eigen::AlignedBox3f> runs;    ///< around each kPointsOfRun of the surface, in order
+  std::vector<Eigen::AlignedBox3f> groups;  ///< around each kRunsOfGroup of these
 
-  static constexpr std::size_t kPointsOfRun = 64;
+  static constexpr std::size_t kPointsOfRun = 64, kRunsOfGroup = 32;
   /// The points in runs[run].
   std::span<const Eigen::Vector3f> run_points(std::size_t run) const;
 

@@ -36,7 +36,7 @@ std::string metres(float value) {
 }
 
 std::string name_of(InstanceId id) {
-  return concat("#", id);
+  return "#" + std::to_string(id);  // quicker than a stream, and asked for every pair
 }
 
 /// Of the smaller footprint.
@@ -65,11 +65,11 @@ RelationRating rests_on(const ObjectShape& a, const ObjectShape& b, InstanceId i
 /// A flat thing against the side of a taller one, off its foot.
 RelationRating hangs_on(const ObjectShape& a, const ObjectShape& b, InstanceId id,
                         const RelationConfig& config) {
-  const float size = std::max(a.height_m(), 0.5f * perimeter_m(a.footprint));
-  if (smallest_width_m(a.footprint) > config.flat_share * size) return {};
   const float inside = std::min(a.bottom_m - b.bottom_m, b.top_m - a.top_m);
   const float off_foot = ramp(inside - config.contact_m, config.contact_m);
   if (off_foot == 0.f) return {};
+  const float size = std::max(a.height_m(), 0.5f * perimeter_m(a.footprint));
+  if (smallest_width_m(a.footprint) > config.flat_share * size) return {};
   const float gap = gap_m(a, b);
   return {closeness(gap, config.contact_m) * off_foot,
           metres(gap) + " from the side of " + name_of(id)};
@@ -146,7 +146,9 @@ RelationRating rate_side(Relation relation, const ObjectShape& a, const ObjectSh
   const float shown = std::abs(along);
   const char* opposite = sideways ? (negative ? " to the right of " : " to the left of ")
                                   : (negative ? " behind " : " in front of ");
-  return {cosine * cosine * closeness(gap_m(a, b), config.side_reach_m),
+  // On another side it does not matter how far.
+  const float near = cosine > 0.f ? closeness(gap_m(a, b), config.side_reach_m) : 0.f;
+  return {cosine * cosine * near,
           metres(shown) + (along < 0.f ? opposite : side) + name_of(id)};
 }
 
@@ -208,8 +210,15 @@ float highest_rating(Relation relation, const Eigen::AlignedBox3f& box_a,
     return std::min(1.f, kRounding * closeness(gap, scale));
   };
   switch (relation) {
-    case Relation::kOn:
-      return bound(apart.norm(), config.contact_m);
+    case Relation::kOn: {
+      // It rests on what it is over, or hangs at what reaches farther up and down (hangs_on).
+      const bool over = apart.head<2>().norm() <= kRounding * config.contact_m;
+      const float inside = std::min(box_a.min().z() - box_b.min().z(),
+                                    box_b.max().z() - box_a.max().z());
+      return std::max(over ? bound(apart.z(), config.contact_m) : 0.f,
+                      bound(apart.norm(), config.contact_m) *
+                          ramp(inside - config.contact_m, config.contact_m));
+    }
     case Relation::kUnder:
     case Relation::kAbove:
       return bound(apart.head<2>().norm(), config.overhang_m);

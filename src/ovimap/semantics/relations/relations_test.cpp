@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/semantics/relations/relations.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <random>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -191,6 +195,32 @@ TEST(Relations, GapUsesTheSurfaceWhereItIsKnown) {
   EXPECT_NEAR(gap_m(plant, walls), 1.f, 0.03f);
   const ObjectShape picture = box({2, 0.01f, 1}, {2.5f, 0.03f, 1.5f});
   EXPECT_GT(score(Relation::kOn, picture, walls), 0.9f);
+}
+
+/// A bumpy ground of 40,000 points, in the order of no walk, is asked about in groups of points.
+TEST(Relations, LargeSurfacesAnswerAsAllOfTheirPointsDo) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> place(-5.f, 5.f), height(0.f, 0.4f);
+  std::vector<Point> points(40000);
+  for (Point& point : points) point = {place(random), place(random), height(random)};
+  std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) {
+    return std::tuple(std::floor(a.x()), a.y()) < std::tuple(std::floor(b.x()), b.y());
+  });
+  const ObjectShape ground = shape_of_points(kGround, points);
+  ASSERT_GT(ground.groups.size(), 10U);
+  for (int i = 0; i < 50; ++i) {
+    const Point low(1.5f * place(random), 1.5f * place(random), 2 * height(random));
+    const ObjectShape thing = box(low, low + Point(0.3f, 0.2f, 0.5f));
+    float gap = std::numeric_limits<float>::max(), support = std::numeric_limits<float>::lowest();
+    for (const Point& point : ground.surface) {
+      const float aside = distance_m(thing.footprint, point.head<2>()),
+                  off = std::max({thing.bottom_m - point.z(), point.z() - thing.top_m, 0.f});
+      gap = std::min(gap, std::hypot(aside, off));
+      if (aside <= 0.05f && point.z() <= thing.middle_m()) support = std::max(support, point.z());
+    }
+    EXPECT_NEAR(gap_m(thing, ground), gap, 1e-5f);
+    EXPECT_EQ(support_height_m(thing, ground, 0.05f), support);
+  }
 }
 
 TEST(Relations, WorkInAWorldWithAnotherAxisUp) {
