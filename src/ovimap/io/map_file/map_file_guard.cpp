@@ -77,7 +77,8 @@ void check_table(SQLite::Database& database, const std::string& name, const std:
 
 std::unique_ptr<SQLite::Database> open_guarded(const std::string& name, int flags,
                                                std::uint64_t longest_value, int patience_ms) {
-  auto database = std::make_unique<SQLite::Database>(name, flags, patience_ms);
+  auto database =
+      std::make_unique<SQLite::Database>(name, flags | SQLite::OPEN_NOMUTEX, patience_ms);
   sqlite3* const handle = database->getHandle();
   sqlite3_limit(handle, SQLITE_LIMIT_LENGTH,
                 static_cast<int>(std::min(longest_value, kLongestValue)));

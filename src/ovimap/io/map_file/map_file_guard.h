@@ -15,8 +15,8 @@ namespace ovimap {
 
 /// Opens a database of a map, which may be anybody's: `name` is a path or a URI, `flags` are those
 /// of SQLite, and no value of it may be longer than `longest_value` bytes. The file's own schema
-/// runs no code beyond SQLite's harmless functions, and large numbers in it take no memory.
-/// SQLite's exceptions pass through.
+/// runs no code beyond SQLite's harmless functions, and large numbers in it take no memory. For one
+/// thread at a time. SQLite's exceptions pass through.
 std::unique_ptr<SQLite::Database> open_guarded(const std::string& name, int flags,
                                                std::uint64_t longest_value, int patience_ms = 0);
 

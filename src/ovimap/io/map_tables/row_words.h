@@ -6,6 +6,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <vector>
 
@@ -41,9 +42,9 @@ inline void append_box(Bytes& bytes, const Eigen::AlignedBox3f& box) {
 template <class Word>
 std::vector<Word> words_of(std::span<const std::uint8_t> bytes, const RowReader& rows) {
   if (bytes.size() % sizeof(Word) != 0) rows.fail(concat("has a list of ", bytes.size(), " bytes"));
+  static_assert(std::endian::native == std::endian::little);
   std::vector<Word> words(bytes.size() / sizeof(Word));
-  for (std::size_t i = 0; i < bytes.size(); ++i)
-    words[i / sizeof(Word)] |= static_cast<Word>(Word{bytes[i]} << 8 * (i % sizeof(Word)));
+  if (!words.empty()) std::memcpy(words.data(), bytes.data(), bytes.size());
   return words;
 }
 
