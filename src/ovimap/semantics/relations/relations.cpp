@@ -148,8 +148,7 @@ RelationRating rate_side(Relation relation, const ObjectShape& a, const ObjectSh
                                   : (negative ? " behind " : " in front of ");
   // On another side it does not matter how far.
   const float near = cosine > 0.f ? closeness(gap_m(a, b), config.side_reach_m) : 0.f;
-  return {cosine * cosine * near,
-          metres(shown) + (along < 0.f ? opposite : side) + name_of(id)};
+  return {cosine * cosine * near, metres(shown) + (along < 0.f ? opposite : side) + name_of(id)};
 }
 
 std::string evidence_of(const char* what, float value, const char* unit) {
@@ -213,8 +212,8 @@ float highest_rating(Relation relation, const Eigen::AlignedBox3f& box_a,
     case Relation::kOn: {
       // It rests on what it is over, or hangs at what reaches farther up and down (hangs_on).
       const bool over = apart.head<2>().norm() <= kRounding * config.contact_m;
-      const float inside = std::min(box_a.min().z() - box_b.min().z(),
-                                    box_b.max().z() - box_a.max().z());
+      const float inside =
+          std::min(box_a.min().z() - box_b.min().z(), box_b.max().z() - box_a.max().z());
       return std::max(over ? bound(apart.z(), config.contact_m) : 0.f,
                       bound(apart.norm(), config.contact_m) *
                           ramp(inside - config.contact_m, config.contact_m));
