@@ -81,7 +81,7 @@ OVIMAP_INLINE EightResiduals residuals_of(const EightPoints& points, Ints used,
   const Ints x = __builtin_convertvector(at.seen ? u + 0.5f : Floats{}, Ints),
              y = __builtin_convertvector(at.seen ? v + 0.5f : Floats{}, Ints);
   const Floats inverse = gather(view.frame.inverse_depth.data(), y * camera.width + x);
-  at.measured = at.seen & (inverse != 0.f);
+  at.measured = at.seen & (inverse > 0.f);  // not where it is no number
   const Floats depth = 1.f / (at.measured ? inverse : broadcast(1));
   const EightVectors ray = {(__builtin_convertvector(x, Floats) - camera.cx) / camera.fx,
                             (__builtin_convertvector(y, Floats) - camera.cy) / camera.fy,
