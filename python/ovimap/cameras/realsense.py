@@ -7,6 +7,7 @@ All three are devices with sensors there, and are read in one way: depth and col
 from __future__ import annotations
 
 import contextlib
+import functools
 import pathlib
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -26,16 +27,22 @@ CHANNELS = {"rgb8": 3, "bgr8": 3, "rgba8": 4, "bgra8": 4}
 
 
 def open_realsense(wanted: Wanted, context: Any = None) -> RealSense:
-    """context: of pyrealsense2, where it is not a new one."""
+    """context: of pyrealsense2, where it is not the one of this process."""
     import pyrealsense2 as rs
 
-    found = context or rs.context()
+    found = context or _shared_context(rs)
     if wanted.file is not None:
         return RealSense(rs, found, _recording(rs, found, wanted.file), wanted)
     devices = [device for device in found.query_devices() if _profiles(rs, device)]
     serials = [_about(rs, device, "serial_number") for device in devices]
     serial = chosen_serial("RealSense", serials, wanted.serial, HINT)
     return RealSense(rs, found, devices[serials.index(serial)], wanted)
+
+
+@functools.cache
+def _shared_context(rs: Any) -> Any:
+    """One for the process: its thread looks for devices all the time, and may still be looking when a context is taken down (release 2.59)."""
+    return rs.context()
 
 
 class RealSense:
@@ -65,6 +72,9 @@ class RealSense:
             with contextlib.suppress(RuntimeError):  # of a camera that was unplugged
                 sensor.stop()
                 sensor.close()
+        if self.recorded and self._running:
+            with contextlib.suppress(RuntimeError):
+                self._device.pause()  # returns when the thread that reads has done what it was asked: the device may go only then
         self._running.clear()
 
     def _start(self, feed: Feed) -> None:
