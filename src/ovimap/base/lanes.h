@@ -23,6 +23,16 @@ OVIMAP_INLINE Floats broadcast(float value) {
   return Floats{} + value;
 }
 
+/// Each lane's own number, 0 to 7.
+OVIMAP_INLINE Ints lane_numbers() {
+  return Ints{0, 1, 2, 3, 4, 5, 6, 7};
+}
+
+/// `first`, and one more with each lane.
+OVIMAP_INLINE Floats counted_from(float first) {
+  return first + __builtin_convertvector(lane_numbers(), Floats);
+}
+
 OVIMAP_INLINE Floats load(const float* values) {
   Floats lanes;
   std::memcpy(&lanes, values, sizeof(lanes));

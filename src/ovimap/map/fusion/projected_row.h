@@ -23,7 +23,7 @@ struct ProjectedRow {
 /// `start`: camera coordinates of the first; `steps`: FusionView::voxel_steps.
 OVIMAP_INLINE void project(const PinholeCamera& camera, const Eigen::Vector3f& start,
                            const Eigen::Matrix3f& steps, ProjectedRow& row) {
-  const Floats along = {0.f, 1.f, 2.f, 3.f, 4.f, 5.f, 6.f, 7.f};
+  const Floats along = counted_from(0);
   const Floats x = start.x() + along * steps(0, 0), y = start.y() + along * steps(1, 0);
   row.z_m = start.z() + along * steps(2, 0);
   row.range_squared = x * x + y * y + row.z_m * row.z_m;

@@ -122,8 +122,7 @@ OVIMAP_INLINE void add_statistics(const EightPoints& points, const EightResidual
 
 /// The lanes of the eight from `begin` on that are before `end`.
 OVIMAP_INLINE Ints lanes_before(std::size_t begin, std::size_t end) {
-  const Ints lane = {0, 1, 2, 3, 4, 5, 6, 7};
-  return lane < static_cast<int>(std::min<std::size_t>(kLanes, end - begin));
+  return lane_numbers() < static_cast<int>(std::min<std::size_t>(kLanes, end - begin));
 }
 
 OVIMAP_VECTORIZE void sum_range(const ReferenceLevel& reference, std::size_t begin, std::size_t end,

@@ -99,8 +99,7 @@ OVIMAP_VECTORIZE void seen_by_color(const Frame& frame, const PinholeCamera& cam
   const PinholeCamera& color = frame.color_camera;
   const float ray_y = (static_cast<float>(y) - camera.cy) / camera.fy;
   for (int begin = 0; begin < camera.width; begin += kLanes) {
-    const Floats lane = {0.f, 1.f, 2.f, 3.f, 4.f, 5.f, 6.f, 7.f};
-    const Floats ray_x = (static_cast<float>(begin) + lane - camera.cx) / camera.fx;
+    const Floats ray_x = (counted_from(static_cast<float>(begin)) - camera.cx) / camera.fx;
     const Floats near = load(inverse + begin);
     const Floats depth = 1.f / (near > 0.f ? near : broadcast(1));
     const EightVectors point =
