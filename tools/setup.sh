@@ -222,7 +222,7 @@ set_up_validator() {
 have_model_of() {
   local yaml="$1" folder="$2"
   cmp -s "$yaml" "$folder/model.yaml" || return 1
-  sed -n -E 's/^  ([a-z]+\.[a-z]+): ([0-9a-f]{64})$/\2  \1/p' "$yaml" >"$SCRATCH/digests"
+  sed -n -E 's/^  ([a-z0-9-]+\.[a-z]+): ([0-9a-f]{64})$/\2  \1/p' "$yaml" >"$SCRATCH/digests"
   (cd "$folder" && sha256sum --check --status "$SCRATCH/digests") 2>/dev/null
 }
 

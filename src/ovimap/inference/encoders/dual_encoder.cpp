@@ -23,12 +23,9 @@ constexpr std::size_t kFewTexts = 8;
 
 /// The image network and the weights beside it; all other files belong to the text.
 bool is_image_file(const ModelFolder& model, const std::string& file) {
-  return file.starts_with(model.network(kImage).file);
-}
-
-OnnxSession open_network(const ModelFolder& model, const char* name, const RuntimeConfig& runtime,
-                         SessionUse use) {
-  return {model.folder / model.network(name).file, runtime, use};
+  const NetworkSpec& image = model.network(kImage);
+  return file.starts_with(image.file) ||
+         (!image.int8_file.empty() && file.starts_with(image.int8_file));
 }
 
 [[noreturn]] void network_fault(const ModelFolder& model, const std::string& what) {
@@ -136,7 +133,7 @@ DualEncoder::DualEncoder(const ModelFolder& model, const RuntimeConfig& runtime,
 DualEncoder::Network& DualEncoder::images() {
   std::call_once(images_.opened, [this] {
     verify_model_files(model_, [this](const auto& file) { return is_image_file(model_, file); });
-    images_.session = open_network(model_, kImage, runtime_, SessionUse::kManyRuns);
+    images_.session.emplace(model_, kImage, runtime_);
     images_.at_once = check_image_network(model_, *images_.session, spec_);
   });
   return images_;
@@ -149,7 +146,7 @@ DualEncoder::Network& DualEncoder::texts(SessionUse use) {
   });
   Network& network = use == SessionUse::kFewRuns ? few_texts_ : texts_;
   std::call_once(network.opened, [&] {
-    network.session = open_network(model_, kText, runtime_, use);
+    network.session.emplace(model_, kText, runtime_, use);
     network.at_once = check_text_network(model_, *network.session, spec_);
   });
   return network;

@@ -113,7 +113,7 @@ EntityMaskSource::EntityMaskSource(const ModelFolder& model, const EntityConfig&
                                    const RuntimeConfig& runtime)
     : model_(checked_model(model, "entity", "as a query-based network")),
       config_(config),
-      session_(model.folder / model.network(kNetwork).file, runtime) {
+      session_(model, kNetwork, runtime) {
   session_.input(model.input_of(kNetwork, "image"));
   const TensorInfo& classes = session_.output(model.output_of(kNetwork, "classes"));
   const TensorInfo& masks = session_.output(model.output_of(kNetwork, "masks"));

@@ -39,6 +39,12 @@ struct NetworkSpec {
   std::string file;                            ///< relative to the model folder
   std::map<std::string, std::string> inputs;   ///< role -> tensor name
   std::map<std::string, std::string> outputs;  ///< role -> tensor name
+  std::string int8_file = {};  ///< the same with products of bytes; empty: there is none
+
+  /// The file to run.
+  const std::string& file_for(bool in_int8) const {
+    return in_int8 && !int8_file.empty() ? int8_file : file;
+  }
 };
 
 /// A model folder's model.yaml.

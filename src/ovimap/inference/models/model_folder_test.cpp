@@ -71,6 +71,29 @@ TEST(ModelFolder, SaysWhatIsWrong) {
     EXPECT_TRUE(contains(message(text), "key: value"));
 }
 
+TEST(ModelFolder, ReadsTheFileOfBytes) {
+  const fixture::TemporaryFolder scratch;
+  const std::string with =
+      edited("file: encoder.onnx", "file: encoder.onnx, int8_file: encoder-int8.onnx");
+  const auto message = [&](const std::string& text) {
+    scratch.write("model.yaml", text);
+    return error_of([&] { read_model_folder(scratch.path()); });
+  };
+  EXPECT_TRUE(contains(message(with), "no digest of encoder-int8.onnx"));
+  EXPECT_TRUE(contains(message(edited("file: encoder.onnx", "file: a.onnx, int8_file: ../b.onnx")),
+                       "'../b.onnx' must lie inside the model"));
+
+  scratch.write("model.yaml", kYaml);
+  EXPECT_EQ(read_model_folder(scratch.path()).network("encoder").file_for(true), "encoder.onnx");
+  std::string whole = with;
+  whole.insert(whole.find("{encoder.onnx: ") + 1,
+               "encoder-int8.onnx: " + std::string(64, '0') + ", ");
+  scratch.write("model.yaml", whole);
+  const ModelFolder model = read_model_folder(scratch.path());
+  EXPECT_EQ(model.network("encoder").file_for(true), "encoder-int8.onnx");
+  EXPECT_EQ(model.network("encoder").file_for(false), "encoder.onnx");
+}
+
 TEST(ModelFolder, OnlyEncodersMayCutImages) {
   const fixture::TemporaryFolder scratch;
   std::string text = edited("kind: sam", "kind: dual_encoder");

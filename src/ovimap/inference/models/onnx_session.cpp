@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ovimap/inference/models/onnx_session.h"
 
+#if defined(__aarch64__) && defined(__linux__)
+#include <sys/auxv.h>
+#endif
+
 #include <onnxruntime_cxx_api.h>
 #include <onnxruntime_session_options_config_keys.h>
 
@@ -13,6 +17,7 @@
 #include "ovimap/base/config.h"
 #include "ovimap/base/error.h"
 #include "ovimap/base/listed.h"
+#include "ovimap/inference/models/model_folder.h"
 
 namespace ovimap {
 
@@ -48,6 +53,16 @@ std::string_view runtime_name(ExecutionProvider provider) {
       return "CoreMLExecutionProvider";
   }
   return "";
+}
+
+bool multiplies_int8() {
+#if defined(__x86_64__)
+  return __builtin_cpu_supports("avx512vnni") || __builtin_cpu_supports("avxvnni");
+#elif defined(__aarch64__) && defined(__linux__)
+  return (getauxval(AT_HWCAP) & HWCAP_ASIMDDP) != 0;
+#else
+  return false;
+#endif
 }
 
 void require_available(ExecutionProvider wanted) {
@@ -201,7 +216,20 @@ void list_fields(RuntimeConfig& config, ConfigFields& fields) {
   fields.add_choice("execution_provider", config.execution_provider, provider_words(),
                     "what runs the networks; ONNX Runtime must have been built with it");
   fields.add("spin", config.spin, "idle network threads wait actively instead of sleeping");
+  fields.add(
+      "int8", config.int8,
+      "where a model has a file for it and the processor the instructions, networks multiply "
+      "bytes");
 }
+
+bool runs_in_int8(const RuntimeConfig& config) {
+  return config.int8 && config.execution_provider == ExecutionProvider::kCpu && multiplies_int8();
+}
+
+OnnxSession::OnnxSession(const ModelFolder& model, const std::string& network,
+                         const RuntimeConfig& config, SessionUse use)
+    : OnnxSession(model.folder / model.network(network).file_for(runs_in_int8(config)), config,
+                  use) {}
 
 OnnxSession::OnnxSession(const std::filesystem::path& file, const RuntimeConfig& config,
                          SessionUse use)

@@ -13,6 +13,7 @@
 namespace ovimap {
 
 class ConfigFields;
+struct ModelFolder;
 
 enum class ExecutionProvider { kCpu, kCuda, kTensorRt, kOpenVino, kCoreMl };
 
@@ -21,8 +22,14 @@ struct RuntimeConfig {
   int threads = 0;  ///< threads of one network run (0: all cores); the mapper runs beside it
   ExecutionProvider execution_provider = ExecutionProvider::kCpu;
   bool spin = false;  ///< idle threads wait actively: a little faster alone, slower beside others
+  bool int8 = true;   ///< products of bytes, where the model has a file for it and the processor
+                      ///< the instructions
 };
 void list_fields(RuntimeConfig& config, ConfigFields& fields);
+
+/// Whether the files with products of bytes are run (NetworkSpec::file_for): on processors that add
+/// four products of bytes at once. Others add two, in 16 bits, which overflow, or are no quicker.
+bool runs_in_int8(const RuntimeConfig& config);
 
 /// Dimensions of a tensor; kAnySize where the network leaves one open.
 using TensorShape = std::vector<std::int64_t>;
@@ -60,6 +67,9 @@ class OnnxSession {
   /// Throws Error when the file is missing or not an ONNX network, or when the configured execution
   /// provider is not in this ONNX Runtime (the message lists those that are).
   OnnxSession(const std::filesystem::path& file, const RuntimeConfig& config,
+              SessionUse use = SessionUse::kManyRuns);
+  /// The network of that name of a model. Throws as above, and where the model has none.
+  OnnxSession(const ModelFolder& model, const std::string& network, const RuntimeConfig& config,
               SessionUse use = SessionUse::kManyRuns);
   ~OnnxSession();
   OnnxSession(OnnxSession&&) noexcept;

@@ -75,6 +75,17 @@ TEST(RuntimeConfig, ReadsProviderWords) {
   EXPECT_THROW(fields.set("execution_provider", "abacus"), Error);
 }
 
+TEST(RuntimeConfig, MultipliesBytesOnlyWhereItMayAndOnProcessors) {
+  RuntimeConfig config;
+  const bool here = runs_in_int8(config);  // as this processor has it
+  config.execution_provider = ExecutionProvider::kCuda;
+  EXPECT_FALSE(runs_in_int8(config));
+  config.execution_provider = ExecutionProvider::kCpu;
+  EXPECT_EQ(runs_in_int8(config), here);
+  config.int8 = false;
+  EXPECT_FALSE(runs_in_int8(config));
+}
+
 TEST(TensorShape, ReadsWell) {
   EXPECT_EQ(to_text(TensorShape{1, kAnySize, 2}), "[1,any,2]");
 }

@@ -23,7 +23,7 @@ EntityFinder::EntityFinder(const ModelFolder& model, const RuntimeConfig& runtim
       input_(model.input_of(kFinder, "embedding")),
       outputs_{model.output_of(kFinder, "things")},
       input_size_px_(model.input.size_px),
-      session_(file_, runtime) {
+      session_(model, kFinder, runtime) {
   session_.input(input_);
   const auto require = [this](const TensorInfo& tensor, std::int64_t channels) {
     if (tensor.shape.size() != 4 || tensor.shape[1] != channels)

@@ -199,14 +199,21 @@ TEST(SamMaskSource, AsksForWhatItsFinderSees) {
   EXPECT_TRUE(SamMaskSource(golden("finder"), config, {}).entities(patches(), {})->scores.empty());
 }
 
-TEST(SamMaskSource, DefaultModelSeparatesPlainObjects) {
+class DefaultModel : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(SamMaskSource, DefaultModel, testing::Bool(), [](const auto& of) {
+  return of.param ? "InBytesWhereItCan" : "InFullPrecision";
+});
+
+TEST_P(DefaultModel, SeparatesPlainObjects) {
   const auto models = list_models(model_search_path({fs::path(OVIMAP_SOURCE_DIR) / ".models"}));
   if (std::none_of(models.begin(), models.end(),
                    [](const auto& m) { return m.name == kDefaultSamModel; }))
     GTEST_SKIP() << "the default model is not there; run tools/setup.sh";
   MaskSourceContext context;
   context.model_dirs = {fs::path(OVIMAP_SOURCE_DIR) / ".models"};
-  const auto source = make_mask_source("sam", {}, context);
+  MaskSourceConfig config;
+  config.runtime.int8 = GetParam();
+  const auto source = make_mask_source("sam", config, context);
   Frame frame;
   frame.color = RgbImage(320, 240, Rgb8{90, 90, 95});
   fill_box(frame.color, 40, 60, 120, 180, Rgb8{210, 60, 50});

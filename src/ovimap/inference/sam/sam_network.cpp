@@ -40,8 +40,8 @@ SamNetwork::SamNetwork(const ModelFolder& model, const RuntimeConfig& runtime)
       input_(model.input),
       encoder_spec_(model.network("encoder")),
       decoder_spec_(model.network("decoder")),
-      encoder_(folder_ / encoder_spec_.file, runtime),
-      decoder_(folder_ / decoder_spec_.file, runtime) {
+      encoder_(model, "encoder", runtime),
+      decoder_(model, "decoder", runtime) {
   check_tensors(model);
   read_prompt_rules(model);
 }

@@ -54,7 +54,7 @@ float ScoreRatio::log_ratio(float score, float background) const {
 ThingDetector::ThingDetector(const ModelFolder& model, const RuntimeConfig& runtime)
     : name_(checked_detector(model).name),
       input_spec_(model.input),
-      network_(model.folder / model.network("detector").file, runtime),
+      network_(model, "detector", runtime),
       input_(model.input_of("detector", "image")),
       boxes_(model.output_of("detector", "boxes")),
       scores_(model.output_of("detector", "scores")) {

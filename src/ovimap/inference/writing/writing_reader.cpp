@@ -117,8 +117,8 @@ Eigen::AlignedBox2i box_of(const TextArea& area, const RgbImage& image) {
 WritingReader::WritingReader(const ModelFolder& model, const RuntimeConfig& runtime)
     : folder_(checked_model(model, "writing", "to read writing").folder),
       name_(model.name),
-      detector_(folder_ / model.network("detector").file, runtime),
-      speller_(folder_ / model.network("speller").file, runtime),
+      detector_(model, "detector", runtime),
+      speller_(model, "speller", runtime),
       detector_input_(model.input_of("detector", "image")),
       detector_output_(model.output_of("detector", "probability")),
       speller_input_(model.input_of("speller", "line")),
