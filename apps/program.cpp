@@ -49,7 +49,8 @@ constexpr CommandEntry kCommands[] = {
     {"ablate", "vary one choice and score the maps, beside published figures",
      "ablate fusion demo/tiny/room --masks gt --frames ::8 -o tables", add_ablate},
     {"reproduce", "make the paper's tables from your own copy of its data", nullptr, add_reproduce},
-    {"bench", "measure speed and memory on a recording", "bench demo/tiny/room", add_bench},
+    {"bench", "what this machine can do; with SOURCE, speed and memory on a recording", "bench",
+     add_bench},
 #ifdef OVIMAP_SYNTH
     {"demo", "show what ovimap does: render a small room, map it, find things in it", "demo",
      add_demo},

@@ -233,8 +233,32 @@ TEST_F(ProgramTest, SaysWhatIsWrongWithTheCommandLine) {
   expect_complaint("run recording -o a.ovimap --masks gt", {"gt"});
   expect_complaint("run recording -o a.ovimap --frames a:b", {"a:b"});
   expect_complaint("run recording -o a.ovimap --fps 20", {"--fps", "--live"});
-  expect_complaint("bench", {"SOURCE", "--corridor"});
+  expect_complaint("bench --frames 200:", {"--frames", "none of the 90"});
   EXPECT_EQ(run("--help").code, 0);
+}
+
+TEST_F(ProgramTest, SaysWhatTheMachineCanDo) {
+  std::filesystem::create_directories(path("tmp"));
+  ::setenv("TMPDIR", path("tmp").c_str(), 1);
+  const auto machine =
+      run_json("bench --frames :9 --masks gt --encoder " + golden_model("minilm") + " --json");
+  const ProgramResult told = run("bench --frames :4 --masks gt --encoder none");
+  ::unsetenv("TMPDIR");
+  EXPECT_EQ(machine["frames"], 9);
+  ASSERT_EQ(machine["paces"].size(), 3u);
+  EXPECT_EQ(machine["paces"][1]["voxel_size_m"], 0.02f);
+  EXPECT_EQ(machine["paces"][2]["poses"], "track");
+  for (const auto& pace : machine["paces"]) {
+    EXPECT_GT(pace["fps"], 0);
+    EXPECT_GT(pace["cores_busy"], 0.1);
+  }
+  EXPECT_EQ(machine["masks"]["model"], "gt");
+  EXPECT_GT(machine["words"]["seconds"], 0);
+  EXPECT_EQ(told.code, 0) << told.err;
+  for (const char* words : {"depth alone, 1 cm", "masks     gt takes", "limit     ", "next      "})
+    EXPECT_TRUE(told.out.find(words) != std::string::npos) << words << " in\n" << told.out;
+  for (const auto& left : std::filesystem::directory_iterator(path("tmp")))
+    EXPECT_FALSE(left.is_directory()) << "what was rendered is left: " << left.path();
 }
 
 TEST_F(ProgramTest, MeasuresWhatATenthOfACorridorCosts) {

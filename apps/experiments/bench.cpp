@@ -65,25 +65,8 @@ void measure_mesh(const FrameSource& source, const std::vector<std::int64_t>& ra
   }
 }
 
-std::string processor_name() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);)
-    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
-  return "unknown";
-}
-
-/// Removes the file when it goes out of scope, whatever happened meanwhile.
-struct RemoveLater {
-  std::filesystem::path path;
-  ~RemoveLater() {
-    std::error_code ignored;
-    std::filesystem::remove(path, ignored);
-  }
-};
-
 std::filesystem::path temporary_map() {
-  return std::filesystem::temp_directory_path() /
-         ("ovimap-bench-" + std::to_string(getpid()) + ".ovimap");
+  return temporary_path(".ovimap");
 }
 
 /// Saves the map beside other temporary files, opens it for questions, goes on with it as a resumed
@@ -110,6 +93,23 @@ std::uintmax_t saved_bytes(const MapDocument& document, const MapperConfig& conf
 
 }  // namespace
 
+std::string processor_name() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);)
+    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
+  return "unknown";
+}
+
+RemoveLater::~RemoveLater() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path, ignored);
+}
+
+std::filesystem::path temporary_path(const std::string& ending) {
+  return std::filesystem::temp_directory_path() /
+         ("ovimap-bench-" + std::to_string(getpid()) + ending);
+}
+
 std::unique_ptr<Checkpointer> bound_memory(const MemoryConfig& memory) {
   if (memory.max_mb == 0) return nullptr;
   auto tiles = std::make_shared<TileKeeper>(checkpoint_path(temporary_map()),
@@ -123,14 +123,17 @@ namespace {
 int bench(const BenchOptions& options) {
   const ThreadLimit limit(options.mapping.threads);
   ProgramConfig config = read_program_config(options.mapping);
-  if (options.mapping.source.empty() == (options.corridor == 0))
-    throw Error(
-        "name a SOURCE to measure, or --corridor N (where the program was built with rooms)");
 #ifdef OVIMAP_SYNTH
-  if (options.corridor > 0)
+  if (options.corridor > 0) {
+    if (!options.mapping.source.empty())
+      throw Error("name a SOURCE to measure or --corridor N, not both");
     return bench_corridor({options.corridor, options.again, options.track, options.json}, config,
                           options.mapping);
+  }
+  if (options.mapping.source.empty()) return bench_machine(config, options.mapping, options.json);
 #endif
+  if (options.mapping.source.empty())
+    throw Error("name a SOURCE to measure: this program was built without rooms to render");
   config.masks.runtime.threads = network_threads(config, options.mapping);
   if (options.track) config.source.poses = PoseNeed::kNone;
   const auto source = open_frame_source(options.mapping.source, config.source);

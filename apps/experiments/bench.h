@@ -11,6 +11,21 @@ namespace ovimap::apps {
 /// when there is no bound.
 std::unique_ptr<Checkpointer> bound_memory(const MemoryConfig& memory);
 
+std::string processor_name();
+
+/// Removes the file or folder when it goes out of scope, whatever happened meanwhile.
+struct RemoveLater {
+  std::filesystem::path path;
+  ~RemoveLater();
+};
+
+/// Among other temporary files, of this process alone.
+std::filesystem::path temporary_path(const std::string& ending);
+
+/// Tells what this machine can do, on a walk through a room that is rendered for it: frames a
+/// second at 1 and 2 cm and with poses found, what masks and words take, and what limits it.
+int bench_machine(const ProgramConfig& config, MappingOptions options, bool json);
+
 struct CorridorBench {
   int frames;
   bool again;  ///< walk it once more, as another visit of the map
