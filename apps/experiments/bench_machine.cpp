@@ -9,7 +9,6 @@
 #include "bench.h"
 #include "ovimap/base/parallel.h"
 #include "ovimap/base/version.h"
-#include "ovimap/image/codec.h"
 #include "ovimap/inference/models/model_folder.h"
 #include "ovimap/pipeline/sequence/sequence_run.h"
 
@@ -95,21 +94,20 @@ Pace measure(const std::string& what, const FrameSource& source,
           cpu_s / result.seconds};
 }
 
-std::vector<Pace> measure_paces(const std::filesystem::path& recording,
+std::vector<Pace> measure_paces(const std::string& recording, const FrameSource& given,
                                 const std::vector<std::int64_t>& frames, ProgramConfig config) {
-  const auto given = open_frame_source(recording.string(), config.source);
   std::vector<Pace> paces;
   for (const float voxel_m : {0.01f, 0.02f}) {
     config.mapper.map.voxel_size_m = voxel_m;
-    paces.push_back(measure(concat("depth alone, ", std::lround(100 * voxel_m), " cm"), *given,
+    paces.push_back(measure(concat("depth alone, ", std::lround(100 * voxel_m), " cm"), given,
                             frames, config.mapper));
   }
   config.source.poses = PoseNeed::kNone;
   config.mapper.map.voxel_size_m = paces.front().voxel_size_m;
   PoseFinder finder(Tracker(config.track), config.loops);
   paces.push_back(measure("the same at 1 cm, poses found",
-                          *open_frame_source(recording.string(), config.source), frames,
-                          config.mapper, &finder));
+                          *open_frame_source(recording, config.source), frames, config.mapper,
+                          &finder));
   return paces;
 }
 
@@ -130,8 +128,8 @@ NetworkTime measure_masks(const FrameSource& source, const std::vector<std::int6
   Mapper mapper(config.mapper,
                 make_mask_source(options.masks, config.masks, {&source, options.model_dirs}));
   std::vector<std::int64_t> some;
-  for (std::size_t i = 0; i < std::min(kMaskedFrames, frames.size()); ++i)
-    some.push_back(frames[i * frames.size() / kMaskedFrames]);
+  const std::size_t count = std::min(kMaskedFrames, frames.size());
+  for (std::size_t i = 0; i < count; ++i) some.push_back(frames[i * frames.size() / count]);
   walk(source, some, mapper, "masks of " + options.masks);
   return {options.masks, mapper.timers().summary().at("masks").p50_ms / 1e3};
 }
@@ -231,10 +229,11 @@ int bench_machine(const ProgramConfig& config, MappingOptions options, bool json
   render(folder, frames.back() + 1);
   MachineReport report;
   report.frames = frames.size();
-  report.paces = measure_paces(folder / "room", frames, config);
+  const std::string recording = (folder / "room").string();
+  const auto source = open_frame_source(recording, config.source);
+  report.paces = measure_paces(recording, *source, frames, config);
   options.masks = masks_of(options);
   if (!options.masks.empty()) {
-    const auto source = open_frame_source((folder / "room").string(), config.source);
     report.masks = measure_masks(*source, frames, config, options);
     report.words = measure_words(*source, frames, config, options);
   }

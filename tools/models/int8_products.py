@@ -24,7 +24,7 @@ def in_int8(data: bytes) -> bytes:
     model = onnx.load_from_string(data)
     graph = model.graph
     weights = {constant.name: constant for constant in graph.initializer}
-    nodes, constants, replaced, rounded = [], [], set(), {}
+    nodes, constants, rounded = [], [], {}
     for node in graph.node:
         constant = weights.get(node.input[1]) if node.op_type == "MatMul" else None
         if constant is None or len(constant.dims) != 2 or constant.dims[0] * constant.dims[1] < LEAST_WEIGHTS:
@@ -37,7 +37,6 @@ def in_int8(data: bytes) -> bytes:
         of_input, step, zero = rounded[taken]
         values, steps = quantised(numpy_helper.to_array(constant))
         constants += [numpy_helper.from_array(values, f"{given}/weights"), numpy_helper.from_array(steps, f"{given}/steps")]
-        replaced.add(constant.name)
         nodes += [
             helper.make_node("MatMulInteger", [of_input, f"{given}/weights", zero], [f"{given}/sums"]),
             helper.make_node("Cast", [f"{given}/sums"], [f"{given}/floats"], to=TensorProto.FLOAT),

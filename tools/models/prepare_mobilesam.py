@@ -20,8 +20,8 @@ import re
 import shutil
 import sys
 
-import int8_products
 import few_token_decoder
+import int8_products
 import onnx
 import row_encoder
 from onnx import TensorProto, helper

@@ -23,9 +23,9 @@ constexpr std::size_t kFewTexts = 8;
 
 /// The image network and the weights beside it; all other files belong to the text.
 bool is_image_file(const ModelFolder& model, const std::string& file) {
-  const NetworkSpec& image = model.network(kImage);
-  return file.starts_with(image.file) ||
-         (!image.int8_file.empty() && file.starts_with(image.int8_file));
+  const std::vector<std::string> of_image = model.network(kImage).files();
+  return std::any_of(of_image.begin(), of_image.end(),
+                     [&](const std::string& name) { return file.starts_with(name); });
 }
 
 [[noreturn]] void network_fault(const ModelFolder& model, const std::string& what) {

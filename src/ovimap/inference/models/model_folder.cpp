@@ -101,14 +101,13 @@ NetworkSpec parse_network(const YAML::Node& node, const fs::path& folder) {
   NetworkSpec network{required_text(node, "file", folder), text_map(node["inputs"]),
                       text_map(node["outputs"])};
   if (node["int8_file"]) network.int8_file = required_text(node, "int8_file", folder);
-  for (const std::string& file : {network.file, network.int8_file}) require_inside(file, folder);
+  for (const std::string& file : network.files()) require_inside(file, folder);
   return network;
 }
 
 /// A network's file and the weights that ONNX keeps beside it: "net.onnx", "net.onnx.data" or
 /// "net.onnx_data".
 std::vector<std::string> files_of(const fs::path& folder, const std::string& file) {
-  if (file.empty()) return {};
   std::vector<std::string> files = {file};
   std::error_code unreadable;
   const fs::path path = folder / file;
@@ -135,7 +134,7 @@ ModelFolder parse(const YAML::Node& root, const fs::path& folder) {
     model.networks[entry.first.as<std::string>()] = parse_network(entry.second, folder);
   model.sha256 = text_map(root["sha256"]);
   for (const auto& [name, network] : model.networks)
-    for (const std::string& of_network : {network.file, network.int8_file})
+    for (const std::string& of_network : network.files())
       for (const std::string& file : files_of(folder, of_network))
         if (!model.sha256.contains(file))
           fault(folder, concat("'sha256' has no digest of ", file, "; add it"));

@@ -41,6 +41,9 @@ struct NetworkSpec {
   std::map<std::string, std::string> outputs;  ///< role -> tensor name
   std::string int8_file = {};  ///< the same with products of bytes; empty: there is none
 
+  std::vector<std::string> files() const {
+    return int8_file.empty() ? std::vector{file} : std::vector{file, int8_file};
+  }
   /// The file to run.
   const std::string& file_for(bool in_int8) const {
     return in_int8 && !int8_file.empty() ? int8_file : file;
