@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "ovimap/base/parallel.h"
 #include "ovimap/geometry/pose.h"
 #include "ovimap/track/alignment/plain_residuals.h"
@@ -155,6 +158,67 @@ TEST(Residuals, AddUpToThoseOfThePlainWalk) {
         sum_residuals(reference, view.frame[level], view.guess, view.scale, {}, false);
     EXPECT_NEAR(plain.cost, cost.cost, 1e-4 * plain.cost);
   }
+}
+
+constexpr float kModelSigma_m = 0.003f;
+
+/// What a map shows that is `off` standard deviations behind a level's depth, and up to one more
+/// this way and that.
+float behind(float inverse_depth, float off, std::size_t pixel) {
+  const float depth = 1 / inverse_depth, various = static_cast<float>(pixel % 5) / 2 - 1;
+  const float sigma = std::hypot(DepthNoiseConfig{}.sigma_m(depth), kModelSigma_m);
+  return 1 / (depth + (off + various) * sigma);
+}
+
+Image<float> model_of(const TrackLevel& level, float off) {
+  Image<float> model = level.inverse_depth;
+  for (std::size_t i = 0; i < model.size(); ++i)
+    if (model[i] > 0) model[i] = behind(model[i], off, i);
+  return model;
+}
+
+TEST(Reference, ForgetsWhatTheFrameContradicts) {
+  const Scene scene;
+  const TrackLevel level = make_pyramid(scene.camera.take(scene.start))[kSurfaceLevel];
+  const Image<float> right = model_of(level, 0), wrong = model_of(level, -6);
+  Image<float> model = right;
+  const int width = model.width() / 8;
+  for (int y = 0; y < model.height(); ++y)  // a thing whose far side comes out on this one
+    std::copy_n(wrong.row(y), width, model.row(y));
+  forget_contradicted(level, {}, kModelSigma_m, model);
+  for (int y = 0; y < model.height(); ++y)
+    for (int x = 0; x < model.width(); ++x)
+      ASSERT_EQ(model.at(x, y), x < width ? 0.f : right.at(x, y)) << x << ", " << y;
+}
+
+TEST(Reference, KeepsAMapThatIsOffAsAWhole) {
+  const Scene scene;
+  const TrackLevel level = make_pyramid(scene.camera.take(scene.start))[kSurfaceLevel];
+  const Image<float> drifted = model_of(level, 6);
+  Image<float> model = drifted;
+  forget_contradicted(level, {}, kModelSigma_m, model);
+  EXPECT_TRUE(std::equal(model.begin(), model.end(), drifted.begin()));
+}
+
+/// However alike the two are elsewhere.
+TEST(Reference, KeepsWhatTheNoiseOfASensorExplains) {
+  const Scene scene;
+  const TrackLevel level = make_pyramid(scene.camera.take(scene.start))[kSurfaceLevel];
+  Image<float> model = level.inverse_depth;
+  for (std::size_t i = 0; i < model.size(); i += 3) model[i] = behind(model[i], 1, i);
+  const Image<float> noisy = model;
+  forget_contradicted(level, {}, kModelSigma_m, model);
+  EXPECT_TRUE(std::equal(model.begin(), model.end(), noisy.begin()));
+}
+
+TEST(Reference, KeepsWhatTheFrameSaysNothingOf) {
+  const Scene scene;
+  TrackLevel level = make_pyramid(scene.camera.take(scene.start))[kSurfaceLevel];
+  const Image<float> unseen = model_of(level, 50);
+  level.inverse_depth.fill(0);
+  Image<float> model = unseen;
+  forget_contradicted(level, {}, kModelSigma_m, model);
+  EXPECT_TRUE(std::equal(model.begin(), model.end(), unseen.begin()));
 }
 
 TEST(NormalEquations, SmallMotionsAreTakenBack) {

@@ -7,6 +7,7 @@
 #include "ovimap/base/lanes.h"
 #include "ovimap/geometry/pose.h"
 #include "ovimap/map/voxels/voxel_map.h"
+#include "ovimap/segment/depth_surface.h"
 #include "ovimap/track/images/track_pyramid.h"
 
 namespace ovimap {
@@ -65,6 +66,15 @@ Image<float> cast_inverse_depth(const VoxelMap& map, const PinholeCamera& camera
 /// surface, so that only what both have holds the frame in place. Returns the share of its depth
 /// that is left.
 double keep_what_map_has(const Image<float>& model, TrackLevel& level);
+
+/// Takes the map's surface out of `model` (as cast_inverse_depth gives it for the level) where the
+/// level's own depth contradicts it: a thing that moved, or a thin one that was seen from its other
+/// side before, whose band of distances reaches through it and out on this one. Differences are
+/// told in standard deviations of both, the map's and the sensor's. Those are left that three times
+/// these explain, or three times the spread that this view has of them (1.4826 times the median, as
+/// of a normal distribution): a pose that is off makes all of them larger, and contradicts nothing.
+void forget_contradicted(const TrackLevel& level, const DepthNoiseConfig& noise,
+                         float model_sigma_m, Image<float>& model);
 
 /// The reference of a frame at a pose. `model`: inverse depth of the map at the pyramid's level 1
 /// (cast_inverse_depth), empty: the frame's own depth is the surface. Where the model has none, the
