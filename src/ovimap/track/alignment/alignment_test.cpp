@@ -177,7 +177,7 @@ Image<float> model_of(const TrackLevel& level, float off) {
   return model;
 }
 
-TEST(Reference, ForgetsWhatTheFrameContradicts) {
+TEST(Reference, ForgetsWhatTheFrameSeesThrough) {
   const Scene scene;
   const TrackLevel level = make_pyramid(scene.camera.take(scene.start))[kSurfaceLevel];
   const Image<float> right = model_of(level, 0), wrong = model_of(level, -6);
@@ -185,18 +185,30 @@ TEST(Reference, ForgetsWhatTheFrameContradicts) {
   const int width = model.width() / 8;
   for (int y = 0; y < model.height(); ++y)  // a thing whose far side comes out on this one
     std::copy_n(wrong.row(y), width, model.row(y));
-  forget_contradicted(level, {}, kModelSigma_m, model);
+  forget_seen_through(level, {}, kModelSigma_m, model);
   for (int y = 0; y < model.height(); ++y)
     for (int x = 0; x < model.width(); ++x)
       ASSERT_EQ(model.at(x, y), x < width ? 0.f : right.at(x, y)) << x << ", " << y;
 }
 
+/// Somebody who walks by must not be what the next frame is held against.
+TEST(Reference, KeepsWhatSomethingHides) {
+  const Scene scene;
+  TrackLevel level = make_pyramid(scene.camera.take(scene.start))[kSurfaceLevel];
+  const Image<float> map = model_of(level, 0);
+  for (int y = 0; y < map.height() / 4; ++y)
+    for (int x = 0; x < map.width(); ++x) level.inverse_depth.at(x, y) *= 2;
+  Image<float> model = map;
+  forget_seen_through(level, {}, kModelSigma_m, model);
+  EXPECT_TRUE(std::equal(model.begin(), model.end(), map.begin()));
+}
+
 TEST(Reference, KeepsAMapThatIsOffAsAWhole) {
   const Scene scene;
   const TrackLevel level = make_pyramid(scene.camera.take(scene.start))[kSurfaceLevel];
-  const Image<float> drifted = model_of(level, 6);
+  const Image<float> drifted = model_of(level, -6);
   Image<float> model = drifted;
-  forget_contradicted(level, {}, kModelSigma_m, model);
+  forget_seen_through(level, {}, kModelSigma_m, model);
   EXPECT_TRUE(std::equal(model.begin(), model.end(), drifted.begin()));
 }
 
@@ -205,19 +217,19 @@ TEST(Reference, KeepsWhatTheNoiseOfASensorExplains) {
   const Scene scene;
   const TrackLevel level = make_pyramid(scene.camera.take(scene.start))[kSurfaceLevel];
   Image<float> model = level.inverse_depth;
-  for (std::size_t i = 0; i < model.size(); i += 3) model[i] = behind(model[i], 1, i);
+  for (std::size_t i = 0; i < model.size(); i += 3) model[i] = behind(model[i], -1, i);
   const Image<float> noisy = model;
-  forget_contradicted(level, {}, kModelSigma_m, model);
+  forget_seen_through(level, {}, kModelSigma_m, model);
   EXPECT_TRUE(std::equal(model.begin(), model.end(), noisy.begin()));
 }
 
 TEST(Reference, KeepsWhatTheFrameSaysNothingOf) {
   const Scene scene;
   TrackLevel level = make_pyramid(scene.camera.take(scene.start))[kSurfaceLevel];
-  const Image<float> unseen = model_of(level, 50);
+  const Image<float> unseen = model_of(level, -50);
   level.inverse_depth.fill(0);
   Image<float> model = unseen;
-  forget_contradicted(level, {}, kModelSigma_m, model);
+  forget_seen_through(level, {}, kModelSigma_m, model);
   EXPECT_TRUE(std::equal(model.begin(), model.end(), unseen.begin()));
 }
 

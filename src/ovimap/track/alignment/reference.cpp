@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kReach_px = 2;                  // half window of a piece's plane
 constexpr float kNormalFromMedian = 1.4826f;  // standard deviation by the median of its absolutes
-constexpr float kContradiction = 3;           // standard deviations, or a view's own of them
+constexpr float kSeenThrough = 3;             // standard deviations, or a view's own of them
 
 /// Inverse depth of a plane: value at a pixel and change per pixel.
 struct InversePlane {
@@ -123,11 +123,9 @@ Image<float> halved_inverse(const Image<float>& fine) {
   return coarse;
 }
 
-/// How far a level's depth is from the model's, in standard deviations; -1 where one has none.
-float difference_sigmas(float model, float own, const DepthNoiseConfig& noise,
-                        float model_sigma_m) {
-  if (model <= 0 || own <= 0) return -1;
-  return std::fabs(1 / model - 1 / own) / std::hypot(noise.sigma_m(1 / own), model_sigma_m);
+/// By how many standard deviations depth is behind the model's.
+float sigmas_behind(float model, float own, const DepthNoiseConfig& noise, float model_sigma_m) {
+  return (1 / own - 1 / model) / std::hypot(noise.sigma_m(1 / own), model_sigma_m);
 }
 
 /// The model where there is one, else the frame's own depth.
@@ -184,18 +182,20 @@ double keep_what_map_has(const Image<float>& model, TrackLevel& level) {
   return seen == 0 ? 0. : static_cast<double>(both) / static_cast<double>(seen);
 }
 
-void forget_contradicted(const TrackLevel& level, const DepthNoiseConfig& noise,
+void forget_seen_through(const TrackLevel& level, const DepthNoiseConfig& noise,
                          float model_sigma_m, Image<float>& model) {
-  Image<float> differences(model.width(), model.height());
-  std::vector<float> known;
+  const Image<float>& own = level.inverse_depth;
+  Image<float> behind(model.width(), model.height(), 0.f);
+  std::vector<float> differences;
   for (std::size_t i = 0; i < model.size(); ++i) {
-    differences[i] = difference_sigmas(model[i], level.inverse_depth[i], noise, model_sigma_m);
-    if (differences[i] >= 0) known.push_back(differences[i]);
+    if (model[i] <= 0 || own[i] <= 0) continue;
+    behind[i] = sigmas_behind(model[i], own[i], noise, model_sigma_m);
+    differences.push_back(std::fabs(behind[i]));
   }
-  if (known.empty()) return;
-  const float most = kContradiction * std::max(1.f, kNormalFromMedian * median_of(known));
+  if (differences.empty()) return;
+  const float most = kSeenThrough * std::max(1.f, kNormalFromMedian * median_of(differences));
   for (std::size_t i = 0; i < model.size(); ++i)
-    if (differences[i] > most) model[i] = 0;
+    if (behind[i] > most) model[i] = 0;
 }
 
 Reference make_reference(const TrackPyramid& pyramid, const Image<float>& model,

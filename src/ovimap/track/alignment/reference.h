@@ -68,12 +68,14 @@ Image<float> cast_inverse_depth(const VoxelMap& map, const PinholeCamera& camera
 double keep_what_map_has(const Image<float>& model, TrackLevel& level);
 
 /// Takes the map's surface out of `model` (as cast_inverse_depth gives it for the level) where the
-/// level's own depth contradicts it: a thing that moved, or a thin one that was seen from its other
-/// side before, whose band of distances reaches through it and out on this one. Differences are
-/// told in standard deviations of both, the map's and the sensor's. Those are left that three times
-/// these explain, or three times the spread that this view has of them (1.4826 times the median, as
-/// of a normal distribution): a pose that is off makes all of them larger, and contradicts nothing.
-void forget_contradicted(const TrackLevel& level, const DepthNoiseConfig& noise,
+/// level's own depth is behind it: there is none where a sensor sees through. So it is with things
+/// that went, and with thin ones that were seen from their other side before, whose band of
+/// distances reaches through them and out on this one. What is nearer than the map says nothing: it
+/// may move. Depth is behind by more than three times the standard deviations of both, the map's
+/// and the sensor's, and than three times what the two differ by in this view (1.4826 times the
+/// median, as of a normal distribution): a pose that is off makes all of it differ, and nothing
+/// seen through.
+void forget_seen_through(const TrackLevel& level, const DepthNoiseConfig& noise,
                          float model_sigma_m, Image<float>& model);
 
 /// The reference of a frame at a pose. `model`: inverse depth of the map at the pyramid's level 1
