@@ -207,11 +207,11 @@ void Tracker::accept(std::int64_t index, const Alignment& alignment, const Refer
 }
 
 /// The map's surface from the last tracked pose, with that frame's intensities, and its depth where
-/// that shows that the map has too much.
+/// the map is wrong.
 void Tracker::refresh_reference(const VoxelMap& map) {
-  const TrackLevel& level = last_pyramid_[kSurfaceLevel];
+  TrackLevel& level = last_pyramid_[kSurfaceLevel];
   Image<float> model = cast_inverse_depth(map, level.camera, last_pose_, config_.max_range_m);
-  forget_seen_through(level, config_.alignment.noise, config_.alignment.model_sigma_m, model);
+  settle_contradictions(config_.alignment.noise, config_.alignment.model_sigma_m, model, level);
   reference_ = make_reference(last_pyramid_, model, last_pose_);
   reference_is_old_ = false;
   reference_age_ = 0;

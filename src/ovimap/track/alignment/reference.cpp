@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kReach_px = 2;                  // half window of a piece's plane
 constexpr float kNormalFromMedian = 1.4826f;  // standard deviation by the median of its absolutes
-constexpr float kSeenThrough = 3;             // standard deviations, or a view's own of them
+constexpr float kTooFarOff = 3;               // standard deviations, or a view's own of them
 
 /// Inverse depth of a plane: value at a pixel and change per pixel.
 struct InversePlane {
@@ -182,9 +182,9 @@ double keep_what_map_has(const Image<float>& model, TrackLevel& level) {
   return seen == 0 ? 0. : static_cast<double>(both) / static_cast<double>(seen);
 }
 
-void forget_seen_through(const TrackLevel& level, const DepthNoiseConfig& noise,
-                         float model_sigma_m, Image<float>& model) {
-  const Image<float>& own = level.inverse_depth;
+void settle_contradictions(const DepthNoiseConfig& noise, float model_sigma_m, Image<float>& model,
+                           TrackLevel& level) {
+  Image<float>& own = level.inverse_depth;
   Image<float> behind(model.width(), model.height(), 0.f);
   std::vector<float> differences;
   for (std::size_t i = 0; i < model.size(); ++i) {
@@ -193,9 +193,13 @@ void forget_seen_through(const TrackLevel& level, const DepthNoiseConfig& noise,
     differences.push_back(std::fabs(behind[i]));
   }
   if (differences.empty()) return;
-  const float most = kSeenThrough * std::max(1.f, kNormalFromMedian * median_of(differences));
-  for (std::size_t i = 0; i < model.size(); ++i)
-    if (behind[i] > most) model[i] = 0;
+  const float most = kTooFarOff * std::max(1.f, kNormalFromMedian * median_of(differences));
+  for (std::size_t i = 0; i < model.size(); ++i) {
+    if (std::fabs(behind[i]) <= most) continue;
+    const bool something_before = model[i] < (1 - kOneSurface) * own[i];
+    model[i] = 0;
+    if (something_before) own[i] = 0;
+  }
 }
 
 Reference make_reference(const TrackPyramid& pyramid, const Image<float>& model,

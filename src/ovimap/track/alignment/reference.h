@@ -67,16 +67,17 @@ Image<float> cast_inverse_depth(const VoxelMap& map, const PinholeCamera& camera
 /// that is left.
 double keep_what_map_has(const Image<float>& model, TrackLevel& level);
 
-/// Takes the map's surface out of `model` (as cast_inverse_depth gives it for the level) where the
-/// level's own depth is behind it: there is none where a sensor sees through. So it is with things
-/// that went, and with thin ones that were seen from their other side before, whose band of
-/// distances reaches through them and out on this one. What is nearer than the map says nothing: it
-/// may move. Depth is behind by more than three times the standard deviations of both, the map's
-/// and the sensor's, and than three times what the two differ by in this view (1.4826 times the
-/// median, as of a normal distribution): a pose that is off makes all of it differ, and nothing
-/// seen through.
-void forget_seen_through(const TrackLevel& level, const DepthNoiseConfig& noise,
-                         float model_sigma_m, Image<float>& model);
+/// Settles where a map (`model`, as cast_inverse_depth gives it for the level) and the depth of the
+/// frame that was aligned to it contradict each other. Where the frame sees through the map, or has
+/// the same surface elsewhere, the map is wrong and goes: about a thing that went, or a thin one
+/// that was seen from its other side before, whose band of distances reaches through it and out on
+/// this one. Where something stands before the map's surface both go: it may move.
+///
+/// They contradict each other by more than three standard deviations of both, and by more than
+/// three times what they differ by in this view (1.4826 times the median, as of a normal
+/// distribution): a pose that is off makes all of it differ, and contradicts nothing.
+void settle_contradictions(const DepthNoiseConfig& noise, float model_sigma_m, Image<float>& model,
+                           TrackLevel& level);
 
 /// The reference of a frame at a pose. `model`: inverse depth of the map at the pyramid's level 1
 /// (cast_inverse_depth), empty: the frame's own depth is the surface. Where the model has none, the
