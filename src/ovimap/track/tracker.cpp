@@ -206,8 +206,8 @@ void Tracker::accept(std::int64_t index, const Alignment& alignment, const Refer
                       next_overlap < config_.reference_overlap;
 }
 
-/// The map's surface from the last tracked pose, with that frame's intensities, and its depth where
-/// the map is wrong.
+/// The map's surface from the last tracked pose, with that frame's intensities, settled where
+/// its depth contradicts the map.
 void Tracker::refresh_reference(const VoxelMap& map) {
   TrackLevel& level = last_pyramid_[kSurfaceLevel];
   Image<float> model = cast_inverse_depth(map, level.camera, last_pose_, config_.max_range_m);

@@ -216,6 +216,14 @@ TEST_F(Contradictions, WhatTheFrameSeesThroughGoes) {
   EXPECT_TRUE(as_before(kChanged));
 }
 
+TEST_F(Contradictions, AMapThatHasTheSameSurfaceTooFarGoes) {
+  map_is(6);
+  settle();
+  EXPECT_TRUE(is_gone(model_));
+  EXPECT_FALSE(is_gone(level_.inverse_depth));
+  EXPECT_TRUE(as_before(kChanged));
+}
+
 /// Somebody who walks by must not be what the next frame is held against, nor the wall behind with
 /// the looks of somebody.
 TEST_F(Contradictions, WhatSomethingHidesGoesWithIt) {
