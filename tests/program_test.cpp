@@ -269,6 +269,9 @@ TEST_F(ProgramTest, MeasuresWhatATenthOfACorridorCosts) {
   EXPECT_GT(walk["parts"][9]["blocks_touched"], 0);
   EXPECT_GT(walk["parts"][9]["stages"]["registry"]["total_ms"], 0);
   EXPECT_EQ(walk["parts"][9]["frames_lost"], 0);
+  EXPECT_EQ(walk["old"]["frames"], walk["young"]["frames"]);
+  EXPECT_GT(walk["old"]["map_mb"], walk["young"]["map_mb"]);
+  EXPECT_GT(walk["growth"], 0);
   const auto twice = run_json("bench --corridor 20 --masks gt --again --json");
   ASSERT_EQ(twice["again"]["parts"].size(), 10u);
   const double before = twice["parts"][9]["surface_m2"],

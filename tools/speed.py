@@ -158,39 +158,43 @@ def speed_lines(program, recording, rivals=RIVALS, networks=True):
 
 
 def stage_ratio(walk, name):
-    first, last = (walk["parts"][end]["stages"].get(name, {"total_ms": 0})["total_ms"] for end in (0, -1))
-    return last / first
+    old, young = (walk[map_age]["stages"].get(name, {"total_ms": 0})["total_ms"] for map_age in ("old", "young"))
+    return old / young if young else math.inf
 
 
 def walk_corridor(program, *options):
     return run_json(program, "bench", "--corridor", CORRIDOR_FRAMES, "--masks", "gt", *options)
 
 
+def growth_line(walk):
+    """What history costs: the same frames in turn, in the map of the walk and in one that begins there."""
+    return f"{walk['growth']:.2f} times, {walk['old']['cpu_ms']:.1f} ms of processor time a frame against {walk['young']['cpu_ms']:.1f}"
+
+
 def corridor_lines(program):
     walks = sorted((walk_corridor(program) for _ in range(3)), key=lambda walk: walk["growth"])
     tracked = walk_corridor(program, "--track")
-    again = walk_corridor(program, "--again")["again"]
+    again = walk_corridor(program, "--again")["again"]["parts"]
     walk = walks[1]
-    first, last = walk["parts"][0], walk["parts"][-1]
-    touched = last["blocks_touched"] / first["blocks_touched"]
-    lines = [f"A generated corridor with boxes along its walls and on them, true masks of every frame, 320x240, 4 cm voxels. The last tenth of the frames takes "
-             f"{walk['growth']:.2f} times the processor time of the first (median of three walks, {walks[0]['growth']:.2f} to {walks[2]['growth']:.2f}; target <= 1.1) and touches {touched:.2f} times as many blocks; "
+    first, last, old, young = walk["parts"][0], walk["parts"][-1], walk["old"], walk["young"]
+    lines = [f"A generated corridor with boxes along its walls and on them, true masks of every frame, 320x240, 4 cm voxels. After the walk come as many frames as a tenth of it, each mapped twice, in turn: in the map of the walk and in one "
+             f"that begins there, so that both have the machine in the same minutes. In the old map a frame takes {growth_line(walk)} (median of three walks, {walks[0]['growth']:.2f} to {walks[2]['growth']:.2f}; target <= 1.1) "
+             f"and touches {old['blocks_touched'] / young['blocks_touched']:.3f} times as many blocks; "
              f"{last['map_mb'] / last['surface_m2']:.3f} MB a square metre of surface at the end, "
-             f"{first['map_mb'] / first['surface_m2']:.3f} at first; peak memory {walk['peak_rss_mb']:.0f} MB.", "",
+             f"{first['map_mb'] / first['surface_m2']:.3f} at first; peak memory of the walk {walk['peak_rss_mb']:.0f} MB.", "",
              "| frames | frame p50 ms | p95 ms | processor ms | projection ms | blocks touched | map MB | surface, m2 | objects |", "| --- " * 9 + "|"]
     for part in walk["parts"]:
         frame = part["stages"]["frame"]
         lines.append(f"| {part['frames']} | {frame['p50_ms']:.2f} | {frame['p95_ms']:.2f} | {part['cpu_ms']:.2f} | {part['stages']['projection']['p50_ms']:.2f} "
                      f"| {part['blocks_touched']:.0f} | {part['map_mb']:.0f} | {part['surface_m2']:.0f} | {part['objects']} |")
-    lines += ["", f"The same with poses found (`--track`, one walk): {tracked['growth']:.2f} times, {tracked['parts'][0]['cpu_ms']:.1f} ms of processor time a frame at first, "
-              f"{tracked['parts'][-1]['cpu_ms']:.1f} at the end, a median frame {tracked['parts'][0]['stages']['frame']['p50_ms']:.1f} and {tracked['parts'][-1]['stages']['frame']['p50_ms']:.1f} ms by the clock; "
+    lines += ["", f"The same with poses found (`--track`, one walk): {growth_line(tracked)}; "
               f"lost in {sum(part['frames_lost'] for part in tracked['parts'])} frames, which look for their place, {tracked['parts'][0]['frames_lost']} of the first tenth and {tracked['parts'][-1]['frames_lost']} of the last; peak memory {tracked['peak_rss_mb']:.0f} MB. "
-              f"Walked once more, as another visit of the whole map (`--again`): {again['growth']:.2f} times, {again['parts'][0]['cpu_ms']:.1f} ms at first, {again['parts'][-1]['cpu_ms']:.1f} at the end. Under a bound on memory: \"What a map that lasts costs\".",
-              "", "A frame's stages, milliseconds by the clock (`masks` computes the true ones), of the walk in the middle; the ratio is the median of the three walks.", "",
-              "| stage | first tenth | last tenth | ratio |", "| --- | --- | --- | --- |"]
+              f"Walked once more, as another visit of the whole map (`--again`): the last tenth takes {again[-1]['cpu_ms'] / again[0]['cpu_ms']:.2f} times the first, {again[0]['cpu_ms']:.1f} ms at first, {again[-1]['cpu_ms']:.1f} at the end. Under a bound on memory: \"What a map that lasts costs\".",
+              "", "A frame's stages, milliseconds by the clock (`masks` computes the true ones), in the two maps after the walk in the middle; the ratio is the median of the three walks.", "",
+              "| stage | begun there | map of the walk | ratio |", "| --- | --- | --- | --- |"]
     per_frame = CORRIDOR_FRAMES / len(walk["parts"])
-    for name, stage in first["stages"].items():
-        begin, end = stage["total_ms"] / per_frame, last["stages"].get(name, {"total_ms": 0})["total_ms"] / per_frame
+    for name, stage in young["stages"].items():
+        begin, end = stage["total_ms"] / per_frame, old["stages"].get(name, {"total_ms": 0})["total_ms"] / per_frame
         if max(begin, end) >= 0.01:
             lines.append(f"| {name} | {begin:.2f} | {end:.2f} | {statistics.median(stage_ratio(each, name) for each in walks):.2f} |")
     return [*lines, ""]

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdio>
 #include <fstream>
 #include <thread>
@@ -106,8 +107,9 @@ RemoveLater::~RemoveLater() {
 }
 
 std::filesystem::path temporary_path(const std::string& ending) {
+  static std::atomic<int> made = 0;
   return std::filesystem::temp_directory_path() /
-         ("ovimap-bench-" + std::to_string(getpid()) + ending);
+         ("ovimap-bench-" + std::to_string(getpid()) + "-" + std::to_string(++made) + ending);
 }
 
 std::unique_ptr<Checkpointer> bound_memory(const MemoryConfig& memory) {

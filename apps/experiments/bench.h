@@ -19,7 +19,7 @@ struct RemoveLater {
   ~RemoveLater();
 };
 
-/// Among other temporary files, of this process alone.
+/// Among other temporary files, of this process alone and another one at every call.
 std::filesystem::path temporary_path(const std::string& ending);
 
 /// Tells what this machine can do, on a walk through a room that is rendered for it: frames a

@@ -30,6 +30,12 @@ struct CorridorRow {
 
 using CorridorRows = std::vector<CorridorRow>;
 
+/// The same frames in turn, so that the speed of a busy machine, which drifts, is that of both.
+struct BesideNewcomer {
+  CorridorRow old;    ///< of the map of the whole walk
+  CorridorRow young;  ///< of a map that begins with these frames
+};
+
 /// Square metres of observed surface, by its voxels.
 double surface_m2(const VoxelMap& map) {
   std::size_t voxels = 0;
@@ -59,14 +65,28 @@ class CorridorWalker {
 
   CorridorRows walk() {
     Progress progress("walking");
-    const std::int64_t part = corridor_.size() / kParts;
+    const std::int64_t part = part_frames();
     CorridorRows rows;
     for (std::int64_t i = 0; i < part * kParts && !interrupted(); ++i) {
       step(*corridor_.read(i).frame);
-      progress.show(static_cast<std::size_t>(i + 1), static_cast<std::size_t>(corridor_.size()));
+      progress.show(static_cast<std::size_t>(i + 1), static_cast<std::size_t>(part * kParts));
       if ((i + 1) % part == 0) rows.push_back(end_part(i + 1, part));
     }
     return rows;
+  }
+
+  /// After the walk: the frames that follow it, as many as a tenth.
+  BesideNewcomer walk_beside(CorridorWalker& newcomer) {
+    const std::int64_t begin = part_frames() * kParts;
+    std::int64_t i = begin;
+    for (; i < begin + part_frames() && !interrupted(); ++i) {
+      const Frame frame = *corridor_.read(i).frame;
+      // Who comes second finds more in the caches.
+      CorridorWalker& first = i % 2 == 0 ? *this : newcomer;
+      first.step(frame);
+      (&first == this ? newcomer : *this).step(frame);
+    }
+    return {end_part(i, i - begin), newcomer.end_part(i, i - begin)};
   }
 
   /// The next walk goes on with the map as another visit, as `run --continue` does.
@@ -118,6 +138,8 @@ class CorridorWalker {
     (void)mapper_.project(frame);
   }
 
+  std::int64_t part_frames() const { return corridor_.size() / (kParts + 1); }
+
   CorridorRow end_part(std::int64_t frames, std::int64_t part) {
     const auto count = static_cast<double>(part);
     const VoxelMap& map = mapper_.map();
@@ -155,14 +177,14 @@ nlohmann::json row_json(const CorridorRow& row) {
           {"frames_lost", row.lost}};
 }
 
-double growth_of(const CorridorRows& rows) {
-  return rows.empty() ? 0 : rows.back().cpu_ms / rows.front().cpu_ms;
-}
-
 nlohmann::json rows_json(const CorridorRows& rows) {
   nlohmann::json parts = nlohmann::json::array();
   for (const CorridorRow& row : rows) parts.push_back(row_json(row));
-  return {{"parts", parts}, {"growth", growth_of(rows)}};
+  return {{"parts", parts}};
+}
+
+double growth_of(const BesideNewcomer& beside) {
+  return beside.old.cpu_ms / beside.young.cpu_ms;
 }
 
 void print_rows(const CorridorRows& rows) {
@@ -176,15 +198,19 @@ void print_rows(const CorridorRows& rows) {
                 row.stages.at("frame").p95_ms, row.cpu_ms, row.stages.at("projection").p50_ms,
                 row.blocks_touched, row.map_mb, row.blocks, row.wall_m2, row.objects,
                 static_cast<long long>(row.lost));
-  std::printf("\n%-16s %16s %15s %6s\n", "stage", "first tenth, ms", "last tenth, ms", "ratio");
-  for (const auto& [stage, first] : rows.front().stages) {
-    const auto last = rows.back().stages.find(stage);
-    if (last != rows.back().stages.end())
-      std::printf("%-16s %16.0f %15.0f %6.2f\n", stage.c_str(), first.total_ms,
-                  last->second.total_ms, last->second.total_ms / first.total_ms);
+}
+
+void print_beside(const BesideNewcomer& beside) {
+  std::printf("\n%-16s %16s %15s %6s\n", "the frames after", "begun there, ms", "whole map, ms",
+              "ratio");
+  for (const auto& [stage, young] : beside.young.stages) {
+    const auto old = beside.old.stages.find(stage);
+    if (old != beside.old.stages.end())
+      std::printf("%-16s %16.0f %15.0f %6.2f\n", stage.c_str(), young.total_ms,
+                  old->second.total_ms, old->second.total_ms / young.total_ms);
   }
-  std::printf("the last tenth of the frames takes %.2f times the processor time of the first\n",
-              growth_of(rows));
+  std::printf("a frame takes %.2f times the processor time of one in a map begun there\n",
+              growth_of(beside));
 }
 
 }  // namespace
@@ -193,10 +219,11 @@ int bench_corridor(const CorridorBench& wanted, ProgramConfig config,
                    const MappingOptions& options) {
   watch_for_interrupt();
   config.mapper.map.voxel_size_m = kVoxel_m;
-  const CorridorSource corridor({.frames = wanted.frames, .hung = true});
-  CorridorWalker walker(
-      corridor, config,
-      make_mask_source(options.masks, config.masks, {&corridor, options.model_dirs}), wanted.track);
+  const int part = wanted.frames / static_cast<int>(kParts);
+  const CorridorSource corridor({.frames = part * static_cast<int>(kParts + 1), .hung = true});
+  const std::shared_ptr<MaskSource> masks =
+      make_mask_source(options.masks, config.masks, {&corridor, options.model_dirs});
+  CorridorWalker walker(corridor, config, masks, wanted.track);
   const CorridorRows rows = walker.walk();
   CorridorRows again;
   if (wanted.again && !interrupted()) {
@@ -204,22 +231,32 @@ int bench_corridor(const CorridorBench& wanted, ProgramConfig config,
     again = walker.walk();
   }
   const StageTimers tiles = walker.tiles();
+  const double peak_mb = peak_rss_mb();  // before another map stands beside
+  std::optional<BesideNewcomer> beside;
+  if (!wanted.again && !interrupted()) {
+    CorridorWalker newcomer(corridor, config, masks, wanted.track);
+    beside = walker.walk_beside(newcomer);
+  }
   if (wanted.json) {
     nlohmann::json walk = rows_json(rows);
-    walk.update({{"stages", stages_json(tiles)},
-                 {"interrupted", interrupted()},
-                 {"peak_rss_mb", peak_rss_mb()}});
+    walk.update(
+        {{"stages", stages_json(tiles)}, {"interrupted", interrupted()}, {"peak_rss_mb", peak_mb}});
     if (wanted.again) walk["again"] = rows_json(again);
+    if (beside)
+      walk.update({{"old", row_json(beside->old)},
+                   {"young", row_json(beside->young)},
+                   {"growth", growth_of(*beside)}});
     print_json(walk);
     return kDone;
   }
   print_rows(rows);
+  if (beside) print_beside(*beside);
   if (!again.empty()) std::printf("\nagain, as another visit:\n");
   print_rows(again);
   for (const auto& [stage, s] : tiles.summary())
     std::printf("%s: %.2f ms, p95 %.2f ms, %zu times\n", stage.c_str(), s.p50_ms, s.p95_ms,
                 s.count);
-  std::printf("peak memory %.0f MB\n", peak_rss_mb());
+  std::printf("peak memory %.0f MB\n", peak_mb);
   return kDone;
 }
 
