@@ -183,7 +183,7 @@ def walk_corridor(program, *options):
 
 def growth_line(walk):
     """What history costs: the same frames in turn, in the map of the walk and in one that begins there."""
-    return f"{walk['growth']:.2f} times, {walk['old']['cpu_ms']:.1f} ms of processor time a frame against {walk['young']['cpu_ms']:.1f}"
+    return f"{walk['growth']:.2f} times the processor time, {walk['old']['cpu_ms']:.1f} ms against {walk['young']['cpu_ms']:.1f}"
 
 
 def corridor_lines(program):
